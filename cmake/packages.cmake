@@ -1,0 +1,35 @@
+# Every package that Kerf uses, found once. Heavy ones have one door each (docs/design.md).
+list(PREPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)
+set(CGAL_DATA_DIR "unused" CACHE PATH "")
+find_package(CGAL 5.5 REQUIRED)
+find_package(PCL 1.13 REQUIRED COMPONENTS common kdtree)
+find_library(KERF_PCL_IO pcl_io REQUIRED)
+find_package(OpenVDB 10 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+find_package(nlohmann_json REQUIRED)
+find_package(tomlplusplus REQUIRED)
+if(KERF_TOOLS)
+  find_package(CLI11 REQUIRED)
+  find_package(embree 3 REQUIRED)
+  find_package(PNG REQUIRED)
+endif()
+if(KERF_TESTS)
+  find_package(Catch2 3 REQUIRED)
+endif()
+
+# Headers of libraries are not ours to warn about; PCL's flags (SSE, definitions) stay off our own files.
+add_library(kerf_eigen INTERFACE)
+target_link_libraries(kerf_eigen INTERFACE Eigen3::Eigen)
+
+add_library(kerf_cgal INTERFACE)
+target_link_libraries(kerf_cgal INTERFACE CGAL::CGAL)
+
+add_library(kerf_pcl INTERFACE)
+target_include_directories(kerf_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
+target_link_libraries(kerf_pcl INTERFACE ${PCL_COMMON_LIBRARIES} ${PCL_KDTREE_LIBRARIES} ${KERF_PCL_IO})

@@ -1,0 +1,24 @@
+# A room of libgeo is an object library of all sources in its folder; kerf::geo is all rooms in one static library, so
+# that a tool takes (and starts) only what it uses.
+add_library(kerf_flags INTERFACE)
+target_compile_options(kerf_flags INTERFACE -Wall -Wextra $<$<CONFIG:Debug>:-O1>)
+# Exact predicates rely on IEEE arithmetic: no contraction into fused operations, no fast-math.
+target_compile_options(kerf_flags INTERFACE -ffp-contract=off)
+target_link_options(kerf_flags INTERFACE -Wl,--as-needed)
+if(KERF_SANITIZE)
+  target_compile_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE})
+endif()
+
+set(KERF_ROOMS base geometry surface sampling graph crack body mechanics contact simulation io)
+
+function(kerf_room room)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_library(geo_${room} OBJECT ${sources})
+  target_include_directories(geo_${room} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>)
+  target_link_libraries(geo_${room} PRIVATE kerf_flags PUBLIC kerf_eigen ${ARGN})
+  set_property(TARGET geo_${room} PROPERTY POSITION_INDEPENDENT_CODE ON)
+endfunction()

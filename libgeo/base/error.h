@@ -1,0 +1,34 @@
+// The three ways in which a call can fail; legitimate outcomes are return values, never exceptions.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace geo {
+
+/// The input is wrong: malformed, open, self-intersecting, out of range. The message says what is wrong and what to do.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The input file is not there or cannot be opened.
+struct MissingInputError : InputError {
+  using InputError::InputError;
+};
+
+/// The output cannot be made: folder missing, disk full, no permission.
+struct OutputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A geometric operation failed on valid input; what it worked on is unchanged.
+struct GeometryError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The caller asked to stop (see Progress); nothing was committed.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+}  // namespace geo

@@ -1,0 +1,34 @@
+// Vectors, boxes: the few words of linear algebra that every room shares.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace geo {
+
+using Vec3 = Eigen::Vector3d;  ///< a point or direction, in model units
+using Mat3 = Eigen::Matrix3d;
+using Triangle = std::array<std::uint32_t, 3>;  ///< three vertex rows, counter-clockwise from outside
+
+/// Axis-aligned closed box. Default-constructed it is empty.
+struct Box3 {
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  void add(const Vec3& p) { lo = lo.cwiseMin(p), hi = hi.cwiseMax(p); }
+  void add(const Box3& b) { lo = lo.cwiseMin(b.lo), hi = hi.cwiseMax(b.hi); }
+  bool empty() const { return (lo.array() > hi.array()).any(); }
+  bool meets(const Box3& b) const { return (lo.array() <= b.hi.array()).all() && (b.lo.array() <= hi.array()).all(); }
+  Box3 grown(double r) const { return {lo - Vec3::Constant(r), hi + Vec3::Constant(r)}; }
+  double diagonal() const { return empty() ? 0.0 : (hi - lo).norm(); }
+  Vec3 center() const { return 0.5 * (lo + hi); }
+};
+
+inline Box3 box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+}  // namespace geo

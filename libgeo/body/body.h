@@ -1,0 +1,93 @@
+// A body: surface complex, nodes, graph, neighbourhoods and binding, always in step with each other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "crack/advance.h"
+#include "graph/neighborhoods.h"
+#include "graph/update.h"
+#include "sampling/node_set.h"
+#include "surface/complex.h"
+
+namespace geo {
+
+/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries.
+struct Binding {
+  std::vector<NodeId> master_node;             ///< of masters: the node with the visibility edge; else invalid
+  std::vector<SurfaceVertexId> master;         ///< the master whose tree a vertex hangs in; invalid: orphan
+  std::vector<SurfaceVertexId> parent;         ///< towards the master; itself for a master
+  friend bool operator==(const Binding&, const Binding&) = default;
+};
+
+/// Where a file came from: printed by kerf-info, written into every body.
+struct Provenance {
+  std::string tool, version, arguments;
+  std::vector<std::string> inputs;  ///< "name xxh3:…"
+};
+
+struct Body {
+  Complex surface;
+  NodeSet nodes;
+  VisibilityGraph graph;
+  Neighborhoods neighbors;
+  Binding binding;
+  int k = 26;                    ///< nearest neighbours per node in the graph
+  double resample_limit = 1;     ///< new nodes may be at most this many per crack face area over spacing²; 0: none
+  std::uint32_t updates = 0;     ///< cracks steps applied since the build
+  std::vector<std::uint8_t> debris;  ///< per node: 1 where the piece has too few nodes for a shape function
+  std::vector<Provenance> history;
+};
+
+struct BodyOptions {
+  int k = 26;
+  NeighborMethod method = NeighborMethod::automatic;
+};
+
+/// Builds graph, neighbourhoods and binding (§ 6.1, 6.2, 6.5). Passages too narrow for the sampling (more components
+/// in G than pieces of material) get extra nodes until components and pieces agree. Throws InputError when a node is
+/// outside the material or a piece has no node.
+Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options = {}, const Progress& progress = {});
+
+/// From scratch on the same complex, nodes and edges' end points: what incremental updates must equal, bit for bit.
+Binding build_binding(const Body& body);
+
+/// Counts and seconds of one split, by phase.
+struct SplitWork {
+  CrackWork crack;
+  std::size_t edges_cut = 0, edges_added = 0, nodes_updated = 0, nodes_added = 0, nodes_moved = 0, orphans = 0;
+  double resample_seconds = 0, graph_seconds = 0, binding_seconds = 0;
+};
+
+/// What a split changed, for the mechanics.
+struct BodyDelta {
+  CrackDelta crack;
+  NodeId first_new_node;                 ///< nodes from here on are new
+  std::vector<NodeId> moved_nodes;       ///< old nodes moved off a crack face, ascending
+  std::vector<NodeId> updated_nodes;     ///< rows changed (new and moved ones included), ascending
+  std::vector<SurfaceVertexId> rebound;  ///< surface vertices whose binding changed
+};
+
+/// One front step through all seven steps of § 4: crack, cut graph, sample, update neighbours, re-bind. Commits all or
+/// nothing: on GeometryError body and front are unchanged.
+BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
+                SplitWork* work = nullptr);
+
+/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own.
+BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr);
+
+/// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its master's node, the node
+/// itself included, that are within their support radius.
+void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
+
+/// Every invariant of a body that can be checked alone; empty when all hold, else the first offending ids.
+struct BodyReport {
+  std::size_t graph_components = 0, pieces = 0, edges_crossing = 0, orphans = 0, nodes_outside = 0;
+  std::string first_problem;
+  bool good() const { return first_problem.empty(); }
+};
+BodyReport check_body(const Body& body);
+
+}  // namespace geo

@@ -1,0 +1,55 @@
+// One step of a crack (§ 5.1, 5.2): sweep, meet, split, keep, stitch, all or nothing.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "surface/complex.h"
+
+namespace geo {
+
+/// A front as the crack complex knows it between two steps. Contacts are carried by id and never found again by
+/// geometry: each segment of the front lists the vertices of K that lie on it, in order, its ends included.
+struct FrontState {
+  struct Point {
+    Vec3 position;  ///< material coordinates
+    VertexId id;    ///< the vertex of K at this point; invalid while the point is outside the material
+  };
+  bool closed = false;
+  std::int32_t crack = 0;             ///< the number of the crack that this front leaves behind; ≥ 1
+  std::vector<Point> points;          ///< the front points as given (or as moved by the guard)
+  std::vector<std::vector<Point>> segments;  ///< segments[i]: from points[i] to points[i+1], with the contacts between
+  std::uint32_t step = 0;             ///< how many time steps of its file this front has made
+  std::string name;
+};
+
+struct CrackOptions {
+  double snap = 1e-14;    ///< pre-snap of the strip to vertices of K, relative to the extent's diagonal
+  double jitter = 1e-9;   ///< first displacement of the new front when the guard refuses a step, relative
+  int attempts = 8;       ///< how often a refused step is jittered and redone
+  std::uint64_t seed = 1; ///< of the jitter
+};
+
+/// Counts and seconds of one step, by phase.
+struct CrackWork {
+  std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0;
+  double near_seconds = 0, meet_seconds = 0, split_seconds = 0, keep_seconds = 0, stitch_seconds = 0, guard_seconds = 0;
+  CrackWork& operator+=(const CrackWork& o);
+  double seconds() const;
+};
+
+/// The front before its first step: no contacts are known yet. Throws InputError for fewer than two points or
+/// coordinates that are not finite.
+FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t crack);
+
+/// Sweeps the front to `next` (as many points as the front has), inserts the strip into K and returns what changed.
+/// Crack initiation, branching, merging and termination need no flags: they are what the intersection says. Throws
+/// GeometryError when no attempt passes the guard; `complex` and `front` are then unchanged.
+CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options = {},
+                   CrackWork* work = nullptr);
+
+}  // namespace geo

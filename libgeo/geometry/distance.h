@@ -1,0 +1,14 @@
+// Closest points, in floating point (distances filter and weigh; they never decide topology).
+#pragma once
+
+#include "base/vec.h"
+
+namespace geo {
+
+/// The point of triangle abc that is closest to p (Ericson, Real-Time Collision Detection, § 5.1.5).
+Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Barycentric coordinates (weights of a, b, c; they sum to 1) of the projection of p onto the plane of abc.
+Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace geo

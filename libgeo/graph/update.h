@@ -1,0 +1,27 @@
+// Incremental update of graph and neighbourhoods (§ 6.3, 6.4): equal to a build from scratch, bit for bit.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "graph/neighborhoods.h"
+
+namespace geo {
+
+struct GraphUpdate {
+  std::vector<std::pair<NodeId, NodeId>> cut_edges;    ///< E_cut, i < j
+  std::vector<std::pair<NodeId, NodeId>> added_edges;  ///< E_new
+  std::vector<NodeId> updated_nodes;                   ///< P_update: nodes whose rows were recomputed, ascending
+};
+
+/// `new_faces`: the triangles that the step added to the complex (crack faces and children of cut skin). `first_new`:
+/// nodes from this row on are new (P_new) and get edges to their k nearest visible nodes. `obstacle_near` must append
+/// the triangles of the whole complex whose boxes meet a box (used for edges of new nodes only and for visible pairs).
+/// Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
+GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const std::array<Vec3, 3>> new_faces,
+                         const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
+                         VisibilityGraph& graph, Neighborhoods& rows);
+
+}  // namespace geo

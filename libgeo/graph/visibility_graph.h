@@ -1,0 +1,56 @@
+// The visibility graph G (§ 6.1): which nodes see each other, and how far apart they are.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/progress.h"
+#include "geometry/bvh.h"
+#include "sampling/node_set.h"
+
+namespace geo {
+
+/// Warped length of an edge (§ 6.4), |x_i − x_j| / max(r_i, r_j), as an integer count of 2⁻²⁴ support radii, rounded
+/// up and at least 1: sums are exact, so a distance depends on no order of summation.
+constexpr std::uint32_t unit_radius = 1u << 24;
+std::uint32_t warped_length(const Vec3& xi, const Vec3& xj, double ri, double rj);
+
+/// An undirected graph over nodes; rows sorted by (length, node). Only edges shorter than the support matter to
+/// neighbourhoods, but all are kept: connectivity does not depend on radii.
+class VisibilityGraph {
+ public:
+  struct Arc {
+    NodeId to;
+    std::uint32_t length;  ///< warped, see above
+    friend auto operator<=>(const Arc& a, const Arc& b) = default;
+  };
+  std::size_t node_count() const { return rows_.size(); }
+  std::size_t edge_count() const { return edges_; }
+  std::span<const Arc> arcs(NodeId i) const { return rows_[i.index()]; }
+  bool has(NodeId i, NodeId j) const;
+  void resize(std::size_t nodes) { rows_.resize(nodes); }
+  /// Adds or removes the edge ij; both directions. False when it was (was not) there already.
+  bool add(NodeId i, NodeId j, std::uint32_t length);
+  bool remove(NodeId i, NodeId j);
+  /// Component of each node, numbered by lowest node; returns their count.
+  std::uint32_t components(std::vector<std::uint32_t>& of) const;
+
+ private:
+  std::vector<std::vector<Arc>> rows_;
+  std::size_t edges_ = 0;
+};
+
+/// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
+/// Missing entries are invalid ids.
+std::vector<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
+
+/// Edges (i < j) of the Euclidean minimum spanning tree.
+std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions);
+
+/// EMST ∪ k nearest, minus every edge that touches a triangle of `obstacles` (closed semantics, exact).
+VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& obstacles, int k,
+                                       const Progress& progress = {});
+
+}  // namespace geo

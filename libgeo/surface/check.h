@@ -1,0 +1,36 @@
+// Checks of surfaces and complexes: each names the first offending ids. Exact (CGAL) where it is about geometry.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surface/complex.h"
+#include "surface/triangle_mesh.h"
+
+namespace geo {
+
+struct SurfaceReport {
+  bool closed = true, manifold = true, oriented = true;
+  std::size_t degenerate_faces = 0;                     ///< zero area, exactly
+  std::optional<std::size_t> self_intersections;        ///< pairs; empty: not asked for
+  std::string first_problem;                            ///< empty when all is well; names rows
+  bool good() const { return first_problem.empty(); }
+};
+
+/// Checks a plain mesh, or the derived surface of a two-sided one as a mesh (collocated sheets are then no
+/// intersection: the complex is tested, with each crack face once).
+SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
+
+/// Checks K: structure (rings list their edges' faces and material sides agree), derived surface closed, oriented,
+/// manifold, no face without area, and with `self_intersections` no two faces crossing or overlapping, exactly.
+SurfaceReport check_complex(const Complex& complex, bool self_intersections);
+
+/// Pairs of faces of K that meet other than in shared vertices and edges; only pairs with a face in `only`, where given.
+std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex, const std::vector<FaceId>* only = nullptr);
+
+/// Throws InputError unless `mesh` is a valid model: closed, manifold, oriented outwards, no degenerate or
+/// self-intersecting triangles, finite coordinates. The message names the first offending rows and what to do.
+void require_solid(const TriangleMesh& mesh);
+
+}  // namespace geo

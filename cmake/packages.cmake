@@ -20,7 +20,7 @@ if(KERF_TOOLS)
   find_package(PNG REQUIRED)
 endif()
 if(KERF_TESTS)
-  find_package(Catch2 3 REQUIRED)
+  find_package(Catch2 2.13 REQUIRED)
 endif()
 
 # Headers of libraries are not ours to warn about; PCL's flags (SSE, definitions) stay off our own files.

@@ -5,6 +5,9 @@ target_compile_options(kerf_flags INTERFACE -Wall -Wextra $<$<CONFIG:Debug>:-O1>
 # Exact predicates rely on IEEE arithmetic: no contraction into fused operations, no fast-math.
 target_compile_options(kerf_flags INTERFACE -ffp-contract=off)
 target_link_options(kerf_flags INTERFACE -Wl,--as-needed)
+if(KERF_WERROR)
+  target_compile_options(kerf_flags INTERFACE -Werror)
+endif()
 if(KERF_SANITIZE)
   target_compile_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE})

@@ -1,0 +1,11 @@
+#!/bin/sh
+# Installs the build in $1 to a folder aside, builds the consumer against it with find_package(kerf), and runs it.
+set -eu
+build=$1 source=$2 generator=$3
+stage=$(mktemp -d)
+trap 'rm -rf "$stage"' EXIT
+cmake --install "$build" --prefix "$stage/prefix" >"$stage/log" 2>&1 || { cat "$stage/log"; exit 1; }
+cmake -S "$source" -B "$stage/build" -G "$generator" -DCMAKE_PREFIX_PATH="$stage/prefix" "-DCMAKE_CXX_FLAGS=${4:-}" >"$stage/log" 2>&1 ||
+  { cat "$stage/log"; exit 1; }
+cmake --build "$stage/build" >"$stage/log" 2>&1 || { cat "$stage/log"; exit 1; }
+"$stage/build/consumer"

@@ -1,7 +1,9 @@
 #include "surface/shapes.h"
 
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numbers>
 
 
 #include "base/error.h"
@@ -83,19 +85,33 @@ TriangleMesh make_apple(int frequency) {
 }
 
 TriangleMesh make_polyp(int frequency) {
-  // Seen from the bulb's middle everything is visible, so a polyp is a star too: bulb, then stalk, then a wide foot.
-  TriangleMesh mesh = make_star(frequency, [](const Vec3& d) {
-    const double s = std::hypot(d.x(), d.y());
-    const double bulb = 0.62 + 0.04 * std::sin(5 * d.x() + 1) * std::sin(4 * d.y()) + 0.03 * std::sin(6 * d.z());
-    if (d.z() >= 0) return bulb;
-    const double down = -d.z();
-    const double stalk = s > 1e-9 ? 0.2 / s : 1e9;      // a cylinder of radius 0.2
-    const double floor = 1.35 / std::max(down, 1e-9);   // the plane it stands on
-    const double foot = std::min(stalk * (1.0 + 0.9 * bump((down - 1.0) / 0.02)), floor);
-    // Smooth maximum of bulb and stalk, so that the neck has no crease.
-    const double m = std::max(bulb, foot), n = std::min(bulb, foot);
-    return m + 0.05 * std::log1p(std::exp((n - m) / 0.05));
-  });
+  // A surface of revolution over a geodesic sphere: the polar angle runs along a profile (radius, height) that is a
+  // simple curve, the azimuth stays, and small bumps on the bulb keep it from looking turned.
+  constexpr double profile[][2] = {{0, 1.0},      {0.30, 0.95},  {0.52, 0.76},   {0.60, 0.48},  {0.52, 0.20}, {0.32, 0.0},
+                                   {0.19, -0.16}, {0.17, -0.38}, {0.20, -0.60}, {0.34, -0.80}, {0.46, -0.92}, {0.42, -1.0},
+                                   {0.2, -1.0},   {0, -1.0}};
+  constexpr int last = static_cast<int>(std::size(profile)) - 1;
+  TriangleMesh mesh = make_sphere(frequency);
+  for (Vec3& p : mesh.vertices) {
+    const double s = std::hypot(p.x(), p.y()), along = std::atan2(s, p.z()) / std::numbers::pi * last;
+    const int i = std::clamp(static_cast<int>(along), 0, last - 1);
+    const double t = along - i;
+    // Catmull-Rom through the profile, mirrored at its ends.
+    const auto at = [&](int j, int c) {
+      if (j < 0) return c == 0 ? -profile[-j][0] : profile[-j][1];
+      if (j > last) return c == 0 ? -profile[2 * last - j][0] : profile[2 * last - j][1];
+      return profile[j][c];
+    };
+    double point[2];
+    for (int c = 0; c < 2; ++c) {
+      const double p0 = at(i - 1, c), p1 = at(i, c), p2 = at(i + 1, c), p3 = at(i + 2, c);
+      point[c] = p1 + 0.5 * t * (p2 - p0 + t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)));
+    }
+    const Vec3 d = p;
+    const double bulb = std::clamp(point[1] / 0.5, 0.0, 1.0);
+    const double r = point[0] * (1 + bulb * (0.05 * std::sin(5 * d.x() + 1) + 0.05 * std::sin(6 * d.y())));
+    p = s > 0 ? Vec3(r * d.x() / s, r * d.y() / s, point[1]) : Vec3(0, 0, point[1]);
+  }
   return mesh;
 }
 

@@ -1,0 +1,33 @@
+// Pictures: rows of RGB pixels, written as PNG; several of them on one sheet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace view {
+
+using Color = std::array<float, 3>;  ///< linear light, 0 to 1
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<Color> pixels;  ///< row by row from the top
+
+  Picture() = default;
+  Picture(int w, int h, Color c = {1, 1, 1}) : width(w), height(h), pixels(static_cast<std::size_t>(w) * h, c) {}
+  Color& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * width + x]; }
+  const Color& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
+};
+
+/// 8-bit sRGB PNG. Throws geo::OutputError.
+void write_png(std::ostream& out, const Picture& picture);
+
+/// Pictures of one size in rows of `columns`, a thin margin between them, each with its label in the lower left.
+Picture contact_sheet(const std::vector<Picture>& pictures, const std::vector<std::string>& labels, int columns);
+
+/// Writes text (digits, letters, a few signs; 5 × 7 dots enlarged `scale` times) with its upper left at x, y.
+void draw_text(Picture& picture, int x, int y, const std::string& text, int scale, Color color);
+
+}  // namespace view

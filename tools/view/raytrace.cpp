@@ -1,0 +1,324 @@
+#include "view/raytrace.h"
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace view {
+namespace {
+
+using geo::Vec3;
+constexpr double pi = std::numbers::pi;
+
+Color scaled(const Color& c, double s) { return {float(c[0] * s), float(c[1] * s), float(c[2] * s)}; }
+Color mixed(const Color& a, const Color& b, double t) {
+  return {float(a[0] + (b[0] - a[0]) * t), float(a[1] + (b[1] - a[1]) * t), float(a[2] + (b[2] - a[2]) * t)};
+}
+
+// Integer hash of a pixel sample: noise that depends on no thread.
+std::uint32_t hash(std::uint32_t x) {
+  x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
+  return x;
+}
+double unit(std::uint32_t& state) { return (state = hash(state + 0x9e3779b9u)) * 0x1p-32; }
+
+// Corner normals, smoothed over faces that meet at less than 40 degrees around the same row.
+std::vector<std::array<Eigen::Vector3f, 3>> smooth_normals(const geo::TriangleMesh& mesh) {
+  std::vector<Vec3> face(mesh.triangles.size());
+  std::vector<std::vector<std::uint32_t>> at(mesh.vertices.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    face[t] = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+    for (const auto v : mesh.triangles[t]) at[v].push_back(t);
+  }
+  std::vector<std::array<Eigen::Vector3f, 3>> normals(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 own = face[t].normalized();
+    for (int k = 0; k < 3; ++k) {
+      Vec3 sum = Vec3::Zero();
+      for (const auto other : at[mesh.triangles[t][k]])
+        if (face[other].normalized().dot(own) > 0.766) sum += face[other];
+      const Vec3 n = sum.squaredNorm() > 0 ? sum.normalized() : own;
+      normals[t][k] = n.cast<float>();
+    }
+  }
+  return normals;
+}
+
+struct Crossings {
+  RTCIntersectContext context;  // first: Embree hands back a pointer to it
+  int winding = 0;
+};
+
+void count_crossing(const RTCFilterFunctionNArguments* args) {
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    const double along = RTCRayN_dir_x(args->ray, args->N, i) * RTCHitN_Ng_x(args->hit, args->N, i) +
+                         RTCRayN_dir_y(args->ray, args->N, i) * RTCHitN_Ng_y(args->hit, args->N, i) +
+                         RTCRayN_dir_z(args->ray, args->N, i) * RTCHitN_Ng_z(args->hit, args->N, i);
+    reinterpret_cast<Crossings*>(args->context)->winding += along > 0 ? 1 : -1;
+    args->valid[i] = 0;
+  }
+}
+
+class Tracer {
+ public:
+  explicit Tracer(const Stage& stage) : stage_(stage), normals_(smooth_normals(stage.surface)) {
+    device_ = rtcNewDevice("threads=1,set_affinity=0");
+    if (!device_) throw geo::OutputError("the ray tracer cannot start");
+    surface_ = rtcNewScene(device_), things_ = rtcNewScene(device_), counter_ = rtcNewScene(device_);
+    for (RTCScene scene : {surface_, things_, counter_}) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    add_surface(surface_, false);
+    add_surface(counter_, true);
+    add_spheres();
+    add_sticks();
+    for (RTCScene scene : {surface_, things_, counter_}) rtcCommitScene(scene);
+    geo::Box3 box;
+    for (const auto& t : stage.surface.triangles)
+      for (const auto v : t) box.add(stage.surface.vertices[v]);
+    for (const auto& s : stage.spheres) box.add(s.center);
+    scale_ = std::max(box.diagonal(), 1e-300);
+    floor_ = stage.ground_level.value_or(box.empty() ? 0 : box.lo.z() - 1e-4 * scale_);
+  }
+  ~Tracer() {
+    for (RTCScene scene : {surface_, things_, counter_}) rtcReleaseScene(scene);
+    rtcReleaseDevice(device_);
+  }
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
+
+  Color shade(const Vec3& eye, const Vec3& d, std::uint32_t& noise, int occlusion) const {
+    double from = 0;
+    bool at_plane = false;
+    if (stage_.cutaway) {
+      // The eye may stand in what is cut away: then the ray begins at the plane, or never.
+      const double height = (eye - stage_.cutaway->point).dot(stage_.cutaway->normal);
+      const double rate = d.dot(stage_.cutaway->normal);
+      if (height > 0) {
+        from = rate < 0 ? -height / rate : 1e30;
+        at_plane = rate < 0;
+      }
+    }
+    const Hit thing = trace(things_, eye, d, from);
+    Hit skin = trace(surface_, eye, d, from);
+    Color behind = thing.t < 1e29 ? lit(thing, d, noise, occlusion) : background(eye, d, noise, occlusion);
+    if (at_plane && stage_.section && winding(eye + from * d, d) > 0 && from <= thing.t) {
+      Hit cap;
+      cap.t = from, cap.point = eye + from * d, cap.normal = stage_.cutaway->normal, cap.color = {0.93f, 0.70f, 0.42f};
+      const double lines = std::abs(std::remainder(cap.point.sum() / scale_ * 60, 1.0));
+      if (lines < 0.06) cap.color = scaled(cap.color, 0.93);
+      return lit(cap, d, noise, occlusion);
+    }
+    if (skin.t >= thing.t || skin.t > 1e29) return behind;
+    const Color front = lit(skin, d, noise, occlusion);
+    return stage_.surface_opacity >= 1 ? front : mixed(behind, front, stage_.surface_opacity * rim(skin, d));
+  }
+
+ private:
+  struct Hit {
+    double t = 1e30;
+    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
+    Color color{};
+  };
+
+  // Glancing surface is more opaque, so that a glassy body keeps its outline.
+  static double rim(const Hit& hit, const Vec3& d) {
+    const double facing = std::abs(hit.normal.dot(d));
+    return std::min(4.0, 0.6 + 2.0 * std::pow(1 - facing, 3));
+  }
+
+  void add_surface(RTCScene scene, bool counting) {
+    if (stage_.surface.triangles.empty()) return;
+    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                                          stage_.surface.vertices.size()));
+    for (const auto& v : stage_.surface.vertices)
+      for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(v[c]);
+    auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                                                  stage_.surface.triangles.size()));
+    for (const auto& t : stage_.surface.triangles)
+      for (const auto v : t) *i++ = v;
+    if (counting) rtcSetGeometryIntersectFilterFunction(g, count_crossing);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(scene, g, 0);
+    rtcReleaseGeometry(g);
+  }
+
+  void add_spheres() {
+    if (stage_.spheres.empty()) return;
+    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, stage_.spheres.size()));
+    for (const auto& s : stage_.spheres) {
+      for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(s.center[c]);
+      *p++ = static_cast<float>(s.radius);
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(things_, g, 1);
+    rtcReleaseGeometry(g);
+  }
+
+  void add_sticks() {
+    if (stage_.sticks.empty()) return;
+    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 2 * stage_.sticks.size()));
+    auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, 4, stage_.sticks.size()));
+    std::uint32_t row = 0;
+    for (const auto& s : stage_.sticks) {
+      for (const Vec3* end : {&s.a, &s.b}) {
+        for (int c = 0; c < 3; ++c) *p++ = static_cast<float>((*end)[c]);
+        *p++ = static_cast<float>(s.radius);
+      }
+      *i++ = row, row += 2;
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(things_, g, 2);
+    rtcReleaseGeometry(g);
+  }
+
+  static RTCRayHit make_ray(const Vec3& o, const Vec3& d, double from, double to) {
+    RTCRayHit r{};
+    r.ray.org_x = float(o.x()), r.ray.org_y = float(o.y()), r.ray.org_z = float(o.z());
+    r.ray.dir_x = float(d.x()), r.ray.dir_y = float(d.y()), r.ray.dir_z = float(d.z());
+    r.ray.tnear = float(from), r.ray.tfar = float(to), r.ray.mask = ~0u;
+    r.hit.geomID = r.hit.primID = RTC_INVALID_GEOMETRY_ID;
+    return r;
+  }
+
+  Hit trace(RTCScene scene, const Vec3& o, const Vec3& d, double from) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit r = make_ray(o, d, from, 1e30);
+    rtcIntersect1(scene, &context, &r);
+    Hit hit;
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+    hit.t = r.ray.tfar;
+    hit.point = o + hit.t * d;
+    if (r.hit.geomID == 0) {
+      const auto& n = normals_[r.hit.primID];
+      hit.normal = ((1 - r.hit.u - r.hit.v) * n[0] + r.hit.u * n[1] + r.hit.v * n[2]).cast<double>().normalized();
+      hit.color = stage_.triangle_colors[r.hit.primID];
+      if (stage_.wire && std::min({r.hit.u, r.hit.v, 1 - r.hit.u - r.hit.v}) < 0.035f) hit.color = scaled(hit.color, 0.45);
+    } else {
+      hit.normal = Vec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z).normalized();
+      hit.color = r.hit.geomID == 1 ? stage_.spheres[r.hit.primID].color : stage_.sticks[r.hit.primID].color;
+    }
+    if (hit.normal.dot(d) > 0) hit.normal = -hit.normal;
+    return hit;
+  }
+
+  int winding(const Vec3& o, const Vec3& d) const {
+    Crossings crossings;
+    rtcInitIntersectContext(&crossings.context);
+    RTCRayHit r = make_ray(o, d, 0, 1e30);
+    rtcIntersect1(counter_, &crossings.context, &r);
+    return crossings.winding;
+  }
+
+  bool blocked(const Vec3& o, const Vec3& d, double reach) const {
+    RTCIntersectContext context;
+    for (RTCScene scene : {surface_, things_}) {
+      if (scene == surface_ && stage_.surface_opacity < 1) continue;
+      double to = reach, from = 1e-4 * scale_;
+      if (stage_.cutaway && scene == surface_) {
+        // Only what is kept casts shadows.
+        const double height = (o - stage_.cutaway->point).dot(stage_.cutaway->normal);
+        const double rate = d.dot(stage_.cutaway->normal);
+        if (height > 1e-6 * scale_) {
+          if (rate >= 0) continue;
+          from = std::max(from, -height / rate);
+        } else if (rate > 0) {
+          to = std::min(to, -height / rate);
+        }
+        if (to <= from) continue;
+      }
+      rtcInitIntersectContext(&context);
+      RTCRayHit r = make_ray(o, d, from, to);
+      rtcOccluded1(scene, &context, &r.ray);
+      if (r.ray.tfar < 0) return true;
+    }
+    return false;
+  }
+
+  double openness(const Vec3& p, const Vec3& n, std::uint32_t& noise, int rays, double reach) const {
+    if (rays == 0) return 1;
+    const Vec3 t = (std::abs(n.x()) > 0.6 ? Vec3::UnitY() : Vec3::UnitX()).cross(n).normalized(), b = n.cross(t);
+    int open = 0;
+    for (int i = 0; i < rays; ++i) {
+      const double u = (i + unit(noise)) / rays, phi = 2 * pi * unit(noise), r = std::sqrt(u);
+      const Vec3 d = (r * std::cos(phi) * t + r * std::sin(phi) * b + std::sqrt(1 - u) * n).normalized();
+      open += !blocked(p + 1e-4 * scale_ * n, d, reach);
+    }
+    return double(open) / rays;
+  }
+
+  Color lit(const Hit& hit, const Vec3& d, std::uint32_t& noise, int occlusion) const {
+    const Vec3 key = Vec3(-0.45 + 0.12 * unit(noise), -0.55 + 0.12 * unit(noise), 0.85).normalized();
+    const Vec3 rim_light = Vec3(0.7, 0.5, 0.25).normalized();
+    const double facing = hit.normal.dot(key);
+    const double direct = facing > 0 && !blocked(hit.point + 1e-4 * scale_ * hit.normal, key, 1e30) ? facing : 0;
+    const double sky = openness(hit.point, hit.normal, noise, occlusion, 0.35 * scale_) * (0.75 + 0.25 * hit.normal.z());
+    const Vec3 half = (key - d).normalized();
+    const double gloss = direct > 0 ? 0.16 * std::pow(std::max(0.0, hit.normal.dot(half)), 40) : 0;
+    const double light = 0.72 * direct + 0.42 * sky + 0.10 * std::max(0.0, hit.normal.dot(rim_light));
+    const Color c = scaled(hit.color, light);
+    return {float(c[0] + gloss), float(c[1] + gloss), float(c[2] + gloss)};
+  }
+
+  Color background(const Vec3& eye, const Vec3& d, std::uint32_t& noise, int occlusion) const {
+    const Color sky = mixed({0.90f, 0.92f, 0.95f}, {0.72f, 0.78f, 0.86f}, std::clamp(0.5 + d.z(), 0.0, 1.0));
+    if (!stage_.ground || d.z() >= -1e-6 || eye.z() <= floor_) return sky;
+    const double t = (floor_ - eye.z()) / d.z();
+    const Vec3 p = eye + t * d;
+    const Vec3 key = Vec3(-0.45 + 0.25 * unit(noise), -0.55 + 0.25 * unit(noise), 0.85).normalized();
+    const bool dark = blocked(p, key, 1e30);
+    const double sky_light = openness(p, Vec3::UnitZ(), noise, occlusion, 0.5 * scale_);
+    const Color floor = scaled({0.86f, 0.87f, 0.88f}, (dark ? 0.55 : 0.92) * (0.45 + 0.55 * sky_light) + 0.08);
+    const double far = std::clamp((p - Vec3(eye.x(), eye.y(), floor_)).norm() / (9 * scale_), 0.0, 1.0);
+    return mixed(floor, sky, far * far);
+  }
+
+  const Stage& stage_;
+  std::vector<std::array<Eigen::Vector3f, 3>> normals_;
+  RTCDevice device_ = nullptr;
+  RTCScene surface_ = nullptr, things_ = nullptr, counter_ = nullptr;
+  double scale_ = 1, floor_ = 0;
+};
+
+}  // namespace
+
+Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options) {
+  const Tracer tracer(stage);
+  const double azimuth = camera.azimuth * pi / 180, elevation = camera.elevation * pi / 180;
+  const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation));
+  const Vec3 right = Vec3(std::cos(azimuth), -std::sin(azimuth), 0), up = right.cross(forward);
+  const double field = std::tan(17 * pi / 180);  // half the vertical angle of view
+  const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
+  const double aspect = double(options.width) / options.height;
+  const double distance = 1.02 * radius / (field * std::min(1.0, aspect)) / camera.zoom;
+  const Vec3 eye = (camera.box.empty() ? Vec3::Zero() : camera.box.center()) - distance * forward;
+
+  Picture picture(options.width, options.height);
+  geo::parallel_for(static_cast<std::size_t>(options.height), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (int x = 0; x < options.width; ++x) {
+        Color sum{};
+        for (int s = 0; s < options.samples * options.samples; ++s) {
+          std::uint32_t noise = hash(static_cast<std::uint32_t>(y * options.width + x) * 64u + static_cast<std::uint32_t>(s));
+          const double px = x + (s % options.samples + 0.5) / options.samples, py = double(y) + (s / options.samples + 0.5) / options.samples;
+          const Vec3 d = (forward + (2 * px / options.width - 1) * field * aspect * right + (1 - 2 * py / options.height) * field * up).normalized();
+          const Color c = tracer.shade(eye, d, noise, options.occlusion);
+          for (int k = 0; k < 3; ++k) sum[k] += c[k];
+        }
+        picture.at(x, static_cast<int>(y)) = scaled(sum, 1.0 / (options.samples * options.samples));
+      }
+  });
+  return picture;
+}
+
+}  // namespace view

@@ -1,0 +1,56 @@
+// A small ray tracer (Embree): surface with both crack sheets coloured, nodes, edges, cut-away with filled section.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "surface/triangle_mesh.h"
+#include "view/picture.h"
+
+namespace view {
+
+struct Sphere {
+  geo::Vec3 center;
+  double radius;
+  Color color;
+};
+struct Stick {
+  geo::Vec3 a, b;
+  double radius;
+  Color color;
+};
+/// What is on the side that `normal` points to, beyond the plane through `point`, is cut away.
+struct Plane {
+  geo::Vec3 point, normal;
+};
+
+/// What is drawn. The surface must be closed where a cut-away is to show a filled section.
+struct Stage {
+  geo::TriangleMesh surface;
+  std::vector<Color> triangle_colors;  ///< one a triangle
+  std::vector<Sphere> spheres;
+  std::vector<Stick> sticks;
+  std::optional<Plane> cutaway;
+  double surface_opacity = 1;  ///< below 1 nodes and edges inside show through
+  bool section = true;         ///< fill the cut-away's section; false: look into the body
+  bool ground = true;          ///< a floor below that catches a soft shadow
+  bool wire = false;           ///< draw the triangles' edges
+  std::optional<double> ground_level;
+};
+
+/// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 frames `box`.
+struct Camera {
+  double azimuth = 30, elevation = 22, zoom = 1;
+  geo::Box3 box;
+};
+
+struct RenderOptions {
+  int width = 960, height = 720;
+  int samples = 3;      ///< rays a pixel and direction: samples² in all
+  int occlusion = 12;   ///< rays a sample for ambient light
+};
+
+/// The same picture for any number of threads.
+Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options);
+
+}  // namespace view

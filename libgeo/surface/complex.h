@@ -128,6 +128,9 @@ class Complex {
     return std::uint64_t(lo) << 32 | hi;
   }
 
+  /// Renews the fans at v; `old_ids`: surface vertices that stood there and whose corners are gone.
+  void refan(VertexId v, std::vector<SurfaceVertexId> old_ids, CrackDelta* delta);
+
   std::vector<Vec3> points_;
   std::vector<Face> faces_;
   std::uint32_t live_faces_ = 0;

@@ -1,0 +1,194 @@
+#include "geometry/bvh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "geometry/distance.h"
+#include "geometry/predicates.h"
+
+namespace geo {
+namespace {
+
+constexpr std::uint32_t leaf_size = 4;
+
+double squared_distance(const Box3& box, const Vec3& p) {
+  return (box.lo - p).cwiseMax(p - box.hi).cwiseMax(0.0).squaredNorm();
+}
+
+}  // namespace
+
+TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles) : corners_(triangles.begin(), triangles.end()) {
+  const auto n = static_cast<std::uint32_t>(corners_.size());
+  if (n == 0) return;
+  std::vector<Box3> boxes(n);
+  std::vector<Vec3> centers(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    boxes[i] = box_of(corners_[i][0], corners_[i][1], corners_[i][2]);
+    centers[i] = boxes[i].center();
+    box_.add(boxes[i]);
+  }
+  order_.resize(n);
+  std::iota(order_.begin(), order_.end(), 0u);
+  nodes_.reserve(n);
+  nodes_.emplace_back();
+  struct Job {
+    std::uint32_t node, begin, end;
+  };
+  std::vector<Job> jobs{{0, 0, n}};
+  while (!jobs.empty()) {
+    const Job job = jobs.back();
+    jobs.pop_back();
+    Box3 box, spread;
+    for (auto i = job.begin; i < job.end; ++i) box.add(boxes[order_[i]]), spread.add(centers[order_[i]]);
+    nodes_[job.node].box = box;
+    if (job.end - job.begin <= leaf_size) {
+      nodes_[job.node].first = job.begin;
+      nodes_[job.node].count = job.end - job.begin;
+      continue;
+    }
+    int axis = 0;
+    (spread.hi - spread.lo).maxCoeff(&axis);
+    const auto middle = (job.begin + job.end) / 2;
+    std::nth_element(order_.begin() + job.begin, order_.begin() + middle, order_.begin() + job.end, [&](auto a, auto b) {
+      return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
+    });
+    const auto left = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[job.node].first = left;
+    nodes_.emplace_back();
+    nodes_.emplace_back();
+    jobs.push_back({left, job.begin, middle});
+    jobs.push_back({left + 1, middle, job.end});
+  }
+}
+
+bool TriangleBvh::blocks(const Vec3& p, const Vec3& q) const {
+  if (nodes_.empty()) return false;
+  Box3 box{p, p};
+  box.add(q);
+  std::uint32_t stack[64];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (!node.box.meets(box)) continue;
+    if (node.count == 0) {
+      stack[top++] = node.first;
+      stack[top++] = node.first + 1;
+      continue;
+    }
+    for (auto i = node.first; i < node.first + node.count; ++i) {
+      const auto& t = corners_[order_[i]];
+      if (segment_meets_triangle(p, q, t[0], t[1], t[2])) return true;
+    }
+  }
+  return false;
+}
+
+void TriangleBvh::near(const Box3& box, std::vector<std::uint32_t>& rows) const {
+  if (nodes_.empty()) return;
+  std::uint32_t stack[64];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    if (!node.box.meets(box)) continue;
+    if (node.count == 0) {
+      stack[top++] = node.first;
+      stack[top++] = node.first + 1;
+      continue;
+    }
+    for (auto i = node.first; i < node.first + node.count; ++i) {
+      const auto& t = corners_[order_[i]];
+      if (box_of(t[0], t[1], t[2]).meets(box)) rows.push_back(order_[i]);
+    }
+  }
+}
+
+TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
+  Closest best;
+  if (nodes_.empty()) return best;
+  double reach = cutoff * cutoff;
+  std::pair<double, std::uint32_t> stack[64];
+  int top = 0;
+  stack[top++] = {squared_distance(nodes_[0].box, p), 0};
+  while (top > 0) {
+    const auto [bound, at] = stack[--top];
+    if (bound > reach) continue;
+    const Node& node = nodes_[at];
+    if (node.count == 0) {
+      const double l = squared_distance(nodes_[node.first].box, p), r = squared_distance(nodes_[node.first + 1].box, p);
+      // The nearer child is looked at first.
+      stack[top++] = l < r ? std::pair{r, node.first + 1} : std::pair{l, node.first};
+      stack[top++] = l < r ? std::pair{l, node.first} : std::pair{r, node.first + 1};
+      continue;
+    }
+    for (auto i = node.first; i < node.first + node.count; ++i) {
+      const auto& t = corners_[order_[i]];
+      const Vec3 c = closest_point_on_triangle(p, t[0], t[1], t[2]);
+      const double d = (c - p).squaredNorm();
+      if (d < reach || (d == reach && (best.row == ~0u || order_[i] < best.row))) reach = d, best = {order_[i], c, std::sqrt(d)};
+    }
+  }
+  return best;
+}
+
+bool TriangleBvh::inside(const Vec3& p) const {
+  if (nodes_.empty() || !Box3{p, p}.meets(box_)) return false;
+  // Rays to points far outside in fixed generic directions; one that touches an edge, a vertex or a plane is dropped.
+  static constexpr double directions[][3] = {{0.5377, 0.2713, 0.7981}, {-0.3319, 0.8511, 0.4069}, {0.7129, -0.6133, 0.3403},
+                                             {-0.2731, -0.4817, -0.8329}, {0.9137, 0.1871, -0.3607}, {-0.6469, 0.3539, -0.6757},
+                                             {0.1213, -0.9187, -0.3761}, {0.3967, 0.5669, -0.7219}};
+  const double reach = 2 * box_.diagonal() + 1e-300;
+  std::vector<std::uint32_t> rows;
+  for (const auto& d : directions) {
+    const Vec3 q = p + reach * Vec3(d);
+    // Only triangles whose boxes the ray's box meets; the tree is walked with the thin ray in slabs of its length.
+    bool clean = true;
+    int crossings = 0;
+    std::uint32_t stack[64];
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0 && clean) {
+      const Node& node = nodes_[stack[--top]];
+      // Slab test against the box, with a margin for rounding.
+      double from = 0, to = 1;
+      const double margin = 1e-12 * reach;
+      for (int k = 0; k < 3; ++k) {
+        const double step = q[k] - p[k], a = (node.box.lo[k] - margin - p[k]) / step, b = (node.box.hi[k] + margin - p[k]) / step;
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
+      }
+      if (from > to) continue;
+      if (node.count == 0) {
+        stack[top++] = node.first;
+        stack[top++] = node.first + 1;
+        continue;
+      }
+      for (auto i = node.first; i < node.first + node.count && clean; ++i) {
+        const auto& t = corners_[order_[i]];
+        const int sp = orient3d(t[0], t[1], t[2], p), sq = orient3d(t[0], t[1], t[2], q);
+        if (sp == 0 && segment_meets_triangle(p, p, t[0], t[1], t[2])) return false;  // on the surface
+        if (sp == 0 && sq == 0) {
+          clean = !segment_meets_triangle(p, q, t[0], t[1], t[2]);
+          continue;
+        }
+        if (sp == sq || sp == 0) continue;
+        const int e0 = orient3d(p, q, t[0], t[1]), e1 = orient3d(p, q, t[1], t[2]), e2 = orient3d(p, q, t[2], t[0]);
+        const bool plus = e0 >= 0 && e1 >= 0 && e2 >= 0, minus = e0 <= 0 && e1 <= 0 && e2 <= 0;
+        if (!plus && !minus) continue;
+        if (e0 == 0 || e1 == 0 || e2 == 0 || sq == 0)
+          clean = false;
+        else
+          ++crossings;
+      }
+    }
+    if (clean) return crossings % 2 == 1;
+  }
+  // Every fixed ray was degenerate (a model built against them): fall back on the side of the closest triangle.
+  const Closest c = closest(p);
+  const auto& t = corners_[c.row];
+  return orient3d(t[0], t[1], t[2], p) < 0;
+}
+
+}  // namespace geo

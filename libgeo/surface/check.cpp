@@ -1,0 +1,224 @@
+#include "surface/check.h"
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "geometry/predicates.h"
+#include "surface/complex_internal.h"
+
+namespace geo {
+namespace {
+
+// Two triangles given by ids and points: do they meet anywhere but in what they share by id?
+bool improper(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
+              const std::array<Vec3, 3>& q) {
+  int shared_f[3], shared_g[3], shared = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (f[i] == g[j]) shared_f[shared] = i, shared_g[shared] = j, ++shared;
+  if (shared == 3) return true;
+  if (shared == 2) {
+    const int i = 3 - shared_f[0] - shared_f[1], j = 3 - shared_g[0] - shared_g[1];
+    const Vec3 &u = p[shared_f[0]], &v = p[shared_f[1]];
+    if (collinear(u, v, p[i])) return segment_meets_triangle(p[i], p[i], q[0], q[1], q[2]);
+    return orient3d(u, v, p[i], q[j]) == 0 && coplanar_side(u, v, p[i], q[j]) >= 0;
+  }
+  if (shared == 1) {
+    const int i = shared_f[0], j = shared_g[0];
+    return segment_meets_triangle(p[(i + 1) % 3], p[(i + 2) % 3], q[0], q[1], q[2]) ||
+           segment_meets_triangle(q[(j + 1) % 3], q[(j + 2) % 3], p[0], p[1], p[2]);
+  }
+  const Vec3 s[3] = {p[0], p[1], p[2]}, t[3] = {q[0], q[1], q[2]};
+  return triangles_meet(s, t);
+}
+
+std::string pair_name(std::size_t a, std::size_t b) { return std::to_string(a) + " and " + std::to_string(b); }
+
+void note(SurfaceReport& report, const std::string& problem) {
+  if (report.first_problem.empty()) report.first_problem = problem;
+}
+
+// Directed edges without their opposite, and pairs with the same direction, by rows.
+void check_edges(const TriangleMesh& mesh, SurfaceReport& report) {
+  struct Uses {
+    std::uint32_t up = 0, down = 0, first = 0;
+  };
+  std::unordered_map<std::uint64_t, Uses> edges;
+  edges.reserve(mesh.triangles.size() * 2);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const auto a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      auto& e = edges.try_emplace(std::uint64_t(std::min(a, b)) << 32 | std::max(a, b), Uses{0, 0, t}).first->second;
+      ++(a < b ? e.up : e.down);
+    }
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const auto a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      const auto& e = edges.at(std::uint64_t(std::min(a, b)) << 32 | std::max(a, b));
+      if (e.first != t) continue;
+      const std::string where = "edge " + std::to_string(std::min(a, b)) + "-" + std::to_string(std::max(a, b));
+      if (e.up + e.down == 1) {
+        report.closed = false;
+        note(report, "the surface is open: " + where + " has one triangle only; close the holes first");
+      } else if (e.up + e.down > 2 && (e.up != e.down || !mesh.two_sided())) {
+        report.manifold = false;
+        note(report, "the surface is not manifold: " + where + " has " + std::to_string(e.up + e.down) +
+                         " triangles; separate the parts that touch there");
+      } else if (e.up != e.down) {
+        report.oriented = false;
+        note(report, "the surface is not consistently oriented: both triangles at " + where +
+                         " run the same way; orient it first");
+      }
+    }
+}
+
+std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (!collinear(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) continue;
+    ++count;
+    note(report, "triangle " + std::to_string(t) + " is degenerate (no area); remove or repair it");
+  }
+  return count;
+}
+
+}  // namespace
+
+SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
+  if (mesh.two_sided()) {
+    try {
+      return check_complex(Complex::from_two_sided(mesh), crossings);
+    } catch (const InputError& e) {
+      SurfaceReport report;
+      report.manifold = false;
+      check_edges(mesh, report);
+      report.first_problem = e.what();
+      return report;
+    }
+  }
+  SurfaceReport report;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (!mesh.vertices[v].allFinite()) {
+      note(report, "vertex " + std::to_string(v) + " has a coordinate that is not a finite number; repair the file");
+      return report;
+    }
+  if (mesh.triangles.empty()) note(report, "the surface is empty: it has no triangles");
+  report.degenerate_faces = count_degenerate(mesh, report);
+  check_edges(mesh, report);
+  if (!crossings) return report;
+  double mean = 0;
+  for (const auto& [a, b, c] : mesh.triangles) mean += (mesh.vertices[a] - mesh.vertices[b]).norm() / static_cast<double>(mesh.triangles.size());
+  TriangleIndex index(std::max(mean * 1.25, bounding_box(mesh).diagonal() * 1e-6 + 1e-300));
+  std::size_t count = 0;
+  std::vector<std::uint32_t> near;
+  const auto points = [&](std::uint32_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return std::array<Vec3, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto p = points(t);
+    const Box3 box = box_of(p[0], p[1], p[2]);
+    near.clear();
+    index.find(box, near);
+    for (const auto other : near)
+      if (improper(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
+        if (count++ == 0) note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
+      }
+    index.insert(t, box);
+  }
+  report.self_intersections = count;
+  return report;
+}
+
+std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex, const std::vector<FaceId>* only) {
+  std::vector<std::pair<FaceId, FaceId>> pairs;
+  std::vector<FaceId> all, sorted;
+  if (only) {
+    for (const FaceId f : *only)
+      if (complex.alive(f)) sorted.push_back(f);
+    std::sort(sorted.begin(), sorted.end());
+  } else {
+    for (std::uint32_t f = 0; f < complex.face_count(); ++f)
+      if (complex.alive(FaceId(f))) sorted.push_back(FaceId(f));
+  }
+  const auto rows = [&](FaceId f) {
+    const auto& v = complex.face(f).v;
+    return std::array<std::uint32_t, 3>{v[0].value, v[1].value, v[2].value};
+  };
+  std::vector<FaceId> near;
+  for (const FaceId f : sorted) {
+    near.clear();
+    complex.near(complex.box(f), near);
+    for (const FaceId g : near) {
+      if (g == f || (g < f && (!only || std::binary_search(sorted.begin(), sorted.end(), g)))) continue;
+      if (improper(rows(f), complex.corners(f), rows(g), complex.corners(g))) pairs.push_back({f, g});
+    }
+  }
+  return pairs;
+}
+
+SurfaceReport check_complex(const Complex& k, bool crossings) {
+  SurfaceReport report;
+  for (std::uint32_t f = 0; f < k.face_count(); ++f) {
+    if (!k.alive(FaceId(f))) continue;
+    const auto& face = k.face(FaceId(f));
+    const auto c = k.corners(FaceId(f));
+    if (collinear(c[0], c[1], c[2])) {
+      ++report.degenerate_faces;
+      note(report, "face " + std::to_string(f) + " is degenerate (no area)");
+    }
+    for (int e = 0; e < 3; ++e) {
+      const VertexId a = face.v[e], b = face.v[(e + 1) % 3];
+      const auto ring = k.around(a, b);
+      if (std::find(ring.begin(), ring.end(), FaceId(f)) == ring.end()) {
+        report.manifold = false;
+        note(report, "face " + std::to_string(f) + " is missing around its edge " + edge_name(a, b));
+        continue;
+      }
+      try {
+        check_ring(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b), [&](FaceId g) { return k.face(g); });
+      } catch (const GeometryError& error) {
+        report.closed = false;
+        note(report, error.what());
+        continue;
+      }
+      for (int which = 0; which < 2; ++which) {
+        const Side s{FaceId(f), which};
+        if (!k.has(s)) continue;
+        // The neighbour's neighbour is the side itself, and both see the same surface vertices at the edge.
+        const Side n = k.neighbor(s, e);
+        const auto& g = k.face(n.face);
+        const int na = corner_at(g, a), nb = corner_at(g, b);
+        const int back = (na + 1) % 3 == nb ? na : nb;
+        if (!k.has(n) || k.neighbor(n, back) != s || k.surface_vertex(n, na) != k.surface_vertex(s, e) ||
+            k.surface_vertex(n, nb) != k.surface_vertex(s, (e + 1) % 3)) {
+          report.manifold = false;
+          note(report, "the two sides at edge " + edge_name(a, b) + " of face " + std::to_string(f) + " do not fit");
+        }
+        // Oriented: across the edge the derived triangles run in opposite directions.
+        const bool up_s = runs_upwards(face, a, b) == (which == 0), up_n = runs_upwards(g, a, b) == (n.which == 0);
+        if (up_s == up_n) {
+          report.oriented = false;
+          note(report, "the derived surface is not oriented at edge " + edge_name(a, b));
+        }
+      }
+    }
+  }
+  if (crossings) {
+    const auto pairs = self_intersections(k);
+    report.self_intersections = pairs.size();
+    if (!pairs.empty()) note(report, "faces " + pair_name(pairs[0].first.value, pairs[0].second.value) + " intersect each other");
+  }
+  return report;
+}
+
+void require_solid(const TriangleMesh& mesh) {
+  const SurfaceReport report = check_surface(mesh, true);
+  if (!report.good()) throw InputError(report.first_problem);
+  if (!mesh.two_sided() && signed_volume(mesh) <= 0) throw InputError("the surface is inside out: its normals point inwards; reverse its triangles");
+}
+
+}  // namespace geo

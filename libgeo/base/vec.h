@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>  // cross products: declared in Core, defined there
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -11,29 +11,6 @@
 namespace geo {
 namespace {
 
-// Two triangles given by ids and points: do they meet anywhere but in what they share by id?
-bool improper(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
-              const std::array<Vec3, 3>& q) {
-  int shared_f[3], shared_g[3], shared = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      if (f[i] == g[j]) shared_f[shared] = i, shared_g[shared] = j, ++shared;
-  if (shared == 3) return true;
-  if (shared == 2) {
-    const int i = 3 - shared_f[0] - shared_f[1], j = 3 - shared_g[0] - shared_g[1];
-    const Vec3 &u = p[shared_f[0]], &v = p[shared_f[1]];
-    if (collinear(u, v, p[i])) return segment_meets_triangle(p[i], p[i], q[0], q[1], q[2]);
-    return orient3d(u, v, p[i], q[j]) == 0 && coplanar_side(u, v, p[i], q[j]) >= 0;
-  }
-  if (shared == 1) {
-    const int i = shared_f[0], j = shared_g[0];
-    return segment_meets_triangle(p[(i + 1) % 3], p[(i + 2) % 3], q[0], q[1], q[2]) ||
-           segment_meets_triangle(q[(j + 1) % 3], q[(j + 2) % 3], p[0], p[1], p[2]);
-  }
-  const Vec3 s[3] = {p[0], p[1], p[2]}, t[3] = {q[0], q[1], q[2]};
-  return triangles_meet(s, t);
-}
-
 std::string pair_name(std::size_t a, std::size_t b) { return std::to_string(a) + " and " + std::to_string(b); }
 
 void note(SurfaceReport& report, const std::string& problem) {
@@ -87,6 +64,28 @@ std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
 
 }  // namespace
 
+bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
+                 const std::array<Vec3, 3>& q) {
+  int shared_f[3], shared_g[3], shared = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (f[i] == g[j]) shared_f[shared] = i, shared_g[shared] = j, ++shared;
+  if (shared == 3) return true;
+  if (shared == 2) {
+    const int i = 3 - shared_f[0] - shared_f[1], j = 3 - shared_g[0] - shared_g[1];
+    const Vec3 &u = p[shared_f[0]], &v = p[shared_f[1]];
+    if (collinear(u, v, p[i])) return segment_meets_triangle(p[i], p[i], q[0], q[1], q[2]);
+    return orient3d(u, v, p[i], q[j]) == 0 && coplanar_side(u, v, p[i], q[j]) >= 0;
+  }
+  if (shared == 1) {
+    const int i = shared_f[0], j = shared_g[0];
+    return segment_meets_triangle(p[(i + 1) % 3], p[(i + 2) % 3], q[0], q[1], q[2]) ||
+           segment_meets_triangle(q[(j + 1) % 3], q[(j + 2) % 3], p[0], p[1], p[2]);
+  }
+  const Vec3 s[3] = {p[0], p[1], p[2]}, t[3] = {q[0], q[1], q[2]};
+  return triangles_meet(s, t);
+}
+
 SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   if (mesh.two_sided()) {
     try {
@@ -124,7 +123,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     near.clear();
     index.find(box, near);
     for (const auto other : near)
-      if (improper(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
+      if (faces_cross(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
         if (count++ == 0) note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
       }
     index.insert(t, box);
@@ -154,7 +153,7 @@ std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex
     complex.near(complex.box(f), near);
     for (const FaceId g : near) {
       if (g == f || (g < f && (!only || std::binary_search(sorted.begin(), sorted.end(), g)))) continue;
-      if (improper(rows(f), complex.corners(f), rows(g), complex.corners(g))) pairs.push_back({f, g});
+      if (faces_cross(rows(f), complex.corners(f), rows(g), complex.corners(g))) pairs.push_back({f, g});
     }
   }
   return pairs;

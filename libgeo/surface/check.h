@@ -26,6 +26,11 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 /// manifold, no face without area, and with `self_intersections` no two faces crossing or overlapping, exactly.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 
+/// True when two triangles, given by vertex ids and points, meet other than in the vertices and edges they share by id.
+/// Exact.
+bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
+                 const std::array<Vec3, 3>& q);
+
 /// Pairs of faces of K that meet other than in shared vertices and edges; only pairs with a face in `only`, where given.
 std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex, const std::vector<FaceId>* only = nullptr);
 

@@ -1,0 +1,232 @@
+// One step of a crack, as docs/design.md tells it: sweep, meet, split, keep, guard, stitch.
+#include "crack/advance.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "crack/guard.h"
+#include "crack/keep_internal.h"
+
+namespace geo {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since the last call or the construction.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+// Another crack may have divided the front's edges since: consecutive contacts that K joins no longer are joined again
+// through the vertices that now lie between them.
+void renew_contacts(FrontState& front, const Complex& complex) {
+  const double reach = 1e-12 * complex.extent().diagonal();
+  for (auto& segment : front.segments) {
+    std::vector<FrontState::Point> renewed{segment.front()};
+    for (std::size_t i = 1; i < segment.size(); ++i) {
+      const auto &a = segment[i - 1], &b = segment[i];
+      if (a.id.valid() && b.id.valid() && a.id != b.id && complex.around(a.id, b.id).empty()) {
+        const Vec3 along = b.position - a.position;
+        const double length = along.squaredNorm();
+        std::vector<FaceId> near;
+        Box3 box{a.position, a.position};
+        box.add(b.position);
+        complex.near(box.grown(reach), near);
+        std::vector<std::pair<double, VertexId>> between;
+        for (const FaceId f : near)
+          for (const VertexId v : complex.face(f).v) {
+            const Vec3 w = complex.point(v) - a.position;
+            const double t = w.dot(along) / length;
+            if (v != a.id && v != b.id && t > 0 && t < 1 && (w - t * along).norm() <= reach) between.push_back({t, v});
+          }
+        std::sort(between.begin(), between.end());
+        between.erase(std::unique(between.begin(), between.end()), between.end());
+        bool joined = true;
+        VertexId last = a.id;
+        for (const auto& [t, v] : between) joined = joined && !complex.around(last, v).empty(), last = v;
+        if (joined && !between.empty() && !complex.around(last, b.id).empty())
+          for (const auto& [t, v] : between) renewed.push_back({complex.point(v), v});
+      }
+      renewed.push_back(b);
+    }
+    segment = std::move(renewed);
+  }
+}
+
+// The front after the step: the points of K that lie on each new segment, in order.
+void follow_front(FrontState& front, const Strip& strip, const crack::Arrangement& arrangement, const std::vector<VertexId>& vertex) {
+  const std::size_t count = front.segments.size(), n = strip.next.size();
+  std::vector<std::vector<crack::Local>> on(count);
+  std::vector<bool> swept(count, false);
+  for (std::size_t t = 0; t < arrangement.strip_size; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int s = strip.triangles[t].segment[k];
+      if (s < 0) continue;
+      swept[static_cast<std::size_t>(s)] = true;
+      const auto& element = arrangement.elements[t];
+      const auto &from = arrangement.exact(element.corner[k]), &to = arrangement.exact(element.corner[(k + 1) % 3]);
+      for (const auto& child : element.children)
+        for (const crack::Local p : child)
+          if (p < vertex.size() && vertex[p].valid() && CGAL::collinear(from, to, arrangement.exact(p)))
+            on[static_cast<std::size_t>(s)].push_back(p);
+    }
+  std::vector<FrontState::Point> points;
+  for (const Vec3& p : strip.next) points.push_back({p, VertexId()});
+  for (std::size_t s = 0; s < count; ++s) {
+    const Vec3 &p = strip.next[s], &q = strip.next[(s + 1) % n];
+    if (!swept[s] && front.points[s].position == p && front.points[(s + 1) % n].position == q) continue;  // stood still
+    const crack::ExactPoint start(p.x(), p.y(), p.z());
+    auto& row = on[s];
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    std::sort(row.begin(), row.end(), [&](auto a, auto b) {
+      const auto c = CGAL::compare_distance_to_point(start, arrangement.exact(a), arrangement.exact(b));
+      return c != CGAL::EQUAL ? c == CGAL::SMALLER : a < b;
+    });
+    std::vector<FrontState::Point> segment;
+    for (const auto l : row) segment.push_back({arrangement.rounded(l), vertex[l]});
+    if (segment.empty() || segment.front().position != p) segment.insert(segment.begin(), {p, VertexId()});
+    if (segment.back().position != q) segment.push_back({q, VertexId()});
+    front.segments[s] = std::move(segment);
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    points[s].id = front.segments[s].front().id;
+    if (front.segments[s].back().id.valid()) points[(s + 1) % n].id = front.segments[s].back().id;
+  }
+  front.points = std::move(points);
+}
+
+struct Attempt {
+  CrackDelta delta;
+  FrontState front;
+};
+
+Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, CrackWork& work) {
+  Stopwatch watch;
+  Attempt result{{}, front};
+  Strip strip = sweep(front, next);
+  work.snapped += snap_to_vertices(strip, complex, reach);
+  work.near_seconds += watch.lap();
+  crack::Arrangement arrangement(complex, strip);
+  arrangement.meet(work);
+  work.meet_seconds += watch.lap();
+  arrangement.split();
+  work.split_seconds += watch.lap();
+  const auto edges = crack::edges_of_complex(arrangement);
+  const auto parts = crack::keep_inside(arrangement, complex, edges);
+  work.keep_seconds += watch.lap();
+  std::vector<VertexId> vertex(arrangement.point_count());
+  if (!parts.empty()) {
+    const ComplexEdit edit = crack::stitch(arrangement, complex, edges, parts, front.crack, vertex);
+    work.stitch_seconds += watch.lap();
+    std::vector<std::array<Vec3, 3>> planes;
+    for (std::size_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
+      if (arrangement.elements[e].cut)
+        planes.insert(planes.end(), arrangement.elements[e].children.size(), complex.corners(arrangement.elements[e].face));
+    for (const auto& part : parts) {
+      const auto& c = arrangement.elements[part.element].corner;
+      planes.push_back({arrangement.rounded(c[0]), arrangement.rounded(c[1]), arrangement.rounded(c[2])});
+    }
+    if (const std::string fault = find_fault(complex, edit, planes); !fault.empty()) throw GeometryError(fault);
+    work.guard_seconds += watch.lap();
+    follow_front(result.front, strip, arrangement, vertex);
+    result.delta = complex.apply(edit);
+    work.triangles_cut += edit.removed_faces.size();
+    work.new_crack_faces += parts.size();
+    work.stitch_seconds += watch.lap();
+  } else {
+    // Nothing of the strip is in the material: contacts are those vertices of K that the front happens to stand on.
+    for (crack::Local l = 0; l < vertex.size(); ++l) vertex[l] = arrangement.id(l);
+    follow_front(result.front, strip, arrangement, vertex);
+  }
+  return result;
+}
+
+}  // namespace
+
+CrackWork& CrackWork::operator+=(const CrackWork& o) {
+  faces_near += o.faces_near, triangles_cut += o.triangles_cut, new_crack_faces += o.new_crack_faces;
+  attempts += o.attempts, snapped += o.snapped;
+  near_seconds += o.near_seconds, meet_seconds += o.meet_seconds, split_seconds += o.split_seconds;
+  keep_seconds += o.keep_seconds, stitch_seconds += o.stitch_seconds, guard_seconds += o.guard_seconds;
+  return *this;
+}
+
+double CrackWork::seconds() const {
+  return near_seconds + meet_seconds + split_seconds + keep_seconds + stitch_seconds + guard_seconds;
+}
+
+FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t crack) {
+  if (points.size() < 2) throw InputError("a front needs at least two points");
+  if (closed && points.size() < 3) throw InputError("a closed front needs at least three points");
+  if (crack < 1) throw InputError("cracks are numbered from 1");
+  for (const Vec3& p : points)
+    if (!p.allFinite()) throw InputError("a front point has a coordinate that is not a finite number");
+  FrontState front;
+  front.closed = closed;
+  front.crack = crack;
+  for (const Vec3& p : points) front.points.push_back({p, VertexId()});
+  for (std::size_t i = 0; i + (closed ? 0 : 1) < points.size(); ++i)
+    front.segments.push_back({front.points[i], front.points[(i + 1) % points.size()]});
+  return front;
+}
+
+CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options, CrackWork* work) {
+  if (next.size() != front.points.size())
+    throw InputError("the front has " + std::to_string(front.points.size()) + " points and its next position " + std::to_string(next.size()));
+  for (const Vec3& p : next)
+    if (!p.allFinite()) throw InputError("a front point has a coordinate that is not a finite number");
+  const double size = complex.extent().diagonal();
+  FrontState old = front;
+  renew_contacts(old, complex);
+  CrackWork done;
+  std::string reason;
+  Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
+  double jitter = 0;
+  for (int attempt = 0; attempt <= options.attempts; ++attempt) {
+    std::vector<Vec3> target(next.begin(), next.end());
+    FrontState from = old;
+    if (attempt > 0) {
+      // Eight times further each time, up to a few millionths; then other directions at that distance.
+      jitter = attempt == 1 ? options.jitter : std::min(jitter * 8, options.jitter * 4096);
+      const auto moved = [&](const Vec3& p) { return Vec3(p + random.uniform(0.2, 1.0) * jitter * size * random.direction()); };
+      for (std::size_t i = 0; i < target.size(); ++i)
+        if (target[i] != old.points[i].position || front.step == 0) target[i] = moved(target[i]);
+      if (front.step == 0)
+        for (auto& segment : from.segments)
+          for (auto& p : segment)
+            if (!p.id.valid()) p.position = moved(p.position);
+      if (front.step == 0)
+        for (std::size_t s = 0; s < from.segments.size(); ++s) {
+          from.points[s].position = from.segments[s].front().position;
+          const std::size_t end = (s + 1) % from.points.size();
+          if (s + 1 < from.segments.size() || from.closed)
+            from.segments[(s + 1) % from.segments.size()].front().position = from.segments[s].back().position;
+          from.points[end].position = from.segments[s].back().position;
+        }
+    }
+    ++done.attempts;
+    try {
+      Attempt result = try_step(complex, from, target, options.snap * size, done);
+      ++result.front.step;
+      front = std::move(result.front);
+      if (work) *work += done;
+      return std::move(result.delta);
+    } catch (const GeometryError& e) {
+      reason = e.what();
+    }
+  }
+  if (work) *work += done;
+  throw GeometryError("step " + std::to_string(front.step + 1) + " of the front cannot be made: " + reason);
+}
+
+}  // namespace geo

@@ -1,0 +1,157 @@
+#include "crack/sweep.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "geometry/predicates.h"
+
+namespace geo {
+namespace {
+
+struct Less {
+  bool operator()(const Vec3& a, const Vec3& b) const {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  }
+};
+
+class Builder {
+ public:
+  Strip strip;
+
+  std::uint32_t point(const Vec3& p, bool carried) {
+    const auto [it, fresh] = rows_.try_emplace(p, static_cast<std::uint32_t>(strip.points.size()));
+    if (fresh) strip.points.push_back(p), strip.carried.push_back(false);
+    if (carried) strip.carried[it->second] = true;
+    return it->second;
+  }
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<int, 3> segment) {
+    if (a == b || b == c || c == a || collinear(strip.points[a], strip.points[b], strip.points[c])) return;
+    strip.triangles.push_back({{a, b, c}, segment});
+  }
+
+ private:
+  std::map<Vec3, std::uint32_t, Less> rows_;
+};
+
+}  // namespace
+
+Strip sweep(const FrontState& front, std::span<const Vec3> next) {
+  Builder builder;
+  builder.strip.next.assign(next.begin(), next.end());
+  for (const auto& segment : front.segments)
+    for (const auto& p : segment) builder.point(p.position, true);
+  for (std::size_t i = 0; i < front.segments.size(); ++i) {
+    std::vector<std::uint32_t> old;
+    for (const auto& p : front.segments[i]) {
+      const auto row = builder.point(p.position, true);
+      if (old.empty() || old.back() != row) old.push_back(row);
+    }
+    const auto p = builder.point(next[i], false), q = builder.point(next[(i + 1) % next.size()], false);
+    const int s = static_cast<int>(i);
+    const bool stands_p = old.front() == p, stands_q = old.back() == q;
+    if (stands_p && stands_q) continue;
+    if (stands_p) {
+      // A fan around q; its first side is the new front.
+      for (std::size_t k = 0; k + 1 < old.size(); ++k) builder.triangle(old[k], old[k + 1], q, {-1, -1, k == 0 ? s : -1});
+      continue;
+    }
+    // A fan around p, closed by the triangle that holds the new front (nothing when q stands still: the fan's last side).
+    for (std::size_t k = 0; k + 1 < old.size(); ++k)
+      builder.triangle(old[k], old[k + 1], p, {-1, stands_q && k + 2 == old.size() ? s : -1, -1});
+    if (!stands_q) builder.triangle(old.back(), q, p, {-1, s, -1});
+  }
+  return std::move(builder.strip);
+}
+
+std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach) {
+  if (strip.triangles.empty()) return 0;
+  std::set<VertexId> vertices;
+  std::vector<FaceId> faces;
+  for (const auto& t : strip.triangles) {
+    const Box3 box = box_of(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]).grown(reach);
+    faces.clear();
+    complex.near(box, faces);
+    for (const FaceId f : faces)
+      for (const VertexId v : complex.face(f).v)
+        if (Box3{complex.point(v), complex.point(v)}.meets(box)) vertices.insert(v);
+  }
+  std::set<Vec3, Less> known(strip.points.begin(), strip.points.end());
+  std::size_t count = 0;
+  const double reach2 = reach * reach;
+  for (const VertexId v : vertices) {
+    const Vec3 q = complex.point(v);
+    if (known.count(q)) continue;
+    // A corner within reach moves to the vertex, if it is free to.
+    bool done = false;
+    for (std::uint32_t i = 0; i < strip.points.size() && !done; ++i) {
+      if ((strip.points[i] - q).squaredNorm() > reach2) continue;
+      done = true;
+      if (strip.carried[i]) break;
+      for (auto& n : strip.next)
+        if (n == strip.points[i]) n = q;
+      strip.points[i] = q;
+      strip.carried[i] = true;
+      known.insert(q);
+      ++count;
+    }
+    if (done) continue;
+    const auto add_point = [&] {
+      strip.points.push_back(q);
+      strip.carried.push_back(true);
+      known.insert(q);
+      ++count;
+      return static_cast<std::uint32_t>(strip.points.size() - 1);
+    };
+    // An edge that passes within reach is divided there, in every triangle that has it.
+    const std::size_t triangles = strip.triangles.size();
+    std::uint32_t a = 0, b = 0;
+    for (std::size_t t = 0; t < triangles && !done; ++t)
+      for (int k = 0; k < 3 && !done; ++k) {
+        a = strip.triangles[t].p[k], b = strip.triangles[t].p[(k + 1) % 3];
+        const Vec3 e = strip.points[b] - strip.points[a], w = q - strip.points[a];
+        const double along = e.dot(w), length = e.squaredNorm();
+        done = along > 0 && along < length && e.cross(w).squaredNorm() <= reach2 * length;
+      }
+    if (done) {
+      const auto row = add_point();
+      for (std::size_t t = 0; t < triangles; ++t)
+        for (int k = 0; k < 3; ++k) {
+          auto& tri = strip.triangles[t];
+          const auto u = tri.p[k], w = tri.p[(k + 1) % 3];
+          if (!((u == a && w == b) || (u == b && w == a))) continue;
+          Strip::Triangle half = tri;  // keeps p[k+1]; the original keeps p[k]
+          half.p[k] = row;
+          half.segment[(k + 2) % 3] = -1;
+          tri.p[(k + 1) % 3] = row;
+          tri.segment[(k + 1) % 3] = -1;
+          strip.triangles.push_back(half);
+          break;
+        }
+      continue;
+    }
+    for (std::size_t t = 0; t < triangles && !done; ++t) {
+      const auto tri = strip.triangles[t];
+      const Vec3 &p0 = strip.points[tri.p[0]], &p1 = strip.points[tri.p[1]], &p2 = strip.points[tri.p[2]];
+      const Vec3 n = (p1 - p0).cross(p2 - p0);
+      if (std::abs(n.dot(q - p0)) > reach * n.norm()) continue;
+      if ((p1 - p0).cross(q - p0).dot(n) <= 0 || (p2 - p1).cross(q - p1).dot(n) <= 0 || (p0 - p2).cross(q - p2).dot(n) <= 0) continue;
+      const auto row = add_point();
+      for (int k = 0; k < 3; ++k) {
+        const Strip::Triangle part{{tri.p[k], tri.p[(k + 1) % 3], row}, {tri.segment[k], -1, -1}};
+        if (k == 0)
+          strip.triangles[t] = part;
+        else
+          strip.triangles.push_back(part);
+      }
+      done = true;
+    }
+  }
+  if (count > 0)
+    std::erase_if(strip.triangles, [&](const Strip::Triangle& t) {
+      return collinear(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]);
+    });
+  return count;
+}
+
+}  // namespace geo

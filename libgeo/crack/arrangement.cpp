@@ -1,3 +1,4 @@
+#define CGAL_NO_CDT_2_WARNING  // crossings are few, and each face is triangulated alone
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/intersections.h>
@@ -29,7 +30,11 @@ double round_exactly(const Exact::FT& x) {
   return interval.first == interval.second ? interval.first : CGAL::to_double(x.exact());
 }
 
-using Planar = CGAL::Triangulation_vertex_base_with_info_2<Local, Exact>;
+// What a vertex of the planar triangulation stands for; those that crossing constraints make stand for nothing yet.
+struct Row {
+  Local row = ~0u;
+};
+using Planar = CGAL::Triangulation_vertex_base_with_info_2<Row, Exact>;
 using Structure = CGAL::Triangulation_data_structure_2<Planar, CGAL::Constrained_triangulation_face_base_2<Exact>>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Exact, Structure, CGAL::Exact_intersections_tag>;
 
@@ -191,27 +196,27 @@ void Arrangement::split() {
     std::map<Local, Triangulation::Vertex_handle> handles;
     const auto insert = [&](Local p) {
       const auto h = plane.insert(flat(points_[p]));
-      h->info() = p + 1;
+      h->info().row = p;
       handles[p] = h;
     };
     for (const Local p : e.corner) insert(p);
     for (const Local p : extra) insert(p);
     for (const auto& [a, b] : constraints) plane.insert_constraint(handles.at(a), handles.at(b));
-    if (plane.number_of_vertices() != handles.size()) {
-      // Constraints crossed: the crossing is lifted back into the plane of the element.
-      const auto plane3 = Exact::Plane_3(points_[e.corner[0]], points_[e.corner[1]], points_[e.corner[2]]);
+    {
+      // Where constraints crossed, the crossing is lifted back into the plane of the element.
+      const Exact::Plane_3 plane3(points_[e.corner[0]], points_[e.corner[1]], points_[e.corner[2]]);
       for (auto v = plane.finite_vertices_begin(); v != plane.finite_vertices_end(); ++v) {
-        if (v->info() != 0) continue;
+        if (v->info().row != ~0u) continue;
         Exact::FT c[3];
         c[(axis + 1) % 3] = v->point().x();
         c[(axis + 2) % 3] = v->point().y();
         const Exact::FT normal[3] = {plane3.a(), plane3.b(), plane3.c()};
         c[axis] = -(plane3.d() + normal[(axis + 1) % 3] * c[(axis + 1) % 3] + normal[(axis + 2) % 3] * c[(axis + 2) % 3]) / normal[axis];
-        v->info() = local(ExactPoint(c[0], c[1], c[2])) + 1;
+        v->info().row = local(ExactPoint(c[0], c[1], c[2]));
       }
     }
     for (auto f = plane.finite_faces_begin(); f != plane.finite_faces_end(); ++f) {
-      std::array<Local, 3> child{f->vertex(0)->info() - 1, f->vertex(1)->info() - 1, f->vertex(2)->info() - 1};
+      std::array<Local, 3> child{f->vertex(0)->info().row, f->vertex(1)->info().row, f->vertex(2)->info().row};
       if (turn < 0) std::swap(child[1], child[2]);
       std::rotate(child.begin(), std::min_element(child.begin(), child.end()), child.end());
       e.children.push_back(child);

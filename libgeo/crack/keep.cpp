@@ -187,8 +187,13 @@ ComplexEdit stitch(Arrangement& a, const Complex& complex, const EdgeMap& edges,
   // The order around edges. K's own order is authoritative; crack faces are put into it by exact angles.
   std::set<std::uint64_t> wanted;
   for (const auto& [key, fresh] : crack_edges) wanted.insert(key);
+  // Whole edges of K that gain nothing keep their order: parts take their faces' places in it.
+  const auto is_whole = [&](std::uint64_t key) {
+    const VertexId u = a.id(static_cast<Local>(key >> 32)), v = a.id(static_cast<Local>(key));
+    return u.valid() && v.valid() && !complex.around(u, v).empty();
+  };
   for (const auto& [key, at] : edges)
-    if (at.size() >= 3 && std::any_of(at.begin(), at.end(), [&](const Occupant& o) { return a.elements[o.element].cut; })) wanted.insert(key);
+    if (at.size() >= 3 && !is_whole(key) && std::any_of(at.begin(), at.end(), [&](const Occupant& o) { return a.elements[o.element].cut; })) wanted.insert(key);
   for (const auto key : wanted) {
     const Local u(static_cast<Local>(key >> 32)), v(static_cast<Local>(key));
     struct Member {

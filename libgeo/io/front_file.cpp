@@ -1,0 +1,96 @@
+#include "io/front_file.h"
+
+#include <algorithm>
+#include <map>
+
+#include "io/stream.h"
+#include "io/text_internal.h"
+
+namespace geo {
+namespace {
+
+void check(const Front& front, const std::string& name) {
+  const std::string who = name + ": front '" + front.name + "' ";
+  if (front.steps.size() < 2) throw InputError(who + "has one time step only; it needs at least two to sweep anything");
+  for (std::size_t s = 0; s < front.steps.size(); ++s)
+    if (front.steps[s].size() < (front.closed ? 3u : 2u))
+      throw InputError(who + "has " + std::to_string(front.steps[s].size()) + " point(s) in step " + std::to_string(s) + "; it needs at least " + (front.closed ? "three" : "two"));
+}
+
+// OBJ polylines: each object is a time step, in the order of their names.
+std::vector<Front> from_obj(const std::string& bytes, const std::string& name) {
+  Lines lines(bytes, name);
+  std::vector<std::string_view> words;
+  std::vector<Vec3> points;
+  std::map<std::string, std::vector<long long>> objects;
+  std::string object = "step";
+  while (lines.next(words)) {
+    if (words[0] == "v") {
+      if (words.size() < 4) lines.fail("a vertex needs three coordinates");
+      points.push_back({lines.real(words[1]), lines.real(words[2]), lines.real(words[3])});
+    } else if ((words[0] == "o" || words[0] == "g") && words.size() > 1) {
+      object = std::string(words[1]);
+    } else if (words[0] == "l") {
+      auto& line = objects[object];
+      for (std::size_t k = 1; k < words.size(); ++k) {
+        auto i = lines.integer(words[k].substr(0, words[k].find('/')));
+        if (i < 0) i += static_cast<long long>(points.size()) + 1;
+        if (i < 1 || i > static_cast<long long>(points.size())) lines.fail("a line names a vertex that is not there");
+        if (line.empty() || line.back() != i) line.push_back(i);
+      }
+    }
+  }
+  Front front;
+  front.name = "obj";
+  front.closed = !objects.empty() && std::all_of(objects.begin(), objects.end(), [](const auto& o) { return o.second.size() > 3 && o.second.front() == o.second.back(); });
+  for (auto& [key, line] : objects) {
+    if (front.closed) line.pop_back();
+    front.steps.emplace_back();
+    for (const auto i : line) front.steps.back().push_back(points[static_cast<std::size_t>(i - 1)]);
+  }
+  check(front, name);
+  return {front};
+}
+
+}  // namespace
+
+std::vector<Front> read_fronts(const std::string& path) { return parse_fronts(read_all(path), path); }
+
+std::vector<Front> parse_fronts(const std::string& bytes, const std::string& name) {
+  Lines lines(bytes, name);
+  std::vector<std::string_view> words;
+  std::vector<Front> fronts;
+  while (lines.next(words)) {
+    if (words[0] == "front") {
+      if (words.size() < 2 || words.size() > 3 || (words.size() == 3 && words[2] != "closed")) lines.fail("write 'front NAME' or 'front NAME closed'");
+      fronts.push_back({std::string(words[1]), words.size() == 3, {}});
+    } else if (fronts.empty()) {
+      if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib") return from_obj(bytes, name);
+      lines.fail("begins with '" + std::string(words[0]) + "'; a front file begins with 'front NAME'");
+    } else if (words[0] == "step") {
+      if (words.size() != 2) lines.fail("write 'step T'");
+      lines.real(words[1]);
+      fronts.back().steps.emplace_back();
+    } else {
+      if (fronts.back().steps.empty()) lines.fail("a point stands before the first 'step'");
+      if (words.size() != 3) lines.fail("a point is three numbers");
+      fronts.back().steps.back().push_back({lines.real(words[0]), lines.real(words[1]), lines.real(words[2])});
+    }
+  }
+  if (fronts.empty()) throw InputError(name + ": holds no front; write 'front NAME'");
+  for (const auto& f : fronts) check(f, name);
+  return fronts;
+}
+
+void write_fronts(std::ostream& out, const std::vector<Front>& fronts) {
+  out.precision(17);
+  for (const auto& f : fronts) {
+    out << "front " << f.name << (f.closed ? " closed" : "") << '\n';
+    for (std::size_t s = 0; s < f.steps.size(); ++s) {
+      out << "step " << s << '\n';
+      for (const auto& p : f.steps[s]) out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+    }
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,131 @@
+#include "io/stream.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <streambuf>
+
+#include "base/error.h"
+
+namespace geo {
+namespace {
+
+// A stream buffer over a file descriptor that remembers why a write failed.
+class DescriptorBuffer : public std::streambuf {
+ public:
+  explicit DescriptorBuffer(int fd) : fd_(fd) { setp(buffer_, buffer_ + sizeof buffer_); }
+  int error() const { return error_; }
+
+ protected:
+  int overflow(int c) override {
+    if (sync() != 0) return traits_type::eof();
+    if (c != traits_type::eof()) sputc(static_cast<char>(c));
+    return 0;
+  }
+  int sync() override {
+    const char* at = pbase();
+    while (at < pptr()) {
+      const auto n = ::write(fd_, at, static_cast<std::size_t>(pptr() - at));
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) {
+        error_ = errno;
+        return -1;
+      }
+      at += n;
+    }
+    setp(buffer_, buffer_ + sizeof buffer_);
+    return 0;
+  }
+
+ private:
+  int fd_, error_ = 0;
+  char buffer_[1 << 16];
+};
+
+std::string reason(int error) { return std::string(std::strerror(error)); }
+
+}  // namespace
+
+std::string read_all(const std::string& path) {
+  int fd = 0;
+  if (path != "-") {
+    fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) throw MissingInputError(path + ": cannot be opened (" + reason(errno) + "); check the name");
+    struct stat info {};
+    if (::fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) {
+      ::close(fd);
+      throw InputError(path + ": is a folder; give a file");
+    }
+  }
+  std::string bytes;
+  char chunk[1 << 16];
+  for (;;) {
+    const auto n = ::read(fd, chunk, sizeof chunk);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int error = errno;
+      if (fd != 0) ::close(fd);
+      throw InputError(path + ": cannot be read (" + reason(error) + ")");
+    }
+    if (n == 0) break;
+    bytes.append(chunk, static_cast<std::size_t>(n));
+  }
+  if (fd != 0) ::close(fd);
+  if (bytes.empty()) throw InputError(path + ": is empty; was it written completely?");
+  return bytes;
+}
+
+void write_all(const std::string& path, const std::function<void(std::ostream&)>& write) {
+  if (path == "-") {
+    DescriptorBuffer buffer(1);
+    std::ostream out(&buffer);
+    write(out);
+    out.flush();
+    if (!out) throw OutputError("-: cannot be written (" + reason(buffer.error()) + ")");
+    return;
+  }
+  struct stat info {};
+  const bool special = ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
+  if (special && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");
+  std::string aside = path;
+  int fd = -1;
+  if (special) {
+    fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a device or a pipe cannot be renamed over
+  } else {
+    std::random_device random;
+    for (int tries = 0; tries < 16 && fd < 0; ++tries) {
+      aside = path + "." + std::to_string(random()) + ".tmp";
+      fd = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (fd < 0 && errno != EEXIST) break;
+    }
+  }
+  if (fd < 0) throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
+  int error = 0;
+  try {
+    auto buffer = std::make_unique<DescriptorBuffer>(fd);
+    std::ostream out(buffer.get());
+    write(out);
+    out.flush();
+    if (!out) error = buffer->error() ? buffer->error() : EIO;
+  } catch (...) {
+    ::close(fd);
+    if (!special) ::unlink(aside.c_str());
+    throw;
+  }
+  if (error == 0 && !special && ::fsync(fd) != 0) error = errno;
+  if (::close(fd) != 0 && error == 0) error = errno;
+  if (error == 0 && !special && ::rename(aside.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) {
+    if (!special) ::unlink(aside.c_str());
+    throw OutputError(path + ": cannot be written (" + reason(error) + ")");
+  }
+}
+
+}  // namespace geo

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,5 +30,10 @@ struct Neighborhoods {
 /// fastest we have; all give the same rows, bit for bit, for any number of threads.
 Neighborhoods build_neighborhoods(const NodeSet& nodes, const VisibilityGraph& graph, const TriangleBvh& obstacles,
                                   NeighborMethod method = NeighborMethod::automatic, const Progress& progress = {});
+
+/// One node's row, by a search truncated at the support radius; `blocked` tells whether a face touches the segment
+/// between two nodes. Safe to call from several threads.
+std::vector<Neighbor> neighborhood_of(NodeId i, const NodeSet& nodes, const VisibilityGraph& graph,
+                                      const std::function<bool(NodeId, NodeId)>& blocked);
 
 }  // namespace geo

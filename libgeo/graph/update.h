@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "graph/neighborhoods.h"
+#include "sampling/node_grid.h"
 
 namespace geo {
 
@@ -19,9 +20,9 @@ struct GraphUpdate {
 /// `new_faces`: the triangles that the step added to the complex (crack faces and children of cut skin). `first_new`:
 /// nodes from this row on are new (P_new) and get edges to their k nearest visible nodes. `obstacle_near` must append
 /// the triangles of the whole complex whose boxes meet a box (used for edges of new nodes only and for visible pairs).
-/// Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
+/// `grid` holds all nodes. Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
-                         VisibilityGraph& graph, Neighborhoods& rows);
+                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows);
 
 }  // namespace geo

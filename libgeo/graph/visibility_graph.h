@@ -24,6 +24,7 @@ class VisibilityGraph {
   struct Arc {
     NodeId to;
     std::uint32_t length;  ///< warped, see above
+    std::uint32_t plain;   ///< Euclidean, in plain_unit()
     friend auto operator<=>(const Arc& a, const Arc& b) = default;
   };
   std::size_t node_count() const { return rows_.size(); }
@@ -31,16 +32,25 @@ class VisibilityGraph {
   std::span<const Arc> arcs(NodeId i) const { return rows_[i.index()]; }
   bool has(NodeId i, NodeId j) const;
   void resize(std::size_t nodes) { rows_.resize(nodes); }
-  /// Adds or removes the edge ij; both directions. False when it was (was not) there already.
-  bool add(NodeId i, NodeId j, std::uint32_t length);
+  /// Adds (between these nodes, of this set) or removes the edge ij; both directions. False when it was (was not) there.
+  bool add(const NodeSet& nodes, NodeId i, NodeId j);
   bool remove(NodeId i, NodeId j);
+  /// Plain lengths are integers too: a power of two that is set once, 2⁻²⁶ of about the largest support radius.
+  double plain_unit() const { return plain_unit_; }
+  void set_plain_unit(double unit) { plain_unit_ = unit; }
+  /// No edge is longer than this, in model units.
+  double longest() const { return longest_; }
   /// Component of each node, numbered by lowest node; returns their count.
   std::uint32_t components(std::vector<std::uint32_t>& of) const;
 
  private:
   std::vector<std::vector<Arc>> rows_;
   std::size_t edges_ = 0;
+  double plain_unit_ = 1, longest_ = 0;
 };
+
+/// The unit of plain lengths for a node set.
+double plain_unit_for(const NodeSet& nodes);
 
 /// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
 /// Missing entries are invalid ids.

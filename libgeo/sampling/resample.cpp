@@ -1,0 +1,41 @@
+#include "sampling/resample.h"
+
+#include <cmath>
+
+#include "base/random.h"
+#include "sampling/node_grid.h"
+
+namespace geo {
+
+std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces, double spacing, std::uint64_t seed) {
+  std::vector<OffsetSample> samples;
+  std::vector<Vec3> positions;
+  NodeGrid grid(spacing);
+  std::vector<std::uint32_t> near;
+  Random random(seed);
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    const auto& [a, b, c] = faces[f];
+    const Vec3 n = (b - a).cross(c - a);
+    const double twice_area = n.norm();
+    if (!(twice_area > 0)) continue;
+    // Several darts a sample: thinning throws most away.
+    const int darts = 1 + static_cast<int>(std::min(64.0, std::ceil(2 * twice_area / (spacing * spacing))));
+    for (int i = 0; i < darts; ++i) {
+      double u = random.uniform(), v = random.uniform();
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3 base = a + u * (b - a) + v * (c - a);
+      for (int side = 0; side < 2; ++side) {
+        const Vec3 p = base + (side ? 0.5 : -0.5) * spacing / twice_area * n;
+        near.clear();
+        grid.within(positions, p, 0.8 * spacing, near);
+        if (!near.empty()) continue;
+        grid.insert(static_cast<std::uint32_t>(positions.size()), p);
+        positions.push_back(p);
+        samples.push_back({p, base, f, side});
+      }
+    }
+  }
+  return samples;
+}
+
+}  // namespace geo

@@ -9,6 +9,7 @@
 #include "crack/advance.h"
 #include "graph/neighborhoods.h"
 #include "graph/update.h"
+#include "sampling/node_grid.h"
 #include "sampling/node_set.h"
 #include "surface/complex.h"
 
@@ -19,6 +20,7 @@ struct Binding {
   std::vector<NodeId> master_node;             ///< of masters: the node with the visibility edge; else invalid
   std::vector<SurfaceVertexId> master;         ///< the master whose tree a vertex hangs in; invalid: orphan
   std::vector<SurfaceVertexId> parent;         ///< towards the master; itself for a master
+  std::vector<SurfaceVertexId> closest;        ///< per node: its closest visible surface vertex, where it is near one
   friend bool operator==(const Binding&, const Binding&) = default;
 };
 
@@ -34,6 +36,7 @@ struct Body {
   VisibilityGraph graph;
   Neighborhoods neighbors;
   Binding binding;
+  NodeGrid grid;                 ///< over nodes.position; derived, never in a file
   int k = 26;                    ///< nearest neighbours per node in the graph
   double resample_limit = 1;     ///< new nodes may be at most this many per crack face area over spacing²; 0: none
   std::uint32_t updates = 0;     ///< cracks steps applied since the build

@@ -10,7 +10,8 @@
 
 namespace geo {
 
-GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const std::array<Vec3, 3>> new_faces,
+GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
+                         std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
                          const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows) {
   GraphUpdate result;
@@ -27,8 +28,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   };
 
   // E_cut, and pairs of neighbours that see each other no longer. What a face cuts has one end within half its length.
-  double reach = graph.longest();
-  for (std::uint32_t i = 0; i < nodes.size(); ++i) reach = std::max(reach, nodes.radius[i]);
+  // Support radii are at most 2²⁶ plain units when the graph is built, and new nodes take over those of old ones.
+  const double reach = std::max(graph.longest(), graph.plain_unit() * 0x1p26);
   std::set<std::pair<NodeId, NodeId>> cut;
   std::vector<std::uint32_t> near;
   for (const auto& [a, b, c] : new_faces) {
@@ -50,6 +51,11 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
         if (crosses(n.to)) update.insert(NodeId(i)), update.insert(n.to);
     }
   }
+  for (const NodeId m : moved) {
+    update.insert(m);
+    for (const auto& n : rows.rows[m.index()]) update.insert(n.to);
+    for (const auto& arc : graph.arcs(m)) cut.insert({std::min(m, arc.to), std::max(m, arc.to)});
+  }
   // P_update by old distances: whose shortest paths may have used a cut edge.
   for (const auto& [a, b] : cut) {
     std::uint32_t length = 0;
@@ -66,7 +72,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     result.cut_edges.push_back({a, b});
   }
   // E_new: each new node's k nearest visible nodes. The nearest are asked in growing numbers, since many may be hidden.
-  std::vector<NodeId> fresh;
+  std::vector<NodeId> fresh(moved.begin(), moved.end());
   for (std::uint32_t i = first_new.value; i < nodes.size(); ++i) fresh.push_back(NodeId(i));
   for (const NodeId i : fresh) {
     std::size_t seen = 0;

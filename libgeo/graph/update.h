@@ -20,8 +20,10 @@ struct GraphUpdate {
 /// `new_faces`: the triangles that the step added to the complex (crack faces and children of cut skin). `first_new`:
 /// nodes from this row on are new (P_new) and get edges to their k nearest visible nodes. `obstacle_near` must append
 /// the triangles of the whole complex whose boxes meet a box (used for edges of new nodes only and for visible pairs).
-/// `grid` holds all nodes. Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
-GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const std::array<Vec3, 3>> new_faces,
+/// `moved` lists old nodes whose position has changed: they lose their edges and are connected anew. `grid` holds all
+/// nodes where they are now. Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
+GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
+                         std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
                          const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows);
 

@@ -1,0 +1,171 @@
+// § 6.5: masters by visibility edges, slaves breadth-first along the derived surface, which no crack connects.
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "body/binding.h"
+#include "body/locate.h"
+#include "geometry/predicates.h"
+#include "surface/pieces.h"
+
+namespace geo {
+namespace {
+
+// True when no face but those at `v` (the end of the segment) touches the segment from p to v.
+bool sees_vertex(const Complex& k, const Vec3& p, VertexId v) {
+  const Vec3& q = k.point(v);
+  Box3 box{p, p};
+  box.add(q);
+  std::vector<FaceId> faces;
+  k.near(box, faces);
+  for (const FaceId f : faces) {
+    const auto& c = k.face(f).v;
+    const auto t = k.corners(f);
+    const auto at = std::find(c.begin(), c.end(), v);
+    if (at == c.end()) {
+      if (segment_meets_triangle(p, q, t[0], t[1], t[2])) return false;
+      continue;
+    }
+    // A face at v: only lying along it would hide v.
+    if (orient3d(t[0], t[1], t[2], p) != 0) continue;
+    const auto i = static_cast<std::size_t>(at - c.begin());
+    if (segment_meets_triangle(p, p, t[0], t[1], t[2]) || segment_meets_triangle(p, q, t[(i + 1) % 3], t[(i + 1) % 3], t[(i + 2) % 3])) return false;
+  }
+  return true;
+}
+
+// The fan at v that p looks at: that of a side which faces p and whose middle p sees.
+SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
+  SurfaceVertexId only;
+  bool several = false;
+  for (const FaceId f : k.faces_at(v))
+    for (int which = 0; which < 2; ++which) {
+      if (!k.has({f, which})) continue;
+      const auto& c = k.face(f).v;
+      const auto id = k.surface_vertex({f, which}, static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin()));
+      several |= only.valid() && only != id;
+      only = id;
+    }
+  if (!several) return only;
+  for (const FaceId f : k.faces_at(v)) {
+    const auto t = k.corners(f);
+    const int above = orient3d(t[0], t[1], t[2], p);
+    const Side s{f, above > 0 ? 1 : 0};
+    if (above == 0 || !k.has(s)) continue;
+    // A point of the face near its corner at v, so that little can stand between.
+    const auto& c = k.face(f).v;
+    const int corner = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
+    const Vec3 q = k.point(v) + 0.05 * ((t[0] + t[1] + t[2]) / 3 - k.point(v));
+    Box3 box{p, p};
+    box.add(q);
+    std::vector<FaceId> faces;
+    k.near(box, faces);
+    if (std::none_of(faces.begin(), faces.end(), [&](FaceId g) {
+          const auto u = k.corners(g);
+          return g != f && segment_meets_triangle(p, q, u[0], u[1], u[2]);
+        }))
+      return k.surface_vertex(s, corner);
+  }
+  return {};
+}
+
+}  // namespace
+
+SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
+  std::vector<FaceId> faces;
+  k.near(Box3{p, p}.grown(reach), faces);
+  std::vector<std::pair<double, VertexId>> near;
+  for (const FaceId f : faces)
+    for (const VertexId v : k.face(f).v)
+      if (const double d = (k.point(v) - p).norm(); d <= reach) near.push_back({d, v});
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 12); ++i)
+    if (sees_vertex(k, p, near[i].second))
+      if (const auto fan = fan_seen(k, p, near[i].second); fan.valid()) return fan;
+  return {};
+}
+
+void grow_trees(Body& body) {
+  const Complex& k = body.surface;
+  Binding& b = body.binding;
+  const std::size_t n = k.surface_vertex_count();
+  b.master_node.assign(n, NodeId());
+  b.master.assign(n, SurfaceVertexId());
+  b.parent.assign(n, SurfaceVertexId());
+  const auto nearer = [&](NodeId i, NodeId j, SurfaceVertexId v) {
+    const Vec3& q = k.point(k.site(v));
+    const double di = (body.nodes.position[i.index()] - q).norm(), dj = (body.nodes.position[j.index()] - q).norm();
+    return di != dj ? di < dj : i < j;
+  };
+  for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
+    if (const auto v = b.closest[i]; v.valid())
+      if (auto& node = b.master_node[v.index()]; !node.valid() || nearer(NodeId(i), node, v)) node = NodeId(i);
+  std::vector<SurfaceVertexId> level, next, around;
+  const auto spread = [&] {
+    while (!level.empty()) {
+      // Lowest parent first: the tree does not depend on the order in which a level was found.
+      std::sort(level.begin(), level.end());
+      next.clear();
+      for (const auto v : level) {
+        around.clear();
+        k.surface_neighbors(v, around);
+        for (const auto w : around)
+          if (!b.master[w.index()].valid()) b.master[w.index()] = b.master[v.index()], b.parent[w.index()] = v, next.push_back(w);
+      }
+      level.swap(next);
+    }
+  };
+  for (std::uint32_t v = 0; v < n; ++v)
+    if (b.master_node[v].valid()) b.master[v] = b.parent[v] = SurfaceVertexId(v), level.push_back(SurfaceVertexId(v));
+  spread();
+  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece.
+  Pieces pieces;
+  for (std::uint32_t v = 0; v < n; ++v) {
+    const SurfaceVertexId id(v);
+    if (!k.alive(id) || b.master[v].valid()) continue;
+    if (pieces.of_side.empty()) pieces = find_pieces(k);
+    const auto [side, corner] = k.corner_of(id);
+    const auto piece = pieces.of_side[side.face.index() * 2 + static_cast<std::size_t>(side.which)];
+    const auto near = body.grid.nearest(body.nodes.position, k.point(k.site(id)), 1, ~0u, [&](std::uint32_t i) {
+      const Side s = side_seen_from(k, body.nodes.position[i], body.nodes.spacing[i]);
+      return k.has(s) && pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)] == piece;
+    });
+    if (near.empty()) continue;
+    b.master_node[v] = NodeId(near[0]);
+    b.master[v] = b.parent[v] = id;
+    level.assign(1, id);
+    spread();
+  }
+}
+
+Binding build_binding(const Body& body) {
+  Body scratch;
+  scratch.surface = body.surface;
+  scratch.nodes = body.nodes;
+  scratch.grid = NodeGrid(body.grid.cell(), body.nodes.position);
+  scratch.binding.closest.resize(body.nodes.size());
+  parallel_for(body.nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      scratch.binding.closest[i] = closest_vertex(body.surface, body.nodes.position[i], body.nodes.radius[i]);
+  });
+  grow_trees(scratch);
+  return scratch.binding;
+}
+
+void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out) {
+  out.clear();
+  const SurfaceVertexId master = body.binding.master[v.index()];
+  if (!master.valid()) return;
+  const NodeId m = body.binding.master_node[master.index()];
+  const Vec3& x = body.surface.point(body.surface.site(v));
+  const auto add = [&](NodeId j) {
+    const double d = (body.nodes.position[j.index()] - x).norm();
+    if (d < body.nodes.radius[j.index()]) out.push_back({j, d});
+  };
+  add(m);
+  for (const auto& n : body.neighbors.of(m)) add(n.to);
+  if (out.empty()) out.push_back({m, 0.0});
+}
+
+}  // namespace geo

@@ -1,0 +1,58 @@
+#include <algorithm>
+
+#include "body/body.h"
+#include "body/locate.h"
+#include "surface/pieces.h"
+
+namespace geo {
+
+BodyReport check_body(const Body& body) {
+  BodyReport report;
+  const auto note = [&](const std::string& problem) {
+    if (report.first_problem.empty()) report.first_problem = problem;
+  };
+  const Complex& k = body.surface;
+  const std::size_t n = body.nodes.size();
+  std::vector<std::uint32_t> component;
+  report.graph_components = body.graph.components(component);
+  const Pieces pieces = find_pieces(k);
+  report.pieces = pieces.count;
+  std::vector<std::int32_t> piece_of(report.graph_components, -1);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Side s = side_seen_from(k, body.nodes.position[i], body.nodes.spacing[i]);
+    const auto piece = pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
+    if (piece < 0 || is_blocked(k, body.nodes.position[i], body.nodes.position[i])) {
+      ++report.nodes_outside;
+      note("node " + std::to_string(i) + " is not inside the material");
+      continue;
+    }
+    auto& known = piece_of[component[i]];
+    if (known >= 0 && known != piece) note("node " + std::to_string(i) + " is connected to another piece");
+    known = piece;
+    for (const auto& arc : body.graph.arcs(NodeId(i)))
+      if (arc.to.value > i && is_blocked(k, body.nodes.position[i], body.nodes.position[arc.to.index()])) {
+        ++report.edges_crossing;
+        note("edge " + std::to_string(i) + "-" + std::to_string(arc.to.value) + " crosses a face");
+      }
+  }
+  if (report.graph_components != report.pieces)
+    note("the graph has " + std::to_string(report.graph_components) + " components and the material " + std::to_string(report.pieces) + " pieces");
+  std::vector<std::array<Vec3, 3>> soup;
+  for (std::uint32_t f = 0; f < k.face_count(); ++f)
+    if (k.alive(FaceId(f))) soup.push_back(k.corners(FaceId(f)));
+  const auto scratch = build_neighborhoods(body.nodes, body.graph, TriangleBvh(soup));
+  for (std::size_t i = 0; i < n; ++i)
+    if (scratch.rows[i] != body.neighbors.rows[i]) {
+      note("the neighbours of node " + std::to_string(i) + " are not those that a build from scratch finds");
+      break;
+    }
+  for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v)
+    if (k.alive(SurfaceVertexId(v)) && !body.binding.master[v].valid()) {
+      ++report.orphans;
+      note("surface vertex " + std::to_string(v) + " has no master");
+    }
+  if (!(build_binding(body) == body.binding)) note("the binding is not the one that a build from scratch finds");
+  return report;
+}
+
+}  // namespace geo

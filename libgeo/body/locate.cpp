@@ -1,0 +1,69 @@
+#include "body/locate.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "geometry/distance.h"
+#include "geometry/predicates.h"
+
+namespace geo {
+
+void triangles_near(const Complex& complex, const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
+  std::vector<FaceId> faces;
+  complex.near(box, faces);
+  for (const FaceId f : faces) out.push_back(complex.corners(f));
+}
+
+bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q) {
+  Box3 box{p, p};
+  box.add(q);
+  std::vector<FaceId> faces;
+  complex.near(box, faces);
+  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) {
+    const auto t = complex.corners(f);
+    return segment_meets_triangle(p, q, t[0], t[1], t[2]);
+  });
+}
+
+Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
+  std::vector<FaceId> faces;
+  const double everything = 4 * (complex.extent().diagonal() + (p - complex.extent().center()).norm());
+  for (double r = reach;; r *= 2) {
+    faces.clear();
+    complex.near(Box3{p, p}.grown(r), faces);
+    if (!faces.empty() || r > everything) break;
+  }
+  if (faces.empty()) throw GeometryError("the complex has no faces");
+  const auto middle = [&](FaceId f) {
+    const auto t = complex.corners(f);
+    return Vec3((t[0] + t[1] + t[2]) / 3);
+  };
+  FaceId target = faces[0];
+  for (const FaceId f : faces)
+    if ((middle(f) - p).squaredNorm() < (middle(target) - p).squaredNorm()) target = f;
+  // What the line to the target's middle meets first.
+  const Vec3 q = middle(target);
+  Box3 box{p, p};
+  box.add(q);
+  faces.clear();
+  complex.near(box, faces);
+  FaceId first = target;
+  double best = 1;
+  for (const FaceId f : faces) {
+    const auto t = complex.corners(f);
+    if (f == target || !segment_meets_triangle(p, q, t[0], t[1], t[2])) continue;
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double at = n.dot(t[0] - p), along = n.dot(q - p);
+    if (along != 0 && at / along < best) best = at / along, first = f;
+  }
+  const auto t = complex.corners(first);
+  return {first, orient3d(t[0], t[1], t[2], p) > 0 ? 1 : 0};
+}
+
+bool is_inside(const Complex& complex, const Vec3& p, double reach) {
+  const Side s = side_seen_from(complex, p, reach);
+  const auto t = complex.corners(s.face);
+  return complex.has(s) && !segment_meets_triangle(p, p, t[0], t[1], t[2]);
+}
+
+}  // namespace geo

@@ -1,0 +1,28 @@
+// Nodes that a body gains: near cracks, in narrow passages, in pieces that have none.
+#pragma once
+
+#include <functional>
+
+#include "body/body.h"
+
+namespace geo {
+
+/// Appends a node at x, with spacing and radius of node `donor` and half of its volume: Σ volume stays what it was.
+NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
+
+/// § 6.4: nodes on both sides of the faces, inside, seen from the face, not too close to nodes that see them. Returns
+/// how many.
+std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double scale, std::uint64_t seed);
+
+/// Moves nodes that are on or very near one of the faces off it, each to the side it is on. Returns them, ascending.
+std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);
+
+/// Where G has more components than the material has pieces, or a piece has no node, inserts nodes until they agree
+/// (several rounds, each twice as fine). `after` is called when nodes were added, to update the graph. Global: costs
+/// once over body and surface.
+void connect_pieces(Body& body, const std::function<void(NodeId first_new)>& after);
+
+/// Marks nodes with too few neighbours for a shape function.
+void mark_debris(Body& body, const std::vector<NodeId>& nodes);
+
+}  // namespace geo

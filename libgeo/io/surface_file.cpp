@@ -95,7 +95,7 @@ SurfaceFile from_ply(const std::string& bytes, const std::string& name) {
 TriangleMesh from_off(const std::string& bytes, const std::string& name) {
   Lines lines(bytes, name);
   std::vector<std::string_view> words;
-  if (!lines.next(words) || words[0] != "OFF") lines.fail("does not begin with 'OFF'");
+  if (!lines.next(words)) lines.fail("is empty");
   words.erase(words.begin());
   if (words.empty() && !lines.next(words)) lines.fail("ends before its counts");
   if (words.size() < 2) lines.fail("the counts of vertices and faces are missing");
@@ -205,6 +205,13 @@ bool looks_like_obj(const std::string& bytes) {
   return false;
 }
 
+bool looks_like_off(const std::string& bytes) {
+  Lines lines(std::string_view(bytes).substr(0, 4096), "");
+  std::vector<std::string_view> words;
+  // COFF and NOFF carry colours and normals behind the coordinates; other prefixes change what a coordinate is.
+  return lines.next(words) && (words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF");
+}
+
 template <class T>
 void put(std::string& row, T value) {
   row.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -218,7 +225,7 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
   SurfaceFile file;
   if (bytes.rfind("ply", 0) == 0)
     file = from_ply(bytes, name);
-  else if (bytes.rfind("OFF", 0) == 0)
+  else if (looks_like_off(bytes))
     file.mesh = from_off(bytes, name);
   else if (looks_like_obj(bytes))
     file.mesh = from_obj(bytes, name);

@@ -1,0 +1,66 @@
+// kerf-model: the procedural models of the samples, and fronts that halve a model.
+#include <algorithm>
+#include <cmath>
+
+#include "io/front_file.h"
+#include "io/stream.h"
+#include "io/surface_file.h"
+#include "io/volume_file.h"
+#include "surface/shapes.h"
+#include "tool.h"
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-model", "Makes a sample model, or a front that sweeps through the middle of a model.",
+               "  kerf-model pumpkin --frequency 22 -o pumpkin.ply\n  kerf-model letter --text K -o k.ply\n  kerf-model front --around bear.off --steps 12 -o halve.front");
+  std::string kind, text = "K", around;
+  int frequency = 22, resolution = 24, steps = 12, points = 24;
+  double edge = 0.1, depth = 0.25, bend = 0.06, tilt = 7;
+  t.argument("KIND", kind, "pumpkin, apple, polyp, sphere, block, letter, or front");
+  t.option("--frequency", frequency, "Of pumpkin, apple, polyp, sphere: 20 f^2 triangles");
+  t.option("--edge", edge, "Of a block: longest edge along an axis");
+  t.option("--text", text, "Of a letter: A to Z");
+  t.option("--depth", depth, "Of a letter");
+  t.option("--resolution", resolution, "Of a letter: cells per unit of height");
+  t.option("--around", around, "Of a front: the model");
+  t.option("--steps", steps, "Of a front: time steps swept");
+  t.option("--points", points, "Of a front");
+  t.option("--bend", bend, "Of a front: how far the sheet bends, as a fraction of the diagonal");
+  t.option("--tilt", tilt, "Of a front: degrees about the model's longest axis");
+  t.output("PLY or front file");
+  return t.run(argc, argv, [&] {
+    const std::string target = t.target(kind != "front");
+    if (kind == "front") {
+      if (around.empty() || steps < 1 || points < 2) throw tool::UsageError("a front needs --around MODEL, --steps of 1 and --points of 2 at least");
+      const auto mesh = geo::read_surface(around).mesh;
+      const geo::Box3 box = geo::bounding_box(mesh);
+      // Across the longest axis, downwards along the next, a little tilted and bent so that nothing is special.
+      int axis[3] = {0, 1, 2};
+      const geo::Vec3 size = box.hi - box.lo;
+      std::sort(axis, axis + 3, [&](int a, int b) { return size[a] > size[b]; });
+      const double d = box.diagonal(), angle = tilt * 3.14159265358979 / 180;
+      geo::Vec3 normal = geo::Vec3::Zero(), down = geo::Vec3::Zero(), along = geo::Vec3::Zero();
+      normal[axis[0]] = 1, down[axis[1]] = -1, along[axis[2]] = 1;
+      const geo::Vec3 n = std::cos(angle) * normal + std::sin(angle) * along, a = std::cos(angle) * along - std::sin(angle) * normal;
+      geo::Front front{"halve", false, {}};
+      for (int s = 0; s <= steps; ++s) {
+        front.steps.emplace_back();
+        for (int i = 0; i < points; ++i) {
+          const double u = double(s) / steps - 0.5, v = double(i) / (points - 1) - 0.5;
+          front.steps.back().push_back(box.center() + 1.13 * d * (u * down + v * a) + d * (0.0031 + bend * std::sin(4 * u + 1) * std::cos(5 * v + 0.4)) * n);
+        }
+      }
+      geo::write_all(target, [&](std::ostream& out) { geo::write_fronts(out, {front}); });
+      return;
+    }
+    geo::TriangleMesh mesh;
+    if (kind == "pumpkin") mesh = geo::make_pumpkin(frequency);
+    else if (kind == "apple") mesh = geo::make_apple(frequency);
+    else if (kind == "polyp") mesh = geo::make_polyp(frequency);
+    else if (kind == "sphere") mesh = geo::make_sphere(frequency);
+    else if (kind == "block") mesh = geo::make_block({2, 1, 1}, edge);
+    else if (kind == "letter" && text.size() == 1) mesh = geo::make_letter(text[0], depth, resolution);
+    else throw tool::UsageError("'" + kind + "' is no model that is known here");
+    if (target.ends_with(".vdb")) return geo::write_level_set(target, mesh, 0.02 * geo::bounding_box(mesh).diagonal());
+    geo::write_all(target, [&](std::ostream& out) { geo::write_ply(out, mesh, {}, "kerf-model " + kind); });
+  });
+}

@@ -1,0 +1,42 @@
+// kerf-graph: visibility graph, neighbourhoods and binding over nodes and their surface.
+#include "body/body.h"
+#include "io/body_file.h"
+#include "io/node_file.h"
+#include "io/stream.h"
+#include "model.h"
+#include "tool.h"
+#include "version.h"
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-graph", "Builds the visibility graph of nodes inside a surface, and all that hangs on it.",
+               "  kerf-graph nodes.pcd --surface bear.off -o bear.kerf\n  kerf-sample bear.off | kerf-graph --surface bear.off -o bear.kerf");
+  std::string nodes_path = "-", surface_path, method = "auto";
+  int k = 26;
+  t.argument("NODES", nodes_path, "Nodes from kerf-sample (PCD or PLY); default: standard input", false);
+  t.option("--surface", surface_path, "The model that was sampled");
+  t.option("-k", k, "Nearest neighbours per node");
+  t.option("--method", method, "Neighbourhoods by: auto, mfw (the paper's), dijkstra; all give the same");
+  t.output("The body (.kerf)");
+  return t.run(argc, argv, [&] {
+    if (surface_path.empty()) throw tool::UsageError("give the model with --surface");
+    if (surface_path == "-" && nodes_path == "-") throw tool::UsageError("nodes and surface cannot both come from standard input");
+    if (k < 3 || k > 1000) throw tool::UsageError("-k must be from 3 to 1000");
+    geo::BodyOptions options;
+    options.k = k;
+    if (method == "mfw") options.method = geo::NeighborMethod::mfw;
+    else if (method == "dijkstra") options.method = geo::NeighborMethod::dijkstra;
+    else if (method != "auto") throw tool::UsageError("--method must be auto, mfw or dijkstra");
+    const std::string target = t.target(true);
+    const auto file = tool::read_solid(surface_path);
+    geo::NodeSet nodes = geo::read_nodes(nodes_path);
+    geo::Body body;
+    try {
+      body = geo::build_body(tool::complex_of(file, surface_path), std::move(nodes), options, t.progress());
+    } catch (const geo::InputError& e) {
+      throw geo::InputError(nodes_path + ": " + e.what());
+    }
+    body.history.push_back({"kerf-graph", KERF_VERSION, "-k " + std::to_string(k), {}});
+    geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
+    if (t.verbose) t.say("kerf-graph: " + std::to_string(body.nodes.size()) + " nodes, " + std::to_string(body.graph.edge_count()) + " edges");
+  });
+}

@@ -1,0 +1,149 @@
+// kerf-info: what a file holds, and whether it is sound.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <numeric>
+
+#include "body/body.h"
+#include "io/body_file.h"
+#include "io/front_file.h"
+#include "io/kerf_container.h"
+#include "io/node_file.h"
+#include "io/stream.h"
+#include "model.h"
+#include "surface/pieces.h"
+#include "tool.h"
+
+namespace {
+
+using tool::number;
+
+class Report {
+ public:
+  void add(const std::string& key, const std::string& value) { rows_.push_back({key, value}); }
+  void add(const std::string& key, std::size_t value) { add(key, std::to_string(value)); }
+  void add(const std::string& key, bool value) { add(key, std::string(value ? "true" : "false")); }
+  void print(bool json) const {
+    if (!json) {
+      for (const auto& [key, value] : rows_) std::cout << key << std::string(std::max<std::size_t>(1, 20 - std::min<std::size_t>(19, key.size())), ' ') << value << '\n';
+      return;
+    }
+    std::cout << '{';
+    for (std::size_t i = 0; i < rows_.size(); ++i) std::cout << (i ? "," : "") << tool::quoted(rows_[i].first) << ':' << rows_[i].second;
+    std::cout << "}\n";
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> rows_;
+};
+
+std::string surface_report(const geo::SurfaceFile& file, bool check, Report& report) {
+  const auto& mesh = file.mesh;
+  const auto result = geo::check_surface(mesh, check);
+  report.add("kind", tool::quoted("surface"));
+  report.add("vertices", mesh.vertices.size());
+  report.add("faces", mesh.triangles.size());
+  const auto cracks = static_cast<std::size_t>(std::count_if(mesh.patch.begin(), mesh.patch.end(), [](auto p) { return p > 0; }));
+  report.add("skin_faces", static_cast<std::size_t>(mesh.triangles.size() - 2 * cracks));
+  report.add("crack_faces", cracks);
+  std::size_t pieces = 0, front_edges = 0;
+  if (result.good() || (result.closed && result.manifold && result.oriented)) try {
+      const auto complex = geo::Complex::from_two_sided(mesh);
+      pieces = geo::find_pieces(complex).count;
+      for (std::uint32_t f = 0; f < complex.face_count(); ++f)
+        for (int k = 0; k < 3; ++k)
+          if (complex.face(geo::FaceId(f)).crack > 0) front_edges += complex.around(complex.face(geo::FaceId(f)).v[k], complex.face(geo::FaceId(f)).v[(k + 1) % 3]).size() == 1;
+    } catch (const geo::InputError&) {
+    }
+  report.add("pieces", pieces);
+  report.add("closed", result.closed);
+  report.add("manifold", result.manifold);
+  report.add("oriented", result.oriented);
+  report.add("self_intersections", result.self_intersections ? std::to_string(*result.self_intersections) : "null");
+  report.add("volume", number(geo::signed_volume(mesh)));
+  report.add("area", number(geo::area(mesh)));
+  report.add("front_edges", front_edges);
+  report.add("degenerate_faces", result.degenerate_faces);
+  report.add("fronts", file.fronts.size());
+  if (result.good() && check && !mesh.two_sided() && geo::signed_volume(mesh) <= 0) return "the surface is inside out; reverse its triangles";
+  return result.first_problem;
+}
+
+std::string body_report(const geo::Body& body, std::size_t bytes, bool check, Report& report) {
+  geo::BodyReport result;
+  std::string problem;
+  std::vector<std::uint32_t> component;
+  if (check) {
+    result = geo::check_body(body);
+    problem = result.first_problem;
+    if (problem.empty()) problem = geo::check_complex(body.surface, true).first_problem;
+  } else {
+    result.graph_components = body.graph.components(component);
+    result.pieces = geo::find_pieces(body.surface).count;
+    for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v)
+      result.orphans += body.surface.alive(geo::SurfaceVertexId(v)) && !body.binding.master[v].valid();
+  }
+  std::size_t least = ~std::size_t(0), most = 0, sum = 0, vertices = 0;
+  for (const auto& row : body.neighbors.rows) least = std::min(least, row.size()), most = std::max(most, row.size()), sum += row.size();
+  for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v) vertices += body.surface.alive(geo::SurfaceVertexId(v));
+  report.add("kind", tool::quoted("body"));
+  report.add("nodes", body.nodes.size());
+  report.add("edges", body.graph.edge_count());
+  report.add("graph_components", result.graph_components);
+  report.add("pieces", result.pieces);
+  report.add("edges_crossing", check ? std::to_string(result.edges_crossing) : "null");
+  report.add("neighbors_min", least);
+  report.add("neighbors_mean", number(std::round(100 * double(sum) / double(body.nodes.size())) / 100));
+  report.add("neighbors_max", most);
+  report.add("vertices", vertices);
+  report.add("orphans", result.orphans);
+  report.add("bytes", bytes);
+  report.add("updates", static_cast<std::size_t>(body.updates));
+  report.add("debris", static_cast<std::size_t>(std::count(body.debris.begin(), body.debris.end(), 1)));
+  report.add("volume", number(std::accumulate(body.nodes.volume.begin(), body.nodes.volume.end(), 0.0)));
+  return problem;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-info", "Says what a surface, node, body or front file holds; --check verifies every invariant.",
+               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off");
+  std::string path;
+  bool check = false;
+  t.argument("FILE", path, "Any file of Kerf's; - reads standard input");
+  t.flag("--check", check, "Verify everything; exit code 1 names the first offending ids");
+  return t.run(argc, argv, [&] {
+    const std::string bytes = geo::read_all(path);
+    Report report;
+    std::string problem;
+    const auto is = [&](const char* word) { return bytes.rfind(word, 0) == 0; };
+    const bool nodes_ply = is("ply") && bytes.substr(0, 4096).find("property double radius") != std::string::npos;
+    if (geo::looks_like_kerf(bytes)) {
+      problem = body_report(geo::parse_body(bytes, path), bytes.size(), check, report);
+    } else if (nodes_ply || is("# .PCD") || is("VERSION") || is("FIELDS")) {
+      const auto nodes = geo::parse_nodes(bytes, path);
+      const auto [lo, hi] = std::minmax_element(nodes.spacing.begin(), nodes.spacing.end());
+      report.add("kind", tool::quoted("nodes"));
+      report.add("nodes", nodes.size());
+      report.add("spacing_min", number(*lo));
+      report.add("spacing_max", number(*hi));
+      report.add("volume", number(std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0)));
+    } else if (is("front") || is("#") || path.ends_with(".front")) {
+      const auto fronts = geo::parse_fronts(bytes, path);
+      report.add("kind", tool::quoted("fronts"));
+      report.add("fronts", fronts.size());
+      std::size_t steps = 0, points = 0;
+      for (const auto& f : fronts) {
+        steps += f.steps.size();
+        for (const auto& s : f.steps) points += s.size();
+      }
+      report.add("steps", steps);
+      report.add("points", points);
+    } else {
+      problem = surface_report(geo::parse_surface(bytes, path), check, report);
+    }
+    if (!t.quiet || t.json) report.print(t.json);
+    if (check && !problem.empty()) throw tool::Failure(path + ": " + problem);
+  });
+}

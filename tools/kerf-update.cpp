@@ -1,0 +1,43 @@
+// kerf-update: brings a body up to a surface that has been cut since.
+#include <chrono>
+#include <iostream>
+
+#include "body/body.h"
+#include "io/body_file.h"
+#include "io/stream.h"
+#include "model.h"
+#include "tool.h"
+#include "version.h"
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-update", "Cuts a body's visibility graph with the cracks of a surface, samples new nodes near them, and updates neighbourhoods and binding.",
+               "  kerf-update bear.kerf --surface cut.ply -o cut.kerf");
+  std::string body_path, surface_path;
+  bool no_resample = false;
+  t.argument("BODY", body_path, "The body before (.kerf)");
+  t.option("--surface", surface_path, "The cut surface from kerf-crack");
+  t.flag("--no-resample", no_resample, "No new nodes near cracks");
+  t.output("The body after (.kerf)");
+  return t.run(argc, argv, [&] {
+    if (surface_path.empty()) throw tool::UsageError("give the cut surface with --surface");
+    if (surface_path == "-" && body_path == "-") throw tool::UsageError("body and surface cannot both come from standard input");
+    const std::string target = t.target(true);
+    geo::Body body = geo::read_body(body_path);
+    const auto file = tool::read_solid(surface_path);
+    if (no_resample) body.resample_limit = 0;
+    geo::SplitWork work;
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      geo::follow(body, tool::complex_of(file, surface_path), &work);
+    } catch (const geo::InputError& e) {
+      throw geo::InputError(surface_path + ": " + e.what());
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    body.history.push_back({"kerf-update", KERF_VERSION, "", {}});
+    geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
+    if (t.json)
+      (target == "-" ? std::cerr : std::cout) << "{\"edges_cut\":" << work.edges_cut << ",\"edges_added\":" << work.edges_added << ",\"nodes_updated\":" << work.nodes_updated
+                                              << ",\"nodes_added\":" << work.nodes_added << ",\"nodes_moved\":" << work.nodes_moved << ",\"seconds\":{\"resample\":" << tool::number(work.resample_seconds)
+                                              << ",\"graph\":" << tool::number(work.graph_seconds) << ",\"binding\":" << tool::number(work.binding_seconds) << ",\"total\":" << tool::number(seconds) << "}}\n";
+  });
+}

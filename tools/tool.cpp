@@ -1,0 +1,140 @@
+#include "tool.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "version.h"
+
+namespace tool {
+namespace {
+
+std::atomic<bool> interrupted{false};
+void on_signal(int) { interrupted = true; }
+
+}  // namespace
+
+struct Tool::Parser {
+  CLI::App app;
+};
+
+Tool::Tool(std::string name, std::string summary, std::string examples) : parser_(std::make_unique<Parser>()), name_(std::move(name)) {
+  CLI::App& app = parser_->app;
+  app.name(name_);
+  app.description(std::move(summary));
+  app.footer("Examples:\n" + examples + "\n\nExit codes: 0 done, 1 a check found something or the processing failed, 2 usage, 65 bad input,\n66 input missing, 70 internal error, 73 output cannot be made, 130 interrupted.");
+  app.set_version_flag("--version", name_ + " (kerf) " KERF_VERSION);
+  app.set_config("--config", "", "Read options from this TOML or INI file");
+  app.add_option("-j,--threads", threads_, "Threads; 0: all cores")->check(CLI::Range(0, 4096));
+  app.add_option("--seed", seed, "Seed of everything random");
+  app.add_flag("-q,--quiet", quiet, "No words on standard error but errors");
+  app.add_flag("-v,--verbose", verbose, "More words on standard error");
+  app.add_flag("--json", json, "Figures as JSON");
+  app.add_option("--progress", progress_, "Progress bar: auto, always, never")->check(CLI::IsMember({"auto", "always", "never"}));
+}
+Tool::~Tool() = default;
+
+void Tool::argument(const std::string& name, std::string& value, const std::string& help, bool required) {
+  auto* option = parser_->app.add_option(name, value, help);
+  if (required) option->required();
+}
+void Tool::argument(const std::string& name, std::vector<std::string>& values, const std::string& help) { parser_->app.add_option(name, values, help); }
+void Tool::option(const std::string& names, std::string& value, const std::string& help) { parser_->app.add_option(names, value, help); }
+void Tool::option(const std::string& names, std::vector<std::string>& values, const std::string& help) { parser_->app.add_option(names, values, help); }
+void Tool::option(const std::string& names, double& value, const std::string& help) { parser_->app.add_option(names, value, help)->capture_default_str(); }
+void Tool::option(const std::string& names, int& value, const std::string& help) { parser_->app.add_option(names, value, help)->capture_default_str(); }
+void Tool::flag(const std::string& names, bool& value, const std::string& help) { parser_->app.add_flag(names, value, help); }
+void Tool::output(const std::string& help) { parser_->app.add_option("-o,--output", output_path, help); }
+
+int Tool::run(int argc, char** argv, const std::function<void()>& work) {
+  try {
+    parser_->app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return parser_->app.exit(e);
+    std::cerr << name_ << ": " << e.what() << "; see " << name_ << " --help\n";
+    return 2;
+  }
+  for (int i = 1; i < argc; ++i) arguments_ += (i > 1 ? " " : "") + std::string(argv[i]);
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
+  if (threads_ > 0) geo::set_threads(threads_);
+  const auto fail = [&](const std::string& what, int code) {
+    std::cerr << name_ << ": " << what << '\n';
+    return code;
+  };
+  try {
+    work();
+    return 0;
+  } catch (const UsageError& e) {
+    return fail(std::string(e.what()) + "; see " + name_ + " --help", 2);
+  } catch (const Failure& e) {
+    return fail(e.what(), 1);
+  } catch (const geo::MissingInputError& e) {
+    return fail(e.what(), 66);
+  } catch (const geo::InputError& e) {
+    return fail(e.what(), 65);
+  } catch (const geo::GeometryError& e) {
+    return fail(e.what(), 1);
+  } catch (const geo::OutputError& e) {
+    return fail(e.what(), 73);
+  } catch (const geo::Interrupted&) {
+    return fail("interrupted", 130);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory", 70);
+  } catch (const std::exception& e) {
+    return fail(std::string("internal error: ") + e.what(), 70);
+  }
+}
+
+std::string Tool::target(bool binary) const {
+  const std::string path = output_path.empty() ? "-" : output_path;
+  if (path == "-" && binary && ::isatty(1)) throw UsageError("binary output does not go to a terminal: give -o FILE or a pipe");
+  return path;
+}
+
+geo::Progress Tool::progress() const {
+  const bool bar = !quiet && (progress_ == "always" || (progress_ == "auto" && ::isatty(2)));
+  return [bar](std::string_view phase, std::size_t done, std::size_t total) {
+    if (bar) {
+      const int percent = total > 0 ? static_cast<int>(100 * done / total) : 0;
+      std::fprintf(stderr, "\r\033[K%3d %% %.*s%s", percent, static_cast<int>(phase.size()), phase.data(), done == total ? "\r\033[K" : "");
+    }
+    return !interrupted;
+  };
+}
+
+void Tool::say(const std::string& line) const {
+  if (!quiet) std::cerr << line << '\n';
+}
+
+std::string number(double x) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, x).ptr;
+  return std::string(text, end);
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04x", c);
+      out += code;
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+}  // namespace tool

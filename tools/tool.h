@@ -1,0 +1,69 @@
+// What all tools share: the command line (CLI11, hidden), the common options, exit codes, progress, one catch.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+
+namespace tool {
+
+/// Wrong use of the command line: exit code 2.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// A check found something, or the processing failed: exit code 1.
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One tool's command line. Bind options to variables, then `run`.
+class Tool {
+ public:
+  /// `examples`: lines shown at the end of --help.
+  Tool(std::string name, std::string summary, std::string examples);
+  ~Tool();
+  Tool(const Tool&) = delete;
+  Tool& operator=(const Tool&) = delete;
+
+  void argument(const std::string& name, std::string& value, const std::string& help, bool required = true);
+  void argument(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  void option(const std::string& names, std::string& value, const std::string& help);
+  void option(const std::string& names, std::vector<std::string>& values, const std::string& help);
+  void option(const std::string& names, double& value, const std::string& help);
+  void option(const std::string& names, int& value, const std::string& help);
+  void flag(const std::string& names, bool& value, const std::string& help);
+  /// -o/--output; where it is not given, standard output if that is no terminal (`binary`) or in any case (text).
+  void output(const std::string& help);
+
+  /// Parses, sets threads and signals, calls `work`, turns every outcome into the contract's exit code.
+  int run(int argc, char** argv, const std::function<void()>& work);
+
+  bool quiet = false, verbose = false, json = false;
+  std::uint64_t seed = 1;
+  std::string output_path;
+
+  /// Where the output goes: the path, or "-". Refuses binary to a terminal (exit 2).
+  std::string target(bool binary) const;
+  /// A bar on standard error when that is a terminal (or as --progress says); also what Ctrl-C stops.
+  geo::Progress progress() const;
+  /// A line on standard error unless -q.
+  void say(const std::string& line) const;
+  const std::string& arguments() const { return arguments_; }
+
+ private:
+  struct Parser;
+  std::unique_ptr<Parser> parser_;
+  std::string name_, arguments_, progress_ = "auto";
+  int threads_ = 0;
+};
+
+/// A number in the shortest form that reads back the same.
+std::string number(double x);
+/// Text as a JSON string, quotes included.
+std::string quoted(const std::string& text);
+
+}  // namespace tool

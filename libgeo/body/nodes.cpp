@@ -10,6 +10,24 @@
 #include "surface/pieces.h"
 
 namespace geo {
+namespace {
+
+// True when p is on the given side of the face and nothing else touches the segment from there to `base` on the face:
+// then p is in the material before that side. The face itself is left out because its own point is rounded.
+bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
+  const auto own = k.corners(s.face);
+  if (!k.has(s) || orient3d(own[0], own[1], own[2], p) != (s.which ? 1 : -1)) return false;
+  Box3 box{base, base};
+  box.add(p);
+  std::vector<FaceId> faces;
+  k.near(box, faces);
+  return std::none_of(faces.begin(), faces.end(), [&](FaceId f) {
+    const auto t = k.corners(f);
+    return f != s.face && segment_meets_triangle(base, p, t[0], t[1], t[2]);
+  });
+}
+
+}  // namespace
 
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   const NodeId id(body.nodes.size());
@@ -35,10 +53,7 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double sca
   std::size_t count = 0;
   std::vector<std::uint32_t> near;
   for (const auto& s : offset_samples(soup, spacing, seed)) {
-    if (!body.surface.has({faces[s.face], s.side})) continue;
-    // Seen from just above the face it came from, so it is in the same wedge of material.
-    const Vec3 start = s.base + 1e-4 * (s.position - s.base);
-    if (is_blocked(body.surface, start, s.position)) continue;
+    if (!stands_before(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
     near.clear();
     body.grid.within(body.nodes.position, s.position, 0.6 * spacing, near);
     if (std::any_of(near.begin(), near.end(), [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); })) continue;
@@ -130,7 +145,7 @@ void connect_pieces(Body& body, const std::function<void(NodeId)>& after) {
       const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
       const auto donor = body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; });
       double step = body.nodes.spacing[donor[0]];
-      while (step > 1e-12 * body.surface.extent().diagonal() && is_blocked(body.surface, middle + 1e-6 * step * inwards, middle + step * inwards)) step *= 0.6;
+      while (step > 1e-12 * body.surface.extent().diagonal() && !stands_before(body.surface, best, middle, middle + step * inwards)) step *= 0.6;
       insert_node(body, middle + 0.5 * step * inwards, NodeId(donor[0]), body.nodes.spacing[donor[0]]);
     }
     std::vector<FaceId> narrow;

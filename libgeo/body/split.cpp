@@ -50,19 +50,18 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   std::vector<std::array<Vec3, 3>> faces;
   for (const FaceId f : delta.crack.new_faces) faces.push_back(body.surface.corners(f));
   const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) { triangles_near(body.surface, box, out); };
-  std::vector<std::uint32_t> component;
-  const auto components = body.graph.components(component);
 
   delta.moved_nodes = move_off(body, delta.crack.new_crack_faces);
   if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 1.0, body.updates);
   const double resample = since(clock);
   auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid, body.graph, body.neighbors);
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
-  if (body.graph.components(component) != components)
-    connect_pieces(body, [&](NodeId first_new) {
-      const auto more = update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, body.neighbors);
-      updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
-    });
+  // Each piece that the crack cut off needs nodes, connected among themselves. Global: once over graph and complex, the
+  // one part of a split whose cost does not follow the cut.
+  connect_pieces(body, [&](NodeId first_new) {
+    const auto more = update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, body.neighbors);
+    updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
+  });
   delta.updated_nodes.assign(updated.begin(), updated.end());
   mark_debris(body, delta.updated_nodes);
   const double graph = since(clock);

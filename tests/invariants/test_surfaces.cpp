@@ -8,12 +8,11 @@ using namespace geo;
 
 namespace {
 
-
-// Invariants 1 and 2 on the complex as it is.
-Pieces require_whole(const Complex& k, double volume, double area) {
-  const auto report = check_complex(k, true);
+// Invariant 1, and 2 with `crossings`, on the complex as it is.
+Pieces require_whole(const Complex& k, bool crossings, double volume, double area) {
+  const auto report = check_complex(k, crossings);
   CHECK(report.first_problem == "");
-  CHECK(report.self_intersections.value_or(1) == 0);
+  if (crossings) CHECK(report.self_intersections.value_or(1) == 0);
   const Pieces pieces = find_pieces(k);
   double sum = 0;
   for (const double v : pieces.volume) {
@@ -42,7 +41,7 @@ void campaign(const std::string& name) {
   double volume = 0;
   for (const double v : before.volume) volume += v;
   const double area = random_cuts::skin_area(model);
-  const int count = random_cuts::cases(100);
+  const int count = random_cuts::cases(50);
   for (int c = 0; c < count; ++c) {
     const auto seed = static_cast<std::uint64_t>(c) + 1;
     INFO(name << ", seed " << seed);
@@ -54,7 +53,9 @@ void campaign(const std::string& name) {
       INFO("crack " << crack << (cut.complete ? ", complete" : ", partial"));
       REQUIRE_NOTHROW(cut_through(at_once, cut, 1, crack));
       REQUIRE_NOTHROW(cut_through(slowly, cut, 12, crack));
-      const auto one = require_whole(at_once, volume, area), twelve = require_whole(slowly, volume, area);
+      // A crossing that the first crack makes is still there after the second.
+      const auto one = require_whole(at_once, crack == 2, volume, area);
+      const auto twelve = require_whole(slowly, crack == 2, volume, area);
       CHECK(one.count >= pieces);
       pieces = one.count;
       REQUIRE(one.count == twelve.count);

@@ -1,0 +1,120 @@
+// Bodies that stay in step with their surface: by hand on a block, at random on a pumpkin.
+#include <catch2/catch.hpp>
+
+#include <numeric>
+
+#include "base/error.h"
+#include "body/body.h"
+#include "body/locate.h"
+#include "invariants/random_cuts.h"
+#include "sampling/sample.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+Body make_body(const TriangleMesh& mesh, double spacing) {
+  SampleOptions options;
+  options.spacing = spacing;
+  return build_body(Complex::from_skin(mesh), sample_nodes(mesh, options));
+}
+
+double total(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+}  // namespace
+
+TEST_CASE("A block has one piece, one component and a master for every vertex", "[body]") {
+  const Body body = make_body(make_block({1, 1, 1}, 0.25), 0.2);
+  const auto report = check_body(body);
+  CHECK(report.first_problem == "");
+  CHECK(report.pieces == 1);
+  CHECK(report.graph_components == 1);
+  std::vector<std::pair<NodeId, double>> nodes;
+  for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v) {
+    bound_nodes(body, SurfaceVertexId(v), nodes);
+    CHECK(!nodes.empty());
+  }
+}
+
+TEST_CASE("A node outside the material is refused", "[body]") {
+  const auto mesh = make_block({1, 1, 1}, 0.5);
+  auto nodes = sample_nodes(mesh, {.spacing = 0.2});
+  nodes.position[0] = {2, 0.5, 0.5};
+  CHECK_THROWS_AS(build_body(Complex::from_skin(mesh), nodes), InputError);
+  CHECK_THROWS_AS(build_body(Complex::from_skin(mesh), NodeSet()), InputError);
+}
+
+TEST_CASE("A plane through a block separates nodes, graph and binding", "[body]") {
+  const int steps = GENERATE(1, 4);
+  Body body = make_body(make_block({1, 1, 1}, 0.25), 0.2);
+  const double volume = total(body.nodes.volume);
+  auto front = begin_front(std::vector<Vec3>{{0.47, -0.5, -0.5}, {0.47, 1.5, -0.5}}, false, 1);
+  for (int s = 1; s <= steps; ++s) {
+    const double z = -0.5 + 2.0 * s / steps;
+    SplitWork work;
+    split(body, front, {{0.47, -0.5, z}, {0.47, 1.5, z}}, {}, &work);
+    CHECK(check_body(body).first_problem == "");
+  }
+  CHECK(find_pieces(body.surface).count == 2);
+  CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
+  for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
+    for (const auto& n : body.neighbors.of(NodeId(i)))
+      CHECK((body.nodes.position[i].x() < 0.47) == (body.nodes.position[n.to.index()].x() < 0.47));
+  // A vertex of either side of the cut is carried by nodes of that side.
+  std::vector<std::pair<NodeId, double>> nodes;
+  for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
+    for (int which = 0; which < 2; ++which) {
+      const Side side{FaceId(f), which};
+      if (!body.surface.alive(FaceId(f)) || body.surface.face(FaceId(f)).crack == 0) continue;
+      const auto t = body.surface.corners(FaceId(f));
+      const bool normal_up = (t[1] - t[0]).cross(t[2] - t[0]).x() > 0;
+      bound_nodes(body, body.surface.surface_vertex(side, 0), nodes);
+      for (const auto& [i, d] : nodes)
+        CHECK((body.nodes.position[i.index()].x() > 0.47) == (normal_up == (which == 1)));
+    }
+}
+
+TEST_CASE("A cut through nodes moves them off", "[body]") {
+  Body body = make_body(make_block({1, 1, 1}, 0.5), 0.25);
+  const double x = body.nodes.position[body.nodes.size() / 2].x();
+  auto front = begin_front(std::vector<Vec3>{{x, -0.5, -0.5}, {x, 1.5, -0.5}}, false, 1);
+  const auto delta = split(body, front, {{x, -0.5, 1.5}, {x, 1.5, 1.5}});
+  CHECK(!delta.moved_nodes.empty());
+  CHECK(check_body(body).first_problem == "");
+}
+
+TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[body]") {
+  Body body = make_body(make_pumpkin(5), 0.25);
+  Complex cut = body.surface;
+  auto front = begin_front(std::vector<Vec3>{{-2, 0.1, -2}, {2, 0.2, -2}}, false, 1);
+  advance(cut, front, std::vector<Vec3>{{-2, 0.1, 0}, {2, 0.2, 0}});
+  follow(body, cut);
+  CHECK(check_body(body).first_problem == "");
+  advance(cut, front, std::vector<Vec3>{{-2, 0.1, 2}, {2, 0.2, 2}});
+  follow(body, cut);
+  CHECK(check_body(body).first_problem == "");
+  CHECK(find_pieces(body.surface).count == 2);
+  CHECK(check_body(body).graph_components == 2);
+}
+
+TEST_CASE("Random cuts keep a pumpkin's body in step", "[body]") {
+  const Body model = make_body(make_pumpkin(5), 0.25);
+  const double volume = total(model.nodes.volume);
+  for (int c = 0; c < random_cuts::cases(8); ++c) {
+    const auto seed = static_cast<std::uint64_t>(c) + 1;
+    Random random(seed * 15485863);
+    Body body = model;
+    for (std::int32_t crack = 1; crack <= 2; ++crack) {
+      const auto cut = random_cuts::make_cut(model.surface.extent(), random);
+      const int steps = random.below(2) == 0 ? 1 : 12;
+      auto front = begin_front(cut.at(0), false, crack);
+      for (int s = 1; s <= steps; ++s) {
+        INFO("seed " << seed << ", crack " << crack << ", step " << s << " of " << steps);
+        if (split(body, front, cut.at(double(s) / steps)).crack.empty()) continue;
+        CHECK(check_body(body).first_problem == "");
+        CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
+      }
+    }
+  }
+}

@@ -29,7 +29,9 @@ bool sees_vertex(const Complex& k, const Vec3& p, VertexId v) {
     // A face at v: only lying along it would hide v.
     if (orient3d(t[0], t[1], t[2], p) != 0) continue;
     const auto i = static_cast<std::size_t>(at - c.begin());
-    if (segment_meets_triangle(p, p, t[0], t[1], t[2]) || segment_meets_triangle(p, q, t[(i + 1) % 3], t[(i + 1) % 3], t[(i + 2) % 3])) return false;
+    if (segment_meets_triangle(p, p, t[0], t[1], t[2]) ||
+        segment_meets_triangle(p, q, t[(i + 1) % 3], t[(i + 1) % 3], t[(i + 2) % 3]))
+      return false;
   }
   return true;
 }
@@ -111,7 +113,8 @@ void grow_trees(Body& body) {
         around.clear();
         k.surface_neighbors(v, around);
         for (const auto w : around)
-          if (!b.master[w.index()].valid()) b.master[w.index()] = b.master[v.index()], b.parent[w.index()] = v, next.push_back(w);
+          if (!b.master[w.index()].valid())
+            b.master[w.index()] = b.master[v.index()], b.parent[w.index()] = v, next.push_back(w);
       }
       level.swap(next);
     }

@@ -17,10 +17,10 @@ namespace geo {
 
 /// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries.
 struct Binding {
-  std::vector<NodeId> master_node;             ///< of masters: the node with the visibility edge; else invalid
-  std::vector<SurfaceVertexId> master;         ///< the master whose tree a vertex hangs in; invalid: orphan
-  std::vector<SurfaceVertexId> parent;         ///< towards the master; itself for a master
-  std::vector<SurfaceVertexId> closest;        ///< per node: its closest visible surface vertex, where it is near one
+  std::vector<NodeId> master_node;       ///< of masters: the node with the visibility edge; else invalid
+  std::vector<SurfaceVertexId> master;   ///< the master whose tree a vertex hangs in; invalid: orphan
+  std::vector<SurfaceVertexId> parent;   ///< towards the master; itself for a master
+  std::vector<SurfaceVertexId> closest;  ///< per node: its closest visible surface vertex, where it is near one
   friend bool operator==(const Binding&, const Binding&) = default;
 };
 
@@ -36,10 +36,10 @@ struct Body {
   VisibilityGraph graph;
   Neighborhoods neighbors;
   Binding binding;
-  NodeGrid grid;                 ///< over nodes.position; derived, never in a file
-  int k = 26;                    ///< nearest neighbours per node in the graph
-  double resample_limit = 1;     ///< new nodes may be at most this many per crack face area over spacing²; 0: none
-  std::uint32_t updates = 0;     ///< cracks steps applied since the build
+  NodeGrid grid;                     ///< over nodes.position; derived, never in a file
+  int k = 26;                        ///< nearest neighbours per node in the graph
+  double resample_limit = 1;         ///< new nodes may be at most this many per crack face area over spacing²; 0: none
+  std::uint32_t updates = 0;         ///< cracks steps applied since the build
   std::vector<std::uint8_t> debris;  ///< per node: 1 where the piece has too few nodes for a shape function
   std::vector<Provenance> history;
 };

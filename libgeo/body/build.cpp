@@ -15,19 +15,23 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
   body.nodes = std::move(nodes);
   body.k = options.k;
   body.debris.assign(body.nodes.size(), 0);
-  body.grid = NodeGrid(std::accumulate(body.nodes.spacing.begin(), body.nodes.spacing.end(), 0.0) / double(body.nodes.size()), body.nodes.position);
+  body.grid =
+      NodeGrid(std::accumulate(body.nodes.spacing.begin(), body.nodes.spacing.end(), 0.0) / double(body.nodes.size()),
+               body.nodes.position);
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
     if (body.surface.alive(FaceId(f))) soup.push_back(body.surface.corners(FaceId(f)));
   const TriangleBvh obstacles(soup);
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
     if (!is_inside(body.surface, body.nodes.position[i], body.nodes.spacing[i]))
-      throw InputError("node " + std::to_string(i) + " is not inside the surface; sample the same model that the body is made of");
+      throw InputError("node " + std::to_string(i) +
+                       " is not inside the surface; sample the same model that the body is made of");
   body.graph = build_visibility_graph(body.nodes, obstacles, body.k, progress);
   body.neighbors.rows.resize(body.nodes.size());
   connect_pieces(body, [&](NodeId first_new) {
-    update_graph(body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); }, body.k, body.grid,
-                 body.graph, body.neighbors);
+    update_graph(
+        body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
+        body.k, body.grid, body.graph, body.neighbors);
   });
   body.neighbors = build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);
   report(progress, "binding", 0, body.nodes.size());

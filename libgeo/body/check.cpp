@@ -36,7 +36,8 @@ BodyReport check_body(const Body& body) {
       }
   }
   if (report.graph_components != report.pieces)
-    note("the graph has " + std::to_string(report.graph_components) + " components and the material " + std::to_string(report.pieces) + " pieces");
+    note("the graph has " + std::to_string(report.graph_components) + " components and the material " +
+         std::to_string(report.pieces) + " pieces");
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     if (k.alive(FaceId(f))) soup.push_back(k.corners(FaceId(f)));

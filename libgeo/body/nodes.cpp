@@ -42,21 +42,24 @@ NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   return id;
 }
 
-std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double scale, std::uint64_t seed) {
+std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spacing, std::uint64_t seed,
+                        std::size_t limit) {
   if (faces.empty()) return 0;
   const auto all = [](std::uint32_t) { return true; };
   std::vector<std::array<Vec3, 3>> soup;
   for (const FaceId f : faces) soup.push_back(body.surface.corners(f));
   const Vec3 middle = (soup[0][0] + soup[0][1] + soup[0][2]) / 3;
   const auto nearest = body.grid.nearest(body.nodes.position, middle, 1, ~0u, all);
-  const double spacing = scale * body.nodes.spacing[nearest[0]];
+  if (spacing == 0) spacing = body.nodes.spacing[nearest[0]];
   std::size_t count = 0;
   std::vector<std::uint32_t> near;
   for (const auto& s : offset_samples(soup, spacing, seed)) {
     if (!stands_before(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
     near.clear();
     body.grid.within(body.nodes.position, s.position, 0.6 * spacing, near);
-    if (std::any_of(near.begin(), near.end(), [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); })) continue;
+    if (std::any_of(near.begin(), near.end(),
+                    [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
+      continue;
     // The donor is the nearest node that sees it; else, in a fresh sliver, the nearest of all.
     const auto candidates = body.grid.nearest(body.nodes.position, s.position, 8, ~0u, all);
     NodeId donor(candidates[0]);
@@ -66,7 +69,7 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double sca
         break;
       }
     insert_node(body, s.position, donor, spacing);
-    ++count;
+    if (++count == limit) break;
   }
   return count;
 }
@@ -130,7 +133,8 @@ void connect_pieces(Body& body, const std::function<void(NodeId)>& after) {
     const NodeId first_new(body.nodes.size());
     for (std::uint32_t p = 0; p < pieces.count; ++p) {
       if (main[p] != ~0u) continue;
-      // No node at all: one on the line from the middle of its largest face straight into it, half way to what comes next.
+      // No node at all: one on the line from the middle of its largest face straight into it, half way to what comes
+      // next.
       Side best;
       double most = -1;
       for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
@@ -145,18 +149,22 @@ void connect_pieces(Body& body, const std::function<void(NodeId)>& after) {
       const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
       const auto donor = body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; });
       double step = body.nodes.spacing[donor[0]];
-      while (step > 1e-12 * body.surface.extent().diagonal() && !stands_before(body.surface, best, middle, middle + step * inwards)) step *= 0.6;
+      while (step > 1e-12 * body.surface.extent().diagonal() &&
+             !stands_before(body.surface, best, middle, middle + step * inwards))
+        step *= 0.6;
       insert_node(body, middle + 0.5 * step * inwards, NodeId(donor[0]), body.nodes.spacing[donor[0]]);
     }
     std::vector<FaceId> narrow;
     for (std::uint32_t i = 0; i < component.size(); ++i) {
       const auto c = component[i];
       if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-      body.surface.near(Box3{body.nodes.position[i], body.nodes.position[i]}.grown(1.5 * body.nodes.spacing[i]), narrow);
+      body.surface.near(Box3{body.nodes.position[i], body.nodes.position[i]}.grown(1.5 * body.nodes.spacing[i]),
+                        narrow);
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
-    insert_near(body, narrow, scale, 0x6b657266u + static_cast<std::uint64_t>(round));
+    // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
+    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
     if (first_new.index() == body.nodes.size()) return;
     after(first_new);
   }

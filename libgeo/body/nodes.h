@@ -11,8 +11,9 @@ namespace geo {
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
 
 /// § 6.4: nodes on both sides of the faces, inside, seen from the face, not too close to nodes that see them. Returns
-/// how many.
-std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double scale, std::uint64_t seed);
+/// how many. `spacing`: wanted distance between them, 0: as of the nodes that are there; at most `limit` are inserted.
+std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spacing, std::uint64_t seed,
+                        std::size_t limit = std::size_t(-1));
 
 /// Moves nodes that are on or very near one of the faces off it, each to the side it is on. Returns them, ascending.
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);

@@ -18,7 +18,8 @@ double since(std::chrono::steady_clock::time_point& last) {
 }
 
 // Closest vertices anew for nodes that see the change, then the trees.
-void rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved, std::vector<SurfaceVertexId>& rebound) {
+void rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
+            std::vector<SurfaceVertexId>& rebound) {
   const Binding before = body.binding;
   body.binding.closest.resize(body.nodes.size());
   std::set<std::uint32_t> stale;
@@ -34,11 +35,15 @@ void rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::ve
   }
   for (std::uint32_t i = first_new.value; i < body.nodes.size(); ++i) stale.insert(i);
   for (const NodeId i : moved) stale.insert(i.value);
-  for (const auto i : stale) body.binding.closest[i] = closest_vertex(body.surface, body.nodes.position[i], body.nodes.radius[i]);
+  for (const auto i : stale)
+    body.binding.closest[i] = closest_vertex(body.surface, body.nodes.position[i], body.nodes.radius[i]);
   grow_trees(body);
-  const auto node_of = [](const Binding& b, std::size_t v) { return v < b.master.size() && b.master[v].valid() ? b.master_node[b.master[v].index()] : NodeId(); };
+  const auto node_of = [](const Binding& b, std::size_t v) {
+    return v < b.master.size() && b.master[v].valid() ? b.master_node[b.master[v].index()] : NodeId();
+  };
   for (std::uint32_t v = 0; v < body.binding.master.size(); ++v)
-    if (body.surface.alive(SurfaceVertexId(v)) && node_of(before, v) != node_of(body.binding, v)) rebound.push_back(SurfaceVertexId(v));
+    if (body.surface.alive(SurfaceVertexId(v)) && node_of(before, v) != node_of(body.binding, v))
+      rebound.push_back(SurfaceVertexId(v));
 }
 
 BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
@@ -49,12 +54,15 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   if (delta.crack.empty()) return delta;
   std::vector<std::array<Vec3, 3>> faces;
   for (const FaceId f : delta.crack.new_faces) faces.push_back(body.surface.corners(f));
-  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) { triangles_near(body.surface, box, out); };
+  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
+    triangles_near(body.surface, box, out);
+  };
 
   delta.moved_nodes = move_off(body, delta.crack.new_crack_faces);
-  if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 1.0, body.updates);
+  if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 0, body.updates);
   const double resample = since(clock);
-  auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid, body.graph, body.neighbors);
+  auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid,
+                             body.graph, body.neighbors);
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
   // Each piece that the crack cut off needs nodes, connected among themselves. Global: once over graph and complex, the
   // one part of a split whose cost does not follow the cut.
@@ -70,7 +78,8 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   if (work) {
     work->resample_seconds += resample, work->graph_seconds += graph, work->binding_seconds += since(clock);
     work->edges_cut += update.cut_edges.size(), work->edges_added += update.added_edges.size();
-    work->nodes_updated += delta.updated_nodes.size(), work->nodes_added += body.nodes.size() - delta.first_new_node.index();
+    work->nodes_updated += delta.updated_nodes.size(),
+        work->nodes_added += body.nodes.size() - delta.first_new_node.index();
     work->nodes_moved += delta.moved_nodes.size(), work->orphans += delta.rebound.size();
   }
   return delta;
@@ -78,7 +87,8 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
 
 }  // namespace
 
-BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options, SplitWork* work) {
+BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
+                SplitWork* work) {
   return follow_delta(body, advance(body.surface, front, next, options, work ? &work->crack : nullptr), work);
 }
 

@@ -27,6 +27,41 @@ bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
   });
 }
 
+// Nodes along the surface from where i looks at it to where j does, in the wedges of the edges passed on the way: what
+// the material joins is joined beside its boundary, however narrow. Nothing when the two look at different shells.
+void insert_along(Body& body, NodeId i, NodeId j, double spacing) {
+  const Complex& k = body.surface;
+  const auto side_of = [&](NodeId n) { return side_seen_from(k, body.nodes.position[n.index()], spacing); };
+  const Side from = side_of(i), to = side_of(j);
+  std::map<Side, std::pair<Side, int>> before{{from, {from, 0}}};
+  std::vector<Side> queue{from};
+  for (std::size_t q = 0; q < queue.size() && !before.count(to); ++q)
+    for (int e = 0; e < 3; ++e)
+      if (const Side n = k.neighbor(queue[q], e); before.try_emplace(n, queue[q], e).second) queue.push_back(n);
+  if (!before.count(to)) return;
+  const auto inwards = [&](Side s) {
+    const auto t = k.corners(s.face);
+    return Vec3((s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized());
+  };
+  Vec3 last = body.nodes.position[j.index()];
+  for (Side s = to; s != from; s = before.at(s).first) {
+    const auto [previous, e] = before.at(s);
+    const auto t = k.corners(previous.face);
+    const Vec3 middle = 0.5 * (t[e] + t[(e + 1) % 3]);
+    Vec3 way = inwards(s) + inwards(previous);
+    if (way.norm() < 1e-3) way = middle - t[(e + 2) % 3];  // around a crack's front
+    way.normalize();
+    double step = 0.5 * spacing;
+    while (step > 1e-6 * spacing && (is_blocked(k, middle + 1e-6 * step * way, middle + step * way) ||
+                                     !is_inside(k, middle + step * way, spacing)))
+      step *= 0.5;
+    const Vec3 x = middle + step * way;
+    if (step <= 1e-6 * spacing || ((x - last).norm() < 0.5 * spacing && s != to && !is_blocked(k, x, last))) continue;
+    insert_node(body, x, i, spacing);
+    last = x;
+  }
+}
+
 }  // namespace
 
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
@@ -165,6 +200,15 @@ void connect_pieces(Body& body, const std::function<void(NodeId)>& after) {
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
     // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
     insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
+    if (round >= 2)
+      for (std::uint32_t c = 0; c < count; ++c) {
+        if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
+        const auto target = main[static_cast<std::size_t>(piece[c])];
+        const auto near =
+            body.grid.nearest(body.nodes.position, body.nodes.position[first[c]], 1, first[c],
+                              [&](std::uint32_t i) { return i < component.size() && component[i] == target; });
+        if (!near.empty()) insert_along(body, NodeId(first[c]), NodeId(near[0]), scale * body.grid.cell());
+      }
     if (first_new.index() == body.nodes.size()) return;
     after(first_new);
   }

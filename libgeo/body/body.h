@@ -36,6 +36,7 @@ struct Body {
   VisibilityGraph graph;
   Neighborhoods neighbors;
   Binding binding;
+  std::vector<NodeId> donors;    ///< of the nodes inserted last, in order; derived, never in a file
   NodeGrid grid;                     ///< over nodes.position; derived, never in a file
   int k = 26;                        ///< nearest neighbours per node in the graph
   double resample_limit = 1;         ///< new nodes may be at most this many per crack face area over spacing²; 0: none
@@ -68,6 +69,7 @@ struct SplitWork {
 struct BodyDelta {
   CrackDelta crack;
   NodeId first_new_node;                 ///< nodes from here on are new
+  std::vector<NodeId> donors;            ///< per new node: the node that gave it half of its volume
   std::vector<NodeId> moved_nodes;       ///< old nodes moved off a crack face, ascending
   std::vector<NodeId> updated_nodes;     ///< rows changed (new and moved ones included), ascending
   std::vector<SurfaceVertexId> rebound;  ///< surface vertices whose binding changed

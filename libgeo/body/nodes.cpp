@@ -73,6 +73,7 @@ NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   nodes.volume[donor.index()] *= 0.5;  // exact, so the sum is conserved to the bit
   nodes.volume.push_back(double(nodes.volume[donor.index()]));
   body.debris.push_back(0);
+  body.donors.push_back(donor);
   body.grid.insert(id.value, x);
   return id;
 }

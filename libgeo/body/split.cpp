@@ -51,6 +51,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   BodyDelta delta;
   delta.crack = std::move(crack);
   delta.first_new_node = NodeId(body.nodes.size());
+  body.donors.clear();
   if (delta.crack.empty()) return delta;
   std::vector<std::array<Vec3, 3>> faces;
   for (const FaceId f : delta.crack.new_faces) faces.push_back(body.surface.corners(f));
@@ -74,6 +75,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   mark_debris(body, delta.updated_nodes);
   const double graph = since(clock);
   rebind(body, delta.crack, delta.first_new_node, delta.moved_nodes, delta.rebound);
+  delta.donors = body.donors;
   ++body.updates;
   if (work) {
     work->resample_seconds += resample, work->graph_seconds += graph, work->binding_seconds += since(clock);

@@ -1,0 +1,35 @@
+// Hyperelastic energies: density, stress, and its derivative, made positive for Newton's method.
+#pragma once
+
+#include "base/vec.h"
+
+namespace geo {
+
+enum class ElasticModel { saint_venant_kirchhoff, neo_hookean };
+
+struct Material {
+  ElasticModel model = ElasticModel::neo_hookean;
+  double young = 1e5;      ///< Pa (model units: m)
+  double poisson = 0.3;    ///< −1 < ν < 0.5
+  double density = 1000;   ///< kg/m³
+  double volume_term = 0;  ///< k_v of ½ k_v (det F − 1)², Pa; keeps Saint-Venant–Kirchhoff from collapsing
+  double damping = 0.5;    ///< mass-proportional, 1/s
+  double mode_penalty = 0.05;  ///< α of the penalty on modes that nodal strains do not see
+  double lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
+  double mu() const { return young / (2 * (1 + poisson)); }
+};
+
+/// Throws InputError unless E > 0, −1 < ν < 0.5, ρ > 0 and the rest is not negative.
+void require_material(const Material& material);
+
+/// Energy density at deformation gradient F, J/m³; zero at rotations.
+double energy_density(const Material& material, const Mat3& f);
+/// First Piola–Kirchhoff stress ∂Ψ/∂F, Pa.
+Mat3 stress(const Material& material, const Mat3& f);
+using Mat9 = Eigen::Matrix<double, 9, 9>;
+/// ∂²Ψ/∂F², column-major vectorised.
+Mat9 stress_derivative(const Material& material, const Mat3& f);
+/// The same with negative eigenvalues set to zero.
+Mat9 projected_derivative(const Material& material, const Mat3& f);
+
+}  // namespace geo

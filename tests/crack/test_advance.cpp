@@ -1,0 +1,153 @@
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "cases.h"
+#include "crack/advance.h"
+#include "crack/front.h"
+#include "surface/check.h"
+#include "surface/pieces.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+std::vector<Vec3> line(const Vec3& from, const Vec3& to, int segments) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= segments; ++i) points.push_back(from + (to - from) * (double(i) / segments));
+  return points;
+}
+
+void require_sound(const Complex& k, double volume) {
+  const auto report = check_complex(k, true);
+  INFO(report.first_problem);
+  REQUIRE(report.good());
+  const Pieces pieces = find_pieces(k);
+  REQUIRE(std::accumulate(pieces.volume.begin(), pieces.volume.end(), 0.0) == Approx(volume).epsilon(1e-12));
+}
+
+// A plane sheet z = height over [-1, 5]² of a 4-cube, swept along x.
+void sweep_plane(Complex& k, double height, int steps, int segments, std::int32_t crack, double to = 5) {
+  FrontState front = begin_front(line({-1, -1, height}, {-1, 5, height}, segments), false, crack);
+  for (int s = 1; s <= steps; ++s) {
+    const double x = -1 + (to + 1) * s / steps;
+    advance(k, front, line({x, -1, height}, {x, 5, height}, segments));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("planes through vertices and edges of a grid cube separate it, in any number of steps") {
+  for (const int steps : {1, 3, 12})
+    for (const int segments : {1, 5, 8}) {
+      CAPTURE(steps, segments);
+      Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+      sweep_plane(k, 2, steps, segments, 1);
+      require_sound(k, 64);
+      const Pieces pieces = find_pieces(k);
+      REQUIRE(pieces.count == 2);
+      CHECK(pieces.volume[0] == Approx(32).epsilon(1e-14));
+      // The same plane again, divided otherwise: everything is there already.
+      const auto before = k.live_face_count();
+      sweep_plane(k, 2, 5, 7, 2);
+      CHECK(find_pieces(k).count == 2);
+      CHECK(k.live_face_count() >= before);
+      require_sound(k, 64);
+    }
+}
+
+TEST_CASE("a partial cut leaves one piece with a front; going on separates it") {
+  Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+  FrontState front = begin_front(line({-1, -1, 1.3}, {-1, 5, 1.3}, 4), false, 1);
+  for (const double x : {0.5, 1.7, 2.9}) {
+    advance(k, front, line({x, -1, 1.3}, {x, 5, 1.3}, 4));
+    CHECK(find_pieces(k).count == 1);
+    require_sound(k, 64);
+  }
+  advance(k, front, line({4.5, -1, 1.3}, {4.5, 5, 1.3}, 4));
+  CHECK(find_pieces(k).count == 2);
+  require_sound(k, 64);
+}
+
+TEST_CASE("a crack may begin inside, stand still in part, turn back, and reach no skin at all") {
+  Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+  FrontState front = begin_front(line({1.1, 1.2, 2.1}, {1.1, 2.9, 2.1}, 2), false, 1);
+  advance(k, front, std::vector<Vec3>{{1.1, 1.2, 2.1}, {2.0, 2.0, 2.1}, {2.2, 2.9, 2.3}});
+  require_sound(k, 64);
+  CHECK(find_pieces(k).count == 1);
+  std::vector<Vec3> same;
+  for (const auto& p : front.points) same.push_back(p.position);
+  CHECK(advance(k, front, same).empty());
+  advance(k, front, std::vector<Vec3>{{1.1, 1.2, 2.1}, {1.5, 2.0, 2.4}, {2.2, 2.9, 2.3}});
+  require_sound(k, 64);
+  CHECK(k.two_sided().triangles.size() == make_block({4, 4, 4}, 1).triangles.size() + 2 * (k.live_face_count() - make_block({4, 4, 4}, 1).triangles.size()));
+}
+
+TEST_CASE("a crack that meets an older one is joined to it: T and X") {
+  Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+  sweep_plane(k, 2, 4, 4, 1);
+  FrontState front = begin_front(line({1.5, -1, 3.3}, {1.5, 5, 3.3}, 3), false, 2);
+  advance(k, front, line({1.5, -1, 5}, {1.5, 5, 5}, 3));
+  require_sound(k, 64);
+  CHECK(find_pieces(k).count == 2);
+  FrontState down = begin_front(line({1.5, -1, 5}, {1.5, 5, 5}, 3), false, 3);
+  for (const double z : {3.0, 1.0, -1.0}) advance(k, down, line({1.5, -1, z}, {1.5, 5, z}, 3));
+  require_sound(k, 64);
+  CHECK(find_pieces(k).count == 4);
+}
+
+TEST_CASE("a ring front drills a core") {
+  Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+  const auto ring = [](double z) {
+    std::vector<Vec3> p;
+    for (int i = 0; i < 8; ++i) p.push_back({2.03 + std::cos(0.785 * i), 2.01 + std::sin(0.785 * i), z});
+    return p;
+  };
+  FrontState front = begin_front(ring(-0.5), true, 1);
+  for (const double z : {1.0, 2.5, 4.5}) advance(k, front, ring(z));
+  require_sound(k, 64);
+  CHECK(find_pieces(k).count == 2);
+}
+
+TEST_CASE("a front that misses changes nothing") {
+  Complex k = Complex::from_skin(make_sphere(4));
+  FrontState front = begin_front(line({3, 0, 0}, {3, 1, 0}, 2), false, 1);
+  CHECK(advance(k, front, line({4, 0, 0}, {4, 1, 0}, 2)).empty());
+  CHECK(front.step == 1);
+  CHECK_THROWS_AS(begin_front(std::vector<Vec3>{{0, 0, 0}}, false, 1), InputError);
+  CHECK_THROWS_AS(advance(k, front, std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}), InputError);
+}
+
+TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
+  std::size_t refused = 0, steps = 0;
+  for (int seed = 1; seed <= cases(25); ++seed) {
+    CAPTURE(seed);
+    Random random(static_cast<std::uint64_t>(seed));
+    const TriangleMesh mesh = make_pumpkin(6);
+    Complex k = Complex::from_skin(mesh);
+    for (int cut = 1; cut <= 2; ++cut) {
+      const Vec3 d1 = random.direction(), d2 = d1.cross(random.direction()).normalized(), n = d1.cross(d2);
+      const double offset = random.uniform(-0.5, 0.5), bend = random.below(2) ? 0.15 : 0, whole = random.below(2) ? 1.0 : random.uniform();
+      const auto row = [&](double s) {
+        std::vector<Vec3> p;
+        for (int j = 0; j <= 8; ++j) p.push_back(offset * n + 3.2 * (s * whole - 0.5) * d1 + 3.2 * (j / 8.0 - 0.5) * d2 + bend * std::sin(4 * s + j) * n);
+        return p;
+      };
+      const int count = random.below(2) ? 12 : 1 + static_cast<int>(random.below(3));
+      FrontState front = begin_front(row(0), false, cut);
+      for (int s = 1; s <= count; ++s, ++steps) {
+        const auto before = k.live_face_count();
+        try {
+          advance(k, front, row(double(s) / count));
+        } catch (const GeometryError&) {
+          ++refused;
+          CHECK(k.live_face_count() == before);
+        }
+      }
+    }
+    require_sound(k, signed_volume(mesh));
+  }
+  CHECK(refused * 100 <= steps);
+}

@@ -1,0 +1,177 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <random>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "body/body.h"
+#include "cases.h"
+#include "io/body_file.h"
+#include "io/front_file.h"
+#include "io/node_file.h"
+#include "io/stream.h"
+#include "io/surface_file.h"
+#include "io/volume_file.h"
+#include "sampling/sample.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+template <class Write>
+std::string bytes_of(const Write& write) {
+  std::ostringstream out;
+  write(out);
+  return out.str();
+}
+
+Body small_body() {
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+  SampleOptions options;
+  options.spacing = 0.15;
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, options));
+  FrontState front = begin_front(std::vector<Vec3>{{-0.5, -0.5, 0.512}, {-0.5, 1.5, 0.52}}, false, 1);
+  split(body, front, {{0.6, -0.5, 0.53}, {0.61, 1.5, 0.5}});
+  return body;
+}
+
+// Truncations at many places and random changes: an InputError or a result, nothing else.
+template <class Parse>
+void mutate(const std::string& good, const Parse& parse, int count) {
+  const auto attempt = [&](const std::string& bytes) {
+    try {
+      parse(bytes);
+    } catch (const InputError& e) {
+      REQUIRE(std::string(e.what()).find('\n') == std::string::npos);
+    }
+  };
+  attempt(good);
+  const std::size_t step = std::max<std::size_t>(1, good.size() / 300);
+  for (std::size_t n = 0; n < good.size(); n += step) attempt(good.substr(0, n));
+  Random random(4242);
+  for (int i = 0; i < cases(count); ++i) {
+    std::string bytes = good;
+    const int changes = 1 + static_cast<int>(random.below(3));
+    // Half of the changes hit the header, where sizes are.
+    for (int c = 0; c < changes; ++c)
+      bytes[random.below(static_cast<std::uint32_t>(random.below(2) ? std::min<std::size_t>(bytes.size(), 400) : bytes.size()))] = static_cast<char>(random.bits());
+    CAPTURE(i);
+    attempt(bytes);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("surfaces are read back to the bit, from every format") {
+  const TriangleMesh mesh = make_pumpkin(3);
+  const auto ply = parse_surface(bytes_of([&](auto& out) { write_ply(out, mesh); }), "a.ply").mesh;
+  CHECK(ply.vertices == mesh.vertices);
+  CHECK(ply.triangles == mesh.triangles);
+  const auto obj = parse_surface(bytes_of([&](auto& out) { write_obj(out, mesh); }), "a.obj").mesh;
+  CHECK(obj.vertices == mesh.vertices);
+  CHECK(obj.triangles == mesh.triangles);
+  const auto off = parse_surface("OFF # a comment\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3 255 0 0\n3 0 3 2\n", "a.off").mesh;
+  CHECK(off.triangles.size() == 4);
+  const auto stl = parse_surface("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid x\n", "a.stl").mesh;
+  CHECK(stl.vertices.size() == 3);
+  const auto ascii = parse_surface("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", "q.ply").mesh;
+  CHECK(ascii.triangles.size() == 2);
+}
+
+TEST_CASE("fronts, with their contacts, travel in the surface file") {
+  Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+  FrontState front = begin_front(std::vector<Vec3>{{-1, -1, 1.3}, {-1, 5, 1.3}}, false, 1);
+  front.name = "halve";
+  advance(k, front, std::vector<Vec3>{{2.2, -1, 1.3}, {2.2, 5, 1.3}});
+  const std::string bytes = bytes_of([&](auto& out) { write_ply(out, k.two_sided(), {front}); });
+  const SurfaceFile file = parse_surface(bytes, "cut.ply");
+  REQUIRE(file.fronts.size() == 1);
+  CHECK(file.fronts[0].name == "halve");
+  CHECK(file.fronts[0].step == 1);
+  REQUIRE(file.fronts[0].segments.size() == front.segments.size());
+  for (std::size_t i = 0; i < front.segments[0].size(); ++i) CHECK(file.fronts[0].segments[0][i].id == front.segments[0][i].id);
+  CHECK(bytes_of([&](auto& out) { write_ply(out, Complex::from_two_sided(file.mesh).two_sided(), file.fronts); }) == bytes);
+}
+
+TEST_CASE("nodes and bodies are read back to the bit") {
+  const Body body = small_body();
+  const std::string pcd = bytes_of([&](auto& out) { write_pcd(out, body.nodes); });
+  CHECK(parse_nodes(pcd, "n.pcd").position == body.nodes.position);
+  CHECK(parse_nodes(pcd, "n.pcd").volume == body.nodes.volume);
+  CHECK(parse_nodes(bytes_of([&](auto& out) { write_nodes_ply(out, body.nodes); }), "n.ply").radius == body.nodes.radius);
+  const std::string kerf = bytes_of([&](auto& out) { write_body(out, body); });
+  const Body again = parse_body(kerf, "b.kerf");
+  CHECK(again.neighbors == body.neighbors);
+  CHECK(check_body(again).first_problem == "");
+  CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
+}
+
+TEST_CASE("a killed write after a commit is passed over; an older commit is found") {
+  const std::string kerf = bytes_of([&](auto& out) { write_body(out, small_body()); });
+  const Body body = parse_body(kerf + std::string(1000, 'x'), "b.kerf");
+  CHECK(body.nodes.size() > 0);
+}
+
+TEST_CASE("a newer version, a text transfer and another kind of file are told apart") {
+  std::string kerf = bytes_of([&](auto& out) { write_body(out, small_body()); });
+  std::string newer = kerf;
+  newer[12] = 9;
+  CHECK_THROWS_WITH(parse_body(newer, "b.kerf"), Catch::Contains("newer"));
+  std::string text = kerf;
+  text.erase(5, 1);
+  CHECK_THROWS_WITH(parse_body(text, "b.kerf"), Catch::Contains("text transfer"));
+  CHECK_THROWS_WITH(parse_body("OFF\n", "b.kerf"), Catch::Contains("not a .kerf"));
+}
+
+TEST_CASE("fronts are read, and refused with file and line") {
+  const auto fronts = parse_fronts("# a comment\nfront a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1 0 1\nfront b closed\nstep 0\n0 0 0\n1 0 0\n0 1 0\nstep 1\n0 0 1\n1 0 1\n0 1 1\n", "f.front");
+  REQUIRE(fronts.size() == 2);
+  CHECK(fronts[1].closed);
+  CHECK(parse_fronts(bytes_of([&](auto& out) { write_fronts(out, fronts); }), "f").at(0).steps == fronts[0].steps);
+  CHECK_THROWS_WITH(parse_fronts("front a\nstep 0\n0 0 0\nstep 1\n0 0 1\n", "f.front"), Catch::Contains("1 point"));
+  CHECK_THROWS_WITH(parse_fronts("front a\nstep 0\n0 0 zero\n", "f.front"), Catch::Contains("f.front:3:"));
+  CHECK_THROWS_WITH(parse_fronts("front a\nstep 0\n0 0 nan\n", "f.front"), Catch::Contains("finite"));
+  const auto obj = parse_fronts("v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\no s0\nl 1 2\no s1\nl 3 4\n", "f.obj");
+  CHECK(obj.at(0).steps.size() == 2);
+}
+
+TEST_CASE("any change to a file gives an error or a result") {
+  const TriangleMesh mesh = make_sphere(2);
+  mutate(bytes_of([&](auto& out) { write_ply(out, mesh); }), [](const std::string& b) { parse_surface(b, "m.ply"); }, 1500);
+  mutate(bytes_of([&](auto& out) { write_obj(out, mesh); }), [](const std::string& b) { parse_surface(b, "m.obj"); }, 800);
+  const Body body = small_body();
+  mutate(bytes_of([&](auto& out) { write_ply(out, body.surface.two_sided()); }), [](const std::string& b) { Complex::from_two_sided(parse_surface(b, "m.ply").mesh); }, 300);
+  mutate(bytes_of([&](auto& out) { write_pcd(out, body.nodes); }), [](const std::string& b) { parse_nodes(b, "n.pcd"); }, 1500);
+  mutate(bytes_of([&](auto& out) { write_body(out, body); }), [](const std::string& b) { parse_body(b, "b.kerf"); }, 300);
+  mutate("front a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1 0 1\n", [](const std::string& b) { parse_fronts(b, "f.front"); }, 1500);
+}
+
+TEST_CASE("an output appears whole or not at all") {
+  const auto folder = std::filesystem::temp_directory_path() / ("kerf-io-" + std::to_string(std::random_device{}()));
+  std::filesystem::create_directory(folder);
+  const std::string path = (folder / "out").string();
+  write_all(path, [](std::ostream& out) { out << "first"; });
+  CHECK_THROWS_AS(write_all(path, [](std::ostream& out) {
+                    out << "second";
+                    throw GeometryError("no");
+                  }),
+                  GeometryError);
+  CHECK(read_all(path) == "first");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+  CHECK_THROWS_AS(write_all("/dev/full", [](std::ostream& out) { out << "x"; }), OutputError);
+  CHECK_THROWS_AS(write_all((folder / "none" / "out").string(), [](std::ostream& out) { out << "x"; }), OutputError);
+  CHECK_THROWS_AS(read_all((folder / "missing").string()), MissingInputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a level set is read as a closed surface") {
+  const auto path = (std::filesystem::temp_directory_path() / ("kerf-" + std::to_string(std::random_device{}()) + ".vdb")).string();
+  const TriangleMesh sphere = make_sphere(8);
+  write_level_set(path, sphere, 0.08);
+  const TriangleMesh read = read_volume(path);
+  std::filesystem::remove(path);
+  CHECK(signed_volume(read) == Approx(signed_volume(sphere)).epsilon(0.03));
+  CHECK_NOTHROW(Complex::from_skin(read));
+}

@@ -1,0 +1,132 @@
+#!/bin/bash
+# The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | simulation
+set -u
+PATH=$1:$2:$PATH models=$3 what=$4
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+fail() { echo "FAILED: $*"; failed=1; }
+
+# expect CODE PATTERN COMMAND...: the exit code, one line on standard error with the pattern, nothing left behind.
+expect() {
+  local code=$1 pattern=$2 before after status
+  shift 2
+  before=$(ls -A)
+  "$@" >/tmp/kerf-out.$$ 2>/tmp/kerf-err.$$ </dev/null
+  status=$?
+  after=$(ls -A)
+  [ "$status" = "$code" ] || fail "$* exits with $status, not $code: $(cat /tmp/kerf-err.$$)"
+  [ "$(wc -l </tmp/kerf-err.$$)" = 1 ] || fail "$* says $(wc -l </tmp/kerf-err.$$) lines: $(cat /tmp/kerf-err.$$)"
+  grep -q -e "$pattern" /tmp/kerf-err.$$ || fail "$* does not say '$pattern' but: $(cat /tmp/kerf-err.$$)"
+  [ "$before" = "$after" ] || fail "$* leaves something behind: $after"
+  rm -f /tmp/kerf-out.$$ /tmp/kerf-err.$$
+}
+# quietly COMMAND...: exit code 0 and nothing on standard error.
+quietly() {
+  "$@" 2>err.txt || fail "$* exits with $?: $(cat err.txt)"
+  [ -s err.txt ] && fail "$* says: $(cat err.txt)"
+  rm -f err.txt
+}
+
+case $what in
+pipeline)
+  model=$5
+  cp "$models/$model" .
+  quietly kerf-model front --around "$model" --steps 12 -o halve.front
+  kerf-sample "$model" --spacing 3% | kerf-graph --surface "$model" -o bear.kerf || fail "sample | graph"
+  quietly kerf-crack "$model" --front halve.front -o cut.ply
+  quietly kerf-update bear.kerf --surface cut.ply -o cut.kerf
+  quietly kerf-pieces cut.ply -o pieces/
+  kerf-sample "$model" --spacing 3% -o nodes.pcd || fail "sample to a file"
+  for file in "$model" halve.front nodes.pcd bear.kerf cut.ply cut.kerf pieces/*.ply; do quietly kerf-info --check -q "$file"; done
+  [ "$(ls pieces/*.ply | wc -l)" -ge 2 ] || fail "fewer than two pieces"
+  # In two parts, the second taking up the first's output: the same pieces.
+  quietly kerf-crack "$model" --front halve.front --steps 0:5 -o half.ply
+  quietly kerf-crack half.ply --front halve.front --steps 5:12 -o resumed.ply
+  one=$(kerf-info --json cut.ply | grep -o '"pieces":[0-9]*') two=$(kerf-info --json resumed.ply | grep -o '"pieces":[0-9]*')
+  [ "$one" = "$two" ] || fail "in one go $one, in two $two"
+  quietly kerf-info --check -q resumed.ply
+  # The same bytes for any number of threads.
+  kerf-sample -j1 "$model" --spacing 3% | kerf-graph -j1 --surface "$model" -o one.kerf
+  cmp bear.kerf one.kerf || fail "threads change bytes"
+  ;;
+refusals)
+  kerf-model block --edge 0.25 -o block.ply
+  kerf-model front --around block.ply --steps 2 -o ok.front
+  kerf-sample block.ply --spacing 12% | kerf-graph --surface block.ply -o ok.kerf
+  touch empty
+  head -c 700 block.ply >short.ply
+  head -c 3000 ok.kerf >short.kerf
+  printf 'OFF\n4 4 0\n0 0 0\n1 0 nan\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >nan.off
+  printf 'OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n' >open.off
+  printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 0 2 3\n' >inside.off
+  printf 'OFF\n8 8 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n.1 .1 -.5\n1.1 .1 -.5\n.1 1.1 -.5\n.1 .1 .5\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n3 4 6 5\n3 4 5 7\n3 5 6 7\n3 4 7 6\n' >crossing.off
+  printf 'front a\nstep 0\n0 0 0\nstep 1\n0 0 1\n' >point.front
+  { head -c 12 ok.kerf; printf '\011\000\000\000'; tail -c +17 ok.kerf; } >newer.kerf
+  for bad in "66 cannot missing.ply" "65 empty empty" "65 short.ply short.ply" "65 finite nan.off" "65 open open.off" "65 inside inside.off" "65 intersect crossing.off"; do
+    set -- $bad
+    expect "$1" "$2" kerf-sample "$3" --spacing 0.2 -o x.pcd
+    expect "$1" "$2" kerf-crack "$3" --front ok.front -o x.ply
+    expect "$1" "$2" kerf-graph /dev/null --surface "$3" -o x.kerf
+    expect "$1" "$2" kerf-pieces "$3" -o x
+    expect "$1" "$2" kerf-update ok.kerf --surface "$3" -o x.kerf
+    printf '[body]\nmesh = "%s"\n' "$3" >scene.toml
+    expect "$1" "$2" kerf-sim scene.toml -o x
+  done
+  for bad in "66 cannot missing" "65 empty empty" "65 truncated short.kerf" "65 newer newer.kerf"; do
+    set -- $bad
+    expect "$1" "$2" kerf-update "$3" --surface block.ply -o x.kerf
+    expect "$1" "$2" kerf-info "$3"
+    expect "$1" "$2" kerf-view "$3" -o x.png
+  done
+  expect 65 "1 point" kerf-crack block.ply --front point.front -o x.ply
+  expect 66 "cannot" kerf-crack block.ply --front missing.front -o x.ply
+  expect 1 "inside out" kerf-info --check -q inside.off
+  expect 1 "open" kerf-info --check -q open.off
+  expect 1 "intersect" kerf-info --check -q crossing.off
+  expect 65 "finite" kerf-info nan.off
+  ;;
+contract)
+  kerf-model block --edge 0.25 -o block.ply
+  kerf-model front --around block.ply --steps 2 -o ok.front
+  kerf-sample block.ply --spacing 12% | kerf-graph --surface block.ply -o ok.kerf
+  for tool in kerf-sample kerf-graph kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-view; do
+    $tool --help | grep -q Examples || fail "$tool --help has no examples"
+    $tool --version | grep -q "$tool (kerf) [0-9]" || fail "$tool --version"
+    expect 2 "see $tool --help" $tool --no-such-option
+  done
+  expect 2 "spacing" kerf-sample block.ply --spacing banana -o x.pcd
+  expect 73 "cannot" kerf-sample block.ply --spacing 12% -o none/x.pcd
+  expect 73 "cannot" kerf-crack block.ply --front ok.front -o none/x.ply
+  expect 73 "cannot be written" kerf-crack block.ply --front ok.front -o /dev/full
+  for line in "kerf-sample block.ply --spacing 12%" "kerf-crack block.ply --front ok.front" "kerf-update ok.kerf --surface block.ply" "kerf-view block.ply --size 64x48"; do
+    script -qec "$line" /dev/null </dev/null >tty.txt
+    [ $? = 2 ] || fail "$line writes binary to a terminal"
+    grep -q terminal tty.txt || fail "$line does not say why"
+    rm -f tty.txt
+  done
+  kerf-info --json block.ply | grep -q '"kind":"surface","vertices":' || fail "kerf-info --json"
+  kerf-info --json ok.kerf | grep -q '"edges_crossing":null' || fail "kerf-info --json of a body"
+  kerf-info --check --json ok.kerf | grep -q '"edges_crossing":0' || fail "kerf-info --check --json of a body"
+  cat block.ply | kerf-sample - --spacing 12% -o stdin.pcd || fail "standard input"
+  kerf-sample block.ply --spacing 12% -o file.pcd
+  cmp stdin.pcd file.pcd || fail "standard input gives other nodes"
+  kerf-view block.ply --size 80x60 --samples 1 -o a.png && kerf-view -j1 block.ply --size 80x60 --samples 1 -o b.png && cmp a.png b.png || fail "pictures differ"
+  kerf-model block --edge 0.5 -o level.vdb && kerf-sample level.vdb --spacing 0.2 -o vdb.pcd || fail "volume input"
+  ;;
+simulation)
+  kerf-model block --edge 0.2 -o cube.ply
+  printf '[body]\nmesh = "cube.ply"\nspacing = 0.25\n[time]\nframes = 6\nframe_rate = 20\nstep = 0.05\ncheckpoint_every = 2\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.2,1.013,0.011,-0.7,0,0,1,3]]\n' >s.toml
+  kerf-sim -q s.toml -o whole || fail "kerf-sim"
+  kerf-sim -q s.toml -o parts --frames 2 && kerf-sim -q s.toml -o parts --frames 4 --resume && kerf-sim -q s.toml -o parts --resume || fail "kerf-sim --resume"
+  for i in 0 1 2 3 4 5 6; do cmp whole/frames/frame_000$i.ply parts/frames/frame_000$i.ply || fail "frame $i differs after --resume"; done
+  cmp whole/checkpoint.kerf parts/checkpoint.kerf || fail "the body differs after --resume"
+  grep -q '"pieces":2' whole/summary.json || fail "not two pieces: $(cat whole/summary.json)"
+  kerf-info --check -q whole/checkpoint.kerf || fail "the body is not sound"
+  kerf-view whole --size 80x60 --samples 1 -o sheet.png || fail "contact sheet"
+  ;;
+*) fail "unknown test $what" ;;
+esac
+exit $failed

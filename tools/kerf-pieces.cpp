@@ -54,7 +54,8 @@ int main(int argc, char** argv) {
       for (std::uint32_t p = 0; p < pieces.count; ++p) {
         char name[64];
         std::snprintf(name, sizeof name, "piece_%03u.%s", p, obj ? "obj" : "ply");
-        const auto mesh = geo::piece_mesh(complex, pieces, p);
+        geo::TriangleMesh mesh = geo::piece_mesh(complex, pieces, p);
+        mesh.site.clear();  // a piece is a model of its own; patch still tells skin from crack
         geo::write_all((aside / name).string(), [&](std::ostream& out) { obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
         json += std::string(p ? "," : "") + "{\"file\":\"" + name + "\",\"volume\":" + tool::number(pieces.volume[p]) + ",\"triangles\":" + std::to_string(mesh.triangles.size()) + "}";
       }

@@ -245,7 +245,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
   out << "element vertex " << mesh.vertices.size() << "\nproperty double x\nproperty double y\nproperty double z\n";
   if (mesh.two_sided()) out << "property uint site\n";
   out << "element face " << mesh.triangles.size() << "\nproperty list uchar uint vertex_indices\n";
-  if (mesh.two_sided()) out << "property int patch\n";
+  if (!mesh.patch.empty()) out << "property int patch\n";
   if (!fronts.empty())
     out << "element kerf_front " << fronts.size() << "\nproperty int crack\nproperty uint step\nproperty uchar closed\nelement kerf_contact "
         << contacts << "\nproperty uint front\nproperty uint segment\nproperty int site\nproperty double x\nproperty double y\nproperty double z\n";
@@ -264,7 +264,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     put<std::uint8_t>(row, 3);
     for (const auto v : mesh.triangles[t]) put(row, v);
-    if (mesh.two_sided()) put(row, mesh.patch[t]);
+    if (!mesh.patch.empty()) put(row, mesh.patch[t]);
     flush(false);
   }
   for (const auto& f : fronts) put(row, f.crack), put(row, f.step), put<std::uint8_t>(row, f.closed);

@@ -58,7 +58,7 @@ TEST_CASE("planes through vertices and edges of a grid cube separate it, in any 
     }
 }
 
-TEST_CASE("a partial cut leaves one piece with a front; going on separates it") {
+TEST_CASE("a partial cut leaves one piece with a front and going on separates it") {
   Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
   FrontState front = begin_front(line({-1, -1, 1.3}, {-1, 5, 1.3}, 4), false, 1);
   for (const double x : {0.5, 1.7, 2.9}) {

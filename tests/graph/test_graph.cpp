@@ -69,7 +69,7 @@ TEST_CASE("the spanning tree is as short as Prim's, for scattered clusters too")
   }
 }
 
-TEST_CASE("edges are those that no triangle touches; every method and thread count gives the same rows") {
+TEST_CASE("edges are those that no triangle touches and every method and thread count gives the same rows") {
   Random random(7);
   const NodeSet nodes = jittered(random, 8, 0.3);
   const Soup wall{{Vec3(0.513, -1, -1), Vec3(0.521, 0.6, -1), Vec3(0.507, -1, 2)}, {Vec3(0.521, 0.6, -1), Vec3(0.52, 0.61, 2), Vec3(0.507, -1, 2)}};

@@ -113,7 +113,7 @@ TEST_CASE("free fall is exact, and the same for any number of threads") {
   CHECK(one.displacement == many.displacement);
 }
 
-TEST_CASE("a clamped bar bends and comes to rest; a crushed one recovers without NaN") {
+TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers without NaN") {
   const Bar b = bar(12, 3, 3, 0.0);
   Material m = material(ElasticModel::neo_hookean);
   m.damping = 4;

@@ -53,7 +53,7 @@ TEST_CASE("a blade turns and moves by its keys") {
   CHECK(p[1].y() == Approx(2 * std::sqrt(0.5)));
 }
 
-TEST_CASE("a falling cube is halved; both halves go on falling as one") {
+TEST_CASE("a falling cube is halved and both halves go on falling as one") {
   const Scene scene = parse_scene(scene_text, "s.toml");
   Simulation sim(scene, make_block({1, 1, 1}, 0.2));
   FrameWork work;

@@ -41,7 +41,7 @@ void campaign(const std::string& name) {
   double volume = 0;
   for (const double v : before.volume) volume += v;
   const double area = random_cuts::skin_area(model);
-  const int count = random_cuts::cases(50);
+  const int count = random_cuts::cases(100);
   for (int c = 0; c < count; ++c) {
     const auto seed = static_cast<std::uint64_t>(c) + 1;
     INFO(name << ", seed " << seed);

@@ -116,18 +116,18 @@ TEST_CASE("free fall is exact, and the same for any number of threads") {
 TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers without NaN") {
   const Bar b = bar(12, 3, 3, 0.0);
   Material m = material(ElasticModel::neo_hookean);
-  m.damping = 4;
+  m.damping = 1.5;
   const Solid solid(b.nodes, b.neighbors, m);
   Environment env;
-  env.gravity = {0, 0, -1};
+  env.gravity = {0, 0, -0.05};
   for (const auto& p : b.nodes.position) env.fixed.push_back(p.x() < 0.4);
   State state = at_rest(b);
-  for (int i = 0; i < 150; ++i) solid.step_implicit(state, 0.05, env);
+  for (int i = 0; i < 300; ++i) solid.step_implicit(state, 0.1, env);
   // Timoshenko for its own weight on the free length: w L⁴ / 8 E I plus shear.
-  const double length = 4 - 1.0 / 3, w = 1000, tip = w * std::pow(length, 4) / (8 * 1e5 / 12) + w * length * length / (2 * 5.0 / 6 * m.mu());
+  const double length = 4 - 1.0 / 3, w = 1000 * 0.05, tip = w * std::pow(length, 4) / (8 * 1e5 / 12) + w * length * length / (2 * 5.0 / 6 * m.mu());
   CHECK(-state.displacement[11].z() > 0.5 * tip);   // nodal integration is soft, never stiff by half
   CHECK(-state.displacement[11].z() < 2.5 * tip);
-  CHECK(state.velocity[11].norm() < 1e-2);
+  CHECK(state.velocity[11].norm() < 1e-4);
   State crushed = at_rest(b);
   for (std::size_t i = 0; i < b.nodes.size(); ++i) crushed.displacement[i].x() = -1.4 * b.nodes.position[i].x();
   const double before = solid.energy(crushed.displacement);

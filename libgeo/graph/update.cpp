@@ -32,7 +32,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   const double reach = std::max(graph.longest(), graph.plain_unit() * 0x1p26);
   std::set<std::pair<NodeId, NodeId>> cut;
   std::vector<std::uint32_t> near;
-  for (const auto& [a, b, c] : new_faces) {
+  for (const auto& face : new_faces) {
+    const Vec3 &a = face[0], &b = face[1], &c = face[2];
     const Vec3 middle = (a + b + c) / 3;
     const double size = std::sqrt(std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
     const Box3 box = box_of(a, b, c);

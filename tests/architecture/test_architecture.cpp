@@ -46,6 +46,7 @@ std::vector<Include> includes_of(const fs::path& file) {
 
 std::vector<fs::path> sources_of(const fs::path& folder) {
   std::vector<fs::path> files;
+  if (!fs::is_directory(folder)) return files;  // a room of the design with nothing in it yet
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp") files.push_back(entry.path());
   std::sort(files.begin(), files.end());

@@ -51,7 +51,9 @@ int main(int argc, char** argv) {
       // A front of this name that stopped where we begin is taken up again, contacts and all.
       auto state = std::find_if(states.begin(), states.end(), [&](const geo::FrontState& s) { return s.name == front.name && s.step == from && from > 0; });
       if (state == states.end()) {
-        states.push_back(geo::begin_front(front.steps[from], front.closed, complex.crack_count() + 1));
+        std::int32_t crack = complex.crack_count();  // fronts that have met nothing yet have their numbers already
+        for (const auto& other : states) crack = std::max(crack, other.crack);
+        states.push_back(geo::begin_front(front.steps[from], front.closed, crack + 1));
         state = states.end() - 1;
         state->name = front.name;
       }

@@ -27,15 +27,18 @@ int main(int argc, char** argv) {
     else if (method == "dijkstra") options.method = geo::NeighborMethod::dijkstra;
     else if (method != "auto") throw tool::UsageError("--method must be auto, mfw or dijkstra");
     const std::string target = t.target(true);
-    const auto file = tool::read_solid(surface_path);
-    geo::NodeSet nodes = geo::read_nodes(nodes_path);
+    const std::string surface_bytes = geo::read_all(surface_path);
+    const auto file = tool::parse_solid(surface_bytes, surface_path);
+    const std::string nodes_bytes = geo::read_all(nodes_path);
+    geo::NodeSet nodes = geo::parse_nodes(nodes_bytes, nodes_path);
     geo::Body body;
     try {
       body = geo::build_body(tool::complex_of(file, surface_path), std::move(nodes), options, t.progress());
     } catch (const geo::InputError& e) {
       throw geo::InputError(nodes_path + ": " + e.what());
     }
-    body.history.push_back({"kerf-graph", KERF_VERSION, "-k " + std::to_string(k), {}});
+    body.history.push_back({"kerf-graph", KERF_VERSION, "-k " + std::to_string(k),
+                            {tool::named_hash(nodes_path, geo::fingerprint(nodes_bytes)), tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
     geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
     if (t.verbose) t.say("kerf-graph: " + std::to_string(body.nodes.size()) + " nodes, " + std::to_string(body.graph.edge_count()) + " edges");
   });

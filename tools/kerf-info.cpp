@@ -7,9 +7,9 @@
 #include "body/body.h"
 #include "io/body_file.h"
 #include "io/front_file.h"
-#include "io/kerf_container.h"
 #include "io/node_file.h"
 #include "io/stream.h"
+#include "kind.h"
 #include "model.h"
 #include "surface/pieces.h"
 #include "tool.h"
@@ -69,6 +69,21 @@ std::string surface_report(const geo::SurfaceFile& file, bool check, Report& rep
   return result.first_problem;
 }
 
+// Names two nodes at one place; empty when there are none.
+std::string twins(const geo::NodeSet& nodes) {
+  std::vector<std::uint32_t> order(nodes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [&](std::uint32_t i, std::uint32_t j) {
+    const auto &p = nodes.position[i], &q = nodes.position[j];
+    return p == q ? i < j : std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  };
+  std::sort(order.begin(), order.end(), less);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (nodes.position[order[i - 1]] == nodes.position[order[i]])
+      return "nodes " + std::to_string(order[i - 1]) + " and " + std::to_string(order[i]) + " are at one place; remove one of them";
+  return {};
+}
+
 std::string body_report(const geo::Body& body, std::size_t bytes, bool check, Report& report) {
   geo::BodyReport result;
   std::string problem;
@@ -117,19 +132,19 @@ int main(int argc, char** argv) {
     const std::string bytes = geo::read_all(path);
     Report report;
     std::string problem;
-    const auto is = [&](const char* word) { return bytes.rfind(word, 0) == 0; };
-    const bool nodes_ply = is("ply") && bytes.substr(0, 4096).find("property double radius") != std::string::npos;
-    if (geo::looks_like_kerf(bytes)) {
+    const auto kind = tool::kind_of(bytes, path);
+    if (kind == tool::Kind::body) {
       problem = body_report(geo::parse_body(bytes, path), bytes.size(), check, report);
-    } else if (nodes_ply || is("# .PCD") || is("VERSION") || is("FIELDS")) {
+    } else if (kind == tool::Kind::nodes) {
       const auto nodes = geo::parse_nodes(bytes, path);
+      if (check) problem = twins(nodes);
       const auto [lo, hi] = std::minmax_element(nodes.spacing.begin(), nodes.spacing.end());
       report.add("kind", tool::quoted("nodes"));
       report.add("nodes", nodes.size());
       report.add("spacing_min", number(*lo));
       report.add("spacing_max", number(*hi));
       report.add("volume", number(std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0)));
-    } else if (is("front") || is("#") || path.ends_with(".front")) {
+    } else if (kind == tool::Kind::fronts) {
       const auto fronts = geo::parse_fronts(bytes, path);
       report.add("kind", tool::quoted("fronts"));
       report.add("fronts", fronts.size());

@@ -48,8 +48,9 @@ int main(int argc, char** argv) {
     }
     // Written aside as a whole folder, then renamed.
     const fs::path aside = folder.string() + "." + std::to_string(::getpid()) + ".tmp";
+    geo::Unfinished unfinished(aside.string());
     if (!fs::create_directories(aside, error)) throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
-    try {
+    {
       std::string json = "{\"pieces\":[";
       for (std::uint32_t p = 0; p < pieces.count; ++p) {
         char name[64];
@@ -68,11 +69,7 @@ int main(int argc, char** argv) {
         first = false;
       }
       geo::write_all((aside / "pieces.json").string(), [&](std::ostream& out) { out << json << "]}\n"; });
-      if (there) fs::remove(folder);
-      fs::rename(aside, folder);
-    } catch (...) {
-      fs::remove_all(aside, error);
-      throw;
+      unfinished.commit(folder.string());  // over the empty folder, if there is one
     }
     if (t.json) std::printf("{\"pieces\":%u,\"bonds\":%zu}\n", pieces.count, bonds.size());
     if (t.verbose) t.say("kerf-pieces: " + std::to_string(pieces.count) + " pieces, " + std::to_string(bonds.size()) + " bonds");

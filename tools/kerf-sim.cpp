@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   std::string path;
   std::vector<std::string> settings;
   int frames = 0;
+  t.patience = 20;  // a frame may take long, and ends what is being written
   bool resume = false;
   t.argument("SCENE", path, "Scene file (TOML)");
   t.option("--frames", frames, "How many frames; 0: as the scene says");

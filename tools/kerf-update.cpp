@@ -22,21 +22,25 @@ int main(int argc, char** argv) {
     if (surface_path.empty()) throw tool::UsageError("give the cut surface with --surface");
     if (surface_path == "-" && body_path == "-") throw tool::UsageError("body and surface cannot both come from standard input");
     const std::string target = t.target(true);
-    geo::Body body = geo::read_body(body_path);
-    const auto file = tool::read_solid(surface_path);
+    const std::string body_bytes = geo::read_all(body_path);
+    geo::Body body = geo::parse_body(body_bytes, body_path);
+    const std::string surface_bytes = geo::read_all(surface_path);
+    const auto file = tool::parse_solid(surface_bytes, surface_path);
     if (no_resample) body.resample_limit = 0;
     geo::SplitWork work;
     const auto start = std::chrono::steady_clock::now();
+    std::size_t triangles_cut = 0;
     try {
-      geo::follow(body, tool::complex_of(file, surface_path), &work);
+      triangles_cut = geo::follow(body, tool::complex_of(file, surface_path), &work).crack.removed_faces.size();
     } catch (const geo::InputError& e) {
       throw geo::InputError(surface_path + ": " + e.what());
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    body.history.push_back({"kerf-update", KERF_VERSION, "", {}});
+    body.history.push_back({"kerf-update", KERF_VERSION, no_resample ? "--no-resample" : "",
+                            {tool::named_hash(body_path, geo::fingerprint(body_bytes)), tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
     geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
     if (t.json)
-      (target == "-" ? std::cerr : std::cout) << "{\"edges_cut\":" << work.edges_cut << ",\"edges_added\":" << work.edges_added << ",\"nodes_updated\":" << work.nodes_updated
+      (target == "-" ? std::cerr : std::cout) << "{\"triangles_cut\":" << triangles_cut << ",\"edges_cut\":" << work.edges_cut << ",\"edges_added\":" << work.edges_added << ",\"nodes_updated\":" << work.nodes_updated
                                               << ",\"nodes_added\":" << work.nodes_added << ",\"nodes_moved\":" << work.nodes_moved << ",\"seconds\":{\"resample\":" << tool::number(work.resample_seconds)
                                               << ",\"graph\":" << tool::number(work.graph_seconds) << ",\"binding\":" << tool::number(work.binding_seconds) << ",\"total\":" << tool::number(seconds) << "}}\n";
   });

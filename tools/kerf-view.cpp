@@ -5,10 +5,10 @@
 
 #include "io/body_file.h"
 #include "io/front_file.h"
-#include "io/kerf_container.h"
 #include "io/node_file.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
+#include "kind.h"
 #include "tool.h"
 #include "view/compose.h"
 
@@ -16,10 +16,12 @@ namespace {
 
 view::Stage load(const std::string& path, const view::Look& look) {
   const std::string bytes = geo::read_all(path);
-  const auto is = [&](const char* word) { return bytes.rfind(word, 0) == 0; };
-  if (geo::looks_like_kerf(bytes)) return view::stage_of(geo::parse_body(bytes, path), look);
-  if (is("# .PCD") || is("VERSION") || is("FIELDS") || bytes.substr(0, 4096).find("property double radius") != std::string::npos) return view::stage_of(geo::parse_nodes(bytes, path), look);
-  if (is("front") || path.ends_with(".front")) return view::stage_of(geo::parse_fronts(bytes, path), look);
+  switch (tool::kind_of(bytes, path)) {
+    case tool::Kind::body: return view::stage_of(geo::parse_body(bytes, path), look);
+    case tool::Kind::nodes: return view::stage_of(geo::parse_nodes(bytes, path), look);
+    case tool::Kind::fronts: return view::stage_of(geo::parse_fronts(bytes, path), look);
+    case tool::Kind::surface: break;
+  }
   return view::stage_of(geo::parse_surface(bytes, path).mesh, look);
 }
 

@@ -4,15 +4,16 @@
 #include <string>
 
 #include "base/error.h"
+#include "io/stream.h"
 #include "io/surface_file.h"
 #include "surface/check.h"
 #include "surface/complex.h"
 
 namespace tool {
 
-/// The surface in a file, checked: closed, manifold, oriented outwards, free of self-intersection.
-inline geo::SurfaceFile read_solid(const std::string& path) {
-  geo::SurfaceFile file = geo::read_surface(path);
+/// A surface, checked: closed, manifold, oriented outwards, free of self-intersection.
+inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string& path) {
+  geo::SurfaceFile file = geo::parse_surface(bytes, path);
   try {
     geo::require_solid(file.mesh);
   } catch (const geo::InputError& e) {
@@ -20,6 +21,7 @@ inline geo::SurfaceFile read_solid(const std::string& path) {
   }
   return file;
 }
+inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
 /// The complex of a surface that was read; errors carry the file's name.
 inline geo::Complex complex_of(const geo::SurfaceFile& file, const std::string& path) {

@@ -1,24 +1,52 @@
 #include "tool.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <charconv>
-#include <csignal>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <thread>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "io/stream.h"
 #include "version.h"
 
 namespace tool {
 namespace {
 
 std::atomic<bool> interrupted{false};
-void on_signal(int) { interrupted = true; }
+
+// A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a second Ctrl-C comes,
+// it removes what is half written and ends the program.
+void watch_signals(const std::string& name, double patience) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any other thread starts: all inherit it
+  std::thread([signals, name, patience] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    interrupted = true;
+    timespec wait{};
+    wait.tv_sec = static_cast<time_t>(std::min(patience, 1e9));
+    wait.tv_nsec = static_cast<long>((std::min(patience, 1e9) - double(wait.tv_sec)) * 1e9);
+    sigtimedwait(&signals, nullptr, &wait);
+    geo::discard_unfinished();
+    const std::string line = name + ": interrupted\n";
+    [[maybe_unused]] const auto written = ::write(2, line.data(), line.size());
+    ::_exit(130);
+  }).detach();
+}
+
+// False when standard output did not take everything, as on a full disk.
+bool flush_output() { return std::cout.flush().good() && std::fflush(stdout) == 0; }
 
 }  // namespace
 
@@ -33,6 +61,7 @@ Tool::Tool(std::string name, std::string summary, std::string examples) : parser
   app.footer("Examples:\n" + examples + "\n\nExit codes: 0 done, 1 a check found something or the processing failed, 2 usage, 65 bad input,\n66 input missing, 70 internal error, 73 output cannot be made, 130 interrupted.");
   app.set_version_flag("--version", name_ + " (kerf) " KERF_VERSION);
   app.set_config("--config", "", "Read options from this TOML or INI file");
+  app.allow_config_extras(false);
   app.add_option("-j,--threads", threads_, "Threads; 0: all cores")->check(CLI::Range(0, 4096));
   app.add_option("--seed", seed, "Seed of everything random");
   app.add_flag("-q,--quiet", quiet, "No words on standard error but errors");
@@ -49,7 +78,12 @@ void Tool::argument(const std::string& name, std::string& value, const std::stri
 void Tool::argument(const std::string& name, std::vector<std::string>& values, const std::string& help) { parser_->app.add_option(name, values, help); }
 void Tool::option(const std::string& names, std::string& value, const std::string& help) { parser_->app.add_option(names, value, help); }
 void Tool::option(const std::string& names, std::vector<std::string>& values, const std::string& help) { parser_->app.add_option(names, values, help); }
-void Tool::option(const std::string& names, double& value, const std::string& help) { parser_->app.add_option(names, value, help)->capture_default_str(); }
+void Tool::option(const std::string& names, double& value, const std::string& help) {
+  parser_->app.add_option(names, value, help)->capture_default_str()->check([](const std::string& text) {
+    double x = 0;
+    return CLI::detail::lexical_cast(text, x) && std::isfinite(x) ? std::string() : "'" + text + "' is not a finite number";
+  });
+}
 void Tool::option(const std::string& names, int& value, const std::string& help) { parser_->app.add_option(names, value, help)->capture_default_str(); }
 void Tool::flag(const std::string& names, bool& value, const std::string& help) { parser_->app.add_flag(names, value, help); }
 void Tool::output(const std::string& help) { parser_->app.add_option("-o,--output", output_path, help); }
@@ -57,15 +91,21 @@ void Tool::output(const std::string& help) { parser_->app.add_option("-o,--outpu
 int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   try {
     parser_->app.parse(argc, argv);
+  } catch (const CLI::FileError& e) {
+    std::cerr << name_ << ": " << e.what() << "; check the name\n";
+    return 66;
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return parser_->app.exit(e);
+    if (e.get_exit_code() == 0) {
+      parser_->app.exit(e);
+      if (flush_output()) return 0;
+      std::cerr << name_ << ": -: cannot be written; is the disk full?\n";
+      return 73;
+    }
     std::cerr << name_ << ": " << e.what() << "; see " << name_ << " --help\n";
     return 2;
   }
-  for (int i = 1; i < argc; ++i) arguments_ += (i > 1 ? " " : "") + std::string(argv[i]);
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  std::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGPIPE, SIG_IGN);
+  watch_signals(name_, patience);
   if (threads_ > 0) geo::set_threads(threads_);
   const auto fail = [&](const std::string& what, int code) {
     std::cerr << name_ << ": " << what << '\n';
@@ -73,6 +113,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   };
   try {
     work();
+    if (!flush_output()) throw geo::OutputError("-: cannot be written; is the disk full?");
     return 0;
   } catch (const UsageError& e) {
     return fail(std::string(e.what()) + "; see " + name_ + " --help", 2);
@@ -114,6 +155,12 @@ geo::Progress Tool::progress() const {
 
 void Tool::say(const std::string& line) const {
   if (!quiet) std::cerr << line << '\n';
+}
+
+std::string named_hash(const std::string& path, std::uint64_t fingerprint) {
+  char hash[24];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(fingerprint));
+  return path.substr(path.find_last_of('/') + 1) + " xxh3:" + hash;
 }
 
 std::string number(double x) {

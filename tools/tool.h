@@ -43,6 +43,8 @@ class Tool {
   int run(int argc, char** argv, const std::function<void()>& work);
 
   bool quiet = false, verbose = false, json = false;
+  /// How long, in seconds, a first Ctrl-C waits for the work to stop by itself (see progress()) before the program ends.
+  double patience = 0.3;
   std::uint64_t seed = 1;
   std::string output_path;
 
@@ -52,15 +54,16 @@ class Tool {
   geo::Progress progress() const;
   /// A line on standard error unless -q.
   void say(const std::string& line) const;
-  const std::string& arguments() const { return arguments_; }
 
  private:
   struct Parser;
   std::unique_ptr<Parser> parser_;
-  std::string name_, arguments_, progress_ = "auto";
+  std::string name_, progress_ = "auto";
   int threads_ = 0;
 };
 
+/// "name xxh3:…" of an input, for a file's provenance: the name without its folder, so that moving files changes nothing.
+std::string named_hash(const std::string& path, std::uint64_t fingerprint);
 /// A number in the shortest form that reads back the same.
 std::string number(double x);
 /// Text as a JSON string, quotes included.

@@ -3,13 +3,16 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <iostream>
+#include <filesystem>
 #include <memory>
+#include <mutex>
 #include <random>
+#include <set>
 #include <streambuf>
 
 #include "base/error.h"
@@ -51,7 +54,46 @@ class DescriptorBuffer : public std::streambuf {
 
 std::string reason(int error) { return std::string(std::strerror(error)); }
 
+// What is being written aside in this process. Never destroyed: a thread may end the program at any moment.
+struct Unfinishes {
+  std::recursive_mutex mutex;
+  std::set<std::string> paths;
+};
+Unfinishes& unfinished() {
+  static auto* all = new Unfinishes;
+  return *all;
+}
+
+void remove_aside(const std::string& path) {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
 }  // namespace
+
+Unfinished::Unfinished(std::string aside) : aside_(std::move(aside)) {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().paths.insert(aside_);
+}
+
+Unfinished::~Unfinished() {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().paths.erase(aside_);
+  if (!committed_) remove_aside(aside_);
+}
+
+void Unfinished::commit(const std::string& path) {
+  const std::lock_guard lock(unfinished().mutex);
+  if (::rename(aside_.c_str(), path.c_str()) != 0) throw OutputError(path + ": cannot be written (" + reason(errno) + ")");
+  committed_ = true;
+}
+
+void discard_unfinished() {
+  unfinished().mutex.lock();  // for good
+  for (const auto& path : unfinished().paths) remove_aside(path);
+}
+
+std::uint64_t fingerprint(std::string_view bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 std::string read_all(const std::string& path) {
   int fd = 0;
@@ -95,6 +137,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
   const bool special = ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
   if (special && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");
   std::string aside = path;
+  std::unique_ptr<Unfinished> unfinished;
   int fd = -1;
   if (special) {
     fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a device or a pipe cannot be renamed over
@@ -102,6 +145,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
     std::random_device random;
     for (int tries = 0; tries < 16 && fd < 0; ++tries) {
       aside = path + "." + std::to_string(random()) + ".tmp";
+      unfinished = std::make_unique<Unfinished>(aside);
       fd = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (fd < 0 && errno != EEXIST) break;
     }
@@ -116,16 +160,12 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
     if (!out) error = buffer->error() ? buffer->error() : EIO;
   } catch (...) {
     ::close(fd);
-    if (!special) ::unlink(aside.c_str());
     throw;
   }
   if (error == 0 && !special && ::fsync(fd) != 0) error = errno;
   if (::close(fd) != 0 && error == 0) error = errno;
-  if (error == 0 && !special && ::rename(aside.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    if (!special) ::unlink(aside.c_str());
-    throw OutputError(path + ": cannot be written (" + reason(error) + ")");
-  }
+  if (error != 0) throw OutputError(path + ": cannot be written (" + reason(error) + ")");
+  if (unfinished) unfinished->commit(path);
 }
 
 }  // namespace geo

@@ -1,9 +1,11 @@
 // Bytes in and out: whole inputs from a file or standard input, outputs written aside and renamed.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <ostream>
 #include <string>
+#include <string_view>
 
 namespace geo {
 
@@ -13,5 +15,28 @@ std::string read_all(const std::string& path);
 /// Writes a file through `write`: aside in the same folder, flushed, then renamed; on any failure nothing is left
 /// behind and what was there before stays. "-" writes to standard output. Throws OutputError.
 void write_all(const std::string& path, const std::function<void(std::ostream&)>& write);
+
+/// Something that is being written aside, a file or a folder: removed with all it holds by the destructor, unless it
+/// was committed before.
+class Unfinished {
+ public:
+  explicit Unfinished(std::string aside);
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+  /// Renames what was written to `path`. Throws OutputError.
+  void commit(const std::string& path);
+
+ private:
+  std::string aside_;
+  bool committed_ = false;
+};
+
+/// Removes everything that is being written aside now, and lets nothing be committed any more: the last call of a
+/// program that is told to stop at once.
+void discard_unfinished();
+
+/// The XXH3 hash of some bytes, 64 bits: names an input in a file's provenance.
+std::uint64_t fingerprint(std::string_view bytes);
 
 }  // namespace geo

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | simulation
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | stops | simulation
 set -u
 PATH=$1:$2:$PATH models=$3 what=$4
 work=$(mktemp -d)
@@ -33,7 +33,10 @@ quietly() {
 case $what in
 pipeline)
   model=$5
-  cp "$models/$model" .
+  case $model in
+  pumpkin.ply) kerf-model pumpkin --frequency 11 -o pumpkin.ply || fail "kerf-model pumpkin" ;;
+  *) cp "$models/$model" . ;;
+  esac
   quietly kerf-model front --around "$model" --steps 12 -o halve.front
   kerf-sample "$model" --spacing 3% | kerf-graph --surface "$model" -o bear.kerf || fail "sample | graph"
   quietly kerf-crack "$model" --front halve.front -o cut.ply
@@ -115,6 +118,62 @@ contract)
   cmp stdin.pcd file.pcd || fail "standard input gives other nodes"
   kerf-view block.ply --size 80x60 --samples 1 -o a.png && kerf-view -j1 block.ply --size 80x60 --samples 1 -o b.png && cmp a.png b.png || fail "pictures differ"
   kerf-model block --edge 0.5 -o level.vdb && kerf-sample level.vdb --spacing 0.2 -o vdb.pcd || fail "volume input"
+  ;;
+kinds)
+  # A file is known by what it holds, not by its first line.
+  kerf-model block --edge 0.5 -o block.ply
+  printf '# made by hand\n\nOFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >comment.off
+  printf '# made by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >comment.obj
+  printf '# two time steps\no a\nv 0 0 0\nv 1 0 0\nl 1 2\no b\nv 0 0 1\nv 1 0 1\nl 3 4\n' >lines.obj
+  printf '# made by hand\nfront a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1 0 1\n' >comment.txt
+  for file in comment.off comment.obj; do kerf-info --json $file | grep -q '"kind":"surface"' || fail "$file is not known for a surface"; done
+  for file in lines.obj comment.txt; do kerf-info --json $file | grep -q '"kind":"fronts"' || fail "$file is not known for a front"; done
+  quietly kerf-view comment.obj --size 64x48 --samples 1 -o a.png
+  quietly kerf-view comment.txt --size 64x48 --samples 1 -o b.png
+  printf '# .PCD v0.7\nVERSION 0.7\nFIELDS x y z radius spacing volume\nSIZE 8 8 8 8 8 8\nTYPE F F F F F F\nCOUNT 1 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n0 0 0 1 1 1\n0 0 0 1 1 1\n' >twins.pcd
+  expect 1 "nodes 0 and 1 are at one place" kerf-info --check -q twins.pcd
+  # A front saved before it met anything keeps its crack number.
+  printf 'front far\nstep 0\n-1 0.5 3\n2 0.5 3\nstep 1\n-1 0.5 2\n2 0.5 2\nstep 2\n-1 0.5 0.6\n2 0.5 0.6\n' >far.front
+  printf 'front side\nstep 0\n0.3 -1 3\n0.3 2 3\nstep 1\n0.3 -1 0.55\n0.3 2 0.55\n' >side.front
+  quietly kerf-crack block.ply --front far.front --steps 0:1 -o one.ply
+  quietly kerf-crack one.ply --front side.front -o two.ply
+  quietly kerf-crack two.ply --front far.front --steps 1:2 -o three.ply
+  quietly kerf-info --check -q three.ply
+  kerf-crack two.ply --front far.front --steps 1:2 -o three.obj && [ "$(grep -c "^g patch_-[12]" three.obj)" -ge 2 ] || fail "two cracks share a number: $(grep '^g' three.obj | tr '\n' ' ')"
+  ;;
+stops)
+  kerf-model block --edge 0.06 -o block.ply
+  kerf-model front --around block.ply --steps 2 -o ok.front
+  kerf-sample block.ply --spacing 6% | kerf-graph --surface block.ply -o ok.kerf
+  kerf-crack block.ply --front ok.front -o cut.ply
+  # Ctrl-C: 130, soon, and nothing left behind.
+  for line in "kerf-update ok.kerf --surface cut.ply -o x.kerf" "kerf-info --check ok.kerf" "kerf-view cut.ply --size 4000x3000 --samples 8 -o x.png" "kerf-sample block.ply --spacing 1% -o x.pcd"; do
+    before=$(ls -A)
+    setsid $line >/dev/null 2>/dev/null </dev/null &
+    pid=$!
+    sleep 0.03
+    kill -INT $pid 2>/dev/null
+    wait $pid
+    status=$?
+    [ $status = 130 ] || [ $status = 0 ] || fail "$line, stopped, exits with $status"
+    case $line in kerf-view*) [ $status = 130 ] || fail "$line does not stop" ;; esac
+    [ $status = 0 ] && rm -f x.kerf x.pcd
+    [ "$before" = "$(ls -A)" ] || fail "$line, stopped, leaves something behind: $(ls -A)"
+  done
+  # A full disk under standard output, and a configuration that does not fit.
+  for line in "kerf-info block.ply" "kerf-info --help" "kerf-crack --version"; do
+    $line >/dev/full 2>err.txt
+    [ $? = 73 ] || fail "$line does not notice a full disk"
+    grep -q "cannot be written" err.txt || fail "$line does not say that the disk is full: $(cat err.txt)"
+    rm -f err.txt
+  done
+  printf 'no-such-key = 3\n' >wrong.toml
+  expect 2 "no-such-key" kerf-sample block.ply --config wrong.toml -o x.pcd
+  expect 66 "missing.toml" kerf-sample block.ply --config missing.toml -o x.pcd
+  expect 2 "finite" kerf-crack block.ply --front ok.front --max-move nan -o x.ply
+  mkdir full && touch full/file
+  expect 73 "not empty" kerf-pieces cut.ply -o full
+  expect 73 "cannot" kerf-pieces cut.ply -o /proc/x
   ;;
 simulation)
   kerf-model block --edge 0.2 -o cube.ply

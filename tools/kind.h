@@ -1,0 +1,33 @@
+// Which of Kerf's kinds of file some bytes are, told by what they hold.
+#pragma once
+
+#include <string>
+
+#include "io/kerf_container.h"
+
+namespace tool {
+
+enum class Kind { body, nodes, fronts, surface };
+
+/// Comments and blank lines at the beginning decide nothing; an OBJ of polylines only is a front, one with faces a
+/// surface. `name` settles what the content leaves open: files named .front are fronts.
+inline Kind kind_of(const std::string& bytes, const std::string& name) {
+  if (geo::looks_like_kerf(bytes)) return Kind::body;
+  const auto begins = [&](const char* word, std::size_t at = 0) { return bytes.compare(at, std::string(word).size(), word) == 0; };
+  if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return Kind::nodes;
+  if (begins("ply")) return bytes.substr(0, 4096).find("property double radius") != std::string::npos ? Kind::nodes : Kind::surface;
+  bool lines = false, faces = false;
+  for (std::size_t at = 0, end = 0; at < bytes.size() && !faces; at = end + 1) {
+    end = std::min(bytes.find('\n', at), bytes.size());
+    at = bytes.find_first_not_of(" \t\r", at);
+    if (at >= end || bytes[at] == '#') continue;
+    if (begins("front ", at) || begins("front\t", at)) return Kind::fronts;
+    if (begins("OFF", at) || begins("COFF", at) || begins("solid", at)) return Kind::surface;
+    lines = lines || begins("l ", at);
+    faces = begins("f ", at);
+  }
+  if (faces) return Kind::surface;
+  return lines || name.ends_with(".front") ? Kind::fronts : Kind::surface;
+}
+
+}  // namespace tool

@@ -65,35 +65,35 @@ void renew_contacts(FrontState& front, const Complex& complex) {
 // The front after the step: the points of K that lie on each new segment, in order.
 void follow_front(FrontState& front, const Strip& strip, const crack::Arrangement& arrangement, const std::vector<VertexId>& vertex) {
   const std::size_t count = front.segments.size(), n = strip.next.size();
-  std::vector<std::vector<crack::Local>> on(count);
-  std::vector<bool> swept(count, false);
-  for (std::size_t t = 0; t < arrangement.strip_size; ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int s = strip.triangles[t].segment[k];
-      if (s < 0) continue;
-      swept[static_cast<std::size_t>(s)] = true;
-      const auto& element = arrangement.elements[t];
-      const auto &from = arrangement.exact(element.corner[k]), &to = arrangement.exact(element.corner[(k + 1) % 3]);
-      for (const auto& child : element.children)
-        for (const crack::Local p : child)
-          if (p < vertex.size() && vertex[p].valid() && CGAL::collinear(from, to, arrangement.exact(p)))
-            on[static_cast<std::size_t>(s)].push_back(p);
-    }
+  // The strip edges that make up each new segment: one, or several where it was snapped to vertices between its ends.
+  std::vector<std::vector<std::vector<crack::Local>>> rows(count);
+  for (std::uint32_t t = 0; t < arrangement.strip_size; ++t)
+    for (int k = 0; k < 3; ++k)
+      if (const int s = strip.triangles[t].segment[k]; s >= 0) rows[static_cast<std::size_t>(s)].push_back(arrangement.along_edge(t, k));
   std::vector<FrontState::Point> points;
   for (const Vec3& p : strip.next) points.push_back({p, VertexId()});
   for (std::size_t s = 0; s < count; ++s) {
     const Vec3 &p = strip.next[s], &q = strip.next[(s + 1) % n];
-    if (!swept[s] && front.points[s].position == p && front.points[(s + 1) % n].position == q) continue;  // stood still
-    const crack::ExactPoint start(p.x(), p.y(), p.z());
-    auto& row = on[s];
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    std::sort(row.begin(), row.end(), [&](auto a, auto b) {
-      const auto c = CGAL::compare_distance_to_point(start, arrangement.exact(a), arrangement.exact(b));
-      return c != CGAL::EQUAL ? c == CGAL::SMALLER : a < b;
-    });
+    if (rows[s].empty() && front.points[s].position == p && front.points[(s + 1) % n].position == q) continue;  // stood still
+    // Chained from p on; each row either way round.
+    std::vector<crack::Local> chain;
+    Vec3 end = p;
+    for (bool found = true; found;) {
+      found = false;
+      for (auto& row : rows[s]) {
+        if (row.empty()) continue;
+        if (arrangement.points()[row.front()] != end && arrangement.points()[row.back()] == end) std::reverse(row.begin(), row.end());
+        if (arrangement.points()[row.front()] != end) continue;
+        chain.insert(chain.end(), row.begin() + (chain.empty() ? 0 : 1), row.end());
+        end = arrangement.points()[row.back()];
+        row.clear();
+        found = true;
+        break;
+      }
+    }
     std::vector<FrontState::Point> segment;
-    for (const auto l : row) segment.push_back({arrangement.rounded(l), vertex[l]});
+    for (const auto l : chain)
+      if (l < vertex.size() && vertex[l].valid()) segment.push_back({arrangement.points()[l], vertex[l]});
     if (segment.empty() || segment.front().position != p) segment.insert(segment.begin(), {p, VertexId()});
     if (segment.back().position != q) segment.push_back({q, VertexId()});
     front.segments[s] = std::move(segment);
@@ -124,17 +124,17 @@ Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Ve
   const auto edges = crack::edges_of_complex(arrangement);
   const auto parts = crack::keep_inside(arrangement, complex, edges);
   work.keep_seconds += watch.lap();
-  std::vector<VertexId> vertex(arrangement.point_count());
+  std::vector<VertexId> vertex(arrangement.points().size());
   if (!parts.empty()) {
     const ComplexEdit edit = crack::stitch(arrangement, complex, edges, parts, front.crack, vertex);
     work.stitch_seconds += watch.lap();
     std::vector<std::array<Vec3, 3>> planes;
-    for (std::size_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
-      if (arrangement.elements[e].cut)
-        planes.insert(planes.end(), arrangement.elements[e].children.size(), complex.corners(arrangement.elements[e].face));
+    for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
+      if (const auto& element = arrangement.elements[e]; element.cut)
+        planes.insert(planes.end(), element.end - element.first, complex.corners(element.face));
     for (const auto& part : parts) {
       const auto& c = arrangement.elements[part.element].corner;
-      planes.push_back({arrangement.rounded(c[0]), arrangement.rounded(c[1]), arrangement.rounded(c[2])});
+      planes.push_back({arrangement.points()[c[0]], arrangement.points()[c[1]], arrangement.points()[c[2]]});
     }
     if (const std::string fault = find_fault(complex, edit, planes); !fault.empty()) throw GeometryError(fault);
     work.guard_seconds += watch.lap();

@@ -1,21 +1,16 @@
-#define CGAL_NO_CDT_2_WARNING  // crossings are few, and each face is triangulated alone
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-#include <CGAL/intersections.h>
+#include "crack/arrangement_internal.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <set>
+#include <numeric>
 
 #include "base/error.h"
-#include "crack/arrangement_internal.h"
 #include "geometry/predicates.h"
 
 namespace geo::crack {
 namespace {
 
-std::uint64_t hash(const Vec3& p) {
+std::uint64_t place_of(const Vec3& p) {
   std::uint64_t h = 1469598103934665603ull;
   for (int i = 0; i < 3; ++i) {
     h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: one zero
@@ -24,70 +19,58 @@ std::uint64_t hash(const Vec3& p) {
   return h;
 }
 
-// Correctly rounded, unlike to_double of a lazy number.
-double round_exactly(const Exact::FT& x) {
-  const auto interval = CGAL::to_interval(x);
-  return interval.first == interval.second ? interval.first : CGAL::to_double(x.exact());
-}
+std::uint64_t edge_key(Local a, Local b) { return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
 
-// What a vertex of the planar triangulation stands for; those that crossing constraints make stand for nothing yet.
-struct Row {
-  Local row = ~0u;
-};
-using Planar = CGAL::Triangulation_vertex_base_with_info_2<Row, Exact>;
-using Structure = CGAL::Triangulation_data_structure_2<Planar, CGAL::Constrained_triangulation_face_base_2<Exact>>;
-using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Exact, Structure, CGAL::Exact_intersections_tag>;
+// The side of plane abc that p is on; 0 without asking where p is one of the three.
+int side_of(const Vec3 (&t)[3], const Vec3& p) {
+  if (p == t[0] || p == t[1] || p == t[2]) return 0;
+  return orient3d(t[0], t[1], t[2], p);
+}
 
 }  // namespace
 
-Arrangement::Arrangement(const Complex& complex, const Strip& strip) : complex_(complex), strip_(strip) {
-  std::vector<FaceId> near;
+Arrangement::Arrangement(const Complex& complex, const Strip& strip) : complex_(complex), strip_(strip), triangulator_(points_) {
+  for (const Vec3& p : strip.points) {
+    const Local l = points_.add(p);
+    strip_places_.emplace(place_of(p), l);
+  }
+  elements.reserve(strip.triangles.size() * 4);
   for (const auto& t : strip.triangles) {
     Element e;
-    for (int k = 0; k < 3; ++k) e.corner[k] = local(strip.points[t.p[k]]);
+    e.corner = {t.p[0], t.p[1], t.p[2]};
     elements.push_back(e);
   }
-  strip_size = elements.size();
-  coplanar_.resize(strip_size);
+  strip_size = static_cast<std::uint32_t>(elements.size());
+  ids_.resize(points_.size());
 }
 
-Local Arrangement::local(VertexId v) {
-  const auto [it, fresh] = by_id_.try_emplace(v, 0);
-  if (fresh) {
-    it->second = local(complex_.point(v));
-    ids_[it->second] = v;
-  }
+Local Arrangement::local_of(VertexId v) {
+  const auto [it, fresh] = by_id_.try_emplace(v, no_local);
+  if (!fresh) return it->second;
+  const Vec3& p = complex_.point(v);
+  const auto same = strip_places_.find(place_of(p));
+  it->second = same != strip_places_.end() && points_[same->second] == p ? same->second : points_.add(p);
+  if (ids_.size() < points_.size()) ids_.resize(points_.size());
+  ids_[it->second] = v;
   return it->second;
 }
 
-Local Arrangement::local(const Vec3& p) {
-  auto& bucket = by_hash_[hash(p)];
-  for (const Local l : bucket)
-    if (rounded_[l] == p && points_[l] == ExactPoint(p.x(), p.y(), p.z())) return l;
-  bucket.push_back(static_cast<Local>(points_.size()));
-  points_.emplace_back(p.x(), p.y(), p.z());
-  rounded_.push_back(p + Vec3::Zero());
-  ids_.emplace_back();
-  return bucket.back();
-}
-
-Local Arrangement::local(const ExactPoint& p) {
-  const Vec3 r(round_exactly(p.x()), round_exactly(p.y()), round_exactly(p.z()));
-  auto& bucket = by_hash_[hash(r)];
-  for (const Local l : bucket)
-    if (rounded_[l] == r && points_[l] == p) return l;
-  bucket.push_back(static_cast<Local>(points_.size()));
-  points_.push_back(p);
-  rounded_.push_back(r + Vec3::Zero());
-  ids_.emplace_back();
-  return bucket.back();
+std::uint32_t Arrangement::element_of(FaceId f) {
+  const auto [it, fresh] = by_face_.try_emplace(f, static_cast<std::uint32_t>(elements.size()));
+  if (fresh) {
+    Element e;
+    for (int k = 0; k < 3; ++k) e.corner[k] = local_of(complex_.face(f).v[k]);
+    e.face = f;
+    elements.push_back(e);
+  }
+  return it->second;
 }
 
 void Arrangement::meet(CrackWork& work) {
   std::vector<FaceId> near;
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles) boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
-  for (std::size_t s = 0; s < strip_size; ++s) {
+  for (std::uint32_t s = 0; s < strip_size; ++s) {
     near.clear();
     complex_.near(boxes[s], near);
     work.faces_near += near.size();
@@ -95,145 +78,282 @@ void Arrangement::meet(CrackWork& work) {
     const Vec3 mine[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
     for (const FaceId f : near) {
       const auto c = complex_.corners(f);
+      const int first = side_of(mine, c[0]);
+      if (first != 0 && side_of(mine, c[1]) == first && side_of(mine, c[2]) == first) continue;
       const Vec3 theirs[3] = {c[0], c[1], c[2]};
-      if (!triangles_meet(mine, theirs)) continue;
-      const auto [it, fresh] = element_of.try_emplace(f, elements.size());
-      if (fresh) {
-        Element e;
-        for (int k = 0; k < 3; ++k) e.corner[k] = local(complex_.face(f).v[k]);
-        e.face = f;
-        elements.push_back(e);
+      const int other = side_of(theirs, mine[0]);
+      if (other != 0 && side_of(theirs, mine[1]) == other && side_of(theirs, mine[2]) == other) continue;
+      const bool known = by_face_.count(f) > 0;
+      const std::uint32_t e = element_of(f);
+      meet_pair(e, s);
+      if (features_.empty() && !known) {  // apart after all: the last one made is taken back
+        by_face_.erase(f);
+        elements.pop_back();
+        continue;
       }
-      share(s, it->second);
     }
   }
   // The strip with itself: a sweep may cross or fold back.
-  for (std::size_t i = 0; i < strip_size; ++i)
-    for (std::size_t j = i + 1; j < strip_size; ++j)
-      if (boxes[i].meets(boxes[j])) share(i, j);
+  const std::size_t before = shared_.size();
+  std::vector<std::uint32_t> order(strip_size);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return boxes[i].lo.x() != boxes[j].lo.x() ? boxes[i].lo.x() < boxes[j].lo.x() : i < j; });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lo.x() <= boxes[order[i]].hi.x(); ++j) {
+      if (!boxes[order[i]].meets(boxes[order[j]])) continue;
+      const auto a = std::min(order[i], order[j]), b = std::max(order[i], order[j]);
+      const auto &s = strip_.triangles[a].p, &t = strip_.triangles[b].p;
+      const Vec3 mine[3] = {strip_.points[s[0]], strip_.points[s[1]], strip_.points[s[2]]};
+      const Vec3 theirs[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
+      const int first = side_of(mine, theirs[0]);
+      if (first != 0 && side_of(mine, theirs[1]) == first && side_of(mine, theirs[2]) == first) continue;
+      meet_pair(a, b);
+      const bool flat = !flat_pairs_.empty() && flat_pairs_.back() == std::pair{a, b};
+      meets_itself_ = meets_itself_ || flat;
+    }
+  meets_itself_ = meets_itself_ || shared_.size() != before;
 }
 
-void Arrangement::share(std::size_t a, std::size_t b) {
-  Element &x = elements[a], &y = elements[b];
-  int at_x[3], at_y[3], common = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      if (x.corner[i] == y.corner[j]) at_x[common] = i, at_y[common] = j, ++common;
-  const auto px = [&](int i) -> const Vec3& { return rounded_[x.corner[i % 3]]; };
-  const auto py = [&](int i) -> const Vec3& { return rounded_[y.corner[i % 3]]; };
-  if (common == 3) {
-    if (a < strip_size) coplanar_[a].push_back(b);
-    if (b < strip_size) coplanar_[b].push_back(a);
-    return;
+// Where a point of the element's plane lies: 1 inside, edges by bit; 0 outside. `on`: the edges it is on.
+int Arrangement::locate_flat(std::uint32_t e, Local p, std::uint8_t& on) const {
+  const auto& c = elements[e].corner;
+  on = 0;
+  for (int k = 0; k < 3; ++k)
+    if (c[k] == p) return on = corner_bits(k), 1;
+  const auto [axis, turn] = view_of(points_, c);
+  for (int k = 0; k < 3; ++k) {
+    const int s = turn * orient2d(points_[c[k]], points_[c[(k + 1) % 3]], points_[p], axis);
+    if (s < 0) return 0;
+    if (s == 0) on = static_cast<std::uint8_t>(on | 1 << k);
   }
-  // What is shared by corners alone divides nothing.
-  if (common == 2) {
-    const int i = 3 - at_x[0] - at_x[1], j = 3 - at_y[0] - at_y[1];
-    if (orient3d(px(0), px(1), px(2), py(j)) != 0) return;
-    if (coplanar_side(px(at_x[0]), px(at_x[1]), px(i), py(j)) < 0) return;
-  } else if (common == 1) {
-    const int i = at_x[0], j = at_y[0];
-    if (!segment_meets_triangle(px(i + 1), px(i + 2), py(0), py(1), py(2)) &&
-        !segment_meets_triangle(py(j + 1), py(j + 2), px(0), px(1), px(2)))
+  return 1;
+}
+
+// Where edge `edge` of an element crosses the other one: inside of it, or on its edge `other_edge` (−1: inside).
+Local Arrangement::crossing(std::uint32_t edge_of, int edge, std::uint32_t other, int other_edge) {
+  const auto &c = elements[edge_of].corner, &o = elements[other].corner;
+  const Local a = c[edge], b = c[(edge + 1) % 3];
+  Key key{edge_key(a, b), other};
+  if (other_edge >= 0) {
+    key.other = edge_key(o[other_edge], o[(other_edge + 1) % 3]) | 1ull << 63;
+    if ((key.other & ~(1ull << 63)) < key.edge) {
+      const auto swap = key.edge;
+      key.edge = key.other & ~(1ull << 63), key.other = swap | 1ull << 63;
+    }
+  }
+  const auto [it, fresh] = by_key_.try_emplace(key, no_local);
+  // From the lower end to the higher one, so that the double is the same whoever asks.
+  if (fresh) it->second = points_.add_crossing(points_[std::min(a, b)], points_[std::max(a, b)], points_[o[0]], points_[o[1]], points_[o[2]]);
+  return it->second;
+}
+
+// Where two edges of elements in one plane cross.
+Local Arrangement::crossing_flat(std::uint32_t a, int edge_a, std::uint32_t b, int edge_b) {
+  const auto &ca = elements[a].corner, &cb = elements[b].corner;
+  Key key{edge_key(ca[edge_a], ca[(edge_a + 1) % 3]), edge_key(cb[edge_b], cb[(edge_b + 1) % 3])};
+  if (key.other < key.edge) std::swap(key.edge, key.other);
+  key.other |= 1ull << 63;
+  const auto [it, fresh] = by_key_.try_emplace(key, no_local);
+  if (fresh) {
+    // The plane through edge b that stands across the common plane.
+    const int axis = view_of(points_, ca).first;
+    const Vec3 &c = points_[cb[edge_b]], &d = points_[cb[(edge_b + 1) % 3]];
+    Vec3 r = c;
+    r[axis] += std::abs(r[axis]) + (d - c).cwiseAbs().maxCoeff();
+    it->second = points_.add_crossing(points_[ca[edge_a]], points_[ca[(edge_a + 1) % 3]], c, d, r);
+  }
+  return it->second;
+}
+
+void Arrangement::feature(Local p, std::uint8_t on_a, std::uint8_t on_b) {
+  for (Feature& f : features_)
+    if (f.point == p) {
+      f.on[0] |= on_a, f.on[1] |= on_b;
       return;
-  } else {
-    const Vec3 s[3] = {px(0), px(1), px(2)}, t[3] = {py(0), py(1), py(2)};
-    if (!triangles_meet(s, t)) return;
+    }
+  features_.push_back({p, {on_a, on_b}});
+}
+
+// What the features mean for element e, the first or second of the pair.
+void Arrangement::divide(std::uint32_t e, int which) {
+  const auto& c = elements[e].corner;
+  for (const Feature& f : features_)
+    if (f.point != c[0] && f.point != c[1] && f.point != c[2]) shared_.push_back({e, f.point, no_local, f.on[which]});
+}
+
+void Arrangement::meet_pair(std::uint32_t a, std::uint32_t b) {
+  features_.clear();
+  const std::uint32_t element[2] = {a, b};
+  int sign[2][3];  // of the corners of each against the other's plane
+  for (int i = 0; i < 2; ++i) {
+    const auto &mine = elements[element[i]].corner, &other = elements[element[1 - i]].corner;
+    for (int k = 0; k < 3; ++k)
+      sign[i][k] = mine[k] == other[0] || mine[k] == other[1] || mine[k] == other[2]
+                       ? 0
+                       : geo::orient3d(points_[other[0]], points_[other[1]], points_[other[2]], points_[mine[k]]);
+    if (sign[i][0] != 0 && sign[i][0] == sign[i][1] && sign[i][0] == sign[i][2]) return;
   }
-  const Exact::Triangle_3 tx(points_[x.corner[0]], points_[x.corner[1]], points_[x.corner[2]]);
-  const Exact::Triangle_3 ty(points_[y.corner[0]], points_[y.corner[1]], points_[y.corner[2]]);
-  const auto result = CGAL::intersection(tx, ty);
-  if (!result) return;
-  std::vector<ExactPoint> corners;
-  if (const auto* point = boost::get<ExactPoint>(&*result))
-    corners = {*point};
-  else if (const auto* segment = boost::get<Exact::Segment_3>(&*result))
-    corners = {segment->source(), segment->target()};
-  else if (const auto* triangle = boost::get<Exact::Triangle_3>(&*result))
-    corners = {triangle->vertex(0), triangle->vertex(1), triangle->vertex(2)};
-  else
-    corners = boost::get<std::vector<ExactPoint>>(*result);
-  std::vector<Local> rows;
-  for (const auto& p : corners) rows.push_back(local(p));
-  if (rows.size() >= 3) {
-    if (a < strip_size) coplanar_[a].push_back(b);
-    if (b < strip_size) coplanar_[b].push_back(a);
+  if (sign[0][0] == 0 && sign[0][1] == 0 && sign[0][2] == 0) return meet_flat(a, b);
+  for (int i = 0; i < 2; ++i) {
+    const std::uint32_t me = element[i], it = element[1 - i];
+    const auto mine = elements[me].corner, other = elements[it].corner;
+    const auto add = [&](Local p, std::uint8_t on_mine, std::uint8_t on_other) {
+      i == 0 ? feature(p, on_mine, on_other) : feature(p, on_other, on_mine);
+    };
+    for (int k = 0; k < 3; ++k) {
+      const int n = (k + 1) % 3;
+      if (sign[i][k] == 0) {
+        std::uint8_t on = 0;
+        if (locate_flat(it, mine[k], on)) add(mine[k], corner_bits(k), on);
+      }
+      if (sign[i][k] * sign[i][n] >= 0) continue;
+      // The edge goes through the other's plane: on which side of its three edges?
+      int turn[3], up = 0, down = 0;
+      for (int j = 0; j < 3; ++j) {
+        turn[j] = geo::orient3d(points_[mine[k]], points_[mine[n]], points_[other[j]], points_[other[(j + 1) % 3]]);
+        up += turn[j] > 0, down += turn[j] < 0;
+      }
+      if (up > 0 && down > 0) continue;
+      const auto on_mine = static_cast<std::uint8_t>(1 << k);
+      if (up + down == 3) {
+        add(crossing(me, k, it, -1), on_mine, 0);
+      } else if (up + down == 2) {
+        const int edge = turn[0] == 0 ? 0 : turn[1] == 0 ? 1 : 2;
+        add(crossing(me, k, it, edge), on_mine, static_cast<std::uint8_t>(1 << edge));
+      } else {
+        // Two edges of the other: at the corner where they meet.
+        const int corner = turn[0] != 0 ? 2 : turn[1] != 0 ? 0 : 1;
+        add(other[corner], on_mine, corner_bits(corner));
+      }
+    }
   }
-  for (Element* e : {&x, &y}) {
-    if (rows.size() == 1) e->shared.push_back({rows[0], rows[0]});
-    if (rows.size() == 2) e->shared.push_back({rows[0], rows[1]});
-    for (std::size_t k = 0; rows.size() >= 3 && k < rows.size(); ++k) e->shared.push_back({rows[k], rows[(k + 1) % rows.size()]});
+  if (features_.size() > 2) throw GeometryError("two triangles meet in more than a segment");
+  for (int i = 0; i < 2; ++i) {
+    divide(element[i], i);
+    if (features_.size() == 2 && !(features_[0].on[i] & features_[1].on[i]))
+      shared_.push_back({element[i], features_[0].point, features_[1].point, 0});
+  }
+}
+
+void Arrangement::meet_flat(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t element[2] = {a, b};
+  const auto &ca = elements[a].corner, &cb = elements[b].corner;
+  for (int k = 0; k < 3; ++k) {
+    std::uint8_t on = 0;
+    if (locate_flat(b, ca[k], on)) feature(ca[k], corner_bits(k), on);
+    if (locate_flat(a, cb[k], on)) feature(cb[k], on, corner_bits(k));
+  }
+  const auto [axis, turn] = view_of(points_, ca);
+  const auto side = [&, axis = axis](Local p, Local q, Local r) {
+    return p == r || q == r ? 0 : orient2d(points_[p], points_[q], points_[r], axis);
+  };
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Local p = ca[i], q = ca[(i + 1) % 3], r = cb[j], s = cb[(j + 1) % 3];
+      if (side(p, q, r) * side(p, q, s) < 0 && side(r, s, p) * side(r, s, q) < 0)
+        feature(crossing_flat(a, i, b, j), static_cast<std::uint8_t>(1 << i), static_cast<std::uint8_t>(1 << j));
+    }
+  for (int i = 0; i < 2; ++i) {
+    divide(element[i], i);
+    // Each edge of the other, as far as it runs through this one.
+    for (int k = 0; k < 3; ++k) {
+      const Feature *from = nullptr, *to = nullptr;
+      for (const Feature& f : features_)
+        if (f.on[1 - i] & 1 << k) (from ? to : from) = &f;
+      if (from && to && !(from->on[i] & to->on[i])) shared_.push_back({element[i], from->point, to->point, 0});
+    }
+  }
+  if (features_.size() >= 3) flat_pairs_.push_back(a < strip_size ? std::pair{a, b} : std::pair{b, a});
+}
+
+Local Arrangement::known_place(Local l) {
+  auto& there = by_place_[points_.hash(l)];
+  for (const Local other : there)
+    if (points_.same_place(other, l)) return other;
+  there.push_back(l);
+  if (ids_.size() < points_.size()) ids_.resize(points_.size());
+  return l;
+}
+
+// One row for each place, whoever named it.
+void Arrangement::unify() {
+  std::vector<Local> row(points_.size());
+  for (Local l = 0; l < row.size(); ++l) row[l] = known_place(l);
+  for (auto& s : shared_) {
+    s.a = row[s.a];
+    if (s.b != no_local) s.b = row[s.b];
   }
 }
 
 void Arrangement::split() {
-  for (auto& e : elements) {
-    std::set<Local> extra;
-    std::set<std::pair<Local, Local>> constraints;
-    const std::set<Local> own(e.corner.begin(), e.corner.end());
-    for (const auto& [a, b] : e.shared) {
-      for (const Local p : {a, b})
-        if (!own.count(p)) extra.insert(p);
-      if (a != b) constraints.insert({std::min(a, b), std::max(a, b)});
-    }
-    if (extra.empty()) {
-      e.children = {e.corner};
-      continue;
-    }
-    e.cut = true;
-    // Seen along the axis in which the normal is longest; exact, so any axis with a non-zero normal would do.
-    const Vec3 n = (rounded_[e.corner[1]] - rounded_[e.corner[0]]).cross(rounded_[e.corner[2]] - rounded_[e.corner[0]]);
-    int axis = 0, turn = 0;
-    n.cwiseAbs().maxCoeff(&axis);
-    const auto flat = [&](const ExactPoint& p) { return Exact::Point_2(p[(axis + 1) % 3], p[(axis + 2) % 3]); };
-    for (int tries = 0; tries < 3 && turn == 0; ++tries) {
-      if (tries > 0) axis = (axis + 1) % 3;
-      turn = CGAL::orientation(flat(points_[e.corner[0]]), flat(points_[e.corner[1]]), flat(points_[e.corner[2]]));
-    }
-    if (turn == 0) throw GeometryError("a triangle without area was met");
-
-    Triangulation plane;
-    std::map<Local, Triangulation::Vertex_handle> handles;
-    const auto insert = [&](Local p) {
-      const auto h = plane.insert(flat(points_[p]));
-      h->info().row = p;
-      handles[p] = h;
-    };
-    for (const Local p : e.corner) insert(p);
-    for (const Local p : extra) insert(p);
-    for (const auto& [a, b] : constraints) plane.insert_constraint(handles.at(a), handles.at(b));
-    {
-      // Where constraints crossed, the crossing is lifted back into the plane of the element.
-      const Exact::Plane_3 plane3(points_[e.corner[0]], points_[e.corner[1]], points_[e.corner[2]]);
-      for (auto v = plane.finite_vertices_begin(); v != plane.finite_vertices_end(); ++v) {
-        if (v->info().row != ~0u) continue;
-        Exact::FT c[3];
-        c[(axis + 1) % 3] = v->point().x();
-        c[(axis + 2) % 3] = v->point().y();
-        const Exact::FT normal[3] = {plane3.a(), plane3.b(), plane3.c()};
-        c[axis] = -(plane3.d() + normal[(axis + 1) % 3] * c[(axis + 1) % 3] + normal[(axis + 2) % 3] * c[(axis + 2) % 3]) / normal[axis];
-        v->info().row = local(ExactPoint(c[0], c[1], c[2]));
+  ids_.resize(points_.size());
+  if (meets_itself_) unify();
+  // By element; a point that several name once, on all the edges that they say.
+  std::stable_sort(shared_.begin(), shared_.end(), [](const Shared& x, const Shared& y) {
+    return x.element != y.element ? x.element < y.element : (x.b == no_local) != (y.b == no_local) ? x.b == no_local : x.b == no_local ? x.a < y.a : false;
+  });
+  mark_begin_.assign(elements.size() + 1, 0);
+  Triangulator::Known known;
+  if (meets_itself_) known = [this](Local l) { return known_place(l); };
+  std::vector<std::pair<Local, Local>> constraints;
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < elements.size(); ++i) {
+    Element& e = elements[i];
+    mark_begin_[i] = static_cast<std::uint32_t>(marks_.size());
+    constraints.clear();
+    for (; at < shared_.size() && shared_[at].element == i; ++at) {
+      const Shared& s = shared_[at];
+      if (s.b == no_local) {
+        if (s.a == e.corner[0] || s.a == e.corner[1] || s.a == e.corner[2]) continue;
+        if (marks_.size() > mark_begin_[i] && marks_.back().point == s.a)
+          marks_.back().edges |= s.edges;
+        else
+          marks_.push_back({s.a, s.edges});
+      } else if (s.a != s.b) {
+        constraints.push_back({s.a, s.b});
       }
     }
-    for (auto f = plane.finite_faces_begin(); f != plane.finite_faces_end(); ++f) {
-      std::array<Local, 3> child{f->vertex(0)->info().row, f->vertex(1)->info().row, f->vertex(2)->info().row};
-      if (turn < 0) std::swap(child[1], child[2]);
-      std::rotate(child.begin(), std::min_element(child.begin(), child.end()), child.end());
-      e.children.push_back(child);
-    }
-    std::sort(e.children.begin(), e.children.end());
+    e.first = static_cast<std::uint32_t>(children.size());
+    e.cut = marks_.size() > mark_begin_[i];
+    if (e.cut)
+      triangulator_.triangulate(e.corner, {marks_.data() + mark_begin_[i], marks_.size() - mark_begin_[i]}, constraints, known, children);
+    else
+      children.push_back({e.corner, {0, 1, 2}});
+    e.end = static_cast<std::uint32_t>(children.size());
   }
+  mark_begin_.back() = static_cast<std::uint32_t>(marks_.size());
+  ids_.resize(points_.size());
 }
 
-bool Arrangement::lies_on_other(std::size_t e, const std::array<Local, 3>& c) const {
-  if (coplanar_[e].empty()) return false;
-  const ExactPoint middle = CGAL::centroid(points_[c[0]], points_[c[1]], points_[c[2]]);
-  for (const std::size_t other : coplanar_[e]) {
-    if (other < strip_size && other >= e) continue;
-    const auto& o = elements[other].corner;
-    if (Exact::Triangle_3(points_[o[0]], points_[o[1]], points_[o[2]]).has_on(middle)) return true;
+bool Arrangement::lies_on_other(std::uint32_t e, const Child& c) const {
+  for (const auto& [mine, other] : flat_pairs_) {
+    const std::uint32_t that = mine == e ? other : other == e ? mine : e;
+    if (that == e || (that < strip_size && that > e)) continue;
+    const auto& o = elements[that].corner;
+    const auto [axis, turn] = view_of(points_, o);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k)
+      for (const Local p : c.v) {
+        const Local a = o[k], b = o[(k + 1) % 3];
+        inside = inside && (p == a || p == b || turn * points_.orient2d(a, b, p, axis) >= 0);
+      }
+    if (inside) return true;
   }
   return false;
+}
+
+std::vector<Local> Arrangement::along_edge(std::uint32_t e, int k) const {
+  const Local from = elements[e].corner[k], to = elements[e].corner[(k + 1) % 3];
+  std::vector<Local> row;
+  for (auto m = mark_begin_[e]; m < mark_begin_[e + 1]; ++m)
+    if (marks_[m].edges & 1 << k) row.push_back(marks_[m].point);
+  int along = 0;
+  (points_[to] - points_[from]).cwiseAbs().maxCoeff(&along);
+  const int up = points_.compare(to, from, along);
+  std::sort(row.begin(), row.end(), [&](Local a, Local b) { return a != b && points_.compare(a, b, along) == -up; });
+  row.insert(row.begin(), from);
+  row.push_back(to);
+  return row;
 }
 
 }  // namespace geo::crack

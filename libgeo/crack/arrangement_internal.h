@@ -1,36 +1,25 @@
-// The arrangement of one step, in exact coordinates: the strip, the faces of K that it meets, and their common pieces.
+// The arrangement of one step: the strip, the faces of K that it meets, and their common pieces, exactly.
 #pragma once
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-
 #include <array>
-#include <map>
 #include <unordered_map>
 #include <vector>
 
 #include "crack/sweep.h"
+#include "crack/triangulate_internal.h"
 
 namespace geo::crack {
 
-using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
-using ExactPoint = Exact::Point_3;
-using Local = std::uint32_t;  ///< row of a point of the arrangement
-
-/// The smaller key of an edge between two local points.
-inline std::uint64_t edge_key(Local a, Local b) {
-  return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
-}
-
-/// A triangle of the strip or a face of K, with what it shares with others and what it was divided into.
+/// A triangle of the strip or a face of K.
 struct Element {
   std::array<Local, 3> corner;
-  FaceId face;      ///< invalid: of the strip
-  bool cut = false;
-  std::vector<std::pair<Local, Local>> shared;  ///< segments on it; a point twice is a point
-  std::vector<std::array<Local, 3>> children;   ///< itself when it is not cut; oriented as it is
+  FaceId face;                      ///< invalid: of the strip
+  bool cut = false;                 ///< divided into more than itself
+  std::uint32_t first = 0, end = 0; ///< its children: children[first..end)
 };
 
-/// Points are identified exactly: the same place is the same row, whatever it rounds to.
+/// Points that edges and faces define are named by them, so that one place has one row; only where the strip meets
+/// itself are places compared.
 class Arrangement {
  public:
   Arrangement(const Complex& complex, const Strip& strip);
@@ -40,31 +29,71 @@ class Arrangement {
   /// Triangulates each element that something divides, alone and constrained to what it shares.
   void split();
 
-  const ExactPoint& exact(Local p) const { return points_[p]; }
-  const Vec3& rounded(Local p) const { return rounded_[p]; }
-  VertexId id(Local p) const { return ids_[p]; }
-  std::size_t point_count() const { return points_.size(); }
-  Local local(VertexId v);
+  const Points& points() const { return points_; }
+  VertexId id(Local p) const { return p < ids_.size() ? ids_[p] : VertexId(); }
+  /// Sign of the side of the element's plane that p lies on, against its normal's direction.
+  int side(std::uint32_t element, Local p) const {
+    const auto& c = elements[element].corner;
+    return points_.orient3d(c[0], c[1], c[2], p);
+  }
   /// True when child `c` of strip element `e` lies on a face of K, or on an earlier triangle of the strip.
-  bool lies_on_other(std::size_t e, const std::array<Local, 3>& c) const;
+  bool lies_on_other(std::uint32_t e, const Child& c) const;
+  /// The points on edge k of an element, its ends included, in order from corner k.
+  std::vector<Local> along_edge(std::uint32_t e, int k) const;
 
   std::vector<Element> elements;  ///< the strip's triangles first
-  std::size_t strip_size = 0;
-  std::map<FaceId, std::size_t> element_of;
+  std::uint32_t strip_size = 0;
+  std::vector<Child> children;
 
  private:
-  Local local(const ExactPoint& p);
-  Local local(const Vec3& p);
-  void share(std::size_t a, std::size_t b);
+  /// What two elements have in common: a point, and where it lies on each.
+  struct Feature {
+    Local point;
+    std::uint8_t on[2];
+  };
+  struct Key {
+    std::uint64_t edge, other;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& k) const {
+      std::uint64_t h = k.edge * 0x9e3779b97f4a7c15ull ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull;
+      return h ^ h >> 29;
+    }
+  };
+  Local local_of(VertexId v);
+  std::uint32_t element_of(FaceId f);
+  void meet_pair(std::uint32_t a, std::uint32_t b);
+  void meet_flat(std::uint32_t a, std::uint32_t b);
+  int locate_flat(std::uint32_t e, Local p, std::uint8_t& on) const;
+  Local crossing(std::uint32_t edge_of, int edge, std::uint32_t other, int other_edge);
+  Local crossing_flat(std::uint32_t a, int edge_a, std::uint32_t b, int edge_b);
+  void feature(Local p, std::uint8_t on_a, std::uint8_t on_b);
+  void divide(std::uint32_t e, int which);
+  void unify();
+  Local known_place(Local l);
 
   const Complex& complex_;
   const Strip& strip_;
-  std::vector<ExactPoint> points_;
-  std::vector<Vec3> rounded_;
+  Points points_;
+  Triangulator triangulator_;
   std::vector<VertexId> ids_;
-  std::unordered_map<std::uint64_t, std::vector<Local>> by_hash_;
+  std::unordered_map<std::uint64_t, Local> strip_places_;
   std::unordered_map<VertexId, Local> by_id_;
-  std::vector<std::vector<std::size_t>> coplanar_;  ///< per strip element: elements it overlaps in an area
+  std::unordered_map<FaceId, std::uint32_t> by_face_;
+  std::unordered_map<Key, Local, KeyHash> by_key_;
+  std::unordered_map<std::uint64_t, std::vector<Local>> by_place_;  ///< where the strip meets itself
+  std::vector<Feature> features_;                                   ///< of the pair at hand
+  struct Shared {
+    std::uint32_t element;
+    Local a, b;  ///< b = no_local: a point with `edges`
+    std::uint8_t edges;
+  };
+  std::vector<Shared> shared_;
+  std::vector<Mark> marks_;              ///< by element, see mark_begin_
+  std::vector<std::uint32_t> mark_begin_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> flat_pairs_;  ///< elements that overlap in an area, strip first
+  bool meets_itself_ = false;
 };
 
 }  // namespace geo::crack

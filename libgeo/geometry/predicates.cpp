@@ -58,6 +58,15 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return static_cast<int>(CGAL::orientation(pt(a), pt(b), pt(c), pt(d)));
 }
 
+int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const double left = (a[i] - c[i]) * (b[j] - c[j]), right = (a[j] - c[j]) * (b[i] - c[i]);
+  const double value = left - right, terms = std::abs(left) + std::abs(right);
+  // Shewchuk's A-stage of orient2d: (3 + 16 ε) ε.
+  if (terms > smallest && terms < largest && std::abs(value) > 3.3306690738754716e-16 * terms) return value > 0 ? 1 : -1;
+  return static_cast<int>(CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
+}
+
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
   // A clearly non-zero component of the cross product settles it; each has an error of at most 4 ε times its terms.
   const Vec3 u = b - a, v = c - a;

@@ -9,6 +9,9 @@ namespace geo {
 /// −1 on the other side, 0 when the four points are exactly coplanar.
 int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// Sign of the turn abc in the two axes that follow `axis` (0, 1, 2): counter-clockwise positive.
+int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis);
+
 /// True when a, b, c lie exactly on one line (coincident points included).
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 

@@ -1,0 +1,387 @@
+#include "crack/triangulate_internal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "geometry/predicates.h"
+
+namespace geo::crack {
+
+std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner) {
+  const Vec3 n = (points[corner[1]] - points[corner[0]]).cross(points[corner[2]] - points[corner[0]]);
+  int axis = 0;
+  n.cwiseAbs().maxCoeff(&axis);
+  int turn = points.orient2d(corner[0], corner[1], corner[2], axis);
+  for (int tries = 0; tries < 2 && turn == 0; ++tries) {
+    axis = (axis + 1) % 3;
+    turn = points.orient2d(corner[0], corner[1], corner[2], axis);
+  }
+  return {axis, turn};
+}
+
+int Triangulator::add_vertex(Local l, std::uint8_t edges) {
+  if (row_.size() < points_.size()) row_.resize(points_.size(), -1);
+  const int v = static_cast<int>(local_.size());
+  row_[l] = v;
+  local_.push_back(l);
+  edges_.push_back(edges);
+  at_.push_back(-1);
+  return v;
+}
+
+int Triangulator::turn(int a, int b, int c) const {
+  const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b), ic = static_cast<std::size_t>(c);
+  if (edges_[ia] & edges_[ib] & edges_[ic]) return 0;  // all on one edge of the face
+  return sign_ * points_.orient2d(local_[ia], local_[ib], local_[ic], axis_);
+}
+
+int Triangulator::rounded_turn(int a, int b, int c) const {
+  const auto p = [&](int v) -> const Vec3& { return points_[local_[static_cast<std::size_t>(v)]]; };
+  return sign_ * orient2d(p(a), p(b), p(c), axis_);
+}
+
+// Rotates the names of t's corners so that `edge` becomes edge 0.
+void Triangulator::turn_to(int t, int edge) {
+  if (edge == 0) return;
+  Tri& x = tri_[static_cast<std::size_t>(t)];
+  const Tri y = x;
+  for (int k = 0; k < 3; ++k) x.v[k] = y.v[(k + edge) % 3], x.n[k] = y.n[(k + edge) % 3], x.e[k] = y.e[(k + edge) % 3];
+}
+
+// t's neighbour `from` is `to` now.
+void Triangulator::relink(int t, int from, int to) {
+  if (t < 0) return;
+  for (int& n : tri_[static_cast<std::size_t>(t)].n)
+    if (n == from) {
+      n = to;
+      return;
+    }
+}
+
+void Triangulator::split_edge(int t, int edge, int p) {
+  turn_to(t, edge);
+  const int u = tri_[static_cast<std::size_t>(t)].n[0];
+  const int t2 = static_cast<int>(tri_.size());
+  tri_.push_back({});
+  int u2 = -1;
+  if (u >= 0) u2 = static_cast<int>(tri_.size()), tri_.push_back({});
+  {
+    Tri &x = tri_[static_cast<std::size_t>(t)], &y = tri_[static_cast<std::size_t>(t2)];
+    const int b = x.v[1], c = x.v[2];
+    y = {{p, b, c}, {u2 >= 0 ? u2 : -1, x.n[1], t}, {x.e[0], x.e[1], edge_diagonal}};
+    relink(x.n[1], t, t2);
+    x.v[1] = p;
+    x.n[1] = t2;
+    x.e[1] = edge_diagonal;
+    at_[static_cast<std::size_t>(p)] = t;
+    at_[static_cast<std::size_t>(b)] = t2;
+    at_[static_cast<std::size_t>(c)] = t;
+  }
+  if (u < 0) return;
+  int j = 0;
+  while (tri_[static_cast<std::size_t>(u)].n[j] != t || tri_[static_cast<std::size_t>(u)].v[(j + 1) % 3] != tri_[static_cast<std::size_t>(t)].v[0]) ++j;
+  turn_to(u, j);
+  Tri &x = tri_[static_cast<std::size_t>(u)], &y = tri_[static_cast<std::size_t>(u2)];  // x: b, a, d
+  const int b = x.v[0], d = x.v[2];
+  y = {{b, p, d}, {t2, u, x.n[2]}, {x.e[0], edge_diagonal, x.e[2]}};
+  relink(x.n[2], u, u2);
+  x.v[0] = p;
+  x.n[2] = u2;
+  x.e[2] = edge_diagonal;
+  at_[static_cast<std::size_t>(b)] = u2;
+  at_[static_cast<std::size_t>(d)] = u;
+}
+
+void Triangulator::split_face(int t, int p) {
+  const int t1 = static_cast<int>(tri_.size()), t2 = t1 + 1;
+  tri_.push_back({});
+  tri_.push_back({});
+  Tri& x = tri_[static_cast<std::size_t>(t)];
+  const int a = x.v[0], b = x.v[1], c = x.v[2];
+  tri_[static_cast<std::size_t>(t1)] = {{b, c, p}, {x.n[1], t2, t}, {x.e[1], edge_diagonal, edge_diagonal}};
+  tri_[static_cast<std::size_t>(t2)] = {{c, a, p}, {x.n[2], t, t1}, {x.e[2], edge_diagonal, edge_diagonal}};
+  relink(x.n[1], t, t1);
+  relink(x.n[2], t, t2);
+  x = {{a, b, p}, {x.n[0], t1, t2}, {x.e[0], edge_diagonal, edge_diagonal}};
+  at_[static_cast<std::size_t>(p)] = t;
+  at_[static_cast<std::size_t>(a)] = t;
+  at_[static_cast<std::size_t>(b)] = t;
+  at_[static_cast<std::size_t>(c)] = t1;
+}
+
+void Triangulator::flip(int t, int edge) {
+  turn_to(t, edge);
+  const int u = tri_[static_cast<std::size_t>(t)].n[0], a = tri_[static_cast<std::size_t>(t)].v[0];
+  int j = 0;
+  while (tri_[static_cast<std::size_t>(u)].n[j] != t || tri_[static_cast<std::size_t>(u)].v[(j + 1) % 3] != a) ++j;
+  turn_to(u, j);
+  Tri &x = tri_[static_cast<std::size_t>(t)], &y = tri_[static_cast<std::size_t>(u)];  // x: a, b, c   y: b, a, d
+  const int b = x.v[1], c = x.v[2], d = y.v[2];
+  relink(y.n[1], u, t);
+  relink(x.n[1], t, u);
+  const Tri nx = {{a, d, c}, {y.n[1], u, x.n[2]}, {y.e[1], edge_diagonal, x.e[2]}};
+  const Tri ny = {{d, b, c}, {y.n[2], x.n[1], t}, {y.e[2], x.e[1], edge_diagonal}};
+  x = nx;
+  y = ny;
+  at_[static_cast<std::size_t>(a)] = at_[static_cast<std::size_t>(c)] = at_[static_cast<std::size_t>(d)] = t;
+  at_[static_cast<std::size_t>(b)] = u;
+}
+
+// True when the diagonal across the edge can be exchanged: both new triangles have an area.
+bool Triangulator::may_flip(int t, int edge, int& other, int& apex) {
+  const Tri& x = tri_[static_cast<std::size_t>(t)];
+  other = x.n[edge];
+  if (other < 0 || x.e[edge] != edge_diagonal) return false;
+  const int a = x.v[edge], b = x.v[(edge + 1) % 3], c = x.v[(edge + 2) % 3];
+  apex = -1;
+  for (const int v : tri_[static_cast<std::size_t>(other)].v)
+    if (v != a && v != b) apex = v;
+  return turn(a, apex, c) > 0 && turn(apex, b, c) > 0;
+}
+
+// The triangle that has the edge from a to b, and where; {−1, 0} when there is none.
+std::pair<int, int> Triangulator::find_edge(int a, int b) {
+  // Around a one way until the edge or a side of the face is met, then the other way.
+  const int start = at_[static_cast<std::size_t>(a)];
+  for (const bool left : {true, false}) {
+    int t = start;
+    do {
+      const Tri& x = tri_[static_cast<std::size_t>(t)];
+      int k = 0;
+      while (x.v[k] != a) ++k;
+      if (x.v[(k + 1) % 3] == b) return {t, k};
+      t = left ? x.n[(k + 2) % 3] : x.n[k];
+    } while (t >= 0 && t != start);
+    if (t == start) break;
+  }
+  return {-1, 0};
+}
+
+void Triangulator::insert(int p) {
+  int t = 0;
+  for (std::size_t step = 0; step <= 4 * tri_.size() + 16; ++step) {
+    const Tri& x = tri_[static_cast<std::size_t>(t)];
+    int next = -1, on = -1, zeros = 0;
+    for (int k = 0; k < 3 && next < 0; ++k) {
+      const int side = turn(x.v[k], x.v[(k + 1) % 3], p);
+      if (side < 0) {
+        if (x.n[k] < 0) throw GeometryError("a point of a face lies outside of it");
+        next = x.n[k];
+      } else if (side == 0) {
+        on = k, ++zeros;
+      }
+    }
+    if (next >= 0) {
+      t = next;
+      continue;
+    }
+    if (zeros > 1) throw GeometryError("two points of a face are at one place");
+    if (on >= 0) {
+      if (x.n[on] < 0) throw GeometryError("a point of a face lies on its edge unknown to the faces around");
+      split_edge(t, on, p);
+    } else {
+      split_face(t, p);
+    }
+    return;
+  }
+  throw GeometryError("a point of a face cannot be located");
+}
+
+void Triangulator::constrain(int a, int b, const Known& known) {
+  for (int guard = 0; a != b; ++guard) {
+    if (guard > 4096) throw GeometryError("a constraint cannot be inserted");
+    if (const auto [t, k] = find_edge(a, b); t >= 0) {
+      Tri& x = tri_[static_cast<std::size_t>(t)];
+      if (x.e[k] == edge_diagonal) x.e[k] = edge_constraint;
+      if (const int u = x.n[k]; u >= 0)
+        for (int j = 0; j < 3; ++j)
+          if (tri_[static_cast<std::size_t>(u)].n[j] == t && tri_[static_cast<std::size_t>(u)].v[j] == b &&
+              tri_[static_cast<std::size_t>(u)].e[j] == edge_diagonal)
+            tri_[static_cast<std::size_t>(u)].e[j] = edge_constraint;
+      return;
+    }
+    if (const auto [t, k] = find_edge(b, a); t >= 0) {  // an edge of the face, seen from inside
+      return constrain(b, a, known);
+    }
+    // The triangle at a through which the way to b leaves, or a vertex on the way.
+    int through = -1, edge = -1, ahead = -1;
+    const int start = at_[static_cast<std::size_t>(a)];
+    for (const bool left : {true, false}) {
+      int t = start;
+      do {
+        const Tri& x = tri_[static_cast<std::size_t>(t)];
+        int k = 0;
+        while (x.v[k] != a) ++k;
+        const int p = x.v[(k + 1) % 3], q = x.v[(k + 2) % 3];
+        const int sp = turn(a, b, p), sq = turn(a, b, q);
+        for (const auto& [v, s] : {std::pair{p, sp}, std::pair{q, sq}}) {
+          if (s != 0) continue;
+          // On the line: ahead when it lies on b's side of a.
+          int along = 0;
+          const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)], lv = local_[static_cast<std::size_t>(v)];
+          (points_[lb] - points_[la]).cwiseAbs().maxCoeff(&along);
+          for (int i = 0; i < 3 && points_.compare(lb, la, along) == 0; ++i) along = (along + 1) % 3;
+          if (points_.compare(lb, la, along) == points_.compare(lv, la, along)) ahead = v;
+        }
+        if (sp < 0 && sq > 0) through = t, edge = (k + 1) % 3;
+        t = left ? x.n[(k + 2) % 3] : x.n[k];
+      } while (t >= 0 && t != start && through < 0 && ahead < 0);
+      if (t == start || through >= 0 || ahead >= 0) break;
+    }
+    if (ahead >= 0) {
+      constrain(a, ahead, known);
+      a = ahead;
+      continue;
+    }
+    if (through < 0) throw GeometryError("a constraint leaves its face");
+    // The edges that ab crosses, as pairs of vertices: right of it, left of it.
+    std::vector<std::pair<int, int>> crossed;
+    int end = b;
+    for (int t = through, k = edge;;) {
+      const Tri& x = tri_[static_cast<std::size_t>(t)];
+      const int r = x.v[k], l = x.v[(k + 1) % 3];
+      if (x.e[k] != edge_diagonal) {
+        // Another constraint in the way: both are divided where they cross.
+        if (!known || x.n[k] < 0) throw GeometryError("constraints of a face cross");
+        const Local made = points_.add_crossing_in_plane(local_[static_cast<std::size_t>(a)], local_[static_cast<std::size_t>(b)],
+                                                         local_[static_cast<std::size_t>(r)], local_[static_cast<std::size_t>(l)], axis_);
+        const Local place = known(made);
+        if (row_.size() < points_.size()) row_.resize(points_.size(), -1);
+        if (row_[place] >= 0) throw GeometryError("constraints cross at a vertex that is not on them");
+        const int p = add_vertex(place, 0);
+        split_edge(t, k, p);
+        constrain(a, p, known);
+        a = p;
+        crossed.clear();
+        end = -1;
+        break;
+      }
+      crossed.push_back({r, l});
+      const int u = x.n[k];
+      const Tri& y = tri_[static_cast<std::size_t>(u)];
+      int j = 0;
+      while (y.v[j] == r || y.v[j] == l) ++j;
+      const int apex = y.v[j];
+      if (apex == b) break;
+      const int side = turn(a, b, apex);
+      if (side == 0) {
+        end = apex;
+        break;
+      }
+      // y runs l → r across the edge; the way leaves through (apex, l) or (r, apex).
+      t = u;
+      k = side < 0 ? j : (j + 2) % 3;  // apex right of ab: leaves between apex and l
+    }
+    if (end < 0) continue;
+    // Flips, until none of the edges crosses a–end any more (Sloan 1993).
+    std::size_t patience = 16 * crossed.size() * crossed.size() + 64;
+    for (std::size_t head = 0; head < crossed.size(); ++head) {
+      if (patience-- == 0) throw GeometryError("a constraint cannot be reached by flips");
+      const auto [r, l] = crossed[head];
+      const auto [t, k] = find_edge(r, l);
+      if (t < 0) throw GeometryError("a crossed edge is lost");
+      int other = -1, apex = -1;
+      const int mine = tri_[static_cast<std::size_t>(t)].v[(k + 2) % 3];
+      if (!may_flip(t, k, other, apex)) {
+        crossed.push_back({r, l});
+        continue;
+      }
+      flip(t, k);
+      const int s1 = mine == a || mine == end ? 0 : turn(a, end, mine), s2 = apex == a || apex == end ? 0 : turn(a, end, apex);
+      if (s1 * s2 < 0) crossed.push_back(s1 < 0 ? std::pair{mine, apex} : std::pair{apex, mine});
+    }
+    constrain(a, end, known);
+    a = end;
+  }
+}
+
+// Exchanges diagonals for better ones (Lawson 1977), the better by the angles that face them.
+void Triangulator::improve() {
+  const auto cotangent = [&](int apex, int a, int b) {
+    const auto p = [&](int v) -> const Vec3& { return points_[local_[static_cast<std::size_t>(v)]]; };
+    const Vec3 u = p(a) - p(apex), v = p(b) - p(apex);
+    return u.dot(v) / std::max(u.cross(v).norm(), 1e-300);
+  };
+  std::vector<std::pair<int, int>> todo;
+  for (const Tri& x : tri_)
+    for (int k = 0; k < 3; ++k)
+      if (x.e[k] == edge_diagonal && x.v[k] < x.v[(k + 1) % 3]) todo.push_back({x.v[k], x.v[(k + 1) % 3]});
+  std::size_t patience = 20 * todo.size() + 20;
+  while (!todo.empty() && patience-- > 0) {
+    const auto [a, b] = todo.back();
+    todo.pop_back();
+    const auto [t, k] = find_edge(a, b);
+    if (t < 0) continue;
+    int other = -1, d = -1;
+    const int c = tri_[static_cast<std::size_t>(t)].v[(k + 2) % 3];
+    if (tri_[static_cast<std::size_t>(t)].e[k] != edge_diagonal) continue;
+    other = tri_[static_cast<std::size_t>(t)].n[k];
+    for (const int v : tri_[static_cast<std::size_t>(other)].v)
+      if (v != a && v != b) d = v;
+    if (!(cotangent(c, a, b) + cotangent(d, a, b) < -1e-6) || !may_flip(t, k, other, d)) continue;
+    flip(t, k);
+    for (const auto& [x, y] : {std::pair{a, d}, {d, b}, {b, c}, {c, a}}) todo.push_back({std::min(x, y), std::max(x, y)});
+  }
+}
+
+// Children that rounding turns over are exchanged for others where that helps.
+void Triangulator::straighten() {
+  for (int t = 0; t < static_cast<int>(tri_.size()); ++t) {
+    const Tri x = tri_[static_cast<std::size_t>(t)];
+    if (rounded_turn(x.v[0], x.v[1], x.v[2]) > 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      int other = -1, d = -1;
+      if (!may_flip(t, k, other, d)) continue;
+      const int a = x.v[k], b = x.v[(k + 1) % 3], c = x.v[(k + 2) % 3];
+      if (rounded_turn(a, d, c) <= 0 || rounded_turn(d, b, c) <= 0) continue;
+      flip(t, k);
+      break;
+    }
+  }
+}
+
+void Triangulator::triangulate(const std::array<Local, 3>& corner, std::span<const Mark> marks,
+                               std::span<const std::pair<Local, Local>> constraints, const Known& known, std::vector<Child>& out) {
+  std::tie(axis_, sign_) = view_of(points_, corner);
+  if (sign_ == 0) throw GeometryError("a triangle without area was met");
+  local_.clear(), edges_.clear(), at_.clear(), tri_.clear();
+  for (int k = 0; k < 3; ++k) add_vertex(corner[k], corner_bits(k));
+  tri_.push_back({{0, 1, 2}, {-1, -1, -1}, {0, 1, 2}});
+  at_[0] = at_[1] = at_[2] = 0;
+  // Points on the face's edges, in order along them: they divide the triangle behind the edge, no question asked.
+  std::vector<Local> chain;
+  for (int k = 0; k < 3; ++k) {
+    chain.clear();
+    for (const Mark& m : marks)
+      if (m.edges & 1 << k) chain.push_back(m.point);
+    if (chain.empty()) continue;
+    const Local from = corner[k], to = corner[(k + 1) % 3];
+    if (chain.size() > 1) {
+      int along = 0;
+      (points_[to] - points_[from]).cwiseAbs().maxCoeff(&along);
+      const int up = points_.compare(to, from, along);
+      std::sort(chain.begin(), chain.end(), [&](Local a, Local b) { return a != b && points_.compare(a, b, along) == -up; });
+    }
+    int last = k;
+    for (const Local l : chain) {
+      const int p = add_vertex(l, static_cast<std::uint8_t>(1 << k));
+      const auto [t, edge] = find_edge(last, (k + 1) % 3);
+      split_edge(t, edge, p);
+      last = p;
+    }
+  }
+  for (const Mark& m : marks)
+    if (m.edges == 0) insert(add_vertex(m.point, 0));
+  for (const auto& [a, b] : constraints) constrain(row_[a], row_[b], known);
+  improve();
+  straighten();
+  for (const Tri& x : tri_) {
+    Child child;
+    for (int k = 0; k < 3; ++k) child.v[k] = local_[static_cast<std::size_t>(x.v[k])], child.edge[k] = x.e[k];
+    out.push_back(child);
+  }
+  for (const Local l : local_) row_[l] = -1;
+}
+
+}  // namespace geo::crack

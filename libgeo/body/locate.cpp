@@ -25,6 +25,19 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q) {
   });
 }
 
+bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
+  const auto own = k.corners(s.face);
+  if (!k.has(s) || orient3d(own[0], own[1], own[2], p) != (s.which ? 1 : -1)) return false;
+  Box3 box{base, base};
+  box.add(p);
+  std::vector<FaceId> faces;
+  k.near(box, faces);
+  return std::none_of(faces.begin(), faces.end(), [&](FaceId f) {
+    const auto t = k.corners(f);
+    return f != s.face && segment_meets_triangle(base, p, t[0], t[1], t[2]);
+  });
+}
+
 Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
   std::vector<FaceId> faces;
   const double everything = 4 * (complex.extent().diagonal() + (p - complex.extent().center()).norm());

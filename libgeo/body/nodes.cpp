@@ -1,69 +1,13 @@
 #include "body/nodes.h"
 
 #include <algorithm>
-#include <map>
 
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "sampling/resample.h"
-#include "surface/pieces.h"
 
 namespace geo {
-namespace {
-
-// True when p is on the given side of the face and nothing else touches the segment from there to `base` on the face:
-// then p is in the material before that side. The face itself is left out because its own point is rounded.
-bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
-  const auto own = k.corners(s.face);
-  if (!k.has(s) || orient3d(own[0], own[1], own[2], p) != (s.which ? 1 : -1)) return false;
-  Box3 box{base, base};
-  box.add(p);
-  std::vector<FaceId> faces;
-  k.near(box, faces);
-  return std::none_of(faces.begin(), faces.end(), [&](FaceId f) {
-    const auto t = k.corners(f);
-    return f != s.face && segment_meets_triangle(base, p, t[0], t[1], t[2]);
-  });
-}
-
-// Nodes along the surface from where i looks at it to where j does, in the wedges of the edges passed on the way: what
-// the material joins is joined beside its boundary, however narrow. Nothing when the two look at different shells.
-void insert_along(Body& body, NodeId i, NodeId j, double spacing) {
-  const Complex& k = body.surface;
-  const auto side_of = [&](NodeId n) { return side_seen_from(k, body.nodes.position[n.index()], spacing); };
-  const Side from = side_of(i), to = side_of(j);
-  std::map<Side, std::pair<Side, int>> before{{from, {from, 0}}};
-  std::vector<Side> queue{from};
-  for (std::size_t q = 0; q < queue.size() && !before.count(to); ++q)
-    for (int e = 0; e < 3; ++e)
-      if (const Side n = k.neighbor(queue[q], e); before.try_emplace(n, queue[q], e).second) queue.push_back(n);
-  if (!before.count(to)) return;
-  const auto inwards = [&](Side s) {
-    const auto t = k.corners(s.face);
-    return Vec3((s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized());
-  };
-  Vec3 last = body.nodes.position[j.index()];
-  for (Side s = to; s != from; s = before.at(s).first) {
-    const auto [previous, e] = before.at(s);
-    const auto t = k.corners(previous.face);
-    const Vec3 middle = 0.5 * (t[e] + t[(e + 1) % 3]);
-    Vec3 way = inwards(s) + inwards(previous);
-    if (way.norm() < 1e-3) way = middle - t[(e + 2) % 3];  // around a crack's front
-    way.normalize();
-    double step = 0.5 * spacing;
-    while (step > 1e-6 * spacing && (is_blocked(k, middle + 1e-6 * step * way, middle + step * way) ||
-                                     !is_inside(k, middle + step * way, spacing)))
-      step *= 0.5;
-    const Vec3 x = middle + step * way;
-    if (step <= 1e-6 * spacing || ((x - last).norm() < 0.5 * spacing && s != to && !is_blocked(k, x, last))) continue;
-    insert_node(body, x, i, spacing);
-    last = x;
-  }
-}
-
-}  // namespace
-
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   const NodeId id(body.nodes.size());
   NodeSet& nodes = body.nodes;
@@ -142,77 +86,6 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
   std::sort(moved.begin(), moved.end());
   moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
   return moved;
-}
-
-void connect_pieces(Body& body, const std::function<void(NodeId)>& after) {
-  double scale = 0.7;
-  for (int round = 0; round < 6; ++round, scale *= 0.6) {
-    std::vector<std::uint32_t> component;
-    const auto count = body.graph.components(component);
-    const Pieces pieces = find_pieces(body.surface);
-    const auto piece_of = [&](std::uint32_t i) {
-      const Side s = side_seen_from(body.surface, body.nodes.position[i], body.nodes.spacing[i]);
-      return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
-    };
-    // The largest component of each piece stands for it; the others want a way to it.
-    std::vector<std::uint32_t> size(count, 0), first(count, ~0u);
-    for (std::uint32_t i = 0; i < component.size(); ++i)
-      if (size[component[i]]++ == 0) first[component[i]] = i;
-    std::vector<std::int32_t> piece(count);
-    std::vector<std::uint32_t> main(pieces.count, ~0u);
-    for (std::uint32_t c = 0; c < count; ++c) {
-      piece[c] = piece_of(first[c]);
-      if (piece[c] < 0) continue;
-      auto& m = main[static_cast<std::size_t>(piece[c])];
-      if (m == ~0u || size[c] > size[m]) m = c;
-    }
-    const NodeId first_new(body.nodes.size());
-    for (std::uint32_t p = 0; p < pieces.count; ++p) {
-      if (main[p] != ~0u) continue;
-      // No node at all: one on the line from the middle of its largest face straight into it, half way to what comes
-      // next.
-      Side best;
-      double most = -1;
-      for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
-        for (int which = 0; which < 2; ++which)
-          if (pieces.of_side[f * 2 + static_cast<std::uint32_t>(which)] == static_cast<std::int32_t>(p)) {
-            const auto t = body.surface.corners(FaceId(f));
-            const double a = (t[1] - t[0]).cross(t[2] - t[0]).norm();
-            if (a > most) most = a, best = {FaceId(f), which};
-          }
-      const auto t = body.surface.corners(best.face);
-      const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-      const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-      const auto donor = body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; });
-      double step = body.nodes.spacing[donor[0]];
-      while (step > 1e-12 * body.surface.extent().diagonal() &&
-             !stands_before(body.surface, best, middle, middle + step * inwards))
-        step *= 0.6;
-      insert_node(body, middle + 0.5 * step * inwards, NodeId(donor[0]), body.nodes.spacing[donor[0]]);
-    }
-    std::vector<FaceId> narrow;
-    for (std::uint32_t i = 0; i < component.size(); ++i) {
-      const auto c = component[i];
-      if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-      body.surface.near(Box3{body.nodes.position[i], body.nodes.position[i]}.grown(1.5 * body.nodes.spacing[i]),
-                        narrow);
-    }
-    std::sort(narrow.begin(), narrow.end());
-    narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
-    // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
-    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
-    if (round >= 2)
-      for (std::uint32_t c = 0; c < count; ++c) {
-        if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-        const auto target = main[static_cast<std::size_t>(piece[c])];
-        const auto near =
-            body.grid.nearest(body.nodes.position, body.nodes.position[first[c]], 1, first[c],
-                              [&](std::uint32_t i) { return i < component.size() && component[i] == target; });
-        if (!near.empty()) insert_along(body, NodeId(first[c]), NodeId(near[0]), scale * body.grid.cell());
-      }
-    if (first_new.index() == body.nodes.size()) return;
-    after(first_new);
-  }
 }
 
 void mark_debris(Body& body, const std::vector<NodeId>& nodes) {

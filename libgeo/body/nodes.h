@@ -2,10 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "body/body.h"
 
 namespace geo {
+
+using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 
 /// Appends a node at x, with spacing and radius of node `donor` and half of its volume: Σ volume stays what it was.
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
@@ -19,9 +22,9 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);
 
 /// Where G has more components than the material has pieces, or a piece has no node, inserts nodes until they agree
-/// (several rounds, each twice as fine). `after` is called when nodes were added, to update the graph. Global: costs
-/// once over body and surface.
-void connect_pieces(Body& body, const std::function<void(NodeId first_new)>& after);
+/// (several rounds, each finer). `after` is called when nodes were added, to update the graph; `joins` are pairs that
+/// see each other and are to have an edge, near or not. Global: costs once over body and surface.
+void connect_pieces(Body& body, const std::function<void(NodeId first_new, std::span<const NodePair> joins)>& after);
 
 /// Marks nodes with too few neighbours for a shape function.
 void mark_debris(Body& body, const std::vector<NodeId>& nodes);

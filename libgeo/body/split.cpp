@@ -67,8 +67,9 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
   // Each piece that the crack cut off needs nodes, connected among themselves. Global: once over graph and complex, the
   // one part of a split whose cost does not follow the cut.
-  connect_pieces(body, [&](NodeId first_new) {
-    const auto more = update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, body.neighbors);
+  connect_pieces(body, [&](NodeId first_new, std::span<const NodePair> joins) {
+    const auto more =
+        update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, body.neighbors, joins);
     updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
   });
   delta.updated_nodes.assign(updated.begin(), updated.end());

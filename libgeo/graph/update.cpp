@@ -13,7 +13,8 @@ namespace geo {
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
                          std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
-                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows) {
+                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows,
+                         std::span<const std::pair<NodeId, NodeId>> joins) {
   GraphUpdate result;
   const auto& x = nodes.position;
   graph.resize(nodes.size());
@@ -84,6 +85,11 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
       ++seen;
       if (graph.add(nodes, i, NodeId(j))) result.added_edges.push_back({NodeId(std::min(i.value, j)), NodeId(std::max(i.value, j))});
     }
+  }
+  for (const auto& [a, b] : joins) {
+    if (graph.add(nodes, a, b)) result.added_edges.push_back({a, b});
+    for (const NodeId end : {a, b})
+      if (end < first_new) fresh.push_back(end);  // an old node that gains an edge is a new beginning, too
   }
   std::sort(result.added_edges.begin(), result.added_edges.end());
   for (const NodeId i : fresh) {

@@ -21,10 +21,12 @@ struct GraphUpdate {
 /// nodes from this row on are new (P_new) and get edges to their k nearest visible nodes. `obstacle_near` must append
 /// the triangles of the whole complex whose boxes meet a box (used for edges of new nodes only and for visible pairs).
 /// `moved` lists old nodes whose position has changed: they lose their edges and are connected anew. `grid` holds all
-/// nodes where they are now. Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
+/// nodes where they are now. `joins`: pairs with a
+/// new node that see each other and get an edge however far apart they are. Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
                          std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
-                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows);
+                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows,
+                         std::span<const std::pair<NodeId, NodeId>> joins = {});
 
 }  // namespace geo

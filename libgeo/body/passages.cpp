@@ -1,0 +1,223 @@
+// Passages too narrow for the sampling: nodes are inserted until G has as many components as the material has pieces.
+#include <algorithm>
+#include <map>
+
+#include "body/locate.h"
+#include "body/nodes.h"
+#include "geometry/predicates.h"
+#include "surface/pieces.h"
+
+namespace geo {
+namespace {
+
+/// What one sees from a node in some direction.
+struct Sight {
+  Side side;
+  Vec3 at;  ///< on the face
+};
+
+// The sides that a node sees along the axes and where its closest face is. One node may see several shells.
+std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
+  std::vector<Sight> sights;
+  std::vector<FaceId> faces;
+  const auto look = [&](const Vec3& to) {
+    Box3 box{x, x};
+    box.add(to);
+    faces.clear();
+    k.near(box, faces);
+    double first = 2;
+    Sight sight;
+    for (const FaceId f : faces) {
+      const auto t = k.corners(f);
+      const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+      const double along = n.dot(to - x), at = along != 0 ? n.dot(t[0] - x) / along : 2;
+      if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2])) first = at, sight = {{f, along < 0 ? 1 : 0}, x + at * (to - x)};
+    }
+    if (sight.side.face.valid() && k.has(sight.side)) sights.push_back(sight);
+  };
+  const Side near = side_seen_from(k, x, reach);
+  const auto t = k.corners(near.face);
+  look(x + 1.001 * ((t[0] + t[1] + t[2]) / 3 - x));
+  for (int i = 0; i < 6; ++i) {
+    Vec3 to = x;
+    to[i % 3] = i < 3 ? k.extent().hi[i % 3] + reach : k.extent().lo[i % 3] - reach;
+    look(to);
+  }
+  return sights;
+}
+
+/// A place on a face, and the direction in which the material before it is entered.
+struct Foothold {
+  Side side;
+  Vec3 base, up;
+};
+
+// From over one face to over the next, around their common edge, as close to them as it takes to meet nothing.
+bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge, double spacing, std::vector<Vec3>& out) {
+  const auto t = k.corners(a.side.face), u = k.corners(b.side.face);
+  const Vec3 p = t[edge], q = t[(edge + 1) % 3], middle = 0.5 * (p + q), along = (q - p).normalized();
+  const auto away = [&](const std::array<Vec3, 3>& c) {  // from the edge into the face
+    const Vec3 w = (c[0] + c[1] + c[2]) / 3 - middle;
+    return Vec3((w - w.dot(along) * along).normalized());
+  };
+  const auto normal = [&](Side s) {
+    const auto c = k.corners(s.face);
+    return Vec3((s.which ? 1.0 : -1.0) * (c[1] - c[0]).cross(c[2] - c[0]).normalized());
+  };
+  const Vec3 from = away(t), to = away(u), rise = normal(a.side), land = normal(b.side);
+  // More than half a turn of material around the edge? A front's own face comes back on its other side.
+  int behind = 0;
+  for (const Vec3& c : u)
+    if (c != p && c != q) behind = orient3d(t[0], t[1], t[2], c) * (a.side.which ? -1 : 1);
+  const bool reflex = a.side.face == b.side.face || behind > 0;
+  // The middle of the material's wedge, from whatever says it best: near half a turn the normals do.
+  const Vec3 turn = (from.dot(to) < 0 ? Vec3(rise + land) : reflex ? Vec3(-(from + to)) : Vec3(from + to)).normalized();
+  for (double height = 0.25 * spacing; height > 1e-13 * k.extent().diagonal(); height *= 0.5) {
+    const double low = 0.25 * height;
+    std::vector<Vec3> way{a.base + height * a.up};
+    if (reflex) way.push_back(middle + low * rise);
+    way.push_back(middle + low * turn);
+    if (reflex) way.push_back(middle + low * land);
+    way.push_back(b.base + height * b.up);
+    if (!stands_before(k, a.side, a.base, way.front()) || !stands_before(k, b.side, b.base, way.back())) continue;
+    bool open = true;
+    for (std::size_t i = 0; i + 1 < way.size() && open; ++i) open = !is_blocked(k, way[i], way[i + 1]);
+    if (!open) continue;
+    out.insert(out.end(), way.begin(), way.end());
+    return true;
+  }
+  return false;
+}
+
+// Nodes along the surface from where i looks at it to where j does: what the material joins is joined beside its
+// boundary, however narrow it is. Nothing when the two see different shells only.
+void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
+  const Complex& k = body.surface;
+  const Vec3 xi = body.nodes.position[i.index()], xj = body.nodes.position[j.index()];
+  std::map<Side, std::pair<Side, int>> before;
+  std::map<Side, Vec3> starts, ends;
+  std::vector<Side> queue;
+  for (const Sight& s : look_around(k, xi, spacing))
+    if (starts.try_emplace(s.side, s.at).second) before[s.side] = {s.side, 0}, queue.push_back(s.side);
+  for (const Sight& s : look_around(k, xj, spacing)) ends.try_emplace(s.side, s.at);
+  Side to;
+  for (std::size_t q = 0; q < queue.size() && !to.face.valid(); ++q) {
+    if (ends.count(queue[q])) to = queue[q];
+    for (int e = 0; e < 3; ++e)
+      if (const Side n = k.neighbor(queue[q], e); before.try_emplace(n, queue[q], e).second) queue.push_back(n);
+  }
+  if (!to.face.valid()) return;
+  std::vector<std::pair<Foothold, int>> path;  // backwards; the edge that leads on to the one before in this list
+  int edge = 0;
+  for (Side s = to;; s = before.at(s).first) {
+    const auto t = k.corners(s.face);
+    path.push_back({{s, (t[0] + t[1] + t[2]) / 3, (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized()}, edge});
+    if (before.at(s).first == s) break;
+    edge = before.at(s).second;
+  }
+  std::reverse(path.begin(), path.end());
+  std::vector<Vec3> way{xi};
+  auto& start = path.front().first;
+  start.base = starts.at(start.side), start.up = (xi - start.base).normalized();
+  if (path.size() > 1) path.back().first.base = ends.at(to), path.back().first.up = (xj - ends.at(to)).normalized();
+  for (std::size_t s = 0; s + 1 < path.size(); ++s)
+    if (!step_over(k, path[s].first, path[s + 1].first, path[s].second, spacing, way)) return;
+  if (path.size() == 1) {
+    // Both see one face: across it, low enough.
+    const Vec3 base = ends.at(to), up = (xj - base).normalized();
+    double height = 0.25 * spacing;
+    while (height > 1e-13 * k.extent().diagonal() && is_blocked(k, start.base + height * start.up, base + height * up)) height *= 0.5;
+    way.push_back(start.base + height * start.up);
+    way.push_back(base + height * up);
+  }
+  way.push_back(xj);
+  for (std::size_t s = 0; s + 1 < way.size(); ++s)
+    if (is_blocked(k, way[s], way[s + 1])) return;
+  // As few of them as see each other, none farther apart than the nodes are anyway.
+  NodeId last = i;
+  for (std::size_t s = 0; s + 1 < way.size();) {
+    std::size_t next = s + 1;
+    for (std::size_t n = s + 2; n < way.size() && (way[n] - way[s]).norm() <= body.grid.cell(); ++n)
+      if (!is_blocked(k, way[s], way[n])) next = n;
+    const NodeId node = next + 1 == way.size() ? j : insert_node(body, way[next], i, spacing);
+    joins.push_back({std::min(last, node), std::max(last, node)});
+    last = node;
+    s = next;
+  }
+}
+
+}  // namespace
+
+void connect_pieces(Body& body, const std::function<void(NodeId, std::span<const NodePair>)>& after) {
+  double scale = 0.7;
+  for (int round = 0; round < 12; ++round, scale *= 0.8) {
+    std::vector<std::uint32_t> component;
+    const auto count = body.graph.components(component);
+    const Pieces pieces = find_pieces(body.surface);
+    const auto piece_of = [&](std::uint32_t i) {
+      const Side s = side_seen_from(body.surface, body.nodes.position[i], body.nodes.spacing[i]);
+      return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
+    };
+    // The largest component of each piece stands for it; the others want a way to it.
+    std::vector<std::uint32_t> size(count, 0), first(count, ~0u);
+    for (std::uint32_t i = 0; i < component.size(); ++i)
+      if (size[component[i]]++ == 0) first[component[i]] = i;
+    std::vector<std::int32_t> piece(count);
+    std::vector<std::uint32_t> main(pieces.count, ~0u);
+    for (std::uint32_t c = 0; c < count; ++c) {
+      piece[c] = piece_of(first[c]);
+      if (piece[c] < 0) continue;
+      auto& m = main[static_cast<std::size_t>(piece[c])];
+      if (m == ~0u || size[c] > size[m]) m = c;
+    }
+    const NodeId first_new(body.nodes.size());
+    std::vector<NodePair> joins;
+    for (std::uint32_t p = 0; p < pieces.count; ++p) {
+      if (main[p] != ~0u) continue;
+      // No node at all: one on the line from the middle of its largest face straight into it, half way to what comes
+      // next.
+      Side best;
+      double most = -1;
+      for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
+        for (int which = 0; which < 2; ++which)
+          if (pieces.of_side[f * 2 + static_cast<std::uint32_t>(which)] == static_cast<std::int32_t>(p)) {
+            const auto t = body.surface.corners(FaceId(f));
+            const double a = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+            if (a > most) most = a, best = {FaceId(f), which};
+          }
+      const auto t = body.surface.corners(best.face);
+      const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+      const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+      const auto donor = body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; });
+      double step = body.nodes.spacing[donor[0]];
+      while (step > 1e-12 * body.surface.extent().diagonal() &&
+             !stands_before(body.surface, best, middle, middle + step * inwards))
+        step *= 0.6;
+      insert_node(body, middle + 0.5 * step * inwards, NodeId(donor[0]), body.nodes.spacing[donor[0]]);
+    }
+    std::vector<FaceId> narrow;
+    for (std::uint32_t i = 0; i < component.size(); ++i) {
+      const auto c = component[i];
+      if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
+      body.surface.near(Box3{body.nodes.position[i], body.nodes.position[i]}.grown(1.5 * body.nodes.spacing[i]),
+                        narrow);
+    }
+    std::sort(narrow.begin(), narrow.end());
+    narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
+    // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
+    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
+    if (round >= 1)
+      for (std::uint32_t c = 0; c < count; ++c) {
+        if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
+        const auto target = main[static_cast<std::size_t>(piece[c])];
+        const auto near =
+            body.grid.nearest(body.nodes.position, body.nodes.position[first[c]], 1, first[c],
+                              [&](std::uint32_t i) { return i < component.size() && component[i] == target; });
+        if (!near.empty()) insert_along(body, NodeId(first[c]), NodeId(near[0]), scale * body.grid.cell(), joins);
+      }
+    if (first_new.index() == body.nodes.size() && joins.empty()) return;
+    after(first_new, joins);
+  }
+}
+
+}  // namespace geo

@@ -128,15 +128,22 @@ Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Ve
   if (!parts.empty()) {
     const ComplexEdit edit = crack::stitch(arrangement, complex, edges, parts, front.crack, vertex);
     work.stitch_seconds += watch.lap();
-    std::vector<std::array<Vec3, 3>> planes;
+    std::vector<Family> families;
+    std::uint32_t row = 0, last = ~0u;
     for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
-      if (const auto& element = arrangement.elements[e]; element.cut)
-        planes.insert(planes.end(), element.end - element.first, complex.corners(element.face));
+      if (const auto& element = arrangement.elements[e]; element.cut) {
+        families.push_back({complex.corners(element.face), row, row + element.end - element.first, {}});
+        row = families.back().end;
+      }
     for (const auto& part : parts) {
       const auto& c = arrangement.elements[part.element].corner;
-      planes.push_back({arrangement.points()[c[0]], arrangement.points()[c[1]], arrangement.points()[c[2]]});
+      const auto& points = arrangement.points();
+      if (families.empty() || last != part.element)
+        families.push_back({{points[c[0]], points[c[1]], points[c[2]]}, row, row, arrangement.near(part.element)});
+      last = part.element;
+      families.back().end = ++row;
     }
-    if (const std::string fault = find_fault(complex, edit, planes); !fault.empty()) throw GeometryError(fault);
+    if (const std::string fault = find_fault(complex, edit, families); !fault.empty()) throw GeometryError(fault);
     work.guard_seconds += watch.lap();
     follow_front(result.front, strip, arrangement, vertex);
     result.delta = complex.apply(edit);

@@ -67,12 +67,10 @@ std::uint32_t Arrangement::element_of(FaceId f) {
 }
 
 void Arrangement::meet(CrackWork& work) {
-  std::vector<FaceId> near;
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles) boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
   for (std::uint32_t s = 0; s < strip_size; ++s) {
-    near.clear();
-    complex_.near(boxes[s], near);
+    const auto near = this->near(s);
     work.faces_near += near.size();
     const auto& t = strip_.triangles[s].p;
     const Vec3 mine[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};

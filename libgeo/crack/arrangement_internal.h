@@ -41,6 +41,11 @@ class Arrangement {
   /// The points on edge k of an element, its ends included, in order from corner k.
   std::vector<Local> along_edge(std::uint32_t e, int k) const;
 
+  /// The faces of K near strip triangle s, those included that it does not meet.
+  std::span<const FaceId> near(std::uint32_t s) const {
+    return {strip_.near.data() + strip_.near_begin[s], strip_.near_begin[s + 1] - strip_.near_begin[s]};
+  }
+
   std::vector<Element> elements;  ///< the strip's triangles first
   std::uint32_t strip_size = 0;
   std::vector<Child> children;

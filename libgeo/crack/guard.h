@@ -1,15 +1,23 @@
 // The guard before a commit: what rounding must not have done.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "surface/complex.h"
 
 namespace geo {
 
-/// Checks an edit against K as it is: every new face has the orientation of what it is a part of (`planes[i]`: three
-/// points in whose plane new_faces[i] lay before rounding) and an area, no new vertex stands where another does, and no
-/// new face crosses a near one. Exact. Returns what is wrong, empty when nothing is. Cost follows the edit.
-std::string find_fault(const Complex& complex, const ComplexEdit& edit, const std::vector<std::array<Vec3, 3>>& planes);
+/// New faces that come from one triangle, which therefore lie in its plane but for rounding.
+struct Family {
+  std::array<Vec3, 3> plane;       ///< the triangle's corners
+  std::uint32_t first, end;        ///< edit.new_faces[first..end)
+  std::span<const FaceId> near;    ///< faces of K that may be near; empty: they are looked up
+};
+
+/// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
+/// vertex stands where another does, and no new face crosses a near one. Exact. Returns what is wrong, empty when
+/// nothing is. Families list every new face once, in order. Cost follows the edit.
+std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families);
 
 }  // namespace geo

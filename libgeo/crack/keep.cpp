@@ -122,6 +122,7 @@ std::vector<Part> keep_inside(const Arrangement& a, const Complex& complex, cons
     if (inside > 0)
       for (const auto i : group) kept.push_back(parts[i]);
   }
+  std::sort(kept.begin(), kept.end(), [](const Part& x, const Part& y) { return x.child < y.child; });
   return kept;
 }
 

@@ -64,18 +64,33 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
   return std::move(builder.strip);
 }
 
-std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach) {
-  if (strip.triangles.empty()) return 0;
-  std::set<VertexId> vertices;
-  std::vector<FaceId> faces;
+void find_near(Strip& strip, const Complex& complex, double reach) {
+  strip.near.clear();
+  strip.near_begin.assign(1, 0);
   for (const auto& t : strip.triangles) {
-    const Box3 box = box_of(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]).grown(reach);
-    faces.clear();
-    complex.near(box, faces);
-    for (const FaceId f : faces)
-      for (const VertexId v : complex.face(f).v)
-        if (Box3{complex.point(v), complex.point(v)}.meets(box)) vertices.insert(v);
+    complex.near_triangle(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]], reach, strip.near);
+    strip.near_begin.push_back(static_cast<std::uint32_t>(strip.near.size()));
   }
+}
+
+std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach) {
+  find_near(strip, complex, reach);
+  if (strip.triangles.empty()) return 0;
+  // Vertices within reach of a triangle's plane; few are.
+  std::vector<VertexId> vertices;
+  for (std::size_t t = 0; t < strip.triangles.size(); ++t) {
+    const auto& tri = strip.triangles[t].p;
+    const Vec3 &p0 = strip.points[tri[0]], n = (strip.points[tri[1]] - p0).cross(strip.points[tri[2]] - p0);
+    const double limit = 2 * reach * n.norm();
+    const Box3 box = box_of(p0, strip.points[tri[1]], strip.points[tri[2]]).grown(reach);
+    for (auto f = strip.near_begin[t]; f < strip.near_begin[t + 1]; ++f)
+      for (const VertexId v : complex.face(strip.near[f]).v) {
+        const Vec3& q = complex.point(v);
+        if (std::abs(n.dot(q - p0)) <= limit && Box3{q, q}.meets(box)) vertices.push_back(v);
+      }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   std::set<Vec3, Less> known(strip.points.begin(), strip.points.end());
   std::size_t count = 0;
   const double reach2 = reach * reach;
@@ -147,10 +162,12 @@ std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach)
       done = true;
     }
   }
-  if (count > 0)
+  if (count > 0) {
     std::erase_if(strip.triangles, [&](const Strip::Triangle& t) {
       return collinear(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]);
     });
+    find_near(strip, complex, reach);
+  }
   return count;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "base/vec.h"
@@ -21,6 +20,11 @@ class TriangleIndex {
   void erase(std::uint32_t id);
   /// Appends to `out`, ascending and each once, the ids whose boxes meet `box`.
   void find(const Box3& box, std::vector<std::uint32_t>& out) const;
+  /// As find() for the box of a triangle, grown by `reach`, without those whose boxes are clear of its plane: cost follows
+  /// the triangle's area, not its box's volume.
+  void find_near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<std::uint32_t>& out) const;
+  /// Makes room for ids below `count` in all.
+  void reserve(std::size_t count);
   bool contains(std::uint32_t id) const;
   double cell() const { return cell_; }
 
@@ -28,10 +32,24 @@ class TriangleIndex {
   struct Range {
     std::int64_t lo[3], hi[3];
   };
+  static constexpr std::uint32_t none = ~0u;
+  struct Slot {
+    std::uint64_t key = ~0ull;   // no cell has this one
+    std::uint32_t first = none;  // row of entries_
+  };
+  struct Entry {
+    std::uint32_t id, next;
+  };
   Range cells_of(const Box3& box) const;
+  static void keep_each_once(std::vector<std::uint32_t>& out, std::size_t first);
+  std::size_t slot_of(std::uint64_t key) const;
+  void grow();
 
   double cell_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+  std::vector<Slot> slots_;     // open addressing, a power of two
+  std::size_t used_ = 0;        // slots with a key
+  std::vector<Entry> entries_;  // lists, one a cell
+  std::uint32_t free_ = none;   // list of entries to use again
   std::vector<Box3> boxes_;           // by id; empty box: not in the index
   std::vector<std::uint32_t> large_;  // ids whose boxes cover too many cells to be listed in each
 };

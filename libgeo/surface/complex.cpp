@@ -1,8 +1,6 @@
 #include "surface/complex.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <string>
 
 #include "base/error.h"
@@ -20,9 +18,51 @@ Box3 Complex::box(FaceId f) const {
   return box_of(point(v[0]), point(v[1]), point(v[2]));
 }
 
-std::span<const FaceId> Complex::around(VertexId a, VertexId b) const {
-  const auto it = edges_.find(key(a, b));
-  return it == edges_.end() ? std::span<const FaceId>() : std::span<const FaceId>(it->second);
+int Complex::edge_in(const Face& f, VertexId a, VertexId b) {
+  const int k = corner_at(f, a);
+  return f.v[(k + 1) % 3] == b ? k : (k + 2) % 3;
+}
+
+FaceId Complex::any_at(VertexId a, VertexId b) const {
+  for (const FaceId f : faces_at(a))
+    if (corner_at(face(f), b) >= 0) return f;
+  return {};
+}
+
+FaceRing Complex::around(VertexId a, VertexId b) const {
+  FaceRing ring;
+  const FaceId first = any_at(a, b);
+  if (!first.valid()) return ring;
+  FaceId f = first;
+  do {
+    ring.push_back(f);
+    f = next_around(f, a, b);
+  } while (f != first);
+  return ring;
+}
+
+void Complex::link_corners(FaceId f) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t corner = f.value * 3 + k;
+    std::uint32_t* at = &first_corner_[face(f).v[k].index()];
+    while (*at != no_corner && *at < corner) at = &next_corner_[*at];
+    next_corner_[corner] = *at;
+    *at = corner;
+  }
+}
+
+void Complex::unlink_corners(FaceId f) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t corner = f.value * 3 + k;
+    std::uint32_t* at = &first_corner_[face(f).v[k].index()];
+    while (*at != corner) at = &next_corner_[*at];
+    *at = next_corner_[corner];
+  }
+}
+
+void Complex::link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i)
+    radial_[faces[i].index() * 3 + static_cast<std::size_t>(edge_in(face(faces[i]), a, b))] = faces[i + 1 == count ? 0 : i + 1];
 }
 
 void Complex::near(const Box3& box, std::vector<FaceId>& out) const {
@@ -32,18 +72,21 @@ void Complex::near(const Box3& box, std::vector<FaceId>& out) const {
   for (const auto id : ids) out.push_back(FaceId(id));
 }
 
+void Complex::near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<FaceId>& out) const {
+  std::vector<std::uint32_t> ids;
+  index_.find_near_triangle(a, b, c, reach, ids);
+  out.reserve(out.size() + ids.size());
+  for (const auto id : ids) out.push_back(FaceId(id));
+}
+
 Side Complex::neighbor(Side s, int k) const {
   const Face& f = face(s.face);
   const VertexId a = f.v[k], b = f.v[(k + 1) % 3];
-  const auto ring = around(a, b);
-  const std::size_t n = ring.size();
-  const auto at = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), s.face) - ring.begin());
-  if (faces_counterclockwise(f, s.which, a, b)) {
-    const FaceId g = ring[at + 1 == n ? 0 : at + 1];
-    return {g, side_facing(face(g), a, b, false)};
-  }
-  const FaceId g = ring[at == 0 ? n - 1 : at - 1];
-  return {g, side_facing(face(g), a, b, true)};
+  const FaceId after = radial_[s.face.index() * 3 + static_cast<std::size_t>(k)];
+  if (faces_counterclockwise(f, s.which, a, b)) return {after, side_facing(face(after), a, b, false)};
+  FaceId before = after;
+  for (FaceId next = next_around(before, a, b); next != s.face; next = next_around(before, a, b)) before = next;
+  return {before, side_facing(face(before), a, b, true)};
 }
 
 void Complex::surface_neighbors(SurfaceVertexId v, std::vector<SurfaceVertexId>& out) const {
@@ -112,95 +155,99 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
     return {n.v, n.crack, true};
   };
 
-  // The faces that each touched edge will have, unordered as yet.
-  std::map<std::uint64_t, std::vector<FaceId>> rings;
-  const auto touch = [&](VertexId a, VertexId b) -> std::vector<FaceId>& {
-    const auto [it, fresh] = rings.try_emplace(key(a, b));
-    if (fresh)
-      for (const FaceId f : around(a, b)) it->second.push_back(f);
-    return it->second;
+  // The faces that each touched edge will have: edges in order of their keys, each with the new faces it gains.
+  struct Gain {
+    std::uint64_t edge;
+    FaceId face;  // invalid: loses one only
   };
+  std::vector<Gain> gains;
+  gains.reserve(3 * (removed.size() + edit.new_faces.size()));
   for (const FaceId f : removed)
-    for (int k = 0; k < 3; ++k) touch(face(f).v[k], face(f).v[(k + 1) % 3]);
-  std::map<std::uint64_t, std::vector<FaceId>> gained;
+    for (int k = 0; k < 3; ++k) gains.push_back({key(face(f).v[k], face(f).v[(k + 1) % 3]), FaceId()});
   for (std::uint32_t i = 0; i < edit.new_faces.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const VertexId a = edit.new_faces[i].v[k], b = edit.new_faces[i].v[(k + 1) % 3];
-      touch(a, b);
-      gained[key(a, b)].push_back(FaceId(old_faces + i));
-    }
-  for (auto& [edge, ring] : rings) {
-    auto& fresh = gained[edge];
-    // A part of a face takes the face's place in the order.
-    for (auto& f : ring) {
-      if (!is_removed(f)) continue;
-      const auto heir = std::find_if(fresh.begin(), fresh.end(), [&](FaceId n) { return edit.new_faces[n.value - old_faces].parent == f; });
-      if (heir != fresh.end()) {
-        f = *heir;
-        fresh.erase(heir);
-      } else {
-        f = FaceId();
-      }
-    }
-    std::erase(ring, FaceId());
-    if (!fresh.empty()) {
-      ring.insert(ring.end(), fresh.begin(), fresh.end());
-      if (ring.size() >= 3) fresh.front() = FaceId();  // marks an order that has to be given
-    }
-  }
-  for (const auto& given : edit.rings) {
-    const auto it = rings.find(key(given.a, given.b));
-    if (it == rings.end()) {
-      // An order for an edge that nothing touched may only confirm what is there.
-      continue;
-    }
-    auto wanted = given.faces;
-    if (given.a > given.b) std::reverse(wanted.begin(), wanted.end());
-    auto sorted_wanted = wanted, sorted_ring = it->second;
-    std::sort(sorted_wanted.begin(), sorted_wanted.end());
-    std::sort(sorted_ring.begin(), sorted_ring.end());
-    if (sorted_wanted != sorted_ring)
-      throw GeometryError("the order given for edge " + edge_name(given.a, given.b) + " does not list its faces");
-    it->second = std::move(wanted);
-    gained[it->first].clear();
-  }
-  for (const auto& [edge, ring] : rings) {
+    for (int k = 0; k < 3; ++k)
+      gains.push_back({key(edit.new_faces[i].v[k], edit.new_faces[i].v[(k + 1) % 3]), FaceId(old_faces + i)});
+  std::sort(gains.begin(), gains.end(), [](const Gain& x, const Gain& y) { return x.edge != y.edge ? x.edge < y.edge : x.face < y.face; });
+  std::vector<std::pair<std::uint64_t, const ComplexEdit::Ring*>> given;
+  for (const auto& ring : edit.rings) given.push_back({key(ring.a, ring.b), &ring});
+  std::sort(given.begin(), given.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+
+  struct NewRing {
+    std::uint64_t edge;
+    std::uint32_t begin, end;
+  };
+  std::vector<NewRing> rings;
+  std::vector<FaceId> ring_faces, fresh, ring, wanted, sorted_wanted;
+  auto order = given.begin();
+  for (std::size_t at = 0; at < gains.size();) {
+    const std::uint64_t edge = gains[at].edge;
     const VertexId lo(static_cast<std::uint32_t>(edge >> 32)), hi(static_cast<std::uint32_t>(edge));
-    const auto& fresh = gained[edge];
-    if (!fresh.empty() && !fresh.front().valid())
+    fresh.clear(), ring.clear();
+    for (; at < gains.size() && gains[at].edge == edge; ++at)
+      if (gains[at].face.valid()) fresh.push_back(gains[at].face);
+    // A part of a face takes the face's place in the order.
+    if (hi.value < old_vertices)
+      for (const FaceId f : around(lo, hi)) {
+        if (!is_removed(f)) {
+          ring.push_back(f);
+          continue;
+        }
+        const auto heir = std::find_if(fresh.begin(), fresh.end(), [&](FaceId n) { return edit.new_faces[n.value - old_faces].parent == f; });
+        if (heir == fresh.end()) continue;
+        ring.push_back(*heir);
+        fresh.erase(heir);
+      }
+    ring.insert(ring.end(), fresh.begin(), fresh.end());
+    while (order != given.end() && order->first < edge) ++order;  // an order for an edge that nothing touched says nothing new
+    if (order != given.end() && order->first == edge) {
+      wanted = order->second->faces;
+      if (order->second->a > order->second->b) std::reverse(wanted.begin(), wanted.end());
+      sorted_wanted = wanted;
+      std::sort(sorted_wanted.begin(), sorted_wanted.end());
+      std::sort(ring.begin(), ring.end());
+      if (sorted_wanted != ring) throw GeometryError("the order given for edge " + edge_name(lo, hi) + " does not list its faces");
+      ring = wanted;
+    } else if (!fresh.empty() && ring.size() >= 3) {
       throw GeometryError("no order is given for edge " + edge_name(lo, hi) + ", which has " + std::to_string(ring.size()) + " faces");
+    }
     check_ring(ring, lo, hi, shape);
+    const auto begin = static_cast<std::uint32_t>(ring_faces.size());
+    ring_faces.insert(ring_faces.end(), ring.begin(), ring.end());
+    rings.push_back({edge, begin, static_cast<std::uint32_t>(ring_faces.size())});
   }
 
   // Commit.
   CrackDelta delta;
   delta.removed_faces = removed;
   points_.insert(points_.end(), edit.new_vertices.begin(), edit.new_vertices.end());
-  vertex_faces_.resize(points_.size());
+  first_corner_.resize(points_.size(), no_corner);
   for (std::uint32_t i = 0; i < edit.new_vertices.size(); ++i) delta.new_vertices.push_back(VertexId(old_vertices + i));
 
-  std::set<VertexId> touched;
-  std::map<VertexId, std::vector<SurfaceVertexId>> old_ids;  // what stood at each touched site before
-  const auto remember = [&](FaceId f) {
-    for (int k = 0; k < 3; ++k) touched.insert(face(f).v[k]);
-  };
-  for (const FaceId f : removed) remember(f);
-  std::vector<Face> dead;
+  std::vector<VertexId> touched;
+  std::vector<std::pair<VertexId, SurfaceVertexId>> old_ids;  // what stood at each touched site before
   for (const FaceId f : removed) {
+    for (int k = 0; k < 3; ++k) {
+      touched.push_back(face(f).v[k]);
+      for (int which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which)
+        old_ids.push_back({face(f).v[k], corner_vertex_[f.index() * 6 + which * 3 + k]});
+    }
     index_.erase(f.value);
     faces_[f.index()].alive = false;
-    for (const VertexId v : face(f).v) std::erase(vertex_faces_[v.index()], f);
+    unlink_corners(f);
     --live_faces_;
   }
+  const std::size_t total = old_faces + edit.new_faces.size();
+  faces_.reserve(std::max(total, faces_.capacity() < total ? 2 * faces_.size() : total));
+  radial_.resize(3 * total);
+  next_corner_.resize(3 * total, no_corner);
+  corner_vertex_.resize(6 * total);
   for (std::uint32_t i = 0; i < edit.new_faces.size(); ++i) {
     const auto& n = edit.new_faces[i];
     const FaceId f(old_faces + i);
     faces_.push_back({n.v, n.crack, true});
-    corner_vertex_.resize(corner_vertex_.size() + 6);
+    link_corners(f);
     for (int k = 0; k < 3; ++k) {
-      touched.insert(n.v[k]);
-      auto& at = vertex_faces_[n.v[k].index()];
-      at.insert(std::upper_bound(at.begin(), at.end(), f), f);
+      touched.push_back(n.v[k]);
       // A part of a face keeps the face's surface vertices where it keeps its corners.
       if (n.parent.valid() && n.parent.value < old_faces)
         if (const int pk = corner_at(face(n.parent), n.v[k]); pk >= 0)
@@ -213,20 +260,17 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
     if (n.crack > 0 && !n.parent.valid()) delta.new_crack_faces.push_back(f);
     ++live_faces_;
   }
-  for (auto& [edge, ring] : rings) {
-    // Vertices at the far ends of re-sorted edges are corners of touched faces already; edges without faces go.
-    if (ring.empty())
-      edges_.erase(edge);
-    else
-      edges_[edge] = std::move(ring);
+  for (const NewRing& r : rings)
+    link_ring(VertexId(static_cast<std::uint32_t>(r.edge >> 32)), VertexId(static_cast<std::uint32_t>(r.edge)), ring_faces.data() + r.begin, r.end - r.begin);
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  std::sort(old_ids.begin(), old_ids.end());
+  std::size_t at = 0;
+  for (const VertexId v : touched) {
+    std::vector<SurfaceVertexId> here;
+    for (; at < old_ids.size() && old_ids[at].first == v; ++at) here.push_back(old_ids[at].second);
+    refan(v, std::move(here), &delta);
   }
-  for (const FaceId f : removed)
-    for (int k = 0; k < 3; ++k)
-      for (int which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which) {
-        auto& ids = old_ids[face(f).v[k]];
-        ids.push_back(corner_vertex_[f.index() * 6 + which * 3 + k]);
-      }
-  for (const VertexId v : touched) refan(v, old_ids[v], &delta);
   std::sort(delta.touched_surface_vertices.begin(), delta.touched_surface_vertices.end());
   std::sort(delta.removed_surface_vertices.begin(), delta.removed_surface_vertices.end());
   return delta;

@@ -7,8 +7,7 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
-#include <unordered_map>
+#include <iterator>
 #include <vector>
 
 #include "base/ids.h"
@@ -23,6 +22,31 @@ struct Side {
   FaceId face;
   int which = 0;
   friend auto operator<=>(const Side&, const Side&) = default;
+};
+
+/// The faces around one edge, in order. Few edges have more than two.
+class FaceRing {
+ public:
+  void push_back(FaceId f) {
+    if (count_ < few)
+      inline_[count_] = f;
+    else {
+      if (count_ == few) many_.assign(inline_.begin(), inline_.end());
+      many_.push_back(f);
+    }
+    ++count_;
+  }
+  std::size_t size() const { return count_; }
+  bool empty() const { return count_ == 0; }
+  const FaceId* begin() const { return count_ <= few ? inline_.data() : many_.data(); }
+  const FaceId* end() const { return begin() + count_; }
+  FaceId operator[](std::size_t i) const { return begin()[i]; }
+
+ private:
+  static constexpr std::size_t few = 6;
+  std::array<FaceId, few> inline_;
+  std::vector<FaceId> many_;
+  std::size_t count_ = 0;
 };
 
 /// What changes in one commit; rows refer to K as it is before the commit.
@@ -88,11 +112,14 @@ class Complex {
 
   /// The faces around edge ab, counter-clockwise about a→b when a < b (and in that same order when a > b). Empty when
   /// there is no such edge.
-  std::span<const FaceId> around(VertexId a, VertexId b) const;
-  /// The live faces at a vertex, ascending.
-  std::span<const FaceId> faces_at(VertexId v) const { return vertex_faces_[v.index()]; }
+  FaceRing around(VertexId a, VertexId b) const;
+  /// The live faces at a vertex, ascending: a range.
+  class FacesAt;
+  FacesAt faces_at(VertexId v) const;
   /// Appends to `out`, ascending, the live faces whose boxes meet `box`.
   void near(const Box3& box, std::vector<FaceId>& out) const;
+  /// The same for the box of triangle abc, grown by `reach`, without faces that its plane is clear of.
+  void near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<FaceId>& out) const;
 
   // ---- The derived surface S_A: closed, oriented, manifold by construction.
   bool has(Side s) const { return alive(s.face) && (s.which == 0 || face(s.face).crack > 0); }
@@ -123,10 +150,19 @@ class Complex {
 
  private:
   friend class ComplexBuilder;
+  static constexpr std::uint32_t no_corner = ~0u;
   static std::uint64_t key(VertexId a, VertexId b) {
     const auto lo = std::min(a.value, b.value), hi = std::max(a.value, b.value);
     return std::uint64_t(lo) << 32 | hi;
   }
+  /// A face at edge ab; invalid when there is none.
+  FaceId any_at(VertexId a, VertexId b) const;
+  /// Which of its edges ab is, for a face that has it.
+  static int edge_in(const Face& f, VertexId a, VertexId b);
+  FaceId next_around(FaceId f, VertexId a, VertexId b) const { return radial_[f.index() * 3 + static_cast<std::size_t>(edge_in(face(f), a, b))]; }
+  void link_corners(FaceId f);
+  void unlink_corners(FaceId f);
+  void link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t count);
 
   /// Renews the fans at v; `old_ids`: surface vertices that stood there and whose corners are gone.
   void refan(VertexId v, std::vector<SurfaceVertexId> old_ids, CrackDelta* delta);
@@ -136,13 +172,50 @@ class Complex {
   std::uint32_t live_faces_ = 0;
   std::int32_t crack_count_ = 0;
   Box3 extent_;
-  std::unordered_map<std::uint64_t, std::vector<FaceId>> edges_;  // radial order, ccw about min→max
-  std::vector<std::vector<FaceId>> vertex_faces_;
+  std::vector<FaceId> radial_;               // 3 a face: the next face around its edge k, ccw about lower→higher vertex
+  std::vector<std::uint32_t> first_corner_;  // per vertex: 3 f + k of the lowest face at it
+  std::vector<std::uint32_t> next_corner_;   // 3 a face: the next corner at the same vertex
   std::vector<SurfaceVertexId> corner_vertex_;  // 6 a face: [side][corner]
   std::vector<VertexId> site_;                  // per surface vertex
   std::vector<Side> fan_side_;
   std::vector<std::uint8_t> fan_corner_;
   TriangleIndex index_;
 };
+
+class Complex::FacesAt {
+ public:
+  class iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = FaceId;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const FaceId*;
+    using reference = FaceId;
+    iterator() = default;
+    iterator(const std::uint32_t* next, std::uint32_t at) : next_(next), at_(at) {}
+    FaceId operator*() const { return FaceId(at_ / 3); }
+    iterator& operator++() { return at_ = next_[at_], *this; }
+    iterator operator++(int) {
+      const auto old = *this;
+      ++*this;
+      return old;
+    }
+    friend bool operator==(const iterator& a, const iterator& b) { return a.at_ == b.at_; }
+
+   private:
+    const std::uint32_t* next_ = nullptr;
+    std::uint32_t at_ = no_corner;
+  };
+  FacesAt(const std::uint32_t* next, std::uint32_t first) : next_(next), first_(first) {}
+  iterator begin() const { return {next_, first_}; }
+  iterator end() const { return {next_, no_corner}; }
+  bool empty() const { return first_ == no_corner; }
+
+ private:
+  const std::uint32_t* next_;
+  std::uint32_t first_;
+};
+
+inline Complex::FacesAt Complex::faces_at(VertexId v) const { return {next_corner_.data(), first_corner_[v.index()]}; }
 
 }  // namespace geo

@@ -46,20 +46,43 @@ class ComplexBuilder {
 
   void add_points(const std::vector<Vec3>& points) {
     k.points_ = points;
-    k.vertex_faces_.resize(points.size());
+    k.first_corner_.assign(points.size(), Complex::no_corner);
   }
 
   FaceId add_face(std::array<VertexId, 3> v, std::int32_t crack) {
     const FaceId f(k.faces_.size());
     k.faces_.push_back({v, crack, true});
     k.corner_vertex_.resize(k.corner_vertex_.size() + 6);
-    for (int i = 0; i < 3; ++i) {
-      k.vertex_faces_[v[i].index()].push_back(f);
-      k.edges_[Complex::key(v[i], v[(i + 1) % 3])].push_back(f);
-    }
     k.crack_count_ = std::max(k.crack_count_, crack);
     ++k.live_faces_;
     return f;
+  }
+
+  /// Corners by vertex and faces by edge, once all faces are there; rings in ascending order as yet.
+  void link() {
+    k.radial_.resize(3 * k.faces_.size());
+    k.next_corner_.assign(3 * k.faces_.size(), Complex::no_corner);
+    for (std::uint32_t f = k.face_count(); f-- > 0;)
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        auto& first = k.first_corner_[k.face(FaceId(f)).v[c].index()];
+        k.next_corner_[3 * f + c] = first;
+        first = 3 * f + c;
+      }
+    std::vector<std::pair<VertexId, FaceId>> at;
+    std::vector<FaceId> ring;
+    for (std::uint32_t v = 0; v < k.points_.size(); ++v) {
+      at.clear();
+      for (const FaceId f : k.faces_at(VertexId(v)))
+        for (const VertexId w : k.face(f).v)
+          if (w.value > v) at.push_back({w, f});
+      std::sort(at.begin(), at.end());
+      for (std::size_t i = 0; i < at.size();) {
+        ring.clear();
+        const VertexId w = at[i].first;
+        for (; i < at.size() && at[i].first == w; ++i) ring.push_back(at[i].second);
+        k.link_ring(VertexId(v), w, ring.data(), ring.size());
+      }
+    }
   }
 
   // The index: cells as large as the mean edge is long.
@@ -75,9 +98,17 @@ class ComplexBuilder {
     for (std::uint32_t f = 0; f < k.faces_.size(); ++f) k.index_.insert(f, k.box(FaceId(f)));
   }
 
+  /// Room for the first cracks, so that they do not copy everything to a larger place.
+  void make_room() {
+    const auto more = [](auto& v, std::size_t each) { v.reserve(v.size() + v.size() / 4 + 4096 * each); };
+    more(k.points_, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1), more(k.fan_corner_, 1);
+    more(k.faces_, 1), more(k.radial_, 3), more(k.next_corner_, 3), more(k.corner_vertex_, 6);
+    k.index_.reserve(k.faces_.capacity());
+  }
+
   void fan_all() {
     for (std::uint32_t v = 0; v < k.points_.size(); ++v)
-      if (!k.vertex_faces_[v].empty()) k.refan(VertexId(v), {}, nullptr);
+      if (!k.faces_at(VertexId(v)).empty()) k.refan(VertexId(v), {}, nullptr);
   }
 
   void set_corner(Side s, int corner, std::uint32_t row) {
@@ -101,6 +132,7 @@ Complex Complex::from_skin(const TriangleMesh& skin) {
   ComplexBuilder builder;
   builder.add_points(skin.vertices);
   for (const auto& t : skin.triangles) builder.add_face({VertexId(t[0]), VertexId(t[1]), VertexId(t[2])}, 0);
+  builder.link();
   // In row order, so that the first problem named is the same every time.
   for (std::uint32_t f = 0; f < builder.k.face_count(); ++f)
     for (int k = 0; k < 3; ++k) {
@@ -119,6 +151,7 @@ Complex Complex::from_skin(const TriangleMesh& skin) {
     throw InputError("the surface is inside out (volume " + std::to_string(signed_volume(skin)) + "); reverse its triangles");
   builder.finish();
   builder.fan_all();
+  builder.make_room();
   return std::move(builder.k);
 }
 
@@ -172,13 +205,14 @@ void ComplexBuilder::order_edges(const TriangleMesh&) {
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     for (int c = 0; c < 3; ++c) {
       const VertexId a = k.face(FaceId(f)).v[c], b = k.face(FaceId(f)).v[(c + 1) % 3];
-      auto& ring = k.edges_[Complex::key(a, b)];
+      const FaceRing here = k.around(a, b);
+      std::vector<FaceId> ring(here.begin(), here.end());
+      if (*std::min_element(ring.begin(), ring.end()) != FaceId(f)) continue;  // its turn was with its lowest face
       const VertexId lo = std::min(a, b), hi = std::max(a, b);
-      if (ring.front() != FaceId(f) && ring.size() >= 3) {
-        // Ordered when its lowest face came by; the order starts anywhere.
-        if (*std::min_element(ring.begin(), ring.end()) != FaceId(f)) continue;
+      if (ring.size() >= 3) {
+        order_ring(lo, hi, ring);
+        k.link_ring(lo, hi, ring.data(), ring.size());
       }
-      if (ring.size() >= 3 && *std::min_element(ring.begin(), ring.end()) == FaceId(f)) order_ring(lo, hi, ring);
       try {
         check_ring(ring, lo, hi, [&](FaceId g) { return k.face(g); });
       } catch (const GeometryError& e) {
@@ -272,21 +306,23 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
   }
   if (paired != minus.size()) throw InputError("a crack triangle on a negative side has no twin on the positive side");
   if (builder.k.face_count() == 0) throw InputError("the surface has no skin");
+  builder.link();
   builder.finish();
   if (builder.k.extent_.empty()) throw InputError("the surface has cracks but no skin");
   builder.order_edges(surface);
   builder.adopt_rows(surface);
+  builder.make_room();
   return std::move(builder.k);
 }
 
 ComplexEdit Complex::difference(const Complex& other) const {
   if (other.vertex_count() < vertex_count()) {
     for (std::uint32_t v = other.vertex_count(); v < vertex_count(); ++v)
-      if (!vertex_faces_[v].empty()) throw InputError("the surface has not grown from the body's: it has fewer vertices");
+      if (!faces_at(VertexId(v)).empty()) throw InputError("the surface has not grown from the body's: it has fewer vertices");
   }
   const std::uint32_t common = std::min(vertex_count(), other.vertex_count());
   for (std::uint32_t v = 0; v < common; ++v)
-    if (!vertex_faces_[v].empty() && !other.vertex_faces_[v].empty() && points_[v] != other.points_[v])
+    if (!faces_at(VertexId(v)).empty() && !other.faces_at(VertexId(v)).empty() && points_[v] != other.points_[v])
       throw InputError("the surface has not grown from the body's: vertex " + std::to_string(v) + " is elsewhere");
 
   ComplexEdit edit;

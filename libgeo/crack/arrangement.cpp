@@ -105,6 +105,7 @@ void Arrangement::meet(CrackWork& work) {
       const Vec3 theirs[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
       const int first = side_of(mine, theirs[0]);
       if (first != 0 && side_of(mine, theirs[1]) == first && side_of(mine, theirs[2]) == first) continue;
+      if (share_corners_only(mine, theirs)) continue;
       meet_pair(a, b);
       const bool flat = !flat_pairs_.empty() && flat_pairs_.back() == std::pair{a, b};
       meets_itself_ = meets_itself_ || flat;

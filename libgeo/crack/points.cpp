@@ -9,32 +9,88 @@
 namespace geo::crack {
 namespace {
 
-using Number = mpq_class;
-using ExactVec = std::array<Number, 3>;
-
-ExactVec to_exact(const Vec3& p) { return {Number(p.x()), Number(p.y()), Number(p.z())}; }
-ExactVec minus(const ExactVec& a, const ExactVec& b) {
-  return {Number(a[0] - b[0]), Number(a[1] - b[1]), Number(a[2] - b[2])};
+// m · 2^e: sums and products of doubles without rounding and without fractions.
+struct Dyadic {
+  mpz_class m;
+  long e = 0;
+  Dyadic() = default;
+  explicit Dyadic(double x) {
+    int power = 0;
+    m = std::ldexp(std::frexp(x, &power), 53);
+    e = power - 53;
+  }
+};
+Dyadic operator*(const Dyadic& a, const Dyadic& b) {
+  Dyadic c;
+  c.m = a.m * b.m;
+  c.e = a.e + b.e;
+  return c;
 }
-Number det(const ExactVec& a, const ExactVec& b, const ExactVec& c) {
+Dyadic sum(const Dyadic& a, const Dyadic& b, bool minus) {
+  if (sgn(b.m) == 0) return a;
+  Dyadic c;
+  c.e = std::min(a.e, b.e);
+  if (sgn(a.m) == 0) c.e = b.e;
+  const mpz_class x = sgn(a.m) == 0 ? mpz_class(0) : mpz_class(a.m << static_cast<mp_bitcnt_t>(a.e - c.e));
+  const mpz_class y = b.m << static_cast<mp_bitcnt_t>(b.e - c.e);
+  if (minus)
+    c.m = x - y;
+  else
+    c.m = x + y;
+  return c;
+}
+Dyadic operator+(const Dyadic& a, const Dyadic& b) { return sum(a, b, false); }
+Dyadic operator-(const Dyadic& a, const Dyadic& b) { return sum(a, b, true); }
+int sign(const Dyadic& a) { return sgn(a.m); }
+
+using ExactVec = std::array<Dyadic, 3>;
+
+ExactVec to_exact(const Vec3& p) { return {Dyadic(p.x()), Dyadic(p.y()), Dyadic(p.z())}; }
+ExactVec minus(const ExactVec& a, const ExactVec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Dyadic det(const ExactVec& a, const ExactVec& b, const ExactVec& c) {
   return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
+mpq_class quotient(const Dyadic& a, const Dyadic& b) {
+  mpz_class up = a.m, down = b.m;
+  if (a.e > b.e)
+    up <<= static_cast<mp_bitcnt_t>(a.e - b.e);
+  else
+    down <<= static_cast<mp_bitcnt_t>(b.e - a.e);
+  mpq_class q(up, down);
+  q.canonicalize();
+  return q;
+}
+
 // The nearest double; of two equally near the one closer to zero.
-double nearest(const Number& x) {
+double nearest(const mpq_class& x) {
   const double inner = x.get_d();  // rounded towards zero
-  const Number rest = abs(x - Number(inner));
+  const mpq_class rest = abs(x - mpq_class(inner));
   if (rest == 0) return inner;
   const double outer = std::nextafter(inner, sgn(x) > 0 ? HUGE_VAL : -HUGE_VAL);
-  return abs(Number(outer) - x) < rest ? outer : inner;
+  return abs(mpq_class(outer) - x) < rest ? outer : inner;
 }
 
 constexpr double smallest = 1e-250, largest = 1e250;
 
 }  // namespace
 
+// Homogeneous: p / w, w > 0.
 struct Points::Exact {
   ExactVec p;
+  Dyadic w{1.0};
+
+  /// The difference to another point, times both denominators.
+  ExactVec from(const Exact& o) const {
+    ExactVec d;
+    for (int i = 0; i < 3; ++i) d[i] = p[i] * o.w - o.p[i] * w;
+    return d;
+  }
+  void keep_positive() {
+    if (sign(w) > 0) return;
+    w.m = -w.m;
+    for (auto& x : p) x.m = -x.m;
+  }
 };
 
 Points::Points() = default;
@@ -82,28 +138,30 @@ Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
 }
 
 Local Points::add_crossing_in_plane(Local a, Local b, Local c, Local d, int axis) {
-  const auto &pa = exact(a).p, &pb = exact(b).p, &pc = exact(c).p, &pd = exact(d).p;
+  const Exact &pa = exact(a), &pb = exact(b), &pc = exact(c), &pd = exact(d);
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  const auto turn = [&](const ExactVec& p, const ExactVec& q, const ExactVec& r) {
-    return Number((q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]));
+  const auto turn = [&](const Exact& p, const Exact& q, const Exact& r) {
+    return det({p.p[i], p.p[j], p.w}, {q.p[i], q.p[j], q.w}, {r.p[i], r.p[j], r.w});
   };
-  const Number ta = turn(pc, pd, pa), tb = turn(pc, pd, pb), t = ta / (ta - tb);
+  const Dyadic ta = turn(pc, pd, pa) * pb.w, tb = turn(pc, pd, pb) * pa.w, whole = ta - tb;
   auto value = std::make_unique<Exact>();
-  for (int k = 0; k < 3; ++k) value->p[k] = pa[k] + t * (pb[k] - pa[k]);
+  for (int k = 0; k < 3; ++k) value->p[k] = pb.p[k] * pa.w * ta - pa.p[k] * pb.w * tb;
+  value->w = pa.w * pb.w * whole;
+  value->keep_positive();
   const Local l = append(Vec3::Zero(), 0);
   if (exact_.size() <= l) exact_.resize(l + 1);
   exact_[l] = std::move(value);
-  definition_[l] = ~1u;
   round(l);
   return l;
 }
 
 void Points::round(Local l) {
-  const auto& e = exact(l).p;
+  const Exact& e = exact(l);
   double error = 0;
   for (int i = 0; i < 3; ++i) {
-    near_[l][i] = nearest(e[i]) + 0.0;
-    if (Number(near_[l][i]) != e[i]) error = std::max(error, std::abs(near_[l][i]) * 0x1p-52 + 0x1p-1074);
+    const mpq_class x = quotient(e.p[i], e.w);
+    near_[l][i] = nearest(x) + 0.0;
+    if (mpq_class(near_[l][i]) != x) error = std::max(error, std::abs(near_[l][i]) * 0x1p-52 + 0x1p-1074);
   }
   error_[l] = error;
 }
@@ -120,8 +178,10 @@ const Points::Exact& Points::exact(Local l) const {
   const auto& of = definitions_[definition_[l]].of;
   const ExactVec a = to_exact(of[0]), b = to_exact(of[1]), p = to_exact(of[2]);
   const ExactVec u = minus(to_exact(of[3]), p), v = minus(to_exact(of[4]), p);
-  const Number da = det(u, v, minus(a, p)), db = det(u, v, minus(b, p)), t = da / (da - db);
-  for (int k = 0; k < 3; ++k) slot->p[k] = a[k] + t * (b[k] - a[k]);
+  const Dyadic da = det(u, v, minus(a, p)), db = det(u, v, minus(b, p));
+  slot->w = da - db;
+  for (int k = 0; k < 3; ++k) slot->p[k] = b[k] * da - a[k] * db;
+  slot->keep_positive();
   return *slot;
 }
 
@@ -143,8 +203,8 @@ int Points::orient3d(Local a, Local b, Local c, Local d) const {
   // The determinant of a−d, b−d, c−d is that of the contract with its sign turned.
   if (permanent > smallest && permanent < largest && std::abs(value) > bound) return value > 0 ? -1 : 1;
   if (error == 0) return geo::orient3d(near_[a], near_[b], near_[c], near_[d]);
-  const ExactVec &ea = exact(a).p, eb = exact(b).p, ec = exact(c).p, ed = exact(d).p;
-  return sgn(det(minus(eb, ea), minus(ec, ea), minus(ed, ea)));
+  const Exact& from = exact(a);
+  return sign(det(exact(b).from(from), exact(c).from(from), exact(d).from(from)));
 }
 
 int Points::orient2d(Local a, Local b, Local c, int axis) const {
@@ -156,27 +216,29 @@ int Points::orient2d(Local a, Local b, Local c, int axis) const {
   double bound = 3.4e-16 * terms;
   if (error > 0) bound += error * 1.01 * (std::abs(ux) + std::abs(uy) + std::abs(vx) + std::abs(vy) + 2 * error);
   if (terms > smallest && terms < largest && std::abs(value) > bound) return value > 0 ? 1 : -1;
-  const ExactVec &ea = exact(a).p, &eb = exact(b).p, &ec = exact(c).p;
-  return sgn(Number((ea[i] - ec[i]) * (eb[j] - ec[j]) - (ea[j] - ec[j]) * (eb[i] - ec[i])));
+  const ExactVec u = exact(a).from(exact(c)), v = exact(b).from(exact(c));
+  return sign(u[i] * v[j] - u[j] * v[i]);
 }
 
 int Points::compare(Local a, Local b, int axis) const {
   const double difference = near_[a][axis] - near_[b][axis], error = error_[a] + error_[b];
   if (std::abs(difference) > 1.01 * error) return difference > 0 ? 1 : -1;
   if (error == 0) return difference > 0 ? 1 : difference < 0 ? -1 : 0;
-  return cmp(exact(a).p[axis], exact(b).p[axis]);
+  const Exact &ea = exact(a), &eb = exact(b);
+  return sign(ea.p[axis] * eb.w - eb.p[axis] * ea.w);
 }
 
 bool Points::same_place(Local a, Local b) const {
   if (((near_[a] - near_[b]).cwiseAbs().array() > 1.01 * (error_[a] + error_[b])).any()) return false;
   if (error_[a] == 0 && error_[b] == 0) return true;
-  return exact(a).p == exact(b).p;
+  const ExactVec d = exact(a).from(exact(b));
+  return sign(d[0]) == 0 && sign(d[1]) == 0 && sign(d[2]) == 0;
 }
 
 std::uint64_t Points::hash(Local l) const {
   Vec3 p = near_[l];
   if (error_[l] > 0)
-    for (int i = 0; i < 3; ++i) p[i] = nearest(exact(l).p[i]);
+    for (int i = 0; i < 3; ++i) p[i] = nearest(quotient(exact(l).p[i], exact(l).w));
   std::uint64_t h = 1469598103934665603ull;
   for (int i = 0; i < 3; ++i) {
     h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: one zero

@@ -33,6 +33,15 @@ int orient3d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   return det > bound * permanent ? -1 : det < -bound * permanent ? 1 : 2;
 }
 
+// Sign of the turn abc, or 2. Shewchuk's A-stage of orient2d: (3 + 16 ε) ε.
+int orient2d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const double left = (a[i] - c[i]) * (b[j] - c[j]), right = (a[j] - c[j]) * (b[i] - c[i]);
+  const double value = left - right, terms = std::abs(left) + std::abs(right);
+  if (!(terms > smallest && terms < largest)) return 2;
+  return value > 3.3306690738754716e-16 * terms ? 1 : value < -3.3306690738754716e-16 * terms ? -1 : 2;
+}
+
 bool same(const Vec3& a, const Vec3& b) { return a == b; }
 
 // The extreme points of collinear a, b, c: the segment that a degenerate triangle is.
@@ -58,12 +67,11 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return static_cast<int>(CGAL::orientation(pt(a), pt(b), pt(c), pt(d)));
 }
 
+int orient3d_quick(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return orient3d_filtered(a, b, c, d); }
+
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
-  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  const double left = (a[i] - c[i]) * (b[j] - c[j]), right = (a[j] - c[j]) * (b[i] - c[i]);
-  const double value = left - right, terms = std::abs(left) + std::abs(right);
-  // Shewchuk's A-stage of orient2d: (3 + 16 ε) ε.
-  if (terms > smallest && terms < largest && std::abs(value) > 3.3306690738754716e-16 * terms) return value > 0 ? 1 : -1;
+  const int sign = orient2d_filtered(a, b, c, axis), i = (axis + 1) % 3, j = (axis + 2) % 3;
+  if (sign != 2) return sign;
   return static_cast<int>(CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
 }
 
@@ -80,6 +88,24 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return static_cast<int>(CGAL::coplanar_orientation(pt(a), pt(b), pt(c), pt(d)));
+}
+
+bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
+  int axis = 0;
+  (s[1] - s[0]).cross(s[2] - s[0]).cwiseAbs().maxCoeff(&axis);
+  // An edge of one that has the other strictly on its far side, but for corners that the two share on it.
+  const auto divides = [axis](const Vec3(&x)[3], const Vec3(&y)[3]) {
+    const int turn = orient2d_filtered(x[0], x[1], x[2], axis);
+    if (turn == 2) return false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &a = x[k], &b = x[(k + 1) % 3];
+      bool beyond = true;
+      for (int j = 0; j < 3 && beyond; ++j) beyond = y[j] == a || y[j] == b || orient2d_filtered(a, b, y[j], axis) == -turn;
+      if (beyond) return true;
+    }
+    return false;
+  };
+  return divides(s, t) || divides(t, s);
 }
 
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {

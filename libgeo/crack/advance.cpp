@@ -2,29 +2,14 @@
 #include "crack/advance.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/error.h"
 #include "base/random.h"
-#include "crack/guard.h"
-#include "crack/keep_internal.h"
+#include "base/stopwatch.h"
+#include "crack/insert_internal.h"
 
 namespace geo {
 namespace {
-
-class Stopwatch {
- public:
-  /// Seconds since the last call or the construction.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 // Another crack may have divided the front's edges since: consecutive contacts that K joins no longer are joined again
 // through the vertices that now lie between them.
@@ -117,44 +102,11 @@ Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Ve
   work.snapped += snap_to_vertices(strip, complex, reach);
   work.near_seconds += watch.lap();
   crack::Arrangement arrangement(complex, strip);
-  arrangement.meet(work);
-  work.meet_seconds += watch.lap();
-  arrangement.split();
-  work.split_seconds += watch.lap();
-  const auto edges = crack::edges_of_complex(arrangement);
-  const auto parts = crack::keep_inside(arrangement, complex, edges);
-  work.keep_seconds += watch.lap();
-  std::vector<VertexId> vertex(arrangement.points().size());
-  if (!parts.empty()) {
-    const ComplexEdit edit = crack::stitch(arrangement, complex, edges, parts, front.crack, vertex);
-    work.stitch_seconds += watch.lap();
-    std::vector<Family> families;
-    std::uint32_t row = 0, last = ~0u;
-    for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
-      if (const auto& element = arrangement.elements[e]; element.cut) {
-        families.push_back({complex.corners(element.face), row, row + element.end - element.first, {}});
-        row = families.back().end;
-      }
-    for (const auto& part : parts) {
-      const auto& c = arrangement.elements[part.element].corner;
-      const auto& points = arrangement.points();
-      if (families.empty() || last != part.element)
-        families.push_back({{points[c[0]], points[c[1]], points[c[2]]}, row, row, arrangement.near(part.element)});
-      last = part.element;
-      families.back().end = ++row;
-    }
-    if (const std::string fault = find_fault(complex, edit, families); !fault.empty()) throw GeometryError(fault);
-    work.guard_seconds += watch.lap();
-    follow_front(result.front, strip, arrangement, vertex);
-    result.delta = complex.apply(edit);
-    work.triangles_cut += edit.removed_faces.size();
-    work.new_crack_faces += parts.size();
-    work.stitch_seconds += watch.lap();
-  } else {
-    // Nothing of the strip is in the material: contacts are those vertices of K that the front happens to stand on.
-    for (crack::Local l = 0; l < vertex.size(); ++l) vertex[l] = arrangement.id(l);
-    follow_front(result.front, strip, arrangement, vertex);
-  }
+  std::vector<VertexId> vertex;
+  result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, work);
+  watch.lap();
+  follow_front(result.front, strip, arrangement, vertex);
+  work.stitch_seconds += watch.lap();
   return result;
 }
 

@@ -64,6 +64,14 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
   return std::move(builder.strip);
 }
 
+Strip strip_of(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  Builder builder;
+  std::vector<std::uint32_t> row;
+  for (const Vec3& p : points) row.push_back(builder.point(p, false));
+  for (const auto& t : triangles) builder.triangle(row[t[0]], row[t[1]], row[t[2]], {-1, -1, -1});
+  return std::move(builder.strip);
+}
+
 void find_near(Strip& strip, const Complex& complex, double reach) {
   strip.near.clear();
   strip.near_begin.assign(1, 0);

@@ -28,6 +28,9 @@ struct Strip {
 /// Consecutive strips of a front are oriented alike. Triangles without area are left out.
 Strip sweep(const FrontState& front, std::span<const Vec3> next);
 
+/// Any triangles as a strip without fronts. Points at one place become one; triangles without area are left out.
+Strip strip_of(std::span<const Vec3> points, std::span<const geo::Triangle> triangles);
+
 /// Fills `near`: the faces of K whose boxes are within `reach` of a triangle's box and not clear of its plane.
 void find_near(Strip& strip, const Complex& complex, double reach);
 

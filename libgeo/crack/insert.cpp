@@ -1,0 +1,64 @@
+#include "crack/insert_internal.h"
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "crack/guard.h"
+#include "crack/keep_internal.h"
+
+namespace geo::crack {
+namespace {
+
+// The new faces of the edit by the triangle that each is a part of: cut faces of K first, then the strip's triangles.
+std::vector<Family> families_of(const Complex& complex, const Arrangement& arrangement, std::span<const Part> parts) {
+  std::vector<Family> families;
+  std::uint32_t row = 0, last = ~0u;
+  for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
+    if (const auto& element = arrangement.elements[e]; element.cut) {
+      families.push_back({complex.corners(element.face), row, row + element.end - element.first, {}});
+      row = families.back().end;
+    }
+  for (const auto& part : parts) {
+    const auto& c = arrangement.elements[part.element].corner;
+    const auto& points = arrangement.points();
+    if (last != part.element) families.push_back({{points[c[0]], points[c[1]], points[c[2]]}, row, row, arrangement.near(part.element)});
+    last = part.element;
+    families.back().end = ++row;
+  }
+  return families;
+}
+
+}  // namespace
+
+CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
+                        std::vector<VertexId>& vertex, CrackWork& work) {
+  vertex.clear();
+  if (strip.triangles.empty()) {
+    for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(arrangement.id(l));
+    return {};
+  }
+  Stopwatch watch;
+  arrangement.meet(work);
+  work.meet_seconds += watch.lap();
+  arrangement.split();
+  work.split_seconds += watch.lap();
+  const EdgeTable edges = edges_of_complex(arrangement);
+  const auto parts = keep_inside(arrangement, complex, edges);
+  work.keep_seconds += watch.lap();
+  if (parts.empty()) {
+    // Nothing of the strip is in the material: contacts are those vertices of K that the front happens to stand on.
+    for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(arrangement.id(l));
+    return {};
+  }
+  const ComplexEdit edit = stitch(arrangement, complex, edges, parts, crack, vertex);
+  work.stitch_seconds += watch.lap();
+  const auto families = families_of(complex, arrangement, parts);
+  if (const std::string fault = find_fault(complex, edit, families); !fault.empty()) throw GeometryError(fault);
+  work.guard_seconds += watch.lap();
+  CrackDelta delta = complex.apply(edit);
+  work.triangles_cut += edit.removed_faces.size();
+  work.new_crack_faces += parts.size();
+  work.stitch_seconds += watch.lap();
+  return delta;
+}
+
+}  // namespace geo::crack

@@ -1,0 +1,14 @@
+// One attempt to insert a strip: meet, split, keep, stitch, guard, commit.
+#pragma once
+
+#include "crack/arrangement_internal.h"
+
+namespace geo::crack {
+
+/// Inserts what of the strip lies in the material as faces of this crack and returns what changed; empty when nothing
+/// does. `vertex` receives the vertex of each point of the arrangement that has one. Throws GeometryError, K unchanged,
+/// when rounding would break it.
+CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
+                        std::vector<VertexId>& vertex, CrackWork& work);
+
+}  // namespace geo::crack

@@ -1,0 +1,47 @@
+#include "crack/sheet.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/stopwatch.h"
+#include "crack/insert_internal.h"
+#include "geometry/predicates.h"
+
+namespace geo {
+
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options, CrackWork* work) {
+  if (crack < 1) throw InputError("cracks are numbered from 1");
+  for (const Vec3& p : sheet.vertices)
+    if (!p.allFinite()) throw InputError("the sheet has a coordinate that is not a finite number");
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
+    for (const auto v : sheet.triangles[t])
+      if (v >= sheet.vertices.size()) throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
+  const double size = complex.extent().diagonal();
+  Random random(options.seed * 0x9e3779b97f4a7c15ull);
+  CrackWork done;
+  std::string reason;
+  double jitter = 0;
+  for (int attempt = 0; attempt <= options.attempts; ++attempt) {
+    if (attempt > 0) jitter = attempt == 1 ? options.jitter : std::min(jitter * 8, options.jitter * 4096);
+    ++done.attempts;
+    Stopwatch watch;
+    std::vector<Vec3> points = sheet.vertices;
+    if (attempt > 0)
+      for (Vec3& p : points) p += random.uniform(0.2, 1.0) * jitter * size * random.direction();
+    Strip strip = strip_of(points, sheet.triangles);
+    done.snapped += snap_to_vertices(strip, complex, options.snap * size);
+    done.near_seconds += watch.lap();
+    try {
+      crack::Arrangement arrangement(complex, strip);
+      std::vector<VertexId> vertex;
+      CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, done);
+      if (work) *work += done;
+      return delta;
+    } catch (const GeometryError& e) {
+      reason = e.what();
+    }
+  }
+  if (work) *work += done;
+  throw GeometryError("the sheet cannot be inserted: " + reason);
+}
+
+}  // namespace geo

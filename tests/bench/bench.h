@@ -1,0 +1,41 @@
+// What the benchmarks share: CPU time, the least of several runs, figures by name.
+#pragma once
+
+#include <ctime>
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bench {
+
+/// CPU seconds of this process.
+inline double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+/// The least CPU time of some runs of `work`, each after an untimed `prepare`: at least three, until a second is spent.
+inline double least(const std::function<void()>& prepare, const std::function<void()>& work, int most = 15) {
+  double best = 1e300, spent = 0;
+  for (int i = 0; i < most && (i < 3 || spent < 1.0); ++i) {
+    prepare();
+    const double start = cpu_seconds();
+    work();
+    const double t = cpu_seconds() - start;
+    best = std::min(best, t), spent += t;
+  }
+  return best;
+}
+
+struct Options {
+  std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles
+  std::vector<std::string> models;    ///< closed meshes in files
+  bool json = false;
+};
+
+int crack(const Options& options);
+
+}  // namespace bench

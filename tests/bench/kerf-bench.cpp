@@ -1,0 +1,23 @@
+// kerf-bench: how fast, beside whom.
+#include "bench.h"
+#include "tool.h"
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-bench", "Measures parts of Kerf beside other libraries, in one run.",
+               "  kerf-bench crack\n  kerf-bench crack --frequency 11 --frequency 45 --json\n  kerf-bench crack --frequency 22 --model bear.off");
+  std::string what;
+  bench::Options options;
+  std::vector<std::string> frequencies;
+  t.argument("WHAT", what, "crack");
+  t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
+  t.option("--model", options.models, "Closed meshes to measure as well");
+  return t.run(argc, argv, [&] {
+    if (what != "crack") throw tool::UsageError("nothing is known about '" + what + "'; there is crack");
+    for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));
+    for (const int f : options.frequencies)
+      if (f < 1 || f > 2000) throw tool::UsageError("--frequency is from 1 to 2000");
+    if (frequencies.empty()) options.frequencies = {11, 22, 45, 89, 179};
+    options.json = t.json;
+    bench::crack(options);
+  });
+}

@@ -23,6 +23,7 @@ std::uint64_t edge_key(Local a, Local b) { return std::uint64_t(std::min(a, b)) 
 
 // The side of plane abc that p is on; 0 without asking where p is one of the three.
 int side_of(const Vec3 (&t)[3], const Vec3& p) {
+  if (const int side = orient3d_quick(t[0], t[1], t[2], p); side != 2) return side;
   if (p == t[0] || p == t[1] || p == t[2]) return 0;
   return orient3d(t[0], t[1], t[2], p);
 }
@@ -76,14 +77,12 @@ void Arrangement::meet(CrackWork& work) {
     const Vec3 mine[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
     for (const FaceId f : near) {
       const auto c = complex_.corners(f);
-      const int first = side_of(mine, c[0]);
-      if (first != 0 && side_of(mine, c[1]) == first && side_of(mine, c[2]) == first) continue;
       const Vec3 theirs[3] = {c[0], c[1], c[2]};
-      const int other = side_of(theirs, mine[0]);
-      if (other != 0 && side_of(theirs, mine[1]) == other && side_of(theirs, mine[2]) == other) continue;
+      Signs sign;
+      if (!signs_of(theirs, mine, sign)) continue;
       const bool known = by_face_.count(f) > 0;
       const std::uint32_t e = element_of(f);
-      meet_pair(e, s);
+      meet_pair(e, s, sign);
       if (features_.empty() && !known) {  // apart after all: the last one made is taken back
         by_face_.erase(f);
         elements.pop_back();
@@ -103,10 +102,9 @@ void Arrangement::meet(CrackWork& work) {
       const auto &s = strip_.triangles[a].p, &t = strip_.triangles[b].p;
       const Vec3 mine[3] = {strip_.points[s[0]], strip_.points[s[1]], strip_.points[s[2]]};
       const Vec3 theirs[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
-      const int first = side_of(mine, theirs[0]);
-      if (first != 0 && side_of(mine, theirs[1]) == first && side_of(mine, theirs[2]) == first) continue;
-      if (share_corners_only(mine, theirs)) continue;
-      meet_pair(a, b);
+      Signs sign;
+      if (share_corners_only(mine, theirs) || !signs_of(mine, theirs, sign)) continue;
+      meet_pair(a, b, sign);
       const bool flat = !flat_pairs_.empty() && flat_pairs_.back() == std::pair{a, b};
       meets_itself_ = meets_itself_ || flat;
     }
@@ -180,18 +178,17 @@ void Arrangement::divide(std::uint32_t e, int which) {
     if (f.point != c[0] && f.point != c[1] && f.point != c[2]) shared_.push_back({e, f.point, no_local, f.on[which]});
 }
 
-void Arrangement::meet_pair(std::uint32_t a, std::uint32_t b) {
+// The corners of s against the plane of t, and the other way round; false when one is clear of the other's plane.
+bool Arrangement::signs_of(const Vec3 (&s)[3], const Vec3 (&t)[3], Signs& sign) const {
+  for (int k = 0; k < 3; ++k) sign[0][k] = side_of(t, s[k]);
+  if (sign[0][0] != 0 && sign[0][0] == sign[0][1] && sign[0][0] == sign[0][2]) return false;
+  for (int k = 0; k < 3; ++k) sign[1][k] = side_of(s, t[k]);
+  return sign[1][0] == 0 || sign[1][0] != sign[1][1] || sign[1][0] != sign[1][2];
+}
+
+void Arrangement::meet_pair(std::uint32_t a, std::uint32_t b, const Signs& sign) {
   features_.clear();
   const std::uint32_t element[2] = {a, b};
-  int sign[2][3];  // of the corners of each against the other's plane
-  for (int i = 0; i < 2; ++i) {
-    const auto &mine = elements[element[i]].corner, &other = elements[element[1 - i]].corner;
-    for (int k = 0; k < 3; ++k)
-      sign[i][k] = mine[k] == other[0] || mine[k] == other[1] || mine[k] == other[2]
-                       ? 0
-                       : geo::orient3d(points_[other[0]], points_[other[1]], points_[other[2]], points_[mine[k]]);
-    if (sign[i][0] != 0 && sign[i][0] == sign[i][1] && sign[i][0] == sign[i][2]) return;
-  }
   if (sign[0][0] == 0 && sign[0][1] == 0 && sign[0][2] == 0) return meet_flat(a, b);
   for (int i = 0; i < 2; ++i) {
     const std::uint32_t me = element[i], it = element[1 - i];

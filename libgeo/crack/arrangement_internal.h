@@ -68,7 +68,9 @@ class Arrangement {
   };
   Local local_of(VertexId v);
   std::uint32_t element_of(FaceId f);
-  void meet_pair(std::uint32_t a, std::uint32_t b);
+  using Signs = int[2][3];  // of the corners of each of two elements against the other's plane
+  void meet_pair(std::uint32_t a, std::uint32_t b, const Signs& sign);
+  bool signs_of(const Vec3 (&s)[3], const Vec3 (&t)[3], Signs& sign) const;
   void meet_flat(std::uint32_t a, std::uint32_t b);
   int locate_flat(std::uint32_t e, Local p, std::uint8_t& on) const;
   Local crossing(std::uint32_t edge_of, int edge, std::uint32_t other, int other_edge);

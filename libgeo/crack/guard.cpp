@@ -8,7 +8,8 @@
 
 namespace geo {
 
-std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families) {
+std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
+                       std::span<const std::uint8_t> moved) {
   const auto point = [&](VertexId v) -> const Vec3& {
     return v.value < complex.vertex_count() ? complex.point(v) : edit.new_vertices[v.value - complex.vertex_count()];
   };
@@ -16,8 +17,14 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
   std::vector<std::array<Vec3, 3>> corners(n);
   std::vector<std::array<std::uint32_t, 3>> rows(n);
   std::vector<Box3> boxes(n);
+  std::vector<std::uint8_t> touched(n, 0);  // has a vertex that rounding moved
+  std::vector<std::uint32_t> family_of(n);  // ~0u: of a strip triangle, some of whose children may be missing
   for (std::uint32_t i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) corners[i][k] = point(edit.new_faces[i].v[k]), rows[i][k] = edit.new_faces[i].v[k].value;
+    for (int k = 0; k < 3; ++k) {
+      const VertexId v = edit.new_faces[i].v[k];
+      corners[i][k] = point(v), rows[i][k] = v.value;
+      if (v.value >= complex.vertex_count()) touched[i] |= moved[v.value - complex.vertex_count()];
+    }
     boxes[i] = box_of(corners[i][0], corners[i][1], corners[i][2]);
   }
   for (const Family& family : families) {
@@ -26,6 +33,7 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
     (p[1] - p[0]).cross(p[2] - p[0]).cwiseAbs().maxCoeff(&axis);
     const int was = orient2d(p[0], p[1], p[2], axis);
     for (auto i = family.first; i < family.end; ++i) {
+      family_of[i] = edit.new_faces[i].parent.valid() ? family.first : ~0u;
       const int is = orient2d(corners[i][0], corners[i][1], corners[i][2], axis);
       if (is == 0) return "rounding would leave a face without area";
       if (was != is) return "rounding would turn a face over";
@@ -33,14 +41,16 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
   }
 
   // Vertices at one place: new ones among each other and against the corners of what is there.
-  const auto less = [](const Vec3& a, const Vec3& b) { return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3); };
   std::vector<VertexId> vertices;
   for (const auto& f : edit.new_faces) vertices.insert(vertices.end(), f.v.begin(), f.v.end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  std::sort(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) { return less(point(a), point(b)); });
-  for (std::size_t i = 1; i < vertices.size(); ++i)
-    if (point(vertices[i - 1]) == point(vertices[i])) return "rounding would put two vertices at one place";
+  std::vector<std::pair<double, VertexId>> by_x;
+  for (const VertexId v : vertices) by_x.push_back({point(v).x(), v});
+  std::sort(by_x.begin(), by_x.end());
+  for (std::size_t i = 0; i < by_x.size(); ++i)
+    for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first == by_x[i].first; ++j)
+      if (point(by_x[i].second) == point(by_x[j].second)) return "rounding would put two vertices at one place";
 
   // New faces against those that stay.
   std::vector<FaceId> removed = edit.removed_faces, looked_up;
@@ -52,7 +62,9 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
   std::vector<Near> near;
   for (const Family& family : families) {
     Box3 box;
-    for (auto i = family.first; i < family.end; ++i) box.add(boxes[i]);
+    for (auto i = family.first; i < family.end; ++i)
+      if (touched[i]) box.add(boxes[i]);
+    if (box.empty()) continue;
     near.clear();
     looked_up.clear();
     if (family.near.empty()) complex.near(box, looked_up);
@@ -62,7 +74,7 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
     }
     for (auto i = family.first; i < family.end; ++i)
       for (const Near& other : near) {
-        if (!other.box.meets(boxes[i])) continue;
+        if (!touched[i] || !other.box.meets(boxes[i])) continue;
         const auto& v = complex.face(other.face).v;
         if (faces_cross(rows[i], corners[i], {v[0].value, v[1].value, v[2].value}, complex.corners(other.face)))
           return "rounding would make a new face cross face " + std::to_string(other.face.value);
@@ -80,6 +92,9 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t j = i + 1; j < n && boxes[order[j]].lo[axis] <= boxes[order[i]].hi[axis]; ++j) {
       const auto a = order[i], b = order[j];
+      // All children of a face, none turned over: they cover it once, as before rounding.
+      if (family_of[a] != ~0u && family_of[a] == family_of[b]) continue;
+      if (!touched[a] && !touched[b]) continue;
       if (boxes[a].meets(boxes[b]) && faces_cross(rows[a], corners[a], rows[b], corners[b])) return "rounding would make two new faces cross";
     }
   return {};

@@ -15,9 +15,11 @@ struct Family {
   std::span<const FaceId> near;    ///< faces of K that may be near; empty: they are looked up
 };
 
+/// `moved`: per new vertex, whether rounding moved it. Faces that it has not touched are as exact decisions left them.
 /// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
 /// vertex stands where another does, and no new face crosses a near one. Exact. Returns what is wrong, empty when
 /// nothing is. Families list every new face once, in order. Cost follows the edit.
-std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families);
+std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
+                       std::span<const std::uint8_t> moved);
 
 }  // namespace geo

@@ -52,7 +52,11 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   const ComplexEdit edit = stitch(arrangement, complex, edges, parts, crack, vertex);
   work.stitch_seconds += watch.lap();
   const auto families = families_of(complex, arrangement, parts);
-  if (const std::string fault = find_fault(complex, edit, families); !fault.empty()) throw GeometryError(fault);
+  std::vector<std::uint8_t> moved(edit.new_vertices.size());
+  for (Local l = 0; l < vertex.size(); ++l)
+    if (vertex[l].valid() && vertex[l].value >= complex.vertex_count())
+      moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
+  if (const std::string fault = find_fault(complex, edit, families, moved); !fault.empty()) throw GeometryError(fault);
   work.guard_seconds += watch.lap();
   CrackDelta delta = complex.apply(edit);
   work.triangles_cut += edit.removed_faces.size();

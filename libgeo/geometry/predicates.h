@@ -1,16 +1,43 @@
 // Exact geometric predicates on doubles: a static filter first, CGAL's exact arithmetic where it cannot say.
 #pragma once
 
+#include <cmath>
+
 #include "base/vec.h"
 
 namespace geo {
 
+/// Outside of these a product of three differences may underflow or overflow, and error bounds no longer hold.
+constexpr double filter_smallest = 1e-270, filter_largest = 1e300;
+
+/// orient3d(), or 2 where only exact arithmetic could say. The bound is Shewchuk's (1997) A-stage, (7 + 56 ε) ε with
+/// ε = 2⁻⁵³, times the permanent.
+[[gnu::always_inline]] inline int orient3d_quick(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const double adx = a.x() - d.x(), ady = a.y() - d.y(), adz = a.z() - d.z();
+  const double bdx = b.x() - d.x(), bdy = b.y() - d.y(), bdz = b.z() - d.z();
+  const double cdx = c.x() - d.x(), cdy = c.y() - d.y(), cdz = c.z() - d.z();
+  const double bc = bdx * cdy, cb = cdx * bdy, ca = cdx * ady, ac = adx * cdy, ab = adx * bdy, ba = bdx * ady;
+  const double det = adz * (bc - cb) + bdz * (ca - ac) + cdz * (ab - ba);
+  const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(adz) + (std::abs(ca) + std::abs(ac)) * std::abs(bdz) +
+                           (std::abs(ab) + std::abs(ba)) * std::abs(cdz);
+  const double bound = 7.771561172376103e-16 * permanent;
+  if (!(permanent > filter_smallest && permanent < filter_largest)) return 2;
+  // Shewchuk's determinant is positive when d is below abc; ours the other way round.
+  return det > bound ? -1 : det < -bound ? 1 : 2;
+}
+
+/// orient2d(), or 2 where only exact arithmetic could say. Shewchuk's A-stage: (3 + 16 ε) ε.
+inline int orient2d_quick(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
+  const int i = axis == 2 ? 0 : axis + 1, j = axis == 0 ? 2 : axis - 1;
+  const double left = (a[i] - c[i]) * (b[j] - c[j]), right = (a[j] - c[j]) * (b[i] - c[i]);
+  const double value = left - right, terms = std::abs(left) + std::abs(right), bound = 3.3306690738754716e-16 * terms;
+  if (!(terms > filter_smallest && terms < filter_largest)) return 2;
+  return value > bound ? 1 : value < -bound ? -1 : 2;
+}
+
 /// Sign of det(b−a, c−a, d−a): +1 when d lies on the side of abc that its counter-clockwise normal points to,
 /// −1 on the other side, 0 when the four points are exactly coplanar.
 int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-
-/// The same, or 2 where only exact arithmetic could say.
-int orient3d_quick(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// Sign of the turn abc in the two axes that follow `axis` (0, 1, 2): counter-clockwise positive.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis);

@@ -71,26 +71,29 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
     for (int j = 0; j < 3; ++j)
       if (f[i] == g[j]) shared_f[shared] = i, shared_g[shared] = j, ++shared;
   if (shared == 3) return true;
-  const Vec3 s[3] = {p[0], p[1], p[2]}, t[3] = {q[0], q[1], q[2]};
+  const auto clear = [](const std::array<Vec3, 3>& plane, const Vec3& a, const Vec3& b) {
+    const int side = orient3d_quick(plane[0], plane[1], plane[2], a);
+    return side != 2 && orient3d_quick(plane[0], plane[1], plane[2], b) == side;
+  };
+  const auto apart = [](const std::array<Vec3, 3>& x, const std::array<Vec3, 3>& y) {
+    const Vec3 s[3] = {x[0], x[1], x[2]}, t[3] = {y[0], y[1], y[2]};
+    return share_corners_only(s, t);
+  };
   if (shared == 2) {
     const int i = 3 - shared_f[0] - shared_f[1], j = 3 - shared_g[0] - shared_g[1];
     const Vec3 &u = p[shared_f[0]], &v = p[shared_f[1]];
-    const int side = orient3d_quick(u, v, p[i], q[j]);
-    if (side != 2 || share_corners_only(s, t) || orient3d(u, v, p[i], q[j]) != 0) return false;
+    if (orient3d_quick(u, v, p[i], q[j]) != 2 || apart(p, q) || orient3d(u, v, p[i], q[j]) != 0) return false;
     if (collinear(u, v, p[i])) return segment_meets_triangle(p[i], p[i], q[0], q[1], q[2]);
     return coplanar_side(u, v, p[i], q[j]) >= 0;
   }
   if (shared == 1) {
-    const int i = shared_f[0], j = shared_g[0];
     // Both others strictly on one side of the other's plane: they touch at the shared corner only.
-    const auto clear = [](const std::array<Vec3, 3>& plane, const Vec3& a, const Vec3& b) {
-      const int side = orient3d_quick(plane[0], plane[1], plane[2], a);
-      return side != 2 && orient3d_quick(plane[0], plane[1], plane[2], b) == side;
-    };
-    if (clear(p, q[(j + 1) % 3], q[(j + 2) % 3]) || clear(q, p[(i + 1) % 3], p[(i + 2) % 3]) || share_corners_only(s, t)) return false;
+    const int i = shared_f[0], j = shared_g[0];
+    if (clear(p, q[(j + 1) % 3], q[(j + 2) % 3]) || clear(q, p[(i + 1) % 3], p[(i + 2) % 3]) || apart(p, q)) return false;
     return segment_meets_triangle(p[(i + 1) % 3], p[(i + 2) % 3], q[0], q[1], q[2]) ||
            segment_meets_triangle(q[(j + 1) % 3], q[(j + 2) % 3], p[0], p[1], p[2]);
   }
+  const Vec3 s[3] = {p[0], p[1], p[2]}, t[3] = {q[0], q[1], q[2]};
   return triangles_meet(s, t);
 }
 

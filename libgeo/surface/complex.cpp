@@ -66,16 +66,16 @@ void Complex::link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t
 }
 
 void Complex::near(const Box3& box, std::vector<FaceId>& out) const {
-  std::vector<std::uint32_t> ids;
+  thread_local std::vector<std::uint32_t> ids;
+  ids.clear();
   index_.find(box, ids);
-  out.reserve(out.size() + ids.size());
   for (const auto id : ids) out.push_back(FaceId(id));
 }
 
 void Complex::near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<FaceId>& out) const {
-  std::vector<std::uint32_t> ids;
+  thread_local std::vector<std::uint32_t> ids;
+  ids.clear();
   index_.find_near_triangle(a, b, c, reach, ids);
-  out.reserve(out.size() + ids.size());
   for (const auto id : ids) out.push_back(FaceId(id));
 }
 
@@ -266,59 +266,56 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   std::sort(old_ids.begin(), old_ids.end());
   std::size_t at = 0;
+  std::vector<SurfaceVertexId> here;
+  FanScratch scratch;
   for (const VertexId v : touched) {
-    std::vector<SurfaceVertexId> here;
+    here.clear();
     for (; at < old_ids.size() && old_ids[at].first == v; ++at) here.push_back(old_ids[at].second);
-    refan(v, std::move(here), &delta);
+    refan(v, here, &delta, scratch);
   }
   std::sort(delta.touched_surface_vertices.begin(), delta.touched_surface_vertices.end());
   std::sort(delta.removed_surface_vertices.begin(), delta.removed_surface_vertices.end());
   return delta;
 }
 
-void Complex::refan(VertexId v, std::vector<SurfaceVertexId> old_ids, CrackDelta* delta) {
-  struct Fan {
-    std::vector<std::pair<Side, int>> corners;
-    std::vector<SurfaceVertexId> candidates;
+// Groups the sides at v into fans and gives each a surface vertex: one of those it had before where it can.
+void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelta* delta, FanScratch& scratch) {
+  auto& [corners, stack, candidates, fans, claimed] = scratch;
+  corners.clear(), candidates.clear(), fans.clear(), claimed.clear();
+  const auto seen = [&](Side s) {
+    return std::any_of(corners.begin(), corners.end(), [&](const auto& c) { return c.first == s; });
   };
-  std::vector<Fan> fans;
-  std::vector<Side> seen;
   for (const FaceId f : faces_at(v))
     for (int which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which) {
       const Side start{f, which};
-      if (std::find(seen.begin(), seen.end(), start) != seen.end()) continue;
-      Fan fan;
-      std::vector<Side> stack{start};
-      seen.push_back(start);
+      if (seen(start)) continue;
+      const auto first_corner = corners.size(), first_candidate = candidates.size();
+      stack.assign(1, start);
+      corners.push_back({start, corner_at(face(f), v)});
       while (!stack.empty()) {
         const Side s = stack.back();
         stack.pop_back();
         const int k = corner_at(face(s.face), v);
-        fan.corners.push_back({s, k});
-        if (const auto old = surface_vertex(s, k); old.valid()) fan.candidates.push_back(old), old_ids.push_back(old);
+        if (const auto old = surface_vertex(s, k); old.valid()) candidates.push_back(old), old_ids.push_back(old);
         for (const int edge : {k, (k + 2) % 3}) {
           const Side next = neighbor(s, edge);
-          if (std::find(seen.begin(), seen.end(), next) == seen.end()) seen.push_back(next), stack.push_back(next);
+          if (!seen(next)) corners.push_back({next, corner_at(face(next.face), v)}), stack.push_back(next);
         }
       }
-      std::sort(fan.corners.begin(), fan.corners.end());
-      std::sort(fan.candidates.begin(), fan.candidates.end());
-      fans.push_back(std::move(fan));
+      std::sort(corners.begin() + static_cast<std::ptrdiff_t>(first_corner), corners.end());
+      std::sort(candidates.begin() + static_cast<std::ptrdiff_t>(first_candidate), candidates.end());
+      fans.push_back({first_corner, corners.size(), first_candidate, candidates.size()});
     }
   // Fans with the lowest old ids choose first, so that the outcome does not depend on face order alone.
-  std::sort(fans.begin(), fans.end(), [](const Fan& a, const Fan& b) {
-    const auto ca = a.candidates.empty() ? SurfaceVertexId() : a.candidates.front();
-    const auto cb = b.candidates.empty() ? SurfaceVertexId() : b.candidates.front();
-    return ca != cb ? ca < cb : a.corners.front() < b.corners.front();
+  std::sort(fans.begin(), fans.end(), [&](const Fan& a, const Fan& b) {
+    const auto ca = a.first_candidate == a.end_candidate ? SurfaceVertexId() : candidates[a.first_candidate];
+    const auto cb = b.first_candidate == b.end_candidate ? SurfaceVertexId() : candidates[b.first_candidate];
+    return ca != cb ? ca < cb : corners[a.first_corner] < corners[b.first_corner];
   });
-  std::vector<SurfaceVertexId> claimed;
   for (const Fan& fan : fans) {
     SurfaceVertexId id;
-    for (const auto c : fan.candidates)
-      if (std::find(claimed.begin(), claimed.end(), c) == claimed.end()) {
-        id = c;
-        break;
-      }
+    for (auto c = fan.first_candidate; c < fan.end_candidate && !id.valid(); ++c)
+      if (std::find(claimed.begin(), claimed.end(), candidates[c]) == claimed.end()) id = candidates[c];
     const bool fresh = !id.valid();
     if (fresh) {
       id = SurfaceVertexId(site_.size());
@@ -328,13 +325,16 @@ void Complex::refan(VertexId v, std::vector<SurfaceVertexId> old_ids, CrackDelta
     }
     claimed.push_back(id);
     site_[id.index()] = v;
-    fan_side_[id.index()] = fan.corners.front().first;
-    fan_corner_[id.index()] = static_cast<std::uint8_t>(fan.corners.front().second);
-    for (const auto& [s, k] : fan.corners) corner_vertex_[s.face.index() * 6 + s.which * 3 + k] = id;
+    fan_side_[id.index()] = corners[fan.first_corner].first;
+    fan_corner_[id.index()] = static_cast<std::uint8_t>(corners[fan.first_corner].second);
+    for (auto c = fan.first_corner; c < fan.end_corner; ++c) {
+      const auto& [s, k] = corners[c];
+      corner_vertex_[s.face.index() * 6 + s.which * 3 + k] = id;
+    }
     if (!delta) continue;
     if (fresh) {
       delta->new_surface_vertices.push_back(id);
-      delta->copied_from.push_back(fan.candidates.empty() ? SurfaceVertexId() : fan.candidates.front());
+      delta->copied_from.push_back(fan.first_candidate == fan.end_candidate ? SurfaceVertexId() : candidates[fan.first_candidate]);
     } else {
       delta->touched_surface_vertices.push_back(id);
     }

@@ -164,8 +164,18 @@ class Complex {
   void unlink_corners(FaceId f);
   void link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t count);
 
+  struct Fan {
+    std::size_t first_corner, end_corner, first_candidate, end_candidate;
+  };
+  struct FanScratch {
+    std::vector<std::pair<Side, int>> corners;
+    std::vector<Side> stack;
+    std::vector<SurfaceVertexId> candidates;
+    std::vector<Fan> fans;
+    std::vector<SurfaceVertexId> claimed;
+  };
   /// Renews the fans at v; `old_ids`: surface vertices that stood there and whose corners are gone.
-  void refan(VertexId v, std::vector<SurfaceVertexId> old_ids, CrackDelta* delta);
+  void refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelta* delta, FanScratch& scratch);
 
   std::vector<Vec3> points_;
   std::vector<Face> faces_;

@@ -107,8 +107,12 @@ class ComplexBuilder {
   }
 
   void fan_all() {
-    for (std::uint32_t v = 0; v < k.points_.size(); ++v)
-      if (!k.faces_at(VertexId(v)).empty()) k.refan(VertexId(v), {}, nullptr);
+    std::vector<SurfaceVertexId> none;
+    Complex::FanScratch scratch;
+    for (std::uint32_t v = 0; v < k.points_.size(); ++v) {
+      none.clear();
+      if (!k.faces_at(VertexId(v)).empty()) k.refan(VertexId(v), none, nullptr, scratch);
+    }
   }
 
   void set_corner(Side s, int corner, std::uint32_t row) {

@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/stopwatch.h"
+#include "geometry/distance.h"
+#include "geometry/predicates.h"
 #include "crack/insert_internal.h"
 
 namespace geo {
@@ -48,7 +50,8 @@ void renew_contacts(FrontState& front, const Complex& complex) {
 }
 
 // The front after the step: the points of K that lie on each new segment, in order.
-void follow_front(FrontState& front, const Strip& strip, const crack::Arrangement& arrangement, const std::vector<VertexId>& vertex) {
+void follow_front(FrontState& front, const Complex& complex, const Strip& strip, const crack::Arrangement& arrangement,
+                  const std::vector<VertexId>& vertex) {
   const std::size_t count = front.segments.size(), n = strip.next.size();
   // The strip edges that make up each new segment: one, or several where it was snapped to vertices between its ends.
   std::vector<std::vector<std::vector<crack::Local>>> rows(count);
@@ -78,7 +81,7 @@ void follow_front(FrontState& front, const Strip& strip, const crack::Arrangemen
     }
     std::vector<FrontState::Point> segment;
     for (const auto l : chain)
-      if (l < vertex.size() && vertex[l].valid()) segment.push_back({arrangement.points()[l], vertex[l]});
+      if (l < vertex.size() && vertex[l].valid()) segment.push_back({complex.point(vertex[l]), vertex[l]});
     if (segment.empty() || segment.front().position != p) segment.insert(segment.begin(), {p, VertexId()});
     if (segment.back().position != q) segment.push_back({q, VertexId()});
     front.segments[s] = std::move(segment);
@@ -88,6 +91,25 @@ void follow_front(FrontState& front, const Strip& strip, const crack::Arrangemen
     if (front.segments[s].back().id.valid()) points[(s + 1) % n].id = front.segments[s].back().id;
   }
   front.points = std::move(points);
+}
+
+// A point beside a face of K, neither on it nor clear of it, would make needles that cannot be rounded: it is moved clear,
+// to the side that it is on. Points that are exactly on K stay.
+Vec3 clear_of_faces(const Complex& complex, Vec3 p, double distance) {
+  const double reach = 0.01 * distance;
+  std::vector<FaceId> near;
+  complex.near(Box3{p, p}.grown(reach), near);
+  for (const FaceId f : near) {
+    const auto t = complex.corners(f);
+    if (segment_meets_triangle(p, p, t[0], t[1], t[2])) return p;
+  }
+  for (const FaceId f : near) {
+    const auto t = complex.corners(f);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    const int side = orient3d(t[0], t[1], t[2], p);
+    if (side != 0 && (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm() < reach) p += side * distance * n;
+  }
+  return p;
 }
 
 struct Attempt {
@@ -105,7 +127,7 @@ Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Ve
   std::vector<VertexId> vertex;
   result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, work);
   watch.lap();
-  follow_front(result.front, strip, arrangement, vertex);
+  follow_front(result.front, complex, strip, arrangement, vertex);
   work.stitch_seconds += watch.lap();
   return result;
 }
@@ -114,7 +136,7 @@ Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Ve
 
 CrackWork& CrackWork::operator+=(const CrackWork& o) {
   faces_near += o.faces_near, triangles_cut += o.triangles_cut, new_crack_faces += o.new_crack_faces;
-  attempts += o.attempts, snapped += o.snapped;
+  attempts += o.attempts, snapped += o.snapped, repairs += o.repairs;
   near_seconds += o.near_seconds, meet_seconds += o.meet_seconds, split_seconds += o.split_seconds;
   keep_seconds += o.keep_seconds, stitch_seconds += o.stitch_seconds, guard_seconds += o.guard_seconds;
   return *this;
@@ -147,6 +169,14 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   const double size = complex.extent().diagonal();
   FrontState old = front;
   renew_contacts(old, complex);
+  if (front.step == 0)
+    for (auto& segment : old.segments)
+      for (auto& p : segment)
+        if (!p.id.valid()) p.position = clear_of_faces(complex, p.position, options.clear * size);
+  for (std::size_t s = 0; s < old.segments.size(); ++s) {
+    old.points[s].position = old.segments[s].front().position;
+    old.points[(s + 1) % old.points.size()].position = old.segments[s].back().position;
+  }
   CrackWork done;
   std::string reason;
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
@@ -154,6 +184,8 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   for (int attempt = 0; attempt <= options.attempts; ++attempt) {
     std::vector<Vec3> target(next.begin(), next.end());
     FrontState from = old;
+    for (std::size_t i = 0; i < target.size(); ++i)
+      if (target[i] != old.points[i].position) target[i] = clear_of_faces(complex, target[i], options.clear * size);
     if (attempt > 0) {
       // Eight times further each time, up to a few millionths; then other directions at that distance.
       jitter = attempt == 1 ? options.jitter : std::min(jitter * 8, options.jitter * 4096);

@@ -29,6 +29,7 @@ struct FrontState {
 
 struct CrackOptions {
   double snap = 1e-14;    ///< pre-snap of the strip to vertices of K, relative to the extent's diagonal
+  double clear = 1e-6;    ///< new front points a hundredth of this from a face of K, but not on it, move this far off, relative
   double jitter = 1e-9;   ///< first displacement of the new front when the guard refuses a step, relative
   int attempts = 8;       ///< how often a refused step is jittered and redone
   std::uint64_t seed = 1; ///< of the jitter
@@ -36,7 +37,7 @@ struct CrackOptions {
 
 /// Counts and seconds of one step, by phase.
 struct CrackWork {
-  std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0;
+  std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0;
   double near_seconds = 0, meet_seconds = 0, split_seconds = 0, keep_seconds = 0, stitch_seconds = 0, guard_seconds = 0;
   CrackWork& operator+=(const CrackWork& o);
   double seconds() const;

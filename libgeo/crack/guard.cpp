@@ -1,14 +1,16 @@
 #include "crack/guard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "base/random.h"
 #include "geometry/predicates.h"
 #include "surface/check.h"
 
 namespace geo {
 
-std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
                        std::span<const std::uint8_t> moved) {
   const auto point = [&](VertexId v) -> const Vec3& {
     return v.value < complex.vertex_count() ? complex.point(v) : edit.new_vertices[v.value - complex.vertex_count()];
@@ -31,12 +33,13 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
     const auto& p = family.plane;
     int axis = 0;
     (p[1] - p[0]).cross(p[2] - p[0]).cwiseAbs().maxCoeff(&axis);
-    const int was = orient2d(p[0], p[1], p[2], axis);
+    int was = orient2d(p[0], p[1], p[2], axis);
+    for (int tries = 0; tries < 2 && was == 0; ++tries) axis = (axis + 1) % 3, was = orient2d(p[0], p[1], p[2], axis);
     for (auto i = family.first; i < family.end; ++i) {
       family_of[i] = edit.new_faces[i].parent.valid() ? family.first : ~0u;
       const int is = orient2d(corners[i][0], corners[i][1], corners[i][2], axis);
-      if (is == 0) return "rounding would leave a face without area";
-      if (was != is) return "rounding would turn a face over";
+      if (is == 0) return {"rounding would leave a face without area", {i}};
+      if (was != is) return {"rounding would turn a face over", {i}};
     }
   }
 
@@ -48,9 +51,19 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
   std::vector<std::pair<double, VertexId>> by_x;
   for (const VertexId v : vertices) by_x.push_back({point(v).x(), v});
   std::sort(by_x.begin(), by_x.end());
+  // Two that rounding has left a few places from each other would be slivers that no later step could round.
+  const double close = 0x1p-48 * complex.extent().diagonal();
+  const auto is_moved = [&](VertexId v) { return v.value >= complex.vertex_count() && moved[v.value - complex.vertex_count()]; };
   for (std::size_t i = 0; i < by_x.size(); ++i)
-    for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first == by_x[i].first; ++j)
-      if (point(by_x[i].second) == point(by_x[j].second)) return "rounding would put two vertices at one place";
+    for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first <= by_x[i].first + close; ++j)
+      if (((point(by_x[i].second) - point(by_x[j].second)).cwiseAbs().array() <= close).all() &&
+          (is_moved(by_x[i].second) || is_moved(by_x[j].second))) {
+        Fault fault{"rounding would leave two vertices at one place", {}};
+        for (std::uint32_t f = 0; f < n; ++f)
+          for (const VertexId v : edit.new_faces[f].v)
+            if (v == by_x[i].second || v == by_x[j].second) fault.faces.push_back(f);
+        return fault;
+      }
 
   // New faces against those that stay.
   std::vector<FaceId> removed = edit.removed_faces, looked_up;
@@ -77,7 +90,7 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
         if (!touched[i] || !other.box.meets(boxes[i])) continue;
         const auto& v = complex.face(other.face).v;
         if (faces_cross(rows[i], corners[i], {v[0].value, v[1].value, v[2].value}, complex.corners(other.face)))
-          return "rounding would make a new face cross face " + std::to_string(other.face.value);
+          return {"rounding would make a new face cross face " + std::to_string(other.face.value), {i}};
       }
   }
 
@@ -95,9 +108,40 @@ std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::spa
       // All children of a face, none turned over: they cover it once, as before rounding.
       if (family_of[a] != ~0u && family_of[a] == family_of[b]) continue;
       if (!touched[a] && !touched[b]) continue;
-      if (boxes[a].meets(boxes[b]) && faces_cross(rows[a], corners[a], rows[b], corners[b])) return "rounding would make two new faces cross";
+      if (boxes[a].meets(boxes[b]) && faces_cross(rows[a], corners[a], rows[b], corners[b])) return {"rounding would make two new faces cross", {a, b}};
     }
   return {};
+}
+
+Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
+             std::span<const std::uint8_t> moved, std::size_t& repairs) {
+  Fault fault = find_fault(complex, edit, families, moved);
+  if (!fault) return fault;
+  const double last_place = 0x1p-52 * (complex.extent().diagonal() + complex.extent().lo.cwiseAbs().cwiseMax(complex.extent().hi.cwiseAbs()).maxCoeff());
+  Random random(edit.new_faces.size() * 0x9e3779b97f4a7c15ull + edit.new_vertices.size());
+  for (int tries = 0; tries < 32; ++tries) {
+    // The points that the fault's faces have and that rounding has moved anyway, a little farther each time.
+    const double distance = last_place * std::pow(2.0, tries / 2);
+    std::vector<std::pair<std::uint32_t, Vec3>> before;
+    for (const auto f : fault.faces)
+      for (const VertexId v : edit.new_faces[f].v) {
+        if (v.value < complex.vertex_count() || !moved[v.value - complex.vertex_count()]) continue;
+        const std::uint32_t i = v.value - complex.vertex_count();
+        before.push_back({i, edit.new_vertices[i]});
+        edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * random.direction();
+      }
+    if (before.empty()) return fault;
+    Fault now = find_fault(complex, edit, families, moved);
+    if (!now) {
+      ++repairs;
+      return now;
+    }
+    if (now.faces == fault.faces)
+      for (auto b = before.rbegin(); b != before.rend(); ++b) edit.new_vertices[b->first] = b->second;
+    else
+      fault = std::move(now);  // that one is mended; this comes next
+  }
+  return fault;
 }
 
 }  // namespace geo

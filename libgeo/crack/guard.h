@@ -15,11 +15,23 @@ struct Family {
   std::span<const FaceId> near;    ///< faces of K that may be near; empty: they are looked up
 };
 
+/// What is wrong with an edit.
+struct Fault {
+  std::string what;
+  std::vector<std::uint32_t> faces;  ///< of edit.new_faces: those concerned
+  explicit operator bool() const { return !what.empty(); }
+};
+
 /// `moved`: per new vertex, whether rounding moved it. Faces that it has not touched are as exact decisions left them.
 /// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
-/// vertex stands where another does, and no new face crosses a near one. Exact. Returns what is wrong, empty when
-/// nothing is. Families list every new face once, in order. Cost follows the edit.
-std::string find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
+/// vertex stands where another does, and no new face crosses a near one. Exact. Returns the first fault,
+/// none when all is well. Families list every new face once, in order. Cost follows the edit.
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
                        std::span<const std::uint8_t> moved);
+
+/// Moves points that rounding has moved anyway by a few places more, where that takes a fault away. Returns the fault that
+/// remains, none when all is well; `repairs` is raised when one was mended.
+Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
+             std::span<const std::uint8_t> moved, std::size_t& repairs);
 
 }  // namespace geo

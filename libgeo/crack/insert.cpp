@@ -49,14 +49,14 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
     for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(arrangement.id(l));
     return {};
   }
-  const ComplexEdit edit = stitch(arrangement, complex, edges, parts, crack, vertex);
+  ComplexEdit edit = stitch(arrangement, complex, edges, parts, crack, vertex);
   work.stitch_seconds += watch.lap();
   const auto families = families_of(complex, arrangement, parts);
   std::vector<std::uint8_t> moved(edit.new_vertices.size());
   for (Local l = 0; l < vertex.size(); ++l)
     if (vertex[l].valid() && vertex[l].value >= complex.vertex_count())
       moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
-  if (const std::string fault = find_fault(complex, edit, families, moved); !fault.empty()) throw GeometryError(fault);
+  if (const Fault fault = repair(complex, edit, families, moved, work.repairs)) throw GeometryError(fault.what);
   work.guard_seconds += watch.lap();
   CrackDelta delta = complex.apply(edit);
   work.triangles_cut += edit.removed_faces.size();

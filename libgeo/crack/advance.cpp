@@ -97,6 +97,7 @@ void follow_front(FrontState& front, const Complex& complex, const Strip& strip,
 // to the side that it is on. Points that are exactly on K stay.
 Vec3 clear_of_faces(const Complex& complex, Vec3 p, double distance) {
   const double reach = 0.01 * distance;
+  if (!Box3{p, p}.grown(reach).meets(complex.extent())) return p;
   std::vector<FaceId> near;
   complex.near(Box3{p, p}.grown(reach), near);
   for (const FaceId f : near) {

@@ -41,6 +41,12 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   work.meet_seconds += watch.lap();
   arrangement.split();
   work.split_seconds += watch.lap();
+  Box3 box;
+  for (const Vec3& p : strip.points) box.add(p);
+  if (!box.meets(complex.extent())) {
+    for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(VertexId());
+    return {};
+  }
   const EdgeTable edges = edges_of_complex(arrangement);
   const auto parts = keep_inside(arrangement, complex, edges);
   work.keep_seconds += watch.lap();

@@ -75,8 +75,10 @@ Strip strip_of(std::span<const Vec3> points, std::span<const Triangle> triangles
 void find_near(Strip& strip, const Complex& complex, double reach) {
   strip.near.clear();
   strip.near_begin.assign(1, 0);
+  const Box3 extent = complex.extent().grown(reach);
   for (const auto& t : strip.triangles) {
-    complex.near_triangle(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]], reach, strip.near);
+    if (box_of(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]).meets(extent))
+      complex.near_triangle(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]], reach, strip.near);
     strip.near_begin.push_back(static_cast<std::uint32_t>(strip.near.size()));
   }
 }

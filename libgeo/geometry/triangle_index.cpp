@@ -167,7 +167,9 @@ void TriangleIndex::find_near_triangle(const Vec3& a, const Vec3& b, const Vec3&
   int w = 0;
   n.cwiseAbs().maxCoeff(&w);
   const double size = box.hi.cwiseAbs().cwiseMax(box.lo.cwiseAbs()).maxCoeff();
-  if (!(std::abs(n[w]) > 1e-200) || blocks > 4.0 * static_cast<double>(blocks_.size()) + 64) return find(box, out);
+  // The normal of a needle is rounding and nothing else.
+  const double longest = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
+  if (!(std::abs(n[w]) > 1e-6 * longest) || !(longest > 1e-200) || blocks > 4.0 * static_cast<double>(blocks_.size()) + 64) return find(box, out);
   const std::size_t first = out.size();
   // All tests are for speed alone, so they keep what rounding leaves in doubt.
   const Vec3 m = n.cwiseAbs();

@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   t.flag("--edges", look.edges, "Draw a body's visibility edges");
   t.flag("--wire", look.wire, "Draw the triangles' edges");
   t.option("--opacity", look.opacity, "Of the surface, 0 to 1");
+  t.flag("--sheets", look.sheets, "With --opacity: the skin is see-through, cracks are not");
   t.option("--explode", look.explode, "Move pieces apart by this fraction");
   t.flag("--no-ground", no_ground, "No floor");
   t.option("--frames", frames, "Frames on a sheet");

@@ -88,6 +88,7 @@ Stage stage_of(const geo::TriangleMesh& surface, const Look& look) {
   stage.wire = look.wire;
   stage.section = look.section;
   stage.surface_opacity = look.opacity;
+  stage.sheets_opaque = look.sheets && surface.patch.size() == surface.triangles.size() && look.opacity < 1;
   std::vector<std::uint32_t> shell;
   const std::uint32_t shells = shells_of(surface, shell);
   if (look.explode > 0) {
@@ -103,6 +104,8 @@ Stage stage_of(const geo::TriangleMesh& surface, const Look& look) {
     if (look.coloring == Coloring::piece) color = piece_color(shell[surface.triangles[t][0]]);
     if (look.coloring == Coloring::patch && patch != 0) color = patch > 0 ? sheet_plus : sheet_minus;
     stage.triangle_colors.push_back(color);
+    if (look.coloring == Coloring::patch && patch != 0) color = patch > 0 ? sheet_minus : sheet_plus;
+    stage.back_colors.push_back(color);
   }
   cut(stage, look);
   return stage;

@@ -24,6 +24,7 @@ struct Look {
   Color skin{0.80f, 0.36f, 0.10f};
   bool nodes = false, edges = false, wire = false, section = true;
   double opacity = 1;
+  bool sheets = false;  ///< sheets of cracks stay opaque in a skin that is not
   double explode = 0;  ///< pieces move apart by this fraction of their distance from the middle
   std::optional<RelativePlane> cutaway;
 };

@@ -115,9 +115,18 @@ class Tracer {
       if (lines < 0.06) cap.color = scaled(cap.color, 0.93);
       return lit(cap, d, noise, occlusion);
     }
-    if (skin.t >= thing.t || skin.t > 1e29) return behind;
-    const Color front = lit(skin, d, noise, occlusion);
-    return stage_.surface_opacity >= 1 ? front : mixed(behind, front, stage_.surface_opacity * rim(skin, d));
+    // Through the skin as far as something opaque; its layers are laid over each other from behind.
+    std::vector<std::pair<Color, double>> layers;
+    while (skin.t < thing.t && skin.t < 1e29) {
+      const double opacity = stage_.surface_opacity >= 1 || skin.opaque ? 1 : std::min(1.0, stage_.surface_opacity * rim(skin, d));
+      layers.push_back({lit(skin, d, noise, occlusion), opacity});
+      if (opacity >= 1 || layers.size() == 6) break;
+      // The first layer only, where nothing opaque of the surface is to be found behind it.
+      if (!stage_.sheets_opaque) break;
+      skin = trace(surface_, eye, d, skin.t + 1e-6 * scale_);
+    }
+    for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) behind = mixed(behind, layer->first, layer->second);
+    return behind;
   }
 
  private:
@@ -125,6 +134,7 @@ class Tracer {
     double t = 1e30;
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
     Color color{};
+    bool opaque = false;  ///< whatever the surface's opacity
   };
 
   // Glancing surface is more opaque, so that a glassy body keeps its outline.
@@ -203,6 +213,10 @@ class Tracer {
       const auto& n = normals_[r.hit.primID];
       hit.normal = ((1 - r.hit.u - r.hit.v) * n[0] + r.hit.u * n[1] + r.hit.v * n[2]).cast<double>().normalized();
       hit.color = stage_.triangle_colors[r.hit.primID];
+      // Two sheets at one place: each is seen from its own side, whichever the ray happens to find.
+      const Vec3 flat(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
+      if (!stage_.back_colors.empty() && flat.dot(d) > 0) hit.color = stage_.back_colors[r.hit.primID];
+      hit.opaque = stage_.sheets_opaque && stage_.surface.patch[r.hit.primID] != 0;
       if (stage_.wire && std::min({r.hit.u, r.hit.v, 1 - r.hit.u - r.hit.v}) < 0.035f) hit.color = scaled(hit.color, 0.45);
     } else {
       hit.normal = Vec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z).normalized();

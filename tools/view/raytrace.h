@@ -28,10 +28,12 @@ struct Plane {
 struct Stage {
   geo::TriangleMesh surface;
   std::vector<Color> triangle_colors;  ///< one a triangle
+  std::vector<Color> back_colors;      ///< the same, seen from behind; empty: no difference
   std::vector<Sphere> spheres;
   std::vector<Stick> sticks;
   std::optional<Plane> cutaway;
   double surface_opacity = 1;  ///< below 1 nodes and edges inside show through
+  bool sheets_opaque = false;  ///< the opacity is the skin's; sheets of cracks (surface.patch) stay opaque
   bool section = true;         ///< fill the cut-away's section; false: look into the body
   bool ground = true;          ///< a floor below that catches a soft shadow
   bool wire = false;           ///< draw the triangles' edges

@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
         state->step = static_cast<std::uint32_t>(step + 1);
         json += std::string(json.size() > 1 ? "," : "") + "{\"front\":" + tool::quoted(front.name) + ",\"step\":" + std::to_string(step + 1) +
                 ",\"triangles_cut\":" + std::to_string(work.triangles_cut) + ",\"crack_faces\":" + std::to_string(work.new_crack_faces) +
-                ",\"attempts\":" + std::to_string(work.attempts) + ",\"seconds\":{\"near\":" + tool::number(work.near_seconds) + ",\"meet\":" + tool::number(work.meet_seconds) +
+                ",\"attempts\":" + std::to_string(work.attempts) + ",\"repairs\":" + std::to_string(work.repairs) + ",\"seconds\":{\"near\":" + tool::number(work.near_seconds) + ",\"meet\":" + tool::number(work.meet_seconds) +
                 ",\"split\":" + tool::number(work.split_seconds) + ",\"keep\":" + tool::number(work.keep_seconds) + ",\"stitch\":" + tool::number(work.stitch_seconds) +
                 ",\"guard\":" + tool::number(work.guard_seconds) + ",\"total\":" + tool::number(work.seconds()) + "}}";
       }

@@ -280,7 +280,11 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
 
 // Groups the sides at v into fans and gives each a surface vertex: one of those it had before where it can.
 void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelta* delta, FanScratch& scratch) {
-  auto& [corners, stack, candidates, fans, claimed] = scratch;
+  auto& corners = scratch.corners;
+  auto& stack = scratch.stack;
+  auto& candidates = scratch.candidates;
+  auto& fans = scratch.fans;
+  auto& claimed = scratch.claimed;
   corners.clear(), candidates.clear(), fans.clear(), claimed.clear();
   const auto seen = [&](Side s) {
     return std::any_of(corners.begin(), corners.end(), [&](const auto& c) { return c.first == s; });

@@ -170,6 +170,10 @@ void connect_pieces(Body& body, const std::function<void(NodeId, std::span<const
       auto& m = main[static_cast<std::size_t>(piece[c])];
       if (m == ~0u || size[c] > size[m]) m = c;
     }
+    bool whole = true;
+    for (std::uint32_t c = 0; c < count; ++c) whole = whole && (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c);
+    for (const auto m : main) whole = whole && m != ~0u;
+    if (whole) return;
     const NodeId first_new(body.nodes.size());
     std::vector<NodePair> joins;
     for (std::uint32_t p = 0; p < pieces.count; ++p) {
@@ -215,8 +219,10 @@ void connect_pieces(Body& body, const std::function<void(NodeId, std::span<const
                               [&](std::uint32_t i) { return i < component.size() && component[i] == target; });
         if (!near.empty()) insert_along(body, NodeId(first[c]), NodeId(near[0]), scale * body.grid.cell(), joins);
       }
-    if (first_new.index() == body.nodes.size() && joins.empty()) return;
-    after(first_new, joins);
+    if (first_new.index() < body.nodes.size() || !joins.empty())
+      after(first_new, joins);
+    else if (round >= 1)
+      return;
   }
 }
 

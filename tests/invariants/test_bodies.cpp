@@ -1,5 +1,6 @@
 // Invariants 4 to 7 of the design on real models with nodes, cut at random.
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 #include <numeric>
 
@@ -27,6 +28,7 @@ void campaign(const std::string& name, int bodies) {
   for (int c = 0; c < count; ++c) {
     const auto seed = static_cast<std::uint64_t>(c) + 1;
     INFO(name << ", seed " << seed);
+    if (const char* only = std::getenv("KERF_SEED"); only && std::strtoull(only, nullptr, 10) != seed) continue;
     Random random(seed * 104729);
     const auto cut = random_cuts::make_cut(model.surface.extent(), random);
     const int steps = c % 2 == 0 ? 1 : 12;
@@ -57,9 +59,9 @@ void campaign(const std::string& name, int bodies) {
 
 }  // namespace
 
-TEST_CASE("Cut bodies keep step: bear", "[bodies]") { campaign("bear", 10); }
-TEST_CASE("Cut bodies keep step: elephant", "[bodies]") { campaign("elephant", 10); }
-TEST_CASE("Cut bodies keep step: dino", "[bodies]") { campaign("dino", 10); }
-TEST_CASE("Cut bodies keep step: hand", "[bodies]") { campaign("hand", 10); }
-TEST_CASE("Cut bodies keep step: femur", "[bodies]") { campaign("femur", 10); }
-TEST_CASE("Cut bodies keep step: pumpkin", "[bodies]") { campaign("pumpkin", 20); }
+TEST_CASE("Cut bodies keep step: bear", "[bodies]") { campaign("bear", 20); }
+TEST_CASE("Cut bodies keep step: elephant", "[bodies]") { campaign("elephant", 200); }
+TEST_CASE("Cut bodies keep step: dino", "[bodies]") { campaign("dino", 200); }
+TEST_CASE("Cut bodies keep step: hand", "[bodies]") { campaign("hand", 200); }
+TEST_CASE("Cut bodies keep step: femur", "[bodies]") { campaign("femur", 200); }
+TEST_CASE("Cut bodies keep step: pumpkin", "[bodies]") { campaign("pumpkin", 200); }

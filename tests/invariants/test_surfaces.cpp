@@ -46,7 +46,7 @@ void campaign(const std::string& name) {
     const auto seed = static_cast<std::uint64_t>(c) + 1;
     INFO(name << ", seed " << seed);
     Random random(seed * 7919);
-    Complex at_once = model, slowly = model;
+    Complex at_once = model, slowly = model, very_slowly = model;
     std::uint32_t pieces = before.count;
     for (std::int32_t crack = 1; crack <= 2; ++crack) {
       const auto cut = random_cuts::make_cut(model.extent(), random);
@@ -56,6 +56,12 @@ void campaign(const std::string& name) {
       // A crossing that the first crack makes is still there after the second.
       const auto one = require_whole(at_once, crack == 2, volume, area);
       const auto twelve = require_whole(slowly, crack == 2, volume, area);
+      if (c % 10 == 0) {
+        REQUIRE_NOTHROW(cut_through(very_slowly, cut, 200, crack));
+        const auto many = require_whole(very_slowly, crack == 2, volume, area);
+        REQUIRE(many.count == one.count);
+        for (std::size_t p = 0; p < one.count; ++p) CHECK(std::abs(one.volume[p] - many.volume[p]) <= 1e-9 * volume);
+      }
       CHECK(one.count >= pieces);
       pieces = one.count;
       REQUIRE(one.count == twelve.count);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/random.h"
 #include "geometry/predicates.h"
@@ -10,107 +9,187 @@
 
 namespace geo {
 
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
-                       std::span<const std::uint8_t> moved) {
-  const auto point = [&](VertexId v) -> const Vec3& {
-    return v.value < complex.vertex_count() ? complex.point(v) : edit.new_vertices[v.value - complex.vertex_count()];
-  };
-  const auto n = static_cast<std::uint32_t>(edit.new_faces.size());
-  std::vector<std::array<Vec3, 3>> corners(n);
-  std::vector<std::array<std::uint32_t, 3>> rows(n);
-  std::vector<Box3> boxes(n);
-  std::vector<std::uint8_t> touched(n, 0);  // has a vertex that rounding moved
-  std::vector<std::uint32_t> family_of(n);  // ~0u: of a strip triangle, some of whose children may be missing
-  for (std::uint32_t i = 0; i < n; ++i) {
+namespace {
+
+// A triangle's plane against points, quickly: by how much the normal's and the products' rounding can be off.
+struct Plane {
+  Vec3 normal, at;
+  double size;  // the longest side of the triangle's box
+
+  Plane(const std::array<Vec3, 3>& t, const Box3& box) : normal((t[1] - t[0]).cross(t[2] - t[0])), at(t[0]), size((box.hi - box.lo).maxCoeff()) {}
+
+  // True when those corners of the other that the two do not share are all on one side, for certain: the two then have
+  // nothing else in common. Each entry of the normal is off by 8 roundings of size² at most, an offset by one; boxes meet,
+  // so that no offset is longer than both sizes.
+  bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& rows, const std::array<Vec3, 3>& corners, double other_size) const {
+    const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume;
+    if (!(volume > filter_smallest && volume < filter_largest)) return false;
+    int side = 0, shared = 0;
     for (int k = 0; k < 3; ++k) {
-      const VertexId v = edit.new_faces[i].v[k];
-      corners[i][k] = point(v), rows[i][k] = v.value;
-      if (v.value >= complex.vertex_count()) touched[i] |= moved[v.value - complex.vertex_count()];
+      if (rows[k] == mine[0] || rows[k] == mine[1] || rows[k] == mine[2]) {
+        ++shared;
+        continue;
+      }
+      const double height = normal.dot(corners[k] - at);
+      if (std::abs(height) <= bound || (height > 0 ? side < 0 : side > 0)) return false;
+      side = height > 0 ? 1 : -1;
     }
-    boxes[i] = box_of(corners[i][0], corners[i][1], corners[i][2]);
+    return shared < 3;
   }
-  for (const Family& family : families) {
-    const auto& p = family.plane;
-    int axis = 0;
-    (p[1] - p[0]).cross(p[2] - p[0]).cwiseAbs().maxCoeff(&axis);
-    int was = orient2d(p[0], p[1], p[2], axis);
-    for (int tries = 0; tries < 2 && was == 0; ++tries) axis = (axis + 1) % 3, was = orient2d(p[0], p[1], p[2], axis);
-    for (auto i = family.first; i < family.end; ++i) {
-      family_of[i] = edit.new_faces[i].parent.valid() ? family.first : ~0u;
-      const int is = orient2d(corners[i][0], corners[i][1], corners[i][2], axis);
-      if (is == 0) return {"rounding would leave a face without area", {i}};
-      if (was != is) return {"rounding would turn a face over", {i}};
+};
+
+// An edit with all that the questions about it need.
+class Inspection {
+ public:
+  Inspection(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved)
+      : complex_(complex), edit_(edit), families_(families), moved_(moved), count_(static_cast<std::uint32_t>(edit.new_faces.size())) {
+    faces_.reserve(count_);
+    for (const auto& f : edit.new_faces) {
+      std::array<Vec3, 3> corners;
+      std::array<std::uint32_t, 3> rows;
+      bool touched = false;
+      for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, touched = touched || is_moved(f.v[k]);
+      const Box3 box = box_of(corners[0], corners[1], corners[2]);
+      faces_.push_back({corners, rows, box, Plane(corners, box), ~0u, touched});
     }
+    for (const Family& family : families)
+      for (auto i = family.first; i < family.end; ++i)
+        if (family.whole) faces_[i].family = family.first;
   }
 
-  // Vertices at one place: new ones among each other and against the corners of what is there.
-  std::vector<VertexId> vertices;
-  for (const auto& f : edit.new_faces) vertices.insert(vertices.end(), f.v.begin(), f.v.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  std::vector<std::pair<double, VertexId>> by_x;
-  for (const VertexId v : vertices) by_x.push_back({point(v).x(), v});
-  std::sort(by_x.begin(), by_x.end());
-  // Two that rounding has left a few places from each other would be slivers that no later step could round.
-  const double close = 0x1p-48 * complex.extent().diagonal();
-  const auto is_moved = [&](VertexId v) { return v.value >= complex.vertex_count() && moved[v.value - complex.vertex_count()]; };
-  for (std::size_t i = 0; i < by_x.size(); ++i)
-    for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first <= by_x[i].first + close; ++j)
-      if (((point(by_x[i].second) - point(by_x[j].second)).cwiseAbs().array() <= close).all() &&
-          (is_moved(by_x[i].second) || is_moved(by_x[j].second))) {
+  // A face that is turned over against its triangle, or has no area.
+  Fault turned() const {
+    for (const Family& family : families_) {
+      const auto [axis, was] = view_axis(family.plane[0], family.plane[1], family.plane[2]);
+      for (auto i = family.first; i < family.end; ++i) {
+        const auto& c = faces_[i].corners;
+        const int is = orient2d(c[0], c[1], c[2], axis);
+        if (is == 0) return {"rounding would leave a face without area", {i}};
+        if (was != is) return {"rounding would turn a face over", {i}};
+      }
+    }
+    return {};
+  }
+
+  // Two vertices that rounding has left a few places from each other: slivers that no later step could round.
+  Fault coincident() const {
+    std::vector<std::pair<double, VertexId>> by_x;
+    by_x.reserve(3 * faces_.size());
+    std::vector<bool> fresh(edit_.new_vertices.size(), true);
+    for (const auto& f : edit_.new_faces)
+      for (const VertexId v : f.v) {
+        if (v.value >= complex_.vertex_count()) {
+          const auto i = v.value - complex_.vertex_count();
+          if (!fresh[i]) continue;
+          fresh[i] = false;
+        }
+        by_x.push_back({point(v).x(), v});
+      }
+    std::sort(by_x.begin(), by_x.end());
+    const double close = 0x1p-48 * complex_.extent().diagonal();
+    for (std::size_t i = 0; i < by_x.size(); ++i)
+      for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first <= by_x[i].first + close; ++j) {
+        const VertexId p = by_x[i].second, q = by_x[j].second;
+        if (p == q || !(is_moved(p) || is_moved(q))) continue;
+        if (((point(p) - point(q)).cwiseAbs().array() > close).any()) continue;
         Fault fault{"rounding would leave two vertices at one place", {}};
-        for (std::uint32_t f = 0; f < n; ++f)
-          for (const VertexId v : edit.new_faces[f].v)
-            if (v == by_x[i].second || v == by_x[j].second) fault.faces.push_back(f);
+        for (std::uint32_t f = 0; f < count_; ++f)
+          for (const VertexId v : edit_.new_faces[f].v)
+            if (v == p || v == q) fault.faces.push_back(f);
         return fault;
       }
-
-  // New faces against those that stay.
-  std::vector<FaceId> removed = edit.removed_faces, looked_up;
-  std::sort(removed.begin(), removed.end());
-  struct Near {
-    FaceId face;
-    Box3 box;
-  };
-  std::vector<Near> near;
-  for (const Family& family : families) {
-    Box3 box;
-    for (auto i = family.first; i < family.end; ++i)
-      if (touched[i]) box.add(boxes[i]);
-    if (box.empty()) continue;
-    near.clear();
-    looked_up.clear();
-    if (family.near.empty()) complex.near(box, looked_up);
-    for (const FaceId f : family.near.empty() ? std::span<const FaceId>(looked_up) : family.near) {
-      const Box3 there = complex.box(f);
-      if (there.meets(box) && !std::binary_search(removed.begin(), removed.end(), f)) near.push_back({f, there});
-    }
-    for (auto i = family.first; i < family.end; ++i)
-      for (const Near& other : near) {
-        if (!touched[i] || !other.box.meets(boxes[i])) continue;
-        const auto& v = complex.face(other.face).v;
-        if (faces_cross(rows[i], corners[i], {v[0].value, v[1].value, v[2].value}, complex.corners(other.face)))
-          return {"rounding would make a new face cross face " + std::to_string(other.face.value), {i}};
-      }
+    return {};
   }
 
-  // New faces among each other, swept along the longest way.
-  Box3 all;
-  for (const Box3& b : boxes) all.add(b);
-  int axis = 0;
-  if (n > 0) (all.hi - all.lo).maxCoeff(&axis);
-  std::vector<std::uint32_t> order(n);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return boxes[i].lo[axis] != boxes[j].lo[axis] ? boxes[i].lo[axis] < boxes[j].lo[axis] : i < j; });
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (std::uint32_t j = i + 1; j < n && boxes[order[j]].lo[axis] <= boxes[order[i]].hi[axis]; ++j) {
-      const auto a = order[i], b = order[j];
-      // All children of a face, none turned over: they cover it once, as before rounding.
-      if (family_of[a] != ~0u && family_of[a] == family_of[b]) continue;
-      if (!touched[a] && !touched[b]) continue;
-      if (boxes[a].meets(boxes[b]) && faces_cross(rows[a], corners[a], rows[b], corners[b])) return {"rounding would make two new faces cross", {a, b}};
+  // A new face that crosses one that stays.
+  Fault crossing_old() const {
+    std::vector<FaceId> removed = edit_.removed_faces, looked_up;
+    std::sort(removed.begin(), removed.end());
+    std::vector<New> near;
+    std::vector<FaceId> ids;
+    for (const Family& family : families_) {
+      Box3 box;
+      for (auto i = family.first; i < family.end; ++i)
+        if (faces_[i].touched) box.add(faces_[i].box);
+      if (box.empty()) continue;
+      near.clear(), ids.clear(), looked_up.clear();
+      if (family.near.empty()) complex_.near(box, looked_up);
+      for (const FaceId f : family.near.empty() ? std::span<const FaceId>(looked_up) : family.near) {
+        const auto corners = complex_.corners(f);
+        const Box3 there = box_of(corners[0], corners[1], corners[2]);
+        if (!there.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;
+        const auto& v = complex_.face(f).v;
+        near.push_back({corners, {v[0].value, v[1].value, v[2].value}, there, Plane(corners, there), ~0u, false});
+        ids.push_back(f);
+      }
+      for (auto i = family.first; i < family.end; ++i)
+        for (std::size_t n = 0; n < near.size(); ++n)
+          if (faces_[i].touched && near[n].box.meets(faces_[i].box) && cross(faces_[i], near[n]))
+            return {"rounding would make a new face cross face " + std::to_string(ids[n].value), {i}};
     }
-  return {};
+    return {};
+  }
+
+  // Two new faces that cross, found by a sweep along the longest way.
+  Fault crossing_new() const {
+    Box3 all;
+    for (const New& f : faces_) all.add(f.box);
+    int axis = 0;
+    if (count_ > 0) (all.hi - all.lo).maxCoeff(&axis);
+    std::vector<std::pair<double, std::uint32_t>> order;
+    order.reserve(count_);
+    for (std::uint32_t i = 0; i < count_; ++i) order.push_back({faces_[i].box.lo[axis], i});
+    std::sort(order.begin(), order.end());
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const New& a = faces_[order[i].second];
+      const double end = a.box.hi[axis];
+      for (std::uint32_t j = i + 1; j < count_ && order[j].first <= end; ++j) {
+        const New& b = faces_[order[j].second];
+        if (!a.box.meets(b.box) || !(a.touched || b.touched)) continue;
+        // All children of a triangle, none turned over: they cover it once, as before rounding.
+        if (a.family != ~0u && a.family == b.family) continue;
+        if (cross(a, b)) return {"rounding would make two new faces cross", {order[i].second, order[j].second}};
+      }
+    }
+    return {};
+  }
+
+ private:
+  struct New {
+    std::array<Vec3, 3> corners;
+    std::array<std::uint32_t, 3> rows;
+    Box3 box;
+    Plane plane;
+    std::uint32_t family;  // the first child of the same triangle where all are known not to overlap, else ~0u
+    bool touched;          // has a vertex that rounding moved
+  };
+
+  const Vec3& point(VertexId v) const {
+    return v.value < complex_.vertex_count() ? complex_.point(v) : edit_.new_vertices[v.value - complex_.vertex_count()];
+  }
+  bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && moved_[v.value - complex_.vertex_count()]; }
+  static bool cross(const New& f, const New& g) {
+    return !f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) && !g.plane.clears(g.rows, f.rows, f.corners, f.plane.size) &&
+           faces_cross(f.rows, f.corners, g.rows, g.corners);
+  }
+
+  const Complex& complex_;
+  const ComplexEdit& edit_;
+  std::span<const Family> families_;
+  std::span<const std::uint8_t> moved_;
+  std::uint32_t count_;
+  std::vector<New> faces_;
+};
+
+}  // namespace
+
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved) {
+  const Inspection inspection(complex, edit, families, moved);
+  Fault fault = inspection.turned();
+  if (!fault) fault = inspection.coincident();
+  if (!fault) fault = inspection.crossing_old();
+  if (!fault) fault = inspection.crossing_new();
+  return fault;
 }
 
 Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
@@ -118,6 +197,8 @@ Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> 
   Fault fault = find_fault(complex, edit, families, moved);
   if (!fault) return fault;
   const double last_place = 0x1p-52 * (complex.extent().diagonal() + complex.extent().lo.cwiseAbs().cwiseMax(complex.extent().hi.cwiseAbs()).maxCoeff());
+  std::vector<Family> rest(families.begin(), families.end());  // what is left out does not follow the points
+  for (Family& family : rest) family.whole = family.whole && edit.new_faces[family.first].parent.valid();
   Random random(edit.new_faces.size() * 0x9e3779b97f4a7c15ull + edit.new_vertices.size());
   for (int tries = 0; tries < 32; ++tries) {
     // The points that the fault's faces have and that rounding has moved anyway, a little farther each time.
@@ -131,7 +212,7 @@ Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> 
         edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * random.direction();
       }
     if (before.empty()) return fault;
-    Fault now = find_fault(complex, edit, families, moved);
+    Fault now = find_fault(complex, edit, rest, moved);
     if (!now) {
       ++repairs;
       return now;

@@ -13,6 +13,7 @@ struct Family {
   std::array<Vec3, 3> plane;       ///< the triangle's corners
   std::uint32_t first, end;        ///< edit.new_faces[first..end)
   std::span<const FaceId> near;    ///< faces of K that may be near; empty: they are looked up
+  bool whole;                      ///< they cover the triangle, or those that are left out do not turn over either
 };
 
 /// What is wrong with an edit.
@@ -22,12 +23,11 @@ struct Fault {
   explicit operator bool() const { return !what.empty(); }
 };
 
-/// `moved`: per new vertex, whether rounding moved it. Faces that it has not touched are as exact decisions left them.
 /// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
-/// vertex stands where another does, and no new face crosses a near one. Exact. Returns the first fault,
-/// none when all is well. Families list every new face once, in order. Cost follows the edit.
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
-                       std::span<const std::uint8_t> moved);
+/// vertex stands where another does, and no new face crosses a near one. Exact. `moved` says per new vertex whether
+/// rounding moved it; faces that it has not touched are as exact decisions left them. Families list every new face once,
+/// in order. Returns the first fault, none when all is well. Cost follows the edit.
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved);
 
 /// Moves points that rounding has moved anyway by a few places more, where that takes a fault away. Returns the fault that
 /// remains, none when all is well; `repairs` is raised when one was mended.

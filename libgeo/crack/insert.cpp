@@ -4,6 +4,7 @@
 #include "base/stopwatch.h"
 #include "crack/guard.h"
 #include "crack/keep_internal.h"
+#include "geometry/predicates.h"
 
 namespace geo::crack {
 namespace {
@@ -14,13 +15,21 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
   std::uint32_t row = 0, last = ~0u;
   for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
     if (const auto& element = arrangement.elements[e]; element.cut) {
-      families.push_back({complex.corners(element.face), row, row + element.end - element.first, {}});
+      families.push_back({complex.corners(element.face), row, row + element.end - element.first, {}, true});
       row = families.back().end;
     }
+  const auto& points = arrangement.points();
   for (const auto& part : parts) {
-    const auto& c = arrangement.elements[part.element].corner;
-    const auto& points = arrangement.points();
-    if (last != part.element) families.push_back({{points[c[0]], points[c[1]], points[c[2]]}, row, row, arrangement.near(part.element)});
+    const auto& element = arrangement.elements[part.element];
+    const auto& c = element.corner;
+    if (last != part.element) {
+      families.push_back({{points[c[0]], points[c[1]], points[c[2]]}, row, row, arrangement.near(part.element), true});
+      const auto [axis, turn] = view_of(points, c);
+      for (auto i = element.first; i < element.end && families.back().whole; ++i) {
+        const auto& v = arrangement.children[i].v;
+        families.back().whole = orient2d(points[v[0]], points[v[1]], points[v[2]], axis) == turn;
+      }
+    }
     last = part.element;
     families.back().end = ++row;
   }

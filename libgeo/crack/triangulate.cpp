@@ -9,15 +9,7 @@
 namespace geo::crack {
 
 std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner) {
-  const Vec3 n = (points[corner[1]] - points[corner[0]]).cross(points[corner[2]] - points[corner[0]]);
-  int axis = 0;
-  n.cwiseAbs().maxCoeff(&axis);
-  int turn = points.orient2d(corner[0], corner[1], corner[2], axis);
-  for (int tries = 0; tries < 2 && turn == 0; ++tries) {
-    axis = (axis + 1) % 3;
-    turn = points.orient2d(corner[0], corner[1], corner[2], axis);
-  }
-  return {axis, turn};
+  return view_axis(points[corner[0]], points[corner[1]], points[corner[2]]);
 }
 
 int Triangulator::add_vertex(Local l, std::uint8_t edges) {

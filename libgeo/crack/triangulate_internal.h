@@ -69,7 +69,7 @@ class Triangulator {
   std::vector<Tri> tri_;
 };
 
-/// The axis against which a triangle is seen, and its turn then (±1; 0 when it has no area).
+/// As view_axis(), for three points that are doubles, as corners of elements are.
 std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner);
 
 }  // namespace geo::crack

@@ -45,6 +45,14 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   return static_cast<int>(CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
 }
 
+std::pair<int, int> view_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
+  int axis = 0;
+  (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis);
+  int turn = orient2d(a, b, c, axis);
+  for (int tries = 0; tries < 2 && turn == 0; ++tries) axis = (axis + 1) % 3, turn = orient2d(a, b, c, axis);
+  return {axis, turn};
+}
+
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
   // A clearly non-zero component of the cross product settles it; each has an error of at most 4 ε times its terms.
   const Vec3 u = b - a, v = c - a;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "base/vec.h"
 
@@ -41,6 +42,9 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// Sign of the turn abc in the two axes that follow `axis` (0, 1, 2): counter-clockwise positive.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis);
+
+/// The axis against which a triangle is best seen, and its turn then (±1; 0 when it has no area).
+std::pair<int, int> view_axis(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// True when a, b, c lie exactly on one line (coincident points included).
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);

@@ -8,17 +8,18 @@
 
 namespace geo {
 
-/// A hash grid (Teschner et al. 2003) of closed boxes, in blocks of cells so that empty space is passed quickly. Each id is found by every query box that meets its box.
+/// A hash grid (Teschner et al. 2003) in blocks of cells, so that empty space is passed quickly. A triangle is listed in
+/// the cells that it may pass through, not in all those of its box.
 class TriangleIndex {
  public:
   /// `cell` is the edge length of a cell, best near the mean edge length of the triangles; > 0.
   explicit TriangleIndex(double cell = 1.0) : cell_(cell) {}
 
-  /// Adds an id with its box. Ids are small integers and each is in the index at most once.
-  void insert(std::uint32_t id, const Box3& box);
-  /// Removes an id that is in the index.
-  void erase(std::uint32_t id);
-  /// Appends to `out`, ascending and each once, the ids whose boxes meet `box`.
+  /// Adds triangle abc. Ids are small integers and each is in the index at most once.
+  void insert(std::uint32_t id, const Vec3& a, const Vec3& b, const Vec3& c);
+  /// Removes an id that was added with the same three points.
+  void erase(std::uint32_t id, const Vec3& a, const Vec3& b, const Vec3& c);
+  /// Appends to `out`, ascending and each once, the ids of all triangles that meet `box`, and of others whose boxes do.
   void find(const Box3& box, std::vector<std::uint32_t>& out) const;
   /// As find() for the box of a triangle, grown by `reach`, without those whose boxes are clear of its plane: cost follows
   /// the triangle's area, not its box's volume.
@@ -29,11 +30,12 @@ class TriangleIndex {
   double cell() const { return cell_; }
 
  private:
-  struct Range {
-    std::int64_t lo[3], hi[3];
-  };
   static constexpr std::uint32_t none = ~0u;
   static constexpr int side = 4;  // cells along a block
+  struct Range {
+    std::int64_t lo[3], hi[3];
+    double count() const { return double(hi[0] - lo[0] + 1) * double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1); }
+  };
   struct Slot {
     std::uint64_t key = ~0ull;  // no block has this one
     std::uint32_t block = none;
@@ -46,20 +48,26 @@ class TriangleIndex {
   struct Entry {
     std::uint32_t id, next;
   };
-  Range cells_of(const Box3& box) const;
+  class Plane;
+  Range cells_of(const Box3& box, int shift) const;
   std::size_t slot_of(std::uint64_t key) const;
   std::uint32_t block_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
+  Block& make_block(std::int64_t x, std::int64_t y, std::int64_t z);
   void grow();
-  static void keep_each_once(std::vector<std::uint32_t>& out, std::size_t first);
+  /// Calls with each cell that the triangle may pass through; false when there are too many.
+  template <class Visit>
+  bool each_cell(const Vec3& a, const Vec3& b, const Vec3& c, const Visit& visit) const;
   template <class Take>
-  void visit(const Block& block, const std::int64_t (&at)[3], const Range& r, const Take& take) const;
+  void visit(const Block& block, const std::int64_t (&at)[3], const Range& cells, const Plane* plane, const Take& take) const;
+  static void keep_each_once(std::vector<std::uint32_t>& out, std::size_t first);
+
   double cell_;
   std::vector<Slot> slots_;     // open addressing, a power of two
   std::vector<Block> blocks_;   // never fewer: a region that was cut is cut again
   std::vector<Entry> entries_;  // lists, one a cell
   std::uint32_t free_ = none;   // list of entries to use again
   std::vector<Box3> boxes_;           // by id; empty box: not in the index
-  std::vector<std::uint32_t> large_;  // ids whose boxes cover too many cells to be listed in each
+  std::vector<std::uint32_t> large_;  // ids of triangles with too many cells to be listed in each
 };
 
 }  // namespace geo

@@ -137,7 +137,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
       if (faces_cross(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
         if (count++ == 0) note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
       }
-    index.insert(t, box);
+    index.insert(t, p[0], p[1], p[2]);
   }
   report.self_intersections = count;
   return report;

@@ -224,14 +224,20 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (std::uint32_t i = 0; i < edit.new_vertices.size(); ++i) delta.new_vertices.push_back(VertexId(old_vertices + i));
 
   std::vector<VertexId> touched;
+  ++epoch_;
+  mark_.resize(points_.size(), 0);
+  const auto touch = [&](VertexId v) {
+    if (mark_[v.index()] != epoch_) mark_[v.index()] = epoch_, touched.push_back(v);
+  };
   std::vector<std::pair<VertexId, SurfaceVertexId>> old_ids;  // what stood at each touched site before
   for (const FaceId f : removed) {
     for (int k = 0; k < 3; ++k) {
-      touched.push_back(face(f).v[k]);
+      touch(face(f).v[k]);
       for (int which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which)
         old_ids.push_back({face(f).v[k], corner_vertex_[f.index() * 6 + which * 3 + k]});
     }
-    index_.erase(f.value);
+    const auto [a, b, c] = corners(f);
+    index_.erase(f.value, a, b, c);
     faces_[f.index()].alive = false;
     unlink_corners(f);
     --live_faces_;
@@ -247,14 +253,15 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
     faces_.push_back({n.v, n.crack, true});
     link_corners(f);
     for (int k = 0; k < 3; ++k) {
-      touched.push_back(n.v[k]);
+      touch(n.v[k]);
       // A part of a face keeps the face's surface vertices where it keeps its corners.
       if (n.parent.valid() && n.parent.value < old_faces)
         if (const int pk = corner_at(face(n.parent), n.v[k]); pk >= 0)
           for (int which = 0; which < 2; ++which)
             corner_vertex_[f.index() * 6 + which * 3 + k] = corner_vertex_[n.parent.index() * 6 + which * 3 + pk];
     }
-    index_.insert(f.value, box(f));
+    const auto [a, b, c] = corners(f);
+    index_.insert(f.value, a, b, c);
     crack_count_ = std::max(crack_count_, n.crack);
     delta.new_faces.push_back(f);
     if (n.crack > 0 && !n.parent.valid()) delta.new_crack_faces.push_back(f);
@@ -263,7 +270,6 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (const NewRing& r : rings)
     link_ring(VertexId(static_cast<std::uint32_t>(r.edge >> 32)), VertexId(static_cast<std::uint32_t>(r.edge)), ring_faces.data() + r.begin, r.end - r.begin);
   std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   std::sort(old_ids.begin(), old_ids.end());
   std::size_t at = 0;
   std::vector<SurfaceVertexId> here;
@@ -281,40 +287,39 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
 // Groups the sides at v into fans and gives each a surface vertex: one of those it had before where it can.
 void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelta* delta, FanScratch& scratch) {
   auto& corners = scratch.corners;
-  auto& stack = scratch.stack;
   auto& candidates = scratch.candidates;
   auto& fans = scratch.fans;
   auto& claimed = scratch.claimed;
   corners.clear(), candidates.clear(), fans.clear(), claimed.clear();
-  const auto seen = [&](Side s) {
-    return std::any_of(corners.begin(), corners.end(), [&](const auto& c) { return c.first == s; });
-  };
+  // Each side at v has a next one across either of its edges there, so that fans are rings.
   for (const FaceId f : faces_at(v))
     for (int which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which) {
       const Side start{f, which};
-      if (seen(start)) continue;
-      const auto first_corner = corners.size(), first_candidate = candidates.size();
-      stack.assign(1, start);
-      corners.push_back({start, corner_at(face(f), v)});
-      while (!stack.empty()) {
-        const Side s = stack.back();
-        stack.pop_back();
-        const int k = corner_at(face(s.face), v);
-        if (const auto old = surface_vertex(s, k); old.valid()) candidates.push_back(old), old_ids.push_back(old);
-        for (const int edge : {k, (k + 2) % 3}) {
-          const Side next = neighbor(s, edge);
-          if (!seen(next)) corners.push_back({next, corner_at(face(next.face), v)}), stack.push_back(next);
-        }
+      if (std::any_of(corners.begin(), corners.end(), [&](const auto& c) { return c.first == start; })) continue;
+      Fan fan{start, 0, corners.size(), 0, candidates.size(), 0};
+      Side s = start;
+      for (int edge = corner_at(face(f), v), k = edge;;) {
+        corners.push_back({s, k});
+        if (s <= fan.lowest) fan.lowest = s, fan.corner = k;
+        if (const auto old = surface_vertex(s, k); old.valid() && (candidates.size() == fan.first_candidate || candidates.back() != old)) candidates.push_back(old);
+        const VertexId far = face(s.face).v[edge == k ? (k + 1) % 3 : edge];
+        s = neighbor(s, edge);
+        if (s == start) break;
+        k = corner_at(face(s.face), v);
+        edge = face(s.face).v[(k + 1) % 3] == far ? (k + 2) % 3 : k;  // out by the edge that it was not entered by
       }
-      std::sort(corners.begin() + static_cast<std::ptrdiff_t>(first_corner), corners.end());
-      std::sort(candidates.begin() + static_cast<std::ptrdiff_t>(first_candidate), candidates.end());
-      fans.push_back({first_corner, corners.size(), first_candidate, candidates.size()});
+      const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(fan.first_candidate);
+      std::sort(first, candidates.end());
+      candidates.erase(std::unique(first, candidates.end()), candidates.end());
+      old_ids.insert(old_ids.end(), candidates.begin() + static_cast<std::ptrdiff_t>(fan.first_candidate), candidates.end());
+      fan.end_corner = corners.size(), fan.end_candidate = candidates.size();
+      fans.push_back(fan);
     }
   // Fans with the lowest old ids choose first, so that the outcome does not depend on face order alone.
   std::sort(fans.begin(), fans.end(), [&](const Fan& a, const Fan& b) {
     const auto ca = a.first_candidate == a.end_candidate ? SurfaceVertexId() : candidates[a.first_candidate];
     const auto cb = b.first_candidate == b.end_candidate ? SurfaceVertexId() : candidates[b.first_candidate];
-    return ca != cb ? ca < cb : corners[a.first_corner] < corners[b.first_corner];
+    return ca != cb ? ca < cb : a.lowest < b.lowest;
   });
   for (const Fan& fan : fans) {
     SurfaceVertexId id;
@@ -329,8 +334,8 @@ void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelt
     }
     claimed.push_back(id);
     site_[id.index()] = v;
-    fan_side_[id.index()] = corners[fan.first_corner].first;
-    fan_corner_[id.index()] = static_cast<std::uint8_t>(corners[fan.first_corner].second);
+    fan_side_[id.index()] = fan.lowest;
+    fan_corner_[id.index()] = static_cast<std::uint8_t>(fan.corner);
     for (auto c = fan.first_corner; c < fan.end_corner; ++c) {
       const auto& [s, k] = corners[c];
       corner_vertex_[s.face.index() * 6 + s.which * 3 + k] = id;

@@ -165,11 +165,12 @@ class Complex {
   void link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t count);
 
   struct Fan {
+    Side lowest;
+    int corner;  // of the lowest side
     std::size_t first_corner, end_corner, first_candidate, end_candidate;
   };
   struct FanScratch {
     std::vector<std::pair<Side, int>> corners;
-    std::vector<Side> stack;
     std::vector<SurfaceVertexId> candidates;
     std::vector<Fan> fans;
     std::vector<SurfaceVertexId> claimed;
@@ -190,6 +191,8 @@ class Complex {
   std::vector<Side> fan_side_;
   std::vector<std::uint8_t> fan_corner_;
   TriangleIndex index_;
+  std::vector<std::uint32_t> mark_;  // per vertex: the last commit that touched it
+  std::uint32_t epoch_ = 0;
 };
 
 class Complex::FacesAt {

@@ -47,6 +47,7 @@ class ComplexBuilder {
   void add_points(const std::vector<Vec3>& points) {
     k.points_ = points;
     k.first_corner_.assign(points.size(), Complex::no_corner);
+    k.mark_.assign(points.size(), 0);
   }
 
   FaceId add_face(std::array<VertexId, 3> v, std::int32_t crack) {
@@ -94,14 +95,17 @@ class ComplexBuilder {
       sum += (k.point(f.v[0]) - k.point(f.v[1])).norm();
     }
     const double mean = sum / static_cast<double>(k.faces_.size());
-    k.index_ = TriangleIndex(std::max(mean * 1.25, k.extent_.diagonal() * 1e-6));
-    for (std::uint32_t f = 0; f < k.faces_.size(); ++f) k.index_.insert(f, k.box(FaceId(f)));
+    k.index_ = TriangleIndex(std::max(mean * 3.0, k.extent_.diagonal() * 1e-6));
+    for (std::uint32_t f = 0; f < k.faces_.size(); ++f) {
+      const auto [a, b, c] = k.corners(FaceId(f));
+      k.index_.insert(f, a, b, c);
+    }
   }
 
   /// Room for the first cracks, so that they do not copy everything to a larger place.
   void make_room() {
     const auto more = [](auto& v, std::size_t each) { v.reserve(v.size() + v.size() / 4 + 4096 * each); };
-    more(k.points_, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1), more(k.fan_corner_, 1);
+    more(k.points_, 1), more(k.mark_, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1), more(k.fan_corner_, 1);
     more(k.faces_, 1), more(k.radial_, 3), more(k.next_corner_, 3), more(k.corner_vertex_, 6);
     k.index_.reserve(k.faces_.capacity());
   }
@@ -352,7 +356,8 @@ ComplexEdit Complex::difference(const Complex& other) const {
   for (std::uint32_t f = 0; f < face_count(); ++f)
     if (faces_[f].alive && !kept[f]) {
       edit.removed_faces.push_back(FaceId(f));
-      gone.insert(f, box(FaceId(f)));
+      const auto [a, b, c] = corners(FaceId(f));
+      gone.insert(f, a, b, c);
     }
   const double scale = extent_.diagonal();
   std::vector<std::uint32_t> candidates;

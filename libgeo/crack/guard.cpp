@@ -47,7 +47,7 @@ class Inspection {
     for (const auto& f : edit.new_faces) {
       std::array<Vec3, 3> corners;
       std::array<std::uint32_t, 3> rows;
-      bool touched = false;
+      bool touched = moved.empty();
       for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, touched = touched || is_moved(f.v[k]);
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
       faces_.push_back({corners, rows, box, Plane(corners, box), ~0u, touched});
@@ -167,7 +167,7 @@ class Inspection {
   const Vec3& point(VertexId v) const {
     return v.value < complex_.vertex_count() ? complex_.point(v) : edit_.new_vertices[v.value - complex_.vertex_count()];
   }
-  bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && moved_[v.value - complex_.vertex_count()]; }
+  bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
   static bool cross(const New& f, const New& g) {
     return !f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) && !g.plane.clears(g.rows, f.rows, f.corners, f.plane.size) &&
            faces_cross(f.rows, f.corners, g.rows, g.corners);

@@ -25,7 +25,7 @@ struct Fault {
 
 /// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
 /// vertex stands where another does, and no new face crosses a near one. Exact. `moved` says per new vertex whether
-/// rounding moved it; faces that it has not touched are as exact decisions left them. Families list every new face once,
+/// rounding moved it; faces that it has not touched are as exact decisions left them (empty: all are asked about). Families list every new face once,
 /// in order. Returns the first fault, none when all is well. Cost follows the edit.
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved);
 

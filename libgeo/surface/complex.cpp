@@ -152,7 +152,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   const auto shape = [&](FaceId f) -> Face {
     if (f.value < old_faces) return face(f);
     const auto& n = edit.new_faces[f.value - old_faces];
-    return {n.v, n.crack, true};
+    return {n.v, n.crack, true, ~0u};
   };
 
   // The faces that each touched edge will have: edges in order of their keys, each with the new faces it gains.
@@ -250,7 +250,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (std::uint32_t i = 0; i < edit.new_faces.size(); ++i) {
     const auto& n = edit.new_faces[i];
     const FaceId f(old_faces + i);
-    faces_.push_back({n.v, n.crack, true});
+    faces_.push_back({n.v, n.crack, true, n.parent.valid() ? face(n.parent).source : ~0u});
     link_corners(f);
     for (int k = 0; k < 3; ++k) {
       touch(n.v[k]);

@@ -86,6 +86,7 @@ class Complex {
     std::array<VertexId, 3> v;
     std::int32_t crack = 0;  ///< 0 skin, c > 0 crack c
     bool alive = false;
+    std::uint32_t source = ~0u;  ///< row of the triangle, in the surface that K was made from, that it is a part of; ~0u: none
   };
 
   Complex() = default;

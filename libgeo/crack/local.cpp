@@ -172,15 +172,12 @@ LocalEdit relocate(const Complex& k, VertexId v, const Vec3& p) {
 namespace {
 
 // True when a vertex that is not one of the tetrahedron's own is in it.
-bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, const std::vector<FaceId>& removed) {
+bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, std::span<const FaceId> near) {
   const int side = orient3d(t[0], t[1], t[2], t[3]);
   if (side == 0) return false;
   Box3 box = box_of(t[0], t[1], t[2]);
   box.add(t[3]);
-  std::vector<FaceId> near;
-  k.near(box, near);
-  for (const FaceId f : near) {
-    if (std::find(removed.begin(), removed.end(), f) != removed.end()) continue;
+  for (const FaceId f : near)
     for (const Vec3& p : k.corners(f)) {
       if (p == t[0] || p == t[1] || p == t[2] || p == t[3]) continue;
       if (!Box3{p, p}.meets(box)) continue;
@@ -188,17 +185,25 @@ bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, const std::
           orient3d(t[2], t[3], t[0], p) != -side)
         return true;
     }
-  }
   return false;
 }
 
 }  // namespace
 
-bool is_sound(const Complex& k, const LocalEdit& local) {
-  if (find_fault(k, local.edit, local.families, {})) return false;
+bool is_sound(const Complex& k, LocalEdit& local) {
+  const auto& removed = local.edit.removed_faces;
+  Box3 box;
+  for (const FaceId f : removed) box.add(k.box(f));
   for (const auto& t : local.swept)
-    if (holds_something(k, t, local.edit.removed_faces)) return false;
-  return true;
+    for (const Vec3& p : t) box.add(p);
+  for (const Vec3& p : local.edit.new_vertices) box.add(p);
+  std::vector<FaceId> near;
+  k.near(box, near);
+  std::erase_if(near, [&](FaceId f) { return std::find(removed.begin(), removed.end(), f) != removed.end(); });
+  for (Family& family : local.families) family.near = near;
+  const bool faulty = static_cast<bool>(find_fault(k, local.edit, local.families, {}));
+  for (Family& family : local.families) family.near = {};
+  return !faulty && std::none_of(local.swept.begin(), local.swept.end(), [&](const auto& t) { return holds_something(k, t, near); });
 }
 
 }  // namespace geo::crack

@@ -32,6 +32,6 @@ LocalEdit divide(const Complex& complex, VertexId a, VertexId b, const Vec3& p);
 LocalEdit relocate(const Complex& complex, VertexId v, const Vec3& p);
 
 /// True when nothing speaks against it: no face turns over, crosses another or leaves something enclosed behind it.
-bool is_sound(const Complex& complex, const LocalEdit& local);
+bool is_sound(const Complex& complex, LocalEdit& local);
 
 }  // namespace geo::crack

@@ -145,7 +145,7 @@ class Remesher {
   }
 
   // Carries an edit out if the guard lets it.
-  bool apply(const LocalEdit& local) {
+  bool apply(LocalEdit& local) {
     const bool free = !options_.may_pass || std::all_of(local.swept.begin(), local.swept.end(), options_.may_pass);
     if (!free || !is_sound(k_, local)) return ++work_.refused, false;
     try {
@@ -168,7 +168,7 @@ class Remesher {
     std::sort(by_length.begin(), by_length.end(), [&](int i, int j) { return (c[(i + 1) % 3] - c[i]).squaredNorm() > (c[(j + 1) % 3] - c[j]).squaredNorm(); });
     for (const int e : by_length) {
       if (is_feature(k_.face(f).v[e], k_.face(f).v[(e + 1) % 3])) continue;
-      const auto local = crack::flip(k_, f, e);
+      auto local = crack::flip(k_, f, e);
       if (!local || !(worst_new(local->edit) < 0.999 * worst(local->edit.removed_faces))) continue;
       // The edge's middle may not leave the surface.
       const Vec3 middle = 0.5 * (c[e] + c[(e + 1) % 3]);
@@ -213,7 +213,7 @@ class Remesher {
         const int e = by_length[i];
         const VertexId from = backwards ? v[e] : v[(e + 1) % 3], to = backwards ? v[(e + 1) % 3] : v[e];
         if (!may_merge(from, to)) continue;
-        const auto local = crack::collapse(k_, from, to);
+        auto local = crack::collapse(k_, from, to);
         if (!local || !(worst_new(local->edit) < 0.999 * worst(local->edit.removed_faces))) continue;
         if (!stays_close(*local, k_.point(from))) continue;
         if (!apply(*local)) continue;
@@ -249,7 +249,7 @@ class Remesher {
       }
       for (const Vec3& goal : goals) {
         if (!goal.allFinite() || goal == p) continue;
-        const auto local = crack::relocate(k_, v, goal);
+        auto local = crack::relocate(k_, v, goal);
         if (!(worst_new(local.edit) < 0.9 * worst(local.edit.removed_faces)) || !stays_close(local, p)) continue;
         if (apply(local)) return ++work_.moves, true;
       }
@@ -278,7 +278,7 @@ class Remesher {
         continue;
       }
       if (length < 2 * options_.shortest * size_ || (held_.count(a) && held_.count(b))) return false;
-      const auto local = crack::divide(k_, a, b, 0.5 * (k_.point(a) + k_.point(b)));
+      auto local = crack::divide(k_, a, b, 0.5 * (k_.point(a) + k_.point(b)));
       if (!apply(local)) return false;
       ++work_.divisions;
       return true;

@@ -8,18 +8,15 @@
 
 namespace geo {
 
-/// A hash grid (Teschner et al. 2003) in blocks of cells, so that empty space is passed quickly. A triangle is listed in
-/// the cells that it may pass through, not in all those of its box.
+/// Hash grids (Teschner et al. 2003), one for each power of four of the triangles' sizes, so that a mesh may hold large
+/// and small ones and become finer where it is cut. Blocks of cells let a query pass empty space quickly.
 class TriangleIndex {
  public:
-  /// `cell` is the edge length of a cell, best near the mean edge length of the triangles; > 0.
-  explicit TriangleIndex(double cell = 1.0) : cell_(cell) {}
-
-  /// Adds triangle abc. Ids are small integers and each is in the index at most once.
-  void insert(std::uint32_t id, const Vec3& a, const Vec3& b, const Vec3& c);
-  /// Removes an id that was added with the same three points.
-  void erase(std::uint32_t id, const Vec3& a, const Vec3& b, const Vec3& c);
-  /// Appends to `out`, ascending and each once, the ids of all triangles that meet `box`, and of others whose boxes do.
+  /// Adds an id with its box. Ids are small integers and each is in the index at most once.
+  void insert(std::uint32_t id, const Box3& box);
+  /// Removes an id that is in the index.
+  void erase(std::uint32_t id);
+  /// Appends to `out`, ascending and each once, the ids whose boxes meet `box`.
   void find(const Box3& box, std::vector<std::uint32_t>& out) const;
   /// As find() for the box of a triangle, grown by `reach`, without those whose boxes are clear of its plane: cost follows
   /// the triangle's area, not its box's volume.
@@ -27,7 +24,6 @@ class TriangleIndex {
   /// Makes room for ids below `count` in all.
   void reserve(std::size_t count);
   bool contains(std::uint32_t id) const;
-  double cell() const { return cell_; }
 
  private:
   static constexpr std::uint32_t none = ~0u;
@@ -48,26 +44,29 @@ class TriangleIndex {
   struct Entry {
     std::uint32_t id, next;
   };
+  /// The triangles whose boxes are between an eighth and half of a cell long.
+  struct Level {
+    int exponent;
+    double cell;
+    std::vector<Slot> slots;    // open addressing, a power of two
+    std::vector<Block> blocks;  // never fewer: a region that was cut is cut again
+    Range cells_of(const Box3& box) const;
+    std::size_t slot_of(std::uint64_t key) const;
+    std::uint32_t block_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
+    Block& make_block(std::int64_t x, std::int64_t y, std::int64_t z);
+  };
   class Plane;
-  Range cells_of(const Box3& box, int shift) const;
-  std::size_t slot_of(std::uint64_t key) const;
-  std::uint32_t block_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
-  Block& make_block(std::int64_t x, std::int64_t y, std::int64_t z);
-  void grow();
-  /// Calls with each cell that the triangle may pass through; false when there are too many.
-  template <class Visit>
-  bool each_cell(const Vec3& a, const Vec3& b, const Vec3& c, const Visit& visit) const;
+  Level& level_of(const Box3& box);
   template <class Take>
-  void visit(const Block& block, const std::int64_t (&at)[3], const Range& cells, const Plane* plane, const Take& take) const;
+  void visit(const Level& level, const std::int64_t (&at)[3], const Range& cells, const Plane* plane, const Take& take) const;
+  template <class Take>
+  void visit_all(const Level& level, const Take& take) const;
   static void keep_each_once(std::vector<std::uint32_t>& out, std::size_t first);
 
-  double cell_;
-  std::vector<Slot> slots_;     // open addressing, a power of two
-  std::vector<Block> blocks_;   // never fewer: a region that was cut is cut again
+  std::vector<Level> levels_;   // by exponent
   std::vector<Entry> entries_;  // lists, one a cell
   std::uint32_t free_ = none;   // list of entries to use again
-  std::vector<Box3> boxes_;           // by id; empty box: not in the index
-  std::vector<std::uint32_t> large_;  // ids of triangles with too many cells to be listed in each
+  std::vector<Box3> boxes_;     // by id; empty box: not in the index
 };
 
 }  // namespace geo

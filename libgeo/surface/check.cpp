@@ -119,9 +119,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   report.degenerate_faces = count_degenerate(mesh, report);
   check_edges(mesh, report);
   if (!crossings) return report;
-  double mean = 0;
-  for (const auto& [a, b, c] : mesh.triangles) mean += (mesh.vertices[a] - mesh.vertices[b]).norm() / static_cast<double>(mesh.triangles.size());
-  TriangleIndex index(std::max(mean * 1.25, bounding_box(mesh).diagonal() * 1e-6 + 1e-300));
+  TriangleIndex index;
   std::size_t count = 0;
   std::vector<std::uint32_t> near;
   const auto points = [&](std::uint32_t t) {
@@ -137,7 +135,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
       if (faces_cross(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
         if (count++ == 0) note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
       }
-    index.insert(t, p[0], p[1], p[2]);
+    index.insert(t, box);
   }
   report.self_intersections = count;
   return report;

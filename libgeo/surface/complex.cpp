@@ -236,8 +236,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
       for (int which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which)
         old_ids.push_back({face(f).v[k], corner_vertex_[f.index() * 6 + which * 3 + k]});
     }
-    const auto [a, b, c] = corners(f);
-    index_.erase(f.value, a, b, c);
+    index_.erase(f.value);
     faces_[f.index()].alive = false;
     unlink_corners(f);
     --live_faces_;
@@ -260,8 +259,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
           for (int which = 0; which < 2; ++which)
             corner_vertex_[f.index() * 6 + which * 3 + k] = corner_vertex_[n.parent.index() * 6 + which * 3 + pk];
     }
-    const auto [a, b, c] = corners(f);
-    index_.insert(f.value, a, b, c);
+    index_.insert(f.value, box(f));
     crack_count_ = std::max(crack_count_, n.crack);
     delta.new_faces.push_back(f);
     if (n.crack > 0 && !n.parent.valid()) delta.new_crack_faces.push_back(f);

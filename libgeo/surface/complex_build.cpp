@@ -86,20 +86,11 @@ class ComplexBuilder {
     }
   }
 
-  // The index: cells as large as the mean edge is long.
   void finish() {
-    double sum = 0;
-    for (const auto& f : k.faces_) {
+    for (const auto& f : k.faces_)
       for (const VertexId v : f.v)
         if (f.crack == 0) k.extent_.add(k.point(v));
-      sum += (k.point(f.v[0]) - k.point(f.v[1])).norm();
-    }
-    const double mean = sum / static_cast<double>(k.faces_.size());
-    k.index_ = TriangleIndex(std::max(mean * 3.0, k.extent_.diagonal() * 1e-6));
-    for (std::uint32_t f = 0; f < k.faces_.size(); ++f) {
-      const auto [a, b, c] = k.corners(FaceId(f));
-      k.index_.insert(f, a, b, c);
-    }
+    for (std::uint32_t f = 0; f < k.faces_.size(); ++f) k.index_.insert(f, k.box(FaceId(f)));
   }
 
   /// Room for the first cracks, so that they do not copy everything to a larger place.
@@ -355,12 +346,11 @@ ComplexEdit Complex::difference(const Complex& other) const {
       fresh.push_back(FaceId(f));
     }
   }
-  TriangleIndex gone(index_.cell());
+  TriangleIndex gone;
   for (std::uint32_t f = 0; f < face_count(); ++f)
     if (faces_[f].alive && !kept[f]) {
       edit.removed_faces.push_back(FaceId(f));
-      const auto [a, b, c] = corners(FaceId(f));
-      gone.insert(f, a, b, c);
+      gone.insert(f, box(FaceId(f)));
     }
   const double scale = extent_.diagonal();
   std::vector<std::uint32_t> candidates;

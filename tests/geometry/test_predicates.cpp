@@ -79,38 +79,27 @@ TEST_CASE("half-planes are compared by their angle around a line") {
     for (int j = 0; j < 8; ++j) CHECK(compare_angle(u, v, zero, turn[i], turn[j]) == (i < j ? -1 : i > j ? 1 : 0));
 }
 
-TEST_CASE("the triangle index finds every triangle that meets a box, and none whose box does not") {
+TEST_CASE("the triangle index finds what a scan finds, whatever the sizes") {
   const std::uint64_t seed = GENERATE(5, 6, 7);
   CAPTURE(seed);
   Random random(seed);
-  TriangleIndex index(0.3);
-  // From needles and specks to triangles of hundreds of cells, some in planes of the grid.
-  std::vector<std::array<Vec3, 3>> all;
-  for (int i = 0; i < 300; ++i) {
-    const double size = i % 10 == 0 ? 8.0 : i % 3 == 0 ? 0.05 : 1.0;
-    const Vec3 a = 4 * random.direction(), b = a + size * random.direction(), c = a + (i % 7 == 0 ? 1e-9 : 1.0) * size * random.direction();
-    all.push_back({a, b, i % 11 == 0 ? Vec3(2 * b - a) : c});
-    if (i % 5 == 0)
-      for (auto& p : all.back()) p.z() = 0.3 * std::floor(p.z() / 0.3);
-    index.insert(static_cast<std::uint32_t>(i), all.back()[0], all.back()[1], all.back()[2]);
-  }
-  for (std::uint32_t i = 0; i < 300; i += 4) index.erase(i, all[i][0], all[i][1], all[i][2]);
+  TriangleIndex index;
+  std::vector<Box3> boxes;
+  const auto box = [&](double size) {
+    Box3 b;
+    b.add(4 * random.direction()), b.add(b.lo + size * random.uniform() * random.direction());
+    return b;
+  };
+  const double sizes[] = {1, 1, 0.01, 1e-9, 0, 30};
+  for (std::uint32_t i = 0; i < 300; ++i) boxes.push_back(box(sizes[i % 6])), index.insert(i, boxes[i]);
+  for (std::uint32_t i = 0; i < 300; i += 4) index.erase(i), boxes[i] = Box3{};
   for (int q = 0; q < 200; ++q) {
-    Box3 query;
-    query.add(4 * random.direction()), query.add(query.lo + random.uniform() * random.direction());
-    std::vector<std::uint32_t> found;
+    const Box3 query = box(sizes[q % 6]);
+    std::vector<std::uint32_t> found, expected;
     index.find(query, found);
-    CHECK(std::is_sorted(found.begin(), found.end()));
-    for (std::uint32_t i = 0; i < 300; ++i) {
-      const bool is_found = std::binary_search(found.begin(), found.end(), i);
-      CHECK(index.contains(i) == (i % 4 != 0));
-      if (is_found) REQUIRE((i % 4 != 0 && box_of(all[i][0], all[i][1], all[i][2]).meets(query)));
-      for (int s = 0; s < 30 && i % 4 != 0 && !is_found; ++s) {
-        const double u = random.uniform(), v = random.uniform() * (1 - u);
-        const Vec3 p = all[i][0] + u * (all[i][1] - all[i][0]) + v * (all[i][2] - all[i][0]);
-        REQUIRE_FALSE(Box3{p, p}.meets(query));
-      }
-    }
+    for (std::uint32_t i = 0; i < 300; ++i)
+      if (!boxes[i].empty() && boxes[i].meets(query)) expected.push_back(i);
+    CHECK(found == expected);
   }
 }
 

@@ -49,9 +49,9 @@ class ComplexBuilder {
     k.first_corner_.assign(points.size(), Complex::no_corner);
   }
 
-  FaceId add_face(std::array<VertexId, 3> v, std::int32_t crack) {
+  FaceId add_face(std::array<VertexId, 3> v, std::int32_t crack, std::uint32_t source) {
     const FaceId f(k.faces_.size());
-    k.faces_.push_back({v, crack, true});
+    k.faces_.push_back({v, crack, true, source});
     k.corner_vertex_.resize(k.corner_vertex_.size() + 6);
     k.crack_count_ = std::max(k.crack_count_, crack);
     ++k.live_faces_;
@@ -135,7 +135,10 @@ Complex Complex::from_skin(const TriangleMesh& skin) {
   require_rows(skin);
   ComplexBuilder builder;
   builder.add_points(skin.vertices);
-  for (const auto& t : skin.triangles) builder.add_face({VertexId(t[0]), VertexId(t[1]), VertexId(t[2])}, 0);
+  for (std::uint32_t row = 0; row < skin.triangles.size(); ++row) {
+    const auto& t = skin.triangles[row];
+    builder.add_face({VertexId(t[0]), VertexId(t[1]), VertexId(t[2])}, 0, row);
+  }
   builder.link();
   // In row order, so that the first problem named is the same every time.
   for (std::uint32_t f = 0; f < builder.k.face_count(); ++f)
@@ -295,7 +298,7 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
     if (patch < 0) continue;
     const auto v = ids(t);
     if (!seen.try_emplace(sorted(v), t).second) throw InputError("triangle " + std::to_string(t) + " is there twice");
-    const FaceId f = builder.add_face(v, patch);
+    const FaceId f = builder.add_face(v, patch, t);
     for (int k = 0; k < 3; ++k) builder.set_corner({f, 0}, k, surface.triangles[t][k]);
     if (patch == 0) continue;
     const auto twin = minus.find({sorted(v), patch});
@@ -317,6 +320,13 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
   builder.adopt_rows(surface);
   builder.make_room();
   return std::move(builder.k);
+}
+
+void Complex::trace_sources(const std::vector<std::uint32_t>& rows) {
+  for (const Face& f : faces_)
+    if (f.source != ~0u && f.source >= rows.size()) throw InputError("the surface does not name a source for each triangle");
+  for (Face& f : faces_)
+    if (f.source != ~0u) f.source = rows[f.source];
 }
 
 ComplexEdit Complex::difference(const Complex& other) const {

@@ -106,6 +106,7 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   const std::string kerf = bytes_of([&](auto& out) { write_body(out, body); });
   const Body again = parse_body(kerf, "b.kerf");
   CHECK(again.neighbors == body.neighbors);
+  CHECK(again.surface.two_sided().source == body.surface.two_sided().source);
   CHECK(check_body(again).first_problem == "");
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
 }

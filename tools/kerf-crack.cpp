@@ -39,6 +39,11 @@ int main(int argc, char** argv) {
     const auto file = tool::read_solid(model);
     geo::Complex complex = tool::complex_of(file, model);
     std::vector<geo::FrontState> states = file.fronts;
+    const auto cut_surface = [&] {
+      geo::TriangleMesh mesh = complex.two_sided();
+      geo::carry(file.mesh, mesh);
+      return mesh;
+    };
     const auto progress = t.progress();
     geo::CrackOptions options;
     options.seed = t.seed;
@@ -73,7 +78,7 @@ int main(int argc, char** argv) {
             geo::advance(complex, *state, next, options, &work);
           } catch (const geo::GeometryError& e) {
             if (!repro.empty()) {
-              geo::write_all(repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, complex.two_sided(), states); });
+              geo::write_all(repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, cut_surface(), states); });
               geo::write_all(repro + ".front", [&](std::ostream& out) { geo::write_fronts(out, {{front.name, front.closed, {start, next}}}); });
             }
             throw geo::GeometryError(model + ": front '" + front.name + "', " + e.what() + "; " + (repro.empty() ? "run again with --repro FILE to keep the case" : "the case is in " + repro + ".ply and .front"));
@@ -88,7 +93,7 @@ int main(int argc, char** argv) {
       }
     }
     geo::report(progress, "done", total, total);
-    const auto mesh = complex.two_sided();
+    const auto mesh = cut_surface();
     geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states, "kerf-crack"); });
     if (t.json) (target == "-" ? std::cerr : std::cout) << json << "]\n";
   });

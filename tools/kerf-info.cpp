@@ -65,6 +65,11 @@ std::string surface_report(const geo::SurfaceFile& file, bool check, Report& rep
   report.add("front_edges", front_edges);
   report.add("degenerate_faces", result.degenerate_faces);
   report.add("fronts", file.fronts.size());
+  auto names = mesh.attributes.names();
+  if (!mesh.source.empty()) names.push_back("source");
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ",") + tool::quoted(name);
+  report.add("attributes", "[" + list + "]");
   if (result.good() && check && !mesh.two_sided() && geo::signed_volume(mesh) <= 0) return "the surface is inside out; reverse its triangles";
   return result.first_problem;
 }

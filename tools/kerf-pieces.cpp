@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
         char name[64];
         std::snprintf(name, sizeof name, "piece_%03u.%s", p, obj ? "obj" : "ply");
         geo::TriangleMesh mesh = geo::piece_mesh(complex, pieces, p);
+        geo::carry(file.mesh, mesh);
         mesh.site.clear();  // a piece is a model of its own; patch still tells skin from crack
         geo::write_all((aside / name).string(), [&](std::ostream& out) { obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
         json += std::string(p ? "," : "") + "{\"file\":\"" + name + "\",\"volume\":" + tool::number(pieces.volume[p]) + ",\"triangles\":" + std::to_string(mesh.triangles.size()) + "}";

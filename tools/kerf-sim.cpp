@@ -59,11 +59,8 @@ int main(int argc, char** argv) {
     std::error_code error;
     if (!resume && fs::exists(frame_folder, error)) throw geo::OutputError(folder.string() + ": holds a run already; go on with --resume, remove it, or give another folder");
     if (resume && !fs::exists(state_file, error)) throw geo::MissingInputError(state_file.string() + ": no checkpoint to go on from; run without --resume");
-    geo::SurfaceFile model;
-    if (!resume) {
-      model = tool::read_solid(scene.mesh);
-      if (model.mesh.two_sided()) throw geo::InputError(scene.mesh + ": is cut already; a scene begins with a whole model");
-    }
+    const geo::SurfaceFile model = resume ? geo::read_surface(scene.mesh) : tool::read_solid(scene.mesh);
+    if (model.mesh.two_sided()) throw geo::InputError(scene.mesh + ": is cut already; a scene begins with a whole model");
     fs::create_directories(frame_folder, error);
     if (error) throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
     const auto progress = t.progress();
@@ -81,7 +78,7 @@ int main(int argc, char** argv) {
       return std::string(name);
     };
     const auto write_frame = [&] {
-      const auto mesh = sim.surface();
+      const auto mesh = sim.surface(&model.mesh);
       geo::write_all((frame_folder / frame_name(sim.state().frame)).string(), [&](std::ostream& out) { geo::write_ply(out, mesh); });
     };
     const auto checkpoint = [&] {

@@ -10,6 +10,7 @@
 
 namespace geo {
 
+using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;  ///< a point or direction, in model units
 using Mat3 = Eigen::Matrix3d;
 using Triangle = std::array<std::uint32_t, 3>;  ///< three vertex rows, counter-clockwise from outside

@@ -118,7 +118,7 @@ std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
   const FaceId g = ring[0] == f ? ring[1] : ring[0];
   const auto& other = k.face(g);
   const int at = corner_at(other, b);
-  if (other.crack != face.crack || other.source != face.source || other.v[(at + 1) % 3] != a) return {};
+  if (other.crack != face.crack || (face.crack == 0 && other.source != face.source) || other.v[(at + 1) % 3] != a) return {};
   const VertexId d = other.v[(at + 2) % 3];
   if (c == d || !k.around(c, d).empty()) return {};
   for (const FaceId old : {f, g}) {  // the new ones are oriented like both

@@ -72,7 +72,7 @@ class Remesher {
     const auto ring = k_.around(a, b);
     if (ring.size() != 2) return true;
     const auto &f = k_.face(ring[0]), &g = k_.face(ring[1]);
-    if (f.crack != g.crack || f.source != g.source) return true;
+    if (f.crack != g.crack || (f.crack == 0 && f.source != g.source)) return true;
     const auto p = k_.corners(ring[0]), q = k_.corners(ring[1]);
     const Vec3 m = (p[1] - p[0]).cross(p[2] - p[0]), n = (q[1] - q[0]).cross(q[2] - q[0]);
     const double turn = runs_upwards(f, a, b) == runs_upwards(g, a, b) ? -m.dot(n) : m.dot(n);
@@ -107,6 +107,12 @@ class Remesher {
     if (place.features[0] == a) return place.features[1];
     if (place.features[1] == a) return place.features[0];
     return {};
+  }
+
+  // True when the second lies on all that the first lies on, so that the way between them may.
+  static bool lies_within(const Place& some, const Place& all) {
+    return std::includes(all.sources.begin(), all.sources.end(), some.sources.begin(), some.sources.end()) &&
+           std::includes(all.cracks.begin(), all.cracks.end(), some.cracks.begin(), some.cracks.end());
   }
 
   static double distance_to_line(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -196,8 +202,7 @@ class Remesher {
   bool may_merge(VertexId b, VertexId a) const {
     if (!may_leave_front(b, a)) return false;
     const Place from = place_of(b), to = place_of(a);
-    const auto within = [](const auto& some, const auto& all) { return std::includes(all.begin(), all.end(), some.begin(), some.end()); };
-    if (!within(from.sources, to.sources) || !within(from.cracks, to.cracks)) return false;
+    if (!lies_within(from, to)) return false;
     if (from.features.empty()) return true;
     const auto c = opposite(from, a);
     return c && distance_to_line(k_.point(b), k_.point(a), k_.point(*c)) <= options_.deviation * size_;
@@ -245,7 +250,9 @@ class Remesher {
       } else if (place.features.size() == 2) {
         const Vec3 a = k_.point(place.features[0]), c = k_.point(place.features[1]);
         if (distance_to_line(p, a, c) > options_.deviation * size_) continue;
-        goals = {p + 0.5 * (a - p), p + 0.5 * (c - p), p + 0.2 * (a - p), p + 0.2 * (c - p)};
+        for (const VertexId w : place.features)
+          if (lies_within(place, place_of(w)))
+            for (const double t : {0.5, 0.2}) goals.push_back(p + t * (k_.point(w) - p));
       }
       for (const Vec3& goal : goals) {
         if (!goal.allFinite() || goal == p) continue;

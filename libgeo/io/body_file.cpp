@@ -71,6 +71,7 @@ void write_body(std::ostream& out, const Body& body) {
   put(s, "surface/triangles", triangles, 3);
   put(s, "surface/patch", mesh.patch);
   put(s, "surface/site", mesh.site);
+  put(s, "surface/source", mesh.source);
   put(s, "nodes/position", flat(body.nodes.position), 3);
   put(s, "nodes/radius", body.nodes.radius);
   put(s, "nodes/spacing", body.nodes.spacing);
@@ -139,8 +140,11 @@ Body parse_body(const std::string& bytes, const std::string& name) {
   mesh.patch = in.get<std::int32_t>("surface/patch");
   mesh.site = in.get<std::uint32_t>("surface/site");
   if (mesh.site.empty()) in.fail("the surface is empty");
+  const bool traced = sections.count("surface/source") > 0;
+  if (traced) mesh.source = in.get<std::uint32_t>("surface/source");
   try {
     body.surface = Complex::from_two_sided(mesh);
+    if (traced) body.surface.trace_sources(mesh.source);
   } catch (const InputError& e) {
     in.fail(e.what());
   }

@@ -130,9 +130,11 @@ FrameWork Simulation::advance_frame() {
   return work;
 }
 
-TriangleMesh Simulation::surface() const {
+TriangleMesh Simulation::surface(const TriangleMesh* model) const {
   std::vector<std::uint32_t> rows;
   TriangleMesh mesh = body_.surface.two_sided(&rows);
+  if (model) carry(*model, mesh);
+  mesh.attributes.normal.clear();
   const auto gradient = solid_.gradients(state_.motion.displacement);
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> nodes;

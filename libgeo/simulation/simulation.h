@@ -37,8 +37,9 @@ class Simulation {
   /// refused is counted, and its front tried again in the next step.
   FrameWork advance_frame();
 
-  /// The deformed two-sided surface (Eq. 1), patch and site included.
-  TriangleMesh surface() const;
+  /// The deformed two-sided surface (Eq. 1), patch, site and source included. With the model of the run it also has the
+  /// model's attributes, except normals: these change with the shape.
+  TriangleMesh surface(const TriangleMesh* model = nullptr) const;
   const Body& body() const { return body_; }
   const RunState& state() const { return state_; }
   const Solid& solid() const { return solid_; }

@@ -126,6 +126,7 @@ TriangleMesh Complex::two_sided(std::vector<std::uint32_t>* rows) const {
       if (which == 1) std::swap(t[1], t[2]);
       mesh.triangles.push_back(t);
       mesh.patch.push_back(which == 0 ? faces_[f].crack : -faces_[f].crack);
+      mesh.source.push_back(faces_[f].source);
     }
   }
   if (rows) *rows = std::move(row);
@@ -249,7 +250,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (std::uint32_t i = 0; i < edit.new_faces.size(); ++i) {
     const auto& n = edit.new_faces[i];
     const FaceId f(old_faces + i);
-    faces_.push_back({n.v, n.crack, true, n.parent.valid() ? face(n.parent).source : ~0u});
+    faces_.push_back({n.v, n.crack, true, n.parent.valid() && n.parent.value < old_faces ? face(n.parent).source : ~0u});
     link_corners(f);
     for (int k = 0; k < 3; ++k) {
       touch(n.v[k]);

@@ -86,7 +86,9 @@ class Complex {
     std::array<VertexId, 3> v;
     std::int32_t crack = 0;  ///< 0 skin, c > 0 crack c
     bool alive = false;
-    std::uint32_t source = ~0u;  ///< row of the triangle, in the surface that K was made from, that it is a part of; ~0u: none
+    /// Row of the triangle that this face is a part of, in the surface that the complex was made from (of a crack that
+    /// was there already: on its positive side); ~0u: of a crack made since.
+    std::uint32_t source = ~0u;
   };
 
   Complex() = default;
@@ -137,8 +139,13 @@ class Complex {
   void surface_neighbors(SurfaceVertexId v, std::vector<SurfaceVertexId>& out) const;
 
   /// The derived surface as a mesh, rows in ascending surface vertex and side order; `rows`, where given, receives the
-  /// row of each surface vertex id (~0u: dead). Triangles face outwards; patch and site are filled.
+  /// row of each surface vertex id (~0u: dead). Triangles face outwards; patch, site and source
+  /// (Face::source) are filled.
   TriangleMesh two_sided(std::vector<std::uint32_t>* rows = nullptr) const;
+
+  /// Replaces each face's source s by rows[s]: for a complex that was read back, where rows tell what it was made from
+  /// at first. Throws InputError unless there is a row for each.
+  void trace_sources(const std::vector<std::uint32_t>& rows);
 
   /// Applies an edit: all or nothing. Re-sorts the rings given, re-fans the vertices touched, updates the index.
   /// Cost follows the edit. Throws GeometryError (nothing changed) when the edit would break a structural rule: an

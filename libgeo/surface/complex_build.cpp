@@ -131,8 +131,8 @@ Complex Complex::from_skin(const TriangleMesh& skin) {
   ComplexBuilder builder;
   builder.add_points(skin.vertices);
   for (std::uint32_t row = 0; row < skin.triangles.size(); ++row) {
-    const auto& [a, b, c] = skin.triangles[row];
-    builder.add_face({VertexId(a), VertexId(b), VertexId(c)}, 0, row);
+    const auto& t = skin.triangles[row];
+    builder.add_face({VertexId(t[0]), VertexId(t[1]), VertexId(t[2])}, 0, row);
   }
   builder.link();
   // In row order, so that the first problem named is the same every time.
@@ -315,6 +315,13 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
   builder.adopt_rows(surface);
   builder.make_room();
   return std::move(builder.k);
+}
+
+void Complex::trace_sources(const std::vector<std::uint32_t>& rows) {
+  for (const Face& f : faces_)
+    if (f.source != ~0u && f.source >= rows.size()) throw InputError("the surface does not name a source for each triangle");
+  for (Face& f : faces_)
+    if (f.source != ~0u) f.source = rows[f.source];
 }
 
 ComplexEdit Complex::difference(const Complex& other) const {

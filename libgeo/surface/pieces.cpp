@@ -126,6 +126,7 @@ TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t pi
       if (which == 1) std::swap(t[1], t[2]);
       mesh.triangles.push_back(t);
       mesh.patch.push_back(which == 0 ? face.crack : -face.crack);
+      mesh.source.push_back(face.source);
     }
   return mesh;
 }

@@ -92,7 +92,9 @@ TEST_CASE("fronts, with their contacts, travel in the surface file") {
   CHECK(file.fronts[0].step == 1);
   REQUIRE(file.fronts[0].segments.size() == front.segments.size());
   for (std::size_t i = 0; i < front.segments[0].size(); ++i) CHECK(file.fronts[0].segments[0][i].id == front.segments[0][i].id);
-  CHECK(bytes_of([&](auto& out) { write_ply(out, Complex::from_two_sided(file.mesh).two_sided(), file.fronts); }) == bytes);
+  TriangleMesh again = Complex::from_two_sided(file.mesh).two_sided();
+  carry(file.mesh, again);
+  CHECK(bytes_of([&](auto& out) { write_ply(out, again, file.fronts); }) == bytes);
 }
 
 TEST_CASE("nodes and bodies are read back to the bit") {
@@ -104,6 +106,7 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   const std::string kerf = bytes_of([&](auto& out) { write_body(out, body); });
   const Body again = parse_body(kerf, "b.kerf");
   CHECK(again.neighbors == body.neighbors);
+  CHECK(again.surface.two_sided().source == body.surface.two_sided().source);
   CHECK(check_body(again).first_problem == "");
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
 }

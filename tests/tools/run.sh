@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | stops | simulation
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | stops | simulation
 set -u
 PATH=$1:$2:$PATH models=$3 what=$4
 work=$(mktemp -d)
@@ -140,6 +140,37 @@ kinds)
   quietly kerf-crack two.ply --front far.front --steps 1:2 -o three.ply
   quietly kerf-info --check -q three.ply
   kerf-crack two.ply --front far.front --steps 1:2 -o three.obj && [ "$(grep -c "^g patch_-[12]" three.obj)" -ge 2 ] || fail "two cracks share a number: $(grep '^g' three.obj | tr '\n' ' ')"
+  ;;
+attributes)
+  # A die with texture coordinates and materials keeps them through every cut, in every format.
+  quads() { for q in "$@"; do set -- $q; echo "f $1/1 $2/2 $3/3 $4/4"; done; }
+  {
+    printf 'mtllib die.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl side\n'
+    quads "1 2 6 5" "2 3 7 6" "3 4 8 7" "4 1 5 8"
+    echo usemtl lid
+    quads "1 4 3 2" "5 6 7 8"
+  } >die.obj
+  printf 'front a\nstep 0\n-1 0.53 3\n2 0.53 3\nstep 1\n-1 0.53 0.4\n2 0.53 0.4\nstep 2\n-1 0.53 -2\n2 0.53 -2\n' >a.front
+  printf 'front b\nstep 0\n0.41 -1 3\n0.41 2 3\nstep 1\n0.41 -1 -2\n0.41 2 -2\n' >b.front
+  quietly kerf-crack die.obj --front a.front -o cut.obj
+  for line in "mtllib die.mtl" "usemtl side" "usemtl lid" "usemtl crack" "g patch_-1" "f [0-9]*/[0-9]* [0-9]*/[0-9]* [0-9]*/[0-9]*"; do grep -q "^$line\$" cut.obj || fail "cut.obj has no '$line'"; done
+  [ "$(grep -c '^vt ' cut.obj)" -gt 4 ] || fail "cut.obj has no new texture coordinates"
+  quietly kerf-crack die.obj --front a.front --steps 0:1 -o half.ply
+  quietly kerf-crack half.ply --front b.front -o cut.ply
+  for file in half.ply cut.ply; do kerf-info --json $file | grep -q '"attributes":\["uv","group","source"\]' || fail "$file lost attributes: $(kerf-info --json $file)"; done
+  kerf-info cut.ply | grep -q '^attributes  *\["uv","group","source"\]' || fail "kerf-info does not list attributes"
+  kerf-info --json a.front | grep -q attributes && fail "a front has no attributes"
+  quietly kerf-crack half.ply --front a.front --steps 1:2 -o whole.ply
+  quietly kerf-pieces --obj whole.ply -o pieces
+  for piece in pieces/*.obj; do for line in "usemtl side" "usemtl lid" "usemtl crack"; do grep -q "^$line\$" $piece || fail "$piece has no '$line'"; done; done
+  sed 's/^f 1\/1/f 1\/9/' die.obj >range.obj
+  expect 65 "range.obj:.*texture coordinate 9" kerf-crack range.obj --front a.front -o x.ply
+  printf '[body]\nmesh = "die.obj"\nspacing = 0.25\n[time]\nframes = 2\nframe_rate = 20\nstep = 0.05\ncheckpoint_every = 1\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,0.513,0.007,1.3,0,0,1,2],[0.1,0.513,0.011,0.3,0,0,1,3]]\n' >s.toml
+  quietly kerf-sim -q s.toml -o run
+  quietly kerf-sim -q s.toml -o parts --frames 1
+  quietly kerf-sim -q s.toml -o parts --resume
+  cmp run/frames/frame_0002.ply parts/frames/frame_0002.ply || fail "attributes of a frame differ after --resume"
+  kerf-info --json run/frames/frame_0002.ply | grep -q '"attributes":\["uv","group","source"\]' || fail "a frame has no attributes"
   ;;
 stops)
   kerf-model block --edge 0.06 -o block.ply

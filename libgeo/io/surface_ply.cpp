@@ -1,0 +1,237 @@
+// Reading a surface from PLY: cut or plain, with its attributes and fronts.
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+
+#include "io/ply_internal.h"
+#include "io/surface_internal.h"
+#include "io/text_internal.h"
+
+namespace geo {
+namespace {
+
+// Where a triangle comes from: its face, and its corners among the face's, which are 0, second and second + 1.
+struct Part {
+  std::uint32_t face, second;
+};
+
+// The properties of these names when the element has all of them, none a list; else nothing.
+std::vector<const PlyProperty*> scalars(const PlyElement& e, std::initializer_list<const char*> names) {
+  std::vector<const PlyProperty*> found;
+  for (const auto* name : names)
+    if (const auto* p = e.find(name); p && !p->count_type) found.push_back(p);
+  if (found.size() != names.size()) found.clear();
+  return found;
+}
+
+const PlyProperty* integers(const PlyElement& e, const char* name) {
+  const auto* p = e.find(name);
+  return p && !p->count_type && p->type != 'f' && p->type != 'd' ? p : nullptr;
+}
+
+// What full intensity is in a colour of this type.
+double full(char type) { return type == 'f' || type == 'd' ? 1 : type == 'S' ? 65535 : 255; }
+
+template <class V>
+std::vector<V> rows_of(const std::vector<const PlyProperty*>& columns, std::size_t count) {
+  std::vector<V> rows(columns.empty() ? 0 : count);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t k = 0; k < columns.size(); ++k) rows[i][static_cast<int>(k)] = columns[k]->values[i];
+  return rows;
+}
+
+std::vector<Color> colors_of(const PlyElement& e) {
+  const auto columns = scalars(e, {"red", "green", "blue"}), alpha = scalars(e, {"alpha"});
+  std::vector<Color> rows(columns.empty() ? 0 : e.count, Color::Ones());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (int k = 0; k < 3; ++k) rows[i][k] = columns[static_cast<std::size_t>(k)]->values[i] / full(columns[static_cast<std::size_t>(k)]->type);
+    if (!alpha.empty()) rows[i][3] = alpha[0]->values[i] / full(alpha[0]->type);
+  }
+  return rows;
+}
+
+class Reader {
+ public:
+  Reader(const Ply& ply, const std::string& name) : ply_(ply), name_(name) {
+    vertex_ = ply.find("vertex"), face_ = ply.find("face");
+    if (!vertex_ || !face_) throw InputError(name + ": has no " + (vertex_ ? "faces; it is not a surface" : "vertices"));
+  }
+
+  SurfaceFile read() {
+    shape();
+    attributes();
+    groups();
+    fronts();
+    return std::move(file_);
+  }
+
+ private:
+  TriangleMesh& mesh() { return file_.mesh; }
+
+  void shape() {
+    const auto xyz = scalars(*vertex_, {"x", "y", "z"});
+    if (xyz.empty()) throw InputError(name_ + ": its vertices have no x, y, z");
+    mesh().vertices = rows_of<Vec3>(xyz, vertex_->count);
+    const auto* site = vertex_->find("site");
+    patch_ = face_->find("patch");
+    indices_ = face_->find("vertex_indices");
+    if (!indices_) indices_ = face_->find("vertex_index");
+    if (!indices_ || !indices_->count_type) throw InputError(name_ + ": its faces have no vertex_indices");
+    if ((site && site->count_type) || (patch_ && patch_->count_type)) throw InputError(name_ + ": 'site' and 'patch' must not be lists");
+    std::vector<std::uint32_t> polygon;
+    for (std::uint32_t i = 0; i < face_->count; ++i) {
+      polygon.clear();
+      for (auto j = i ? indices_->ends[i - 1] : 0; j < indices_->ends[i]; ++j) polygon.push_back(row_of(indices_->values[j]));
+      add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": ");
+      for (std::uint32_t k = 1; k + 1 < polygon.size(); ++k) parts_.push_back({i, k});
+    }
+    if (patch_ && site) {
+      for (const Part& part : parts_) mesh().patch.push_back(static_cast<std::int32_t>(patch_->values[part.face]));
+      for (const double s : site->values) {
+        if (row_of(s) == ~0u) throw InputError(name_ + ": a site is not an id");
+        mesh().site.push_back(row_of(s));
+      }
+    }
+    if (const auto* source = integers(*face_, "source"))
+      for (const Part& part : parts_) mesh().source.push_back(row_of(source->values[part.face]));
+  }
+
+  // A corner has what its face's list gives it; without such a list, what its face has (`at_face`), or on a crack
+  // `on_crack`, or else what its vertex has.
+  template <class V, class OnCrack>
+  void fill(std::vector<std::array<V, 3>>& out, const char* list_name, const std::vector<V>& at_face, const std::vector<V>& at_vertex, const OnCrack& on_crack) {
+    constexpr std::uint32_t size = V::SizeAtCompileTime;
+    const auto* list = face_->find(list_name);
+    if (list && !list->count_type) list = nullptr;
+    if (!list && at_face.empty() && at_vertex.empty()) return;
+    if (list)
+      for (std::size_t i = 0; i < face_->count; ++i) {
+        const auto begin = i ? list->ends[i - 1] : 0, first = i ? indices_->ends[i - 1] : 0;
+        const auto corners = indices_->ends[i] - first, given = list->ends[i] - begin;
+        if (given != size * corners)
+          throw InputError(name_ + ": face " + std::to_string(i) + ": its list '" + list_name + "' has " + std::to_string(given) + " numbers, but its " +
+                           std::to_string(corners) + " corners need " + std::to_string(size * corners));
+      }
+    const double scale = list && size == 4 ? full(list->type) : 1;
+    for (std::size_t t = 0; t < parts_.size(); ++t) {
+      const auto& [face, second] = parts_[t];
+      const std::uint32_t corner[3] = {0, second, second + 1};
+      std::array<V, 3> row;
+      for (int k = 0; k < 3; ++k) {
+        if (list)
+          for (std::uint32_t c = 0; c < size; ++c) row[k][c] = list->values[(face ? list->ends[face - 1] : 0) + size * corner[k] + c] / scale;
+        else if (!at_face.empty())
+          row[k] = at_face[face];
+        else if (patch_ && patch_->values[face] != 0)
+          row[k] = on_crack(t);
+        else
+          row[k] = at_vertex[mesh().triangles[t][k]];
+      }
+      out.push_back(row);
+    }
+  }
+
+  void attributes() {
+    Attributes& a = mesh().attributes;
+    auto uv = scalars(*vertex_, {"s", "t"});
+    if (uv.empty()) uv = scalars(*vertex_, {"u", "v"});
+    if (uv.empty()) uv = scalars(*vertex_, {"texture_u", "texture_v"});
+    const auto at_vertex = colors_of(*vertex_);
+    fill<Vec2>(a.uv, "texcoord", {}, rows_of<Vec2>(uv, vertex_->count), [](std::size_t) { return Vec2(Vec2::Zero()); });
+    fill<Vec3>(a.normal, "normal", {}, rows_of<Vec3>(scalars(*vertex_, {"nx", "ny", "nz"}), vertex_->count), [&](std::size_t t) {
+      const auto& [i, j, k] = mesh().triangles[t];
+      return face_normal(mesh().vertices[i], mesh().vertices[j], mesh().vertices[k]);
+    });
+    fill<Color>(a.color, "color", at_vertex.empty() ? colors_of(*face_) : std::vector<Color>(), at_vertex, [](std::size_t) { return crack_color; });
+  }
+
+  // Named by comments in order; without these, any integers are groups.
+  void groups() {
+    Attributes& a = mesh().attributes;
+    for (const auto& c : ply_.comments) {
+      if (c == "kerf_group" || c.rfind("kerf_group ", 0) == 0) a.group_names.push_back(c.size() > 11 ? c.substr(11) : "default");
+      if (c.rfind("kerf_materials ", 0) == 0) a.materials = c.substr(15);
+    }
+    const auto* group = integers(*face_, "group");
+    if (!group) {
+      a.group_names.clear();
+      return;
+    }
+    if (a.group_names.empty()) {
+      std::map<double, std::int32_t> rows;
+      for (const double g : group->values) rows.try_emplace(g, 0);
+      for (auto& [g, row] : rows) {
+        row = static_cast<std::int32_t>(a.group_names.size());
+        a.group_names.push_back("group_" + std::to_string(static_cast<long long>(g)));
+      }
+      for (const Part& part : parts_) a.group.push_back(rows.at(group->values[part.face]));
+      return;
+    }
+    for (std::size_t i = 0; i < face_->count; ++i)
+      if (group->values[i] < 0 || group->values[i] >= static_cast<double>(a.group_names.size()))
+        throw InputError(name_ + ": face " + std::to_string(i) + " is of group " + std::to_string(static_cast<long long>(group->values[i])) + ", but " +
+                         std::to_string(a.group_names.size()) + " groups are named");
+    for (const Part& part : parts_) a.group.push_back(static_cast<std::int32_t>(group->values[part.face]));
+  }
+
+  // One row for each front, and one for each of their points and contacts.
+  void fronts();
+
+  const Ply& ply_;
+  const std::string& name_;
+  const PlyElement *vertex_ = nullptr, *face_ = nullptr;
+  const PlyProperty *patch_ = nullptr, *indices_ = nullptr;
+  std::vector<Part> parts_;
+  SurfaceFile file_;
+};
+
+void Reader::fronts() {
+  const auto *fronts = ply_.find("kerf_front"), *contacts = ply_.find("kerf_contact");
+  if (!fronts || !contacts) return;
+  const auto column = [&](const PlyElement& e, const char* property) -> const std::vector<double>& {
+    const auto* p = e.find(property);
+    if (!p || p->count_type) throw InputError(name_ + ": element '" + e.name + "' has no '" + property + "'");
+    return p->values;
+  };
+  std::vector<std::string> names;
+  for (const auto& c : ply_.comments)
+    if (c.rfind("kerf_front ", 0) == 0) names.push_back(c.substr(11));
+  for (std::size_t i = 0; i < fronts->count; ++i) {
+    FrontState f;
+    f.crack = static_cast<std::int32_t>(column(*fronts, "crack")[i]);
+    f.step = static_cast<std::uint32_t>(column(*fronts, "step")[i]);
+    f.closed = column(*fronts, "closed")[i] != 0;
+    if (i < names.size()) f.name = names[i];
+    if (f.crack < 1) throw InputError(name_ + ": a front has no crack");
+    file_.fronts.push_back(f);
+  }
+  const auto &front = column(*contacts, "front"), &segment = column(*contacts, "segment"), &at = column(*contacts, "site");
+  const auto &x = column(*contacts, "x"), &y = column(*contacts, "y"), &z = column(*contacts, "z");
+  for (std::size_t i = 0; i < contacts->count; ++i) {
+    const auto f = row_of(front[i]), s = row_of(segment[i]);
+    if (f >= file_.fronts.size() || s > file_.fronts[f].segments.size()) throw InputError(name_ + ": contact " + std::to_string(i) + " is out of order");
+    auto& segments = file_.fronts[f].segments;
+    if (s == segments.size()) segments.emplace_back();
+    segments[s].push_back({{x[i], y[i], z[i]}, at[i] < 0 ? VertexId() : VertexId(row_of(at[i]))});
+  }
+  for (auto& f : file_.fronts) {
+    if (f.segments.empty()) throw InputError(name_ + ": a front has no contacts");
+    for (std::size_t s = 0; s < f.segments.size(); ++s) {
+      if (f.segments[s].size() < 2) throw InputError(name_ + ": a front's segment has fewer than two points");
+      for (const auto& p : f.segments[s])
+        if (p.id.valid() && std::find(file_.mesh.site.begin(), file_.mesh.site.end(), p.id.value) == file_.mesh.site.end())
+          throw InputError(name_ + ": a front's contact names a site that is not there");
+      f.points.push_back(f.segments[s].front());
+    }
+    if (!f.closed) f.points.push_back(f.segments.back().back());
+  }
+}
+
+}  // namespace
+
+SurfaceFile parse_surface_ply(const std::string& bytes, const std::string& name) {
+  const Ply ply = parse_ply(bytes, name);
+  return Reader(ply, name).read();
+}
+
+}  // namespace geo

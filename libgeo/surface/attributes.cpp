@@ -1,0 +1,152 @@
+#include "surface/attributes.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.h"
+#include "surface/triangle_mesh.h"
+
+namespace geo {
+namespace {
+
+// Where a point lies in a triangle: at a corner, on an edge or within, with the weight of each corner concerned.
+struct Place {
+  int count = 1;
+  std::array<int, 3> corner{};
+  std::array<double, 3> weight{1, 0, 0};
+};
+
+bool before(const Vec3& p, const Vec3& q) { return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3); }
+
+Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+  for (int k = 0; k < 3; ++k)
+    if (t[k] == p) return {1, {k}, {1}};
+  // A cut leaves points on edges, up to the last few places of a coordinate. There both triangles of the edge must see
+  // the same weights, so the edge is taken in one direction whichever triangle it belongs to.
+  double largest = p.cwiseAbs().maxCoeff();
+  for (const Vec3& c : t) largest = std::max(largest, c.cwiseAbs().maxCoeff());
+  double best = 8 * std::numeric_limits<double>::epsilon() * largest;
+  int longest = 0;
+  Place on_edge{0, {}, {}};
+  for (int k = 0; k < 3; ++k) {
+    int a = k, b = (k + 1) % 3;
+    if (before(t[b], t[a])) std::swap(a, b);
+    const Vec3 e = t[b] - t[a];
+    if (e.squaredNorm() > (t[(longest + 1) % 3] - t[longest]).squaredNorm()) longest = k;
+    const double s = std::clamp(e.dot(p - t[a]) / e.squaredNorm(), 0.0, 1.0);
+    const double distance = (p - t[a] - s * e).norm();
+    if (distance <= best) best = distance, on_edge = {2, {a, b}, {1 - s, s}};
+  }
+  if (on_edge.count == 2) return on_edge;
+  // Height over the longest edge first, then the place along it that goes with this height: the error is a few last
+  // places of a length, however thin the triangle.
+  const int a = longest, b = (a + 1) % 3, c = (a + 2) % 3;
+  const Vec3 e = t[b] - t[a], q = t[c] - t[a], d = p - t[a];
+  const Vec3 up = q - e * (q.dot(e) / e.squaredNorm());
+  const double wc = up.squaredNorm() > 0 ? std::clamp(d.dot(up) / up.squaredNorm(), 0.0, 1.0) : 0.0;
+  const double wb = std::clamp((d - wc * q).dot(e) / e.squaredNorm(), 0.0, 1 - wc);
+  return {3, {a, b, c}, {std::max(0.0, 1 - wb - wc), wb, wc}};
+}
+
+template <class V>
+bool constant(const std::array<V, 3>& at, const Place& place) {
+  for (int i = 1; i < place.count; ++i)
+    if (at[place.corner[i]] != at[place.corner[0]]) return false;
+  return true;
+}
+
+template <class V>
+V mixed(const std::array<V, 3>& at, const Place& place) {
+  if (constant(at, place)) return at[place.corner[0]];
+  V sum = place.weight[0] * at[place.corner[0]];
+  for (int i = 1; i < place.count; ++i) sum += place.weight[i] * at[place.corner[i]];
+  return sum;
+}
+
+std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, std::size_t t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+}
+
+// The other side of a crack's triangle, where it follows in the next row, as Kerf writes it; else the row itself.
+std::uint32_t other_side(const TriangleMesh& mesh, std::uint32_t row) {
+  if (mesh.patch.empty() || row + 1 >= mesh.triangles.size() || mesh.patch[row] <= 0 || mesh.patch[row + 1] != -mesh.patch[row]) return row;
+  const auto sorted = [&](std::uint32_t t) {
+    std::array<std::uint32_t, 3> sites;
+    for (int k = 0; k < 3; ++k) sites[k] = mesh.site[mesh.triangles[t][k]];
+    std::sort(sites.begin(), sites.end());
+    return sites;
+  };
+  return sorted(row) == sorted(row + 1) ? row + 1 : row;
+}
+
+// What a row of `original` names as its own source.
+std::uint32_t first_source(const TriangleMesh& original, std::uint32_t row) {
+  if (!original.source.empty()) return original.source[row];
+  return !original.patch.empty() && original.patch[row] != 0 ? ~0u : row;
+}
+
+}  // namespace
+
+std::vector<std::string> Attributes::names() const {
+  std::vector<std::string> result;
+  if (!uv.empty()) result.push_back("uv");
+  if (!normal.empty()) result.push_back("normal");
+  if (!color.empty()) result.push_back("color");
+  if (!group.empty()) result.push_back("group");
+  return result;
+}
+
+Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).stableNormalized().cross((c - a).stableNormalized()).stableNormalized(); }
+
+void carry(const TriangleMesh& original, TriangleMesh& derived) {
+  const Attributes& from = original.attributes;
+  const std::size_t count = derived.triangles.size();
+  if (derived.source.size() != count) throw InputError("the cut surface does not name the triangles that it is made of");
+  for (const auto row : derived.source)
+    if (row != ~0u && row >= original.triangles.size())
+      throw InputError("the cut surface names triangle " + std::to_string(row) + ", but the model has " + std::to_string(original.triangles.size()) + "; give the model that was cut");
+  Attributes to;
+  to.group_names = from.group_names;
+  to.materials = from.materials;
+  if (!from.uv.empty()) to.uv.resize(count);
+  if (!from.normal.empty()) to.normal.resize(count);
+  if (!from.color.empty()) to.color.resize(count);
+  if (!from.group.empty()) to.group.resize(count);
+  std::int32_t crack = -1;  // its row of group_names, once needed
+  for (std::size_t t = 0; t < count && !from.empty(); ++t) {
+    const auto corners = corners_of(derived, t);
+    const std::uint32_t row = derived.source[t];
+    if (row == ~0u) {
+      if (!to.uv.empty()) to.uv[t].fill(Vec2::Zero());
+      if (!to.normal.empty()) to.normal[t].fill(face_normal(corners[0], corners[1], corners[2]));
+      if (!to.color.empty()) to.color[t].fill(crack_color);
+      if (to.group.empty()) continue;
+      if (crack < 0) {
+        const auto at = std::find(to.group_names.begin(), to.group_names.end(), crack_group);
+        crack = static_cast<std::int32_t>(at - to.group_names.begin());
+        if (at == to.group_names.end()) to.group_names.push_back(crack_group);
+      }
+      to.group[t] = crack;
+      continue;
+    }
+    const bool behind = !derived.patch.empty() && derived.patch[t] < 0;
+    const std::uint32_t s = behind ? other_side(original, row) : row;
+    const auto source = corners_of(original, s);
+    if (!to.group.empty()) to.group[t] = from.group[s];
+    for (int k = 0; k < 3; ++k) {
+      const Place place = place_in(source, corners[k]);
+      if (!to.uv.empty()) to.uv[t][k] = mixed(from.uv[s], place);
+      if (!to.color.empty()) to.color[t][k] = mixed(from.color[s], place);
+      if (to.normal.empty()) continue;
+      Vec3 n = mixed(from.normal[s], place);
+      if (!constant(from.normal[s], place)) n = n.norm() > 0 ? n.normalized() : face_normal(source[0], source[1], source[2]);
+      to.normal[t][k] = behind && s == row ? Vec3(-n) : n;
+    }
+  }
+  for (auto& row : derived.source)
+    if (row != ~0u) row = first_source(original, row);
+  derived.attributes = std::move(to);
+}
+
+}  // namespace geo

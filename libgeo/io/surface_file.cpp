@@ -36,13 +36,17 @@ SurfaceFile from_ply(const std::string& bytes, const std::string& name) {
   if (!indices) indices = face->find("vertex_index");
   if (!indices || !indices->count_type) throw InputError(name + ": its faces have no vertex_indices");
   if ((site && site->count_type) || (patch && patch->count_type)) throw InputError(name + ": 'site' and 'patch' must not be lists");
+  const auto whole = [&](double x, const char* property) {
+    if (!(std::abs(x) <= 2147483647.0) || x != std::floor(x)) throw InputError(name + ": a '" + property + "' is not an integer of 32 bits");
+    return static_cast<std::int32_t>(x);
+  };
   std::vector<std::uint32_t> polygon;
   for (std::size_t i = 0; i < face->count; ++i) {
     polygon.clear();
     for (auto j = i ? indices->ends[i - 1] : 0; j < indices->ends[i]; ++j) polygon.push_back(row_of(indices->values[j]));
     const std::size_t before = file.mesh.triangles.size();
     add_polygon(file.mesh, polygon, name + ": face " + std::to_string(i) + ": ");
-    if (patch && site) file.mesh.patch.resize(file.mesh.patch.size() + file.mesh.triangles.size() - before, static_cast<std::int32_t>(patch->values[i]));
+    if (patch && site) file.mesh.patch.resize(file.mesh.patch.size() + file.mesh.triangles.size() - before, whole(patch->values[i], "patch"));
   }
   if (patch && site)
     for (const double s : site->values) {
@@ -62,8 +66,8 @@ SurfaceFile from_ply(const std::string& bytes, const std::string& name) {
     if (c.rfind("kerf_front ", 0) == 0) names.push_back(c.substr(11));
   for (std::size_t i = 0; i < fronts->count; ++i) {
     FrontState f;
-    f.crack = static_cast<std::int32_t>(column(*fronts, "crack")[i]);
-    f.step = static_cast<std::uint32_t>(column(*fronts, "step")[i]);
+    f.crack = whole(column(*fronts, "crack")[i], "crack");
+    f.step = static_cast<std::uint32_t>(std::max(0, whole(column(*fronts, "step")[i], "step")));
     f.closed = column(*fronts, "closed")[i] != 0;
     if (i < names.size()) f.name = names[i];
     if (f.crack < 1) throw InputError(name + ": a front has no crack");
@@ -74,6 +78,7 @@ SurfaceFile from_ply(const std::string& bytes, const std::string& name) {
   for (std::size_t i = 0; i < contacts->count; ++i) {
     const auto f = row_of(front[i]), s = row_of(segment[i]);
     if (f >= file.fronts.size() || s > file.fronts[f].segments.size()) throw InputError(name + ": contact " + std::to_string(i) + " is out of order");
+    if (!in_range({x[i], y[i], z[i]})) throw InputError(name + ": contact " + std::to_string(i) + " has a coordinate of no sensible size; repair the file");
     auto& segments = file.fronts[f].segments;
     if (s == segments.size()) segments.emplace_back();
     segments[s].push_back({{x[i], y[i], z[i]}, at[i] < 0 ? VertexId() : VertexId(row_of(at[i]))});
@@ -88,6 +93,7 @@ SurfaceFile from_ply(const std::string& bytes, const std::string& name) {
       f.points.push_back(f.segments[s].front());
     }
     if (!f.closed) f.points.push_back(f.segments.back().back());
+    if (f.closed && f.points.size() < 3) throw InputError(name + ": a closed front has fewer than three points");
   }
   return file;
 }

@@ -111,8 +111,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   }
   SurfaceReport report;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!mesh.vertices[v].allFinite()) {
-      note(report, "vertex " + std::to_string(v) + " has a coordinate that is not a finite number; repair the file");
+    if (!in_range(mesh.vertices[v])) {
+      note(report, "vertex " + std::to_string(v) + " has a coordinate that is not a finite number of sensible size; repair the file");
       return report;
     }
   if (mesh.triangles.empty()) note(report, "the surface is empty: it has no triangles");

@@ -42,7 +42,7 @@ class Reader {
     if (s.dtype != dtype_of<T>() || s.shape.size() != (columns > 1 ? 2u : 1u) || (columns > 1 && s.shape[1] != columns))
       fail("section '" + section + "' is not of the expected type and shape");
     std::vector<T> values(s.bytes.size() / sizeof(T));
-    std::memcpy(values.data(), s.bytes.data(), values.size() * sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), s.bytes.data(), values.size() * sizeof(T));
     return values;
   }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name_ + ": " + what + "; the file is damaged"); }

@@ -129,6 +129,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     return std::array<Vec3, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
   };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (a == b || b == c || c == a) continue;  // is degenerate, and noted
     const auto p = points(t);
     const Box3 box = box_of(p[0], p[1], p[2]);
     near.clear();

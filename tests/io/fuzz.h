@@ -19,7 +19,10 @@
 #include "io/mutate.h"
 #include "io/stream.h"
 
+// What sanitizers call, where there are any: a case that they stop is told of, too.
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());
+extern "C" const char* __ubsan_default_options();
+extern "C" __attribute__((used)) inline const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
 
 namespace fuzz {
 
@@ -118,7 +121,7 @@ inline void campaign(const std::string& family, int base, const Read& read, cons
   if (__sanitizer_set_death_callback) __sanitizer_set_death_callback(tell_and_die);
   std::map<int, void (*)(int)> before;
   for (const int s : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGPROF})
-    if (!__sanitizer_set_death_callback || s == SIGPROF) before[s] = std::signal(s, on_signal);
+    if (!__sanitizer_set_death_callback || s == SIGPROF || s == SIGABRT) before[s] = std::signal(s, on_signal);
   const Seeds which = seeds(base);
   int read_count = 0, used_count = 0;
   for (int c = 0; c < which.count; ++c) {

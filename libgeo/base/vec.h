@@ -15,6 +15,10 @@ using Vec3 = Eigen::Vector3d;  ///< a point or direction, in model units
 using Mat3 = Eigen::Matrix3d;
 using Triangle = std::array<std::uint32_t, 3>;  ///< three vertex rows, counter-clockwise from outside
 
+/// Where files may put points: further out a product of five differences, as predicates and measures have, overflows.
+constexpr double largest_coordinate = 1e60;
+inline bool in_range(const Vec3& p) { return p.cwiseAbs().maxCoeff() <= largest_coordinate && p.allFinite(); }
+
 /// Axis-aligned closed box. Default-constructed it is empty.
 struct Box3 {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());

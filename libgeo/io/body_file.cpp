@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "io/json_internal.h"
 #include "io/kerf_container.h"
 #include "io/stream.h"
 
@@ -42,7 +42,7 @@ class Reader {
     if (s.dtype != dtype_of<T>() || s.shape.size() != (columns > 1 ? 2u : 1u) || (columns > 1 && s.shape[1] != columns))
       fail("section '" + section + "' is not of the expected type and shape");
     std::vector<T> values(s.bytes.size() / sizeof(T));
-    std::memcpy(values.data(), s.bytes.data(), values.size() * sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), s.bytes.data(), values.size() * sizeof(T));
     return values;
   }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name_ + ": " + what + "; the file is damaged"); }
@@ -130,7 +130,7 @@ Body parse_body(const std::string& bytes, const std::string& name) {
     std::vector<Vec3> result;
     for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
       result.push_back({values[i], values[i + 1], values[i + 2]});
-      if (!result.back().allFinite()) in.fail("section '" + section + "' holds a value that is not a finite number");
+      if (!in_range(result.back())) in.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
     }
     return result;
   };
@@ -157,8 +157,8 @@ Body parse_body(const std::string& bytes, const std::string& name) {
   if (n == 0 || body.nodes.radius.size() != n || body.nodes.spacing.size() != n || body.nodes.volume.size() != n || body.debris.size() != n)
     in.fail("the sections of nodes have different lengths");
   for (std::size_t i = 0; i < n; ++i)
-    if (!(body.nodes.radius[i] > 0) || !(body.nodes.spacing[i] > 0) || !(body.nodes.volume[i] > 0) || !std::isfinite(body.nodes.radius[i] + body.nodes.spacing[i] + body.nodes.volume[i]))
-      in.fail("node " + std::to_string(i) + " has a radius, spacing or volume that is not positive");
+    if (!(body.nodes.radius[i] > 0) || !(body.nodes.spacing[i] > 0) || !(body.nodes.volume[i] > 0) || !(body.nodes.radius[i] + body.nodes.spacing[i] + body.nodes.volume[i] <= largest_coordinate))
+      in.fail("node " + std::to_string(i) + " has a radius, spacing or volume that is not positive or of no sensible size");
   const auto rows = [&](const std::string& group, std::size_t size) {
     const auto ends = in.get<std::uint32_t>(group + "/ends");
     std::uint32_t last = 0;
@@ -207,14 +207,16 @@ Body parse_body(const std::string& bytes, const std::string& name) {
   const auto about = about_section == sections.end() ? nlohmann::json() : nlohmann::json::parse(about_section->second.bytes, nullptr, false);
   double cell = 0;
   try {
-    body.k = about.at("k").get<int>(), body.updates = about.at("updates").get<std::uint32_t>();
+    body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
     for (const auto& p : about.at("history"))
       body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(), p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
   } catch (const nlohmann::json::exception&) {
     in.fail("section 'about' is malformed");
+  } catch (const std::out_of_range&) {
+    in.fail("section 'about' holds an impossible value");
   }
-  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !std::isfinite(cell)) in.fail("section 'about' holds an impossible value");
+  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0)) in.fail("section 'about' holds an impossible value");
   body.grid = NodeGrid(cell, body.nodes.position);
   return body;
 }

@@ -10,11 +10,14 @@ namespace geo {
 namespace {
 
 void check(const Front& front, const std::string& name) {
-  const std::string who = name + ": front '" + front.name + "' ";
+  const std::string who = name + ": front '" + shown(front.name) + "' ";
   if (front.steps.size() < 2) throw InputError(who + "has one time step only; it needs at least two to sweep anything");
-  for (std::size_t s = 0; s < front.steps.size(); ++s)
+  for (std::size_t s = 0; s < front.steps.size(); ++s) {
+    for (const Vec3& p : front.steps[s])
+      if (!in_range(p)) throw InputError(who + "has a coordinate of no sensible size in step " + std::to_string(s) + "; repair the file");
     if (front.steps[s].size() < (front.closed ? 3u : 2u))
       throw InputError(who + "has " + std::to_string(front.steps[s].size()) + " point(s) in step " + std::to_string(s) + "; it needs at least " + (front.closed ? "three" : "two"));
+  }
 }
 
 // OBJ polylines: each object is a time step, in the order of their names.
@@ -66,7 +69,7 @@ std::vector<Front> parse_fronts(const std::string& bytes, const std::string& nam
       fronts.push_back({std::string(words[1]), words.size() == 3, {}});
     } else if (fronts.empty()) {
       if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib") return from_obj(bytes, name);
-      lines.fail("begins with '" + std::string(words[0]) + "'; a front file begins with 'front NAME'");
+      lines.fail("begins with '" + shown(words[0]) + "'; a front file begins with 'front NAME'");
     } else if (words[0] == "step") {
       if (words.size() != 2) lines.fail("write 'step T'");
       lines.real(words[1]);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "io/body_file.h"
+#include "io/text_internal.h"
 
 namespace geo {
 namespace {
@@ -114,15 +115,15 @@ KerfSections parse_kerf(std::string_view bytes, const std::string& name, std::ui
       } catch (const nlohmann::json::exception&) {
         fail("its table of sections is malformed");
       }
-      if (from > at || size > at - from) fail("section '" + key + "' lies outside of the file");
+      if (from > at || size > at - from) fail("section '" + shown(key) + "' lies outside of the file");
       std::uint64_t count = size_of(s.dtype);
       for (const auto d : s.shape) {
-        if (d != 0 && count > bytes.size() / d) fail("section '" + key + "' is larger than the file");
+        if (d != 0 && count > bytes.size() / d) fail("section '" + shown(key) + "' is larger than the file");
         count *= d;
       }
-      if (size_of(s.dtype) != 0 && s.dtype != "json" && count != size) fail("section '" + key + "' has another size than its shape");
+      if (size_of(s.dtype) != 0 && s.dtype != "json" && count != size) fail("section '" + shown(key) + "' has another size than its shape");
       s.bytes = std::string(bytes.substr(from, size));
-      if (hex(XXH3_64bits(s.bytes.data(), s.bytes.size())) != wanted) fail("section '" + key + "' does not match its hash");
+      if (hex(XXH3_64bits(s.bytes.data(), s.bytes.size())) != wanted) fail("section '" + shown(key) + "' does not match its hash");
       sections[key] = std::move(s);
     }
     if (committed) *committed = at + record_size;

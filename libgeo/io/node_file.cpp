@@ -14,7 +14,7 @@ constexpr const char* fields[] = {"x", "y", "z", "radius", "spacing", "volume"};
 void add(NodeSet& nodes, const double (&v)[6], const std::string& name) {
   const auto row = std::to_string(nodes.size());
   for (const double x : v)
-    if (!std::isfinite(x)) throw InputError(name + ": node " + row + " has a value that is not a finite number; repair the file");
+    if (!(std::abs(x) <= largest_coordinate)) throw InputError(name + ": node " + row + " has a value that is not a finite number of sensible size; repair the file");
   if (!(v[3] > 0) || !(v[4] > 0) || !(v[5] > 0)) throw InputError(name + ": node " + row + " has a radius, spacing or volume that is not positive");
   nodes.position.push_back({v[0], v[1], v[2]});
   nodes.radius.push_back(v[3]);
@@ -57,8 +57,8 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
     else if (words[0] == "POINTS" && words.size() == 2) points = header.integer(words[1]);
     else if (words[0] == "DATA" && words.size() == 2) {
       data = words[1] == "ascii" ? 0 : words[1] == "binary" ? 1 : 2;
-      if (data == 2) header.fail("PCD data '" + std::string(words[1]) + "' is not read here; write ascii or binary");
-    } else if (words[0] != "VERSION" && words[0] != "VIEWPOINT") header.fail("'" + std::string(words[0]) + "' is not expected in a PCD header");
+      if (data == 2) header.fail("PCD data '" + shown(words[1]) + "' is not read here; write ascii or binary");
+    } else if (words[0] != "VERSION" && words[0] != "VIEWPOINT") header.fail("'" + shown(words[0]) + "' is not expected in a PCD header");
   }
   if (data < 0) throw InputError(name + ": the PCD header is not complete; the file is truncated");
   if (names.empty() || sizes.size() != names.size() || types.size() != names.size() || (!counts.empty() && counts.size() != names.size()))

@@ -69,7 +69,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
       ended = true;
     } else if (words[0] == "format" && words.size() >= 2) {
       format = words[1] == "ascii" ? 0 : words[1] == "binary_little_endian" ? 1 : words[1] == "binary_big_endian" ? 2 : -1;
-      if (format < 0) header.fail("unknown PLY format '" + std::string(words[1]) + "'");
+      if (format < 0) header.fail("unknown PLY format '" + shown(words[1]) + "'");
     } else if (words[0] == "comment" || words[0] == "obj_info") {
       std::string line;
       for (std::size_t i = 1; i < words.size(); ++i) line += (i > 1 ? " " : "") + std::string(words[i]);
@@ -78,7 +78,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
       const auto count = header.integer(words[2]);
       // No row is smaller than a byte, so the file bounds every count before anything is allocated.
       if (count < 0 || static_cast<std::size_t>(count) > bytes.size())
-        header.fail("the file is too short for " + std::string(words[2]) + " rows of '" + std::string(words[1]) + "'; it is truncated or damaged");
+        header.fail("the file is too short for " + shown(words[2]) + " rows of '" + shown(words[1]) + "'; it is truncated or damaged");
       ply.elements.push_back({std::string(words[1]), static_cast<std::size_t>(count), {}});
     } else if (words[0] == "property" && !ply.elements.empty() && (words.size() == 3 || (words.size() == 5 && words[1] == "list"))) {
       PlyProperty p;
@@ -88,7 +88,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
       if (p.type == 0 || (words.size() == 5 && (p.count_type == 0 || p.count_type == 'f' || p.count_type == 'd'))) header.fail("unknown property type");
       ply.elements.back().properties.push_back(std::move(p));
     } else {
-      header.fail("'" + std::string(words[0]) + "' is not expected in a PLY header");
+      header.fail("'" + shown(words[0]) + "' is not expected in a PLY header");
     }
   }
   if (!ended || format < 0) throw InputError(name + ": the PLY header is not complete; the file is truncated");
@@ -96,17 +96,17 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
   std::size_t at = header.position();
   Lines rows(bytes.substr(at), name, 0);
   const auto truncated = [&](const std::string& element) -> void {
-    throw InputError(name + ": ends within element '" + element + "'; the file is truncated");
+    throw InputError(name + ": ends within element '" + shown(element) + "'; the file is truncated");
   };
   for (auto& element : ply.elements) {
-    if (element.properties.empty() && element.count > 0) throw InputError(name + ": element '" + element.name + "' has rows but no properties");
+    if (element.properties.empty() && element.count > 0) throw InputError(name + ": element '" + shown(element.name) + "' has rows but no properties");
     for (std::size_t row = 0; row < element.count; ++row) {
       std::size_t word = 0;
       if (format == 0 && !rows.next(words)) truncated(element.name);
       const auto take = [&](char type) {
         double value = 0;
         if (format == 0) {
-          if (word >= words.size()) rows.fail("too few numbers for a row of '" + element.name + "'");
+          if (word >= words.size()) rows.fail("too few numbers for a row of '" + shown(element.name) + "'");
           value = rows.real(words[word++]);
         } else {
           if (bytes.size() - at < size_of(type)) truncated(element.name);
@@ -114,7 +114,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
           at += size_of(type);
         }
         if (!std::isfinite(value))
-          throw InputError(name + ": row " + std::to_string(row) + " of '" + element.name + "' holds a value that is not a finite number; repair the file");
+          throw InputError(name + ": row " + std::to_string(row) + " of '" + shown(element.name) + "' holds a value that is not a finite number; repair the file");
         return value;
       };
       for (auto& p : element.properties) {
@@ -127,7 +127,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
         for (double i = 0; i < count; ++i) p.values.push_back(take(p.type));
         p.ends.push_back(static_cast<std::uint32_t>(p.values.size()));
       }
-      if (format == 0 && word != words.size()) rows.fail("too many numbers for a row of '" + element.name + "'");
+      if (format == 0 && word != words.size()) rows.fail("too many numbers for a row of '" + shown(element.name) + "'");
     }
   }
   if (format == 0 ? rows.next(words) : at != bytes.size()) throw InputError(name + ": has bytes after its last element; the file is damaged");

@@ -1,9 +1,9 @@
 #include "io/run_files.h"
 
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "io/json_internal.h"
 #include "io/kerf_container.h"
 #include "io/stream.h"
 
@@ -54,16 +54,18 @@ void write_run_state(std::ostream& out, const RunState& state) {
   write_kerf(out, s);
 }
 
-RunState read_run_state(const std::string& path) {
-  const KerfSections sections = parse_kerf(read_all(path), path);
-  const auto fail = [&]() -> void { throw InputError(path + ": is not a run's checkpoint, or is damaged"); };
-  const auto points = [&](const std::string& name) {
-    const auto it = sections.find(name);
+RunState read_run_state(const std::string& path) { return parse_run_state(read_all(path), path); }
+
+RunState parse_run_state(const std::string& bytes, const std::string& name) {
+  const KerfSections sections = parse_kerf(bytes, name);
+  const auto fail = [&]() -> void { throw InputError(name + ": is not a run's checkpoint, or is damaged"); };
+  const auto points = [&](const std::string& section) {
+    const auto it = sections.find(section);
     if (it == sections.end() || it->second.dtype != "f8" || it->second.shape.size() != 2 || it->second.shape[1] != 3) fail();
     std::vector<Vec3> result(it->second.bytes.size() / 24);
     for (std::size_t i = 0; i < result.size(); ++i) std::memcpy(result[i].data(), it->second.bytes.data() + 24 * i, 24);
     for (const auto& p : result)
-      if (!p.allFinite()) fail();
+      if (!in_range(p)) fail();
     return result;
   };
   RunState state;
@@ -78,19 +80,19 @@ RunState read_run_state(const std::string& path) {
   const auto about = nlohmann::json::parse(about_section->second.bytes, nullptr, false);
   std::size_t at = 0;
   try {
-    state.frame = about.at("frame").get<int>();
+    state.frame = whole<int>(about.at("frame"));
     for (const auto& f : about.at("fronts")) {
       state.fronts.emplace_back();
       if (f.is_null()) continue;
       FrontState front;
       front.name = f.at("name").get<std::string>(), front.closed = f.at("closed").get<bool>();
-      front.crack = f.at("crack").get<std::int32_t>(), front.step = f.at("step").get<std::uint32_t>();
+      front.crack = whole<std::int32_t>(f.at("crack")), front.step = whole<std::uint32_t>(f.at("step"));
       for (const auto& segment : f.at("segments")) {
         front.segments.emplace_back();
         for (const auto& id : segment) {
           if (at >= places.size()) fail();
-          const auto v = id.get<std::int64_t>();
-          front.segments.back().push_back({places[at++], v < 0 ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
+          const auto v = whole<std::int64_t>(id);
+          front.segments.back().push_back({places[at++], v < 0 || v > ~0u ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
         }
         if (front.segments.back().size() < 2) fail();
         front.points.push_back(front.segments.back().front());
@@ -100,6 +102,8 @@ RunState read_run_state(const std::string& path) {
       state.fronts.back() = std::move(front);
     }
   } catch (const nlohmann::json::exception&) {
+    fail();
+  } catch (const std::out_of_range&) {
     fail();
   }
   return state;

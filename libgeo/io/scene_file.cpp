@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "io/stream.h"
+#include "io/text_internal.h"
 
 namespace geo {
 namespace {
@@ -73,7 +74,7 @@ class Table {
   /// After all keys were asked for.
   void done() const {
     for (const auto& [key, node] : table_)
-      if (!known_.count(std::string(key.str()))) fail(node, "unknown key '" + path_ + std::string(key.str()) + "'");
+      if (!known_.count(std::string(key.str()))) fail(node, "unknown key '" + path_ + shown(key.str()) + "'");
   }
 
  private:
@@ -113,7 +114,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
   try {
     root = toml::parse(text);
   } catch (const toml::parse_error& e) {
-    throw InputError(name + ":" + std::to_string(e.source().begin.line) + ":" + std::to_string(e.source().begin.column) + ": " + std::string(e.description()));
+    throw InputError(name + ":" + std::to_string(e.source().begin.line) + ":" + std::to_string(e.source().begin.column) + ": " + shown(e.description(), 250));
   }
   for (const auto& [key, value] : overrides) override_key(root, key, value);
   Scene s;
@@ -194,8 +195,8 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
       list("points", 3, [&](const auto& v) { blade.points.push_back({v[0], v[1], v[2]}); });
       list("keys", 8, [&](const auto& v) { blade.keys.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, v[7]}); });
       for (std::size_t i = 0; i < blade.keys.size(); ++i) {
-        if (!(blade.keys[i].axis.norm() > 0)) t.fail(node, "a key of blade '" + blade.name + "' has no axis: write 0, 0, 1, 0 for no rotation");
-        if (i > 0 && !(blade.keys[i].time > blade.keys[i - 1].time)) t.fail(node, "the keys of blade '" + blade.name + "' must ascend in time");
+        if (!(blade.keys[i].axis.norm() > 0)) t.fail(node, "a key of blade '" + shown(blade.name) + "' has no axis: write 0, 0, 1, 0 for no rotation");
+        if (i > 0 && !(blade.keys[i].time > blade.keys[i - 1].time)) t.fail(node, "the keys of blade '" + shown(blade.name) + "' must ascend in time");
       }
       // The edge is divided finely enough to follow what the body does to it.
       std::vector<Vec3> fine;

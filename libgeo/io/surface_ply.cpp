@@ -68,6 +68,11 @@ class Reader {
  private:
   TriangleMesh& mesh() { return file_.mesh; }
 
+  std::int32_t whole(double x, const char* property) const {
+    if (!(std::abs(x) <= 2147483647.0) || x != std::floor(x)) throw InputError(name_ + ": a '" + property + "' is not an integer of 32 bits");
+    return static_cast<std::int32_t>(x);
+  }
+
   void shape() {
     const auto xyz = scalars(*vertex_, {"x", "y", "z"});
     if (xyz.empty()) throw InputError(name_ + ": its vertices have no x, y, z");
@@ -86,7 +91,7 @@ class Reader {
       for (std::uint32_t k = 1; k + 1 < polygon.size(); ++k) parts_.push_back({i, k});
     }
     if (patch_ && site) {
-      for (const Part& part : parts_) mesh().patch.push_back(static_cast<std::int32_t>(patch_->values[part.face]));
+      for (const Part& part : parts_) mesh().patch.push_back(whole(patch_->values[part.face], "patch"));
       for (const double s : site->values) {
         if (row_of(s) == ~0u) throw InputError(name_ + ": a site is not an id");
         mesh().site.push_back(row_of(s));
@@ -198,8 +203,8 @@ void Reader::fronts() {
     if (c.rfind("kerf_front ", 0) == 0) names.push_back(c.substr(11));
   for (std::size_t i = 0; i < fronts->count; ++i) {
     FrontState f;
-    f.crack = static_cast<std::int32_t>(column(*fronts, "crack")[i]);
-    f.step = static_cast<std::uint32_t>(column(*fronts, "step")[i]);
+    f.crack = whole(column(*fronts, "crack")[i], "crack");
+    f.step = static_cast<std::uint32_t>(std::max(0, whole(column(*fronts, "step")[i], "step")));
     f.closed = column(*fronts, "closed")[i] != 0;
     if (i < names.size()) f.name = names[i];
     if (f.crack < 1) throw InputError(name_ + ": a front has no crack");
@@ -210,6 +215,7 @@ void Reader::fronts() {
   for (std::size_t i = 0; i < contacts->count; ++i) {
     const auto f = row_of(front[i]), s = row_of(segment[i]);
     if (f >= file_.fronts.size() || s > file_.fronts[f].segments.size()) throw InputError(name_ + ": contact " + std::to_string(i) + " is out of order");
+    if (!in_range({x[i], y[i], z[i]})) throw InputError(name_ + ": contact " + std::to_string(i) + " has a coordinate of no sensible size; repair the file");
     auto& segments = file_.fronts[f].segments;
     if (s == segments.size()) segments.emplace_back();
     segments[s].push_back({{x[i], y[i], z[i]}, at[i] < 0 ? VertexId() : VertexId(row_of(at[i]))});
@@ -224,6 +230,7 @@ void Reader::fronts() {
       f.points.push_back(f.segments[s].front());
     }
     if (!f.closed) f.points.push_back(f.segments.back().back());
+    if (f.closed && f.points.size() < 3) throw InputError(name_ + ": a closed front has fewer than three points");
   }
 }
 

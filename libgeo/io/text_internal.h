@@ -11,6 +11,15 @@
 
 namespace geo {
 
+/// What a file says, as a message may show it: without control characters, and not at length.
+inline std::string shown(std::string_view text, std::size_t most = 60) {
+  for (int i = 0; i < 3 && most < text.size() && (text[most] & 0xc0) == 0x80; ++i) --most;  // UTF-8 is not cut within a character
+  std::string out(text.substr(0, most));
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  return text.size() > most ? out + "..." : out;
+}
+
 /// Walks over the lines of a text, dropping what follows `comment` (0: nothing) and empty lines.
 class Lines {
  public:
@@ -46,14 +55,14 @@ class Lines {
     double value = 0;
     const char* begin = word.data() + (!word.empty() && word[0] == '+');
     const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) fail("'" + std::string(word) + "' is not a number");
-    if (!std::isfinite(value)) fail("'" + std::string(word) + "' is not a finite number; repair the file");
+    if (error != std::errc() || end != word.data() + word.size()) fail("'" + shown(word) + "' is not a number");
+    if (!std::isfinite(value)) fail("'" + shown(word) + "' is not a finite number; repair the file");
     return value;
   }
   long long integer(std::string_view word) const {
     long long value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) fail("'" + std::string(word) + "' is not an integer");
+    if (error != std::errc() || end != word.data() + word.size()) fail("'" + shown(word) + "' is not an integer");
     return value;
   }
 

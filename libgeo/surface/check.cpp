@@ -111,8 +111,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   }
   SurfaceReport report;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!mesh.vertices[v].allFinite()) {
-      note(report, "vertex " + std::to_string(v) + " has a coordinate that is not a finite number; repair the file");
+    if (!in_range(mesh.vertices[v])) {
+      note(report, "vertex " + std::to_string(v) + " has a coordinate that is not a finite number of sensible size; repair the file");
       return report;
     }
   if (mesh.triangles.empty()) note(report, "the surface is empty: it has no triangles");
@@ -127,6 +127,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     return std::array<Vec3, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
   };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (a == b || b == c || c == a) continue;  // is degenerate, and noted
     const auto p = points(t);
     const Box3 box = box_of(p[0], p[1], p[2]);
     near.clear();

@@ -13,6 +13,9 @@
 namespace geo {
 namespace {
 
+// Numbers of new cracks follow the largest one in use.
+constexpr std::int64_t largest_crack = 1000000000;
+
 void require_rows(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw InputError("the surface has no triangles; give a closed triangle mesh");
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -25,8 +28,8 @@ void require_rows(const TriangleMesh& mesh) {
       throw InputError("triangle " + std::to_string(t) + " is degenerate (a vertex twice); remove or repair it");
   }
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!mesh.vertices[v].allFinite())
-      throw InputError("vertex " + std::to_string(v) + " has a coordinate that is not a finite number; repair the file");
+    if (!in_range(mesh.vertices[v]))
+      throw InputError("vertex " + std::to_string(v) + " has a coordinate that is not a finite number of sensible size; repair the file");
 }
 
 std::array<std::uint32_t, 3> sorted(std::array<VertexId, 3> v) {
@@ -90,6 +93,8 @@ class ComplexBuilder {
     for (const auto& f : k.faces_)
       for (const VertexId v : f.v)
         if (f.crack == 0) k.extent_.add(k.point(v));
+    if (k.extent_.empty()) throw InputError("the surface has cracks but no skin");
+    if (!(k.extent_.diagonal() * largest_coordinate > 1)) throw InputError("the surface has no extent: its points are at one place or nearly so; scale it up");
     for (std::uint32_t f = 0; f < k.faces_.size(); ++f) k.index_.insert(f, k.box(FaceId(f)));
   }
 
@@ -257,9 +262,12 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
   require_rows(surface);
   if (surface.site.size() != surface.vertices.size() || surface.patch.size() != surface.triangles.size())
     throw InputError("the surface gives sites or patches for some rows only");
+  for (std::size_t t = 0; t < surface.patch.size(); ++t)
+    if (std::abs(std::int64_t(surface.patch[t])) > largest_crack)
+      throw InputError("triangle " + std::to_string(t) + " is of crack " + std::to_string(surface.patch[t]) + ", which is out of range");
   std::uint32_t sites = 0;
   for (const auto s : surface.site) {
-    if (s > 4 * surface.vertices.size() + 1024 * 1024 * 64)
+    if (s > 4 * surface.vertices.size() + 1024 * 1024 * 4)
       throw InputError("site " + std::to_string(s) + " is out of range for " + std::to_string(surface.vertices.size()) + " vertices");
     sites = std::max(sites, s + 1);
   }
@@ -310,7 +318,6 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
   if (builder.k.face_count() == 0) throw InputError("the surface has no skin");
   builder.link();
   builder.finish();
-  if (builder.k.extent_.empty()) throw InputError("the surface has cracks but no skin");
   builder.order_edges(surface);
   builder.adopt_rows(surface);
   builder.make_room();

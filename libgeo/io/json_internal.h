@@ -1,0 +1,22 @@
+// Integers in JSON: nlohmann's conversion lets a number out of range through.
+#pragma once
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace geo {
+
+/// The integer that a value is. Throws std::out_of_range when it is none, or none that T holds.
+template <class T>
+T whole(const nlohmann::json& value) {
+  bool fits = false;
+  if (value.is_number_unsigned())
+    fits = value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<T>::max());
+  else if (value.is_number_integer())
+    fits = value.get<std::int64_t>() >= static_cast<std::int64_t>(std::numeric_limits<T>::min());
+  if (!fits) throw std::out_of_range("not an integer of this type");
+  return value.get<T>();
+}
+
+}  // namespace geo

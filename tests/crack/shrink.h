@@ -1,0 +1,86 @@
+// Makes a failing case small: whatever can go without the failure going, goes.
+#pragma once
+
+#include <cmath>
+#include <functional>
+
+#include "crack/grid_case.h"
+
+/// The smallest case that `fails` holds of and that is found by dropping cracks, steps and points, undoing subdivision, and
+/// moving coordinates towards small integers, as long as any of these helps. `fails` holds of `grid`.
+inline GridCase shrink(GridCase grid, const std::function<bool(const GridCase&)>& fails) {
+  const auto attempt = [&](const GridCase& smaller) {
+    if (!fails(smaller)) return false;
+    grid = smaller;
+    return true;
+  };
+  const auto drop_cracks = [&] {
+    bool any = false;
+    for (std::size_t c = grid.cracks.size(); c-- > 0 && grid.cracks.size() > 1;) {
+      GridCase smaller = grid;
+      smaller.cracks.erase(smaller.cracks.begin() + static_cast<std::ptrdiff_t>(c));
+      any |= attempt(smaller);
+    }
+    return any;
+  };
+  const auto drop_steps = [&] {
+    bool any = false;
+    for (std::size_t c = 0; c < grid.cracks.size(); ++c)
+      for (std::size_t s = grid.cracks[c].rows.size(); s-- > 0 && grid.cracks[c].rows.size() > 2;) {
+        GridCase smaller = grid;
+        smaller.cracks[c].rows.erase(smaller.cracks[c].rows.begin() + static_cast<std::ptrdiff_t>(s));
+        any |= attempt(smaller);
+      }
+    return any;
+  };
+  const auto drop_points = [&] {
+    bool any = false;
+    for (std::size_t c = 0; c < grid.cracks.size(); ++c) {
+      const std::size_t least = grid.cracks[c].closed ? 3 : 2;
+      for (std::size_t p = grid.cracks[c].rows[0].size(); p-- > 0 && grid.cracks[c].rows[0].size() > least;) {
+        GridCase smaller = grid;
+        for (auto& row : smaller.cracks[c].rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(p));
+        any |= attempt(smaller);
+      }
+    }
+    return any;
+  };
+  const auto simplify = [&] {
+    bool any = false;
+    if (grid.divisions > 1) {
+      GridCase smaller = grid;
+      smaller.divisions = 1;
+      any |= attempt(smaller);
+    }
+    for (std::size_t c = 0; c < grid.cracks.size(); ++c) {
+      if (grid.cracks[c].closed) {
+        GridCase smaller = grid;
+        smaller.cracks[c].closed = false;
+        any |= attempt(smaller);
+      }
+      for (std::size_t s = 0; s < grid.cracks[c].rows.size(); ++s)
+        for (std::size_t p = 0; p < grid.cracks[c].rows[s].size(); ++p)
+          for (int axis = 0; axis < 3; ++axis) {
+            const double x = grid.cracks[c].rows[s][p][axis];
+            // Each is smaller than x, or an integer where x is none: this ends.
+            for (const double y : {0.0, std::trunc(x / 2), std::trunc(x), x - (x > 0 ? 1.0 : -1.0)}) {
+              if (!(std::abs(y) < std::abs(x))) continue;
+              GridCase smaller = grid;
+              smaller.cracks[c].rows[s][p][axis] = y;
+              if (attempt(smaller)) {
+                any = true;
+                break;
+              }
+            }
+          }
+    }
+    return any;
+  };
+  for (bool any = true; any;) {
+    any = drop_cracks();
+    any |= drop_steps();
+    any |= drop_points();
+    any |= simplify();
+  }
+  return grid;
+}

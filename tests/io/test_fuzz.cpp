@@ -1,0 +1,134 @@
+// Readers under fire: valid files, damaged at random, are read or refused in one line.
+//   KERF_CASES=100 KERF_SEED=3 test_io '[fuzz]'; one case: KERF_CASE=3000123 test_io '[fuzz]'.
+#include "io/fuzz.h"
+
+#include <memory>
+
+#include "io/kerf_container.h"
+#include "io/samples.h"
+#include "io/scene_file.h"
+#include "surface/check.h"
+#include "surface/pieces.h"
+
+using namespace geo;
+using fuzz::Use;
+
+namespace {
+
+fuzz::Damage damage_to(std::vector<std::string> files) {
+  return [files = std::move(files)](Random& random) {
+    const std::string& file = files[random.below(static_cast<std::uint32_t>(files.size()))];
+    return Mutator(random).damaged(file, files);
+  };
+}
+
+// A container whose hashes fit although its sections, or its table, were damaged.
+std::string sealed(Random& random, const std::string& good) {
+  Mutator mutator(random);
+  KerfSections sections = parse_kerf(good, "good");
+  if (random.below(4) == 0) {
+    const std::size_t record = good.size() - 32;
+    std::uint64_t at, length;
+    std::memcpy(&at, good.data() + record + 8, 8);
+    std::memcpy(&length, good.data() + record + 16, 8);
+    const std::string table = mutator.damaged(good.substr(at, length), {good.substr(at, length)});
+    std::string bytes = good.substr(0, at) + table, end = good.substr(record);
+    length = table.size();
+    const std::uint64_t hash = fingerprint(table);
+    std::memcpy(end.data() + 16, &length, 8);
+    std::memcpy(end.data() + 24, &hash, 8);
+    return bytes + end;
+  }
+  for (auto changes = 1 + random.below(2); changes-- > 0;) {
+    const auto pick = [&] { return std::next(sections.begin(), random.below(static_cast<std::uint32_t>(sections.size()))); };
+    auto& [name, s] = *pick();
+    const std::size_t size = s.bytes.size(), row = s.shape[0] > 0 ? std::max<std::size_t>(1, size / s.shape[0]) : 1;
+    switch (random.below(10)) {
+      case 3: case 4: case 5: case 6: mutator.damage_number(s.bytes, s.dtype == "f8" ? 8 : s.dtype == "u1" || s.dtype == "json" ? 1 : 4); break;
+      case 0: s.bytes = pick()->second.bytes; break;
+      case 1: s = pick()->second; break;
+      case 2: s.dtype = random.below(2) ? "u4" : "f8"; break;
+      default: s.bytes = mutator.damaged(s.bytes, {s.bytes, pick()->second.bytes});
+    }
+    // Most keep their size; of the others most have one that fits their shape.
+    if (random.below(4)) s.bytes.resize(size);
+    else if (random.below(4)) s.bytes.resize(s.bytes.size() / row * row), s.shape[0] = s.bytes.size() / row;
+  }
+  return bytes_of([&](auto& out) { write_kerf(out, sections); });
+}
+
+void continue_fronts(Complex& k, std::vector<FrontState> fronts) {
+  for (auto& front : fronts) {
+    std::vector<Vec3> next;
+    for (const auto& p : front.points) next.push_back(p.position + Vec3(0.11, 0.07, 0.23));
+    advance(k, front, next);
+  }
+}
+
+Use use_surface(SurfaceFile file) {
+  return [file = std::move(file)] {
+    const auto report = check_surface(file.mesh, true);
+    Complex k = Complex::from_two_sided(file.mesh);
+    if (!report.good()) return;
+    find_pieces(k);
+    continue_fronts(k, file.fronts);
+  };
+}
+
+Use use_fronts(std::vector<Front> fronts) {
+  return [fronts = std::move(fronts)] {
+    Complex k = Complex::from_skin(make_block({4, 4, 4}, 2));
+    for (const auto& f : fronts) {
+      FrontState state = begin_front(f.steps[0], f.closed, k.crack_count() + 1);
+      auto at = f.steps[0];
+      for (std::size_t s = 1; s < f.steps.size(); ++s) advance(k, state, at = correspond(at, f.steps[s], f.closed));
+    }
+    if (const auto report = check_complex(k, true); !report.good()) throw std::logic_error(report.first_problem);
+  };
+}
+
+}  // namespace
+
+TEST_CASE("damaged surfaces are read or refused", "[fuzz]") {
+  fuzz::campaign("surface", 3000, [](const auto& bytes, const auto& name) { return use_surface(parse_surface(bytes, name)); }, damage_to(sample_surfaces()));
+}
+
+TEST_CASE("damaged fronts are read or refused", "[fuzz]") {
+  fuzz::campaign("front", 3000, [](const auto& bytes, const auto& name) { return use_fronts(parse_fronts(bytes, name)); }, damage_to(sample_fronts()));
+}
+
+TEST_CASE("damaged nodes are read or refused", "[fuzz]") {
+  const Body body = cut_body();
+  const Complex skin = Complex::from_skin(make_block({1, 1, 1}, 0.5));
+  fuzz::campaign("nodes", 3000, [&](const auto& bytes, const auto& name) -> Use {
+    return [&skin, nodes = parse_nodes(bytes, name)] { build_body(skin, nodes); };
+  }, damage_to(sample_nodes_files(body.nodes)));
+}
+
+TEST_CASE("damaged scenes are read or refused", "[fuzz]") {
+  fuzz::campaign("scene", 3000, [](const auto& bytes, const auto& name) -> Use {
+    return [scene = parse_scene(bytes, name)] {
+      for (const auto& blade : scene.blades)
+        for (const auto& key : blade.keys) blade.at(key.time);
+    };
+  }, damage_to(sample_scenes()));
+}
+
+TEST_CASE("damaged bodies are read or refused", "[fuzz]") {
+  const std::string good = bytes_of([&](auto& out) { write_body(out, cut_body()); });
+  const fuzz::Read read = [](const auto& bytes, const auto& name) -> Use {
+    return [body = std::make_shared<Body>(parse_body(bytes, name))] {
+      check_body(*body);
+      bytes_of([&](auto& out) { write_body(out, *body); });
+    };
+  };
+  fuzz::campaign("kerf", 1000, read, damage_to({good, good + good.substr(64)}));
+  fuzz::campaign("body", 3000, read, [&](Random& random) { return sealed(random, good); });
+}
+
+TEST_CASE("damaged checkpoints are read or refused", "[fuzz]") {
+  const std::string good = sample_checkpoint(cut_body());
+  fuzz::campaign("run", 3000, [](const auto& bytes, const auto& name) -> Use {
+    return [state = parse_run_state(bytes, name)] { bytes_of([&](auto& out) { write_run_state(out, state); }); };
+  }, [&](Random& random) { return sealed(random, good); });
+}

@@ -118,7 +118,7 @@ struct Attempt {
   FrontState front;
 };
 
-Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, CrackWork& work) {
+Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance, CrackWork& work) {
   Stopwatch watch;
   Attempt result{{}, front};
   Strip strip = sweep(front, next);
@@ -126,7 +126,7 @@ Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Ve
   work.near_seconds += watch.lap();
   crack::Arrangement arrangement(complex, strip);
   std::vector<VertexId> vertex;
-  result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, work);
+  result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, work);
   watch.lap();
   follow_front(result.front, complex, strip, arrangement, vertex);
   work.stitch_seconds += watch.lap();
@@ -208,7 +208,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
     }
     ++done.attempts;
     try {
-      Attempt result = try_step(complex, from, target, options.snap * size, done);
+      Attempt result = try_step(complex, from, target, options.snap * size, 2 * attempt <= options.attempts ? options.clearance * size : 0, done);
       ++result.front.step;
       front = std::move(result.front);
       if (work) *work += done;

@@ -30,8 +30,9 @@ struct FrontState {
 struct CrackOptions {
   double snap = 1e-14;    ///< pre-snap of the strip to vertices of K, relative to the extent's diagonal
   double clear = 1e-6;    ///< new front points a hundredth of this from a face of K, but not on it, move this far off, relative
+  double clearance = 0x1p-46; ///< how far apart a step must leave what does not touch, relative; the later half of the attempts does without
   double jitter = 1e-9;   ///< first displacement of the new front when the guard refuses a step, relative
-  int attempts = 8;       ///< how often a refused step is jittered and redone
+  int attempts = 12;       ///< how often a refused step is jittered and redone
   std::uint64_t seed = 1; ///< of the jitter
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "surface/check.h"
 
@@ -14,15 +15,17 @@ namespace {
 // A triangle's plane against points, quickly: by how much the normal's and the products' rounding can be off.
 struct Plane {
   Vec3 normal, at;
-  double size;  // the longest side of the triangle's box
+  double size;    // the longest side of the triangle's box
+  double margin;  // a height of `clearance`, times the normal's length
 
-  Plane(const std::array<Vec3, 3>& t, const Box3& box) : normal((t[1] - t[0]).cross(t[2] - t[0])), at(t[0]), size((box.hi - box.lo).maxCoeff()) {}
+  Plane(const std::array<Vec3, 3>& t, const Box3& box, double clearance)
+      : normal((t[1] - t[0]).cross(t[2] - t[0])), at(t[0]), size((box.hi - box.lo).maxCoeff()), margin(clearance > 0 ? clearance * normal.norm() : 0) {}
 
-  // True when those corners of the other that the two do not share are all on one side, for certain: the two then have
-  // nothing else in common. Each entry of the normal is off by 8 roundings of size² at most, an offset by one; boxes meet,
+  // True when those corners of the other that the two do not share are all on one side, for certain, and farther than
+  // the clearance: the two then have nothing else in common. Each entry of the normal is off by 8 roundings of size² at most, an offset by one; boxes meet,
   // so that no offset is longer than both sizes.
   bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& rows, const std::array<Vec3, 3>& corners, double other_size) const {
-    const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume;
+    const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume + margin;
     if (!(volume > filter_smallest && volume < filter_largest)) return false;
     int side = 0, shared = 0;
     for (int k = 0; k < 3; ++k) {
@@ -38,11 +41,33 @@ struct Plane {
   }
 };
 
+double height(const std::array<Vec3, 3>& t) {
+  const double longest = std::max({(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
+  return (t[1] - t[0]).cross(t[2] - t[0]).norm() / std::sqrt(longest);
+}
+
+// The distance between those corners and edges of two triangles that share no vertex by id with the other's.
+double distance_apart(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q) {
+  const auto in = [](std::uint32_t v, const std::array<std::uint32_t, 3>& t) { return v == t[0] || v == t[1] || v == t[2]; };
+  double least = 1e300;
+  for (int i = 0; i < 3; ++i) {
+    // A corner against a triangle that it is not of; where they share others, against the parts that do not meet there.
+    if (!in(f[i], g)) least = std::min(least, (closest_point_on_triangle(p[i], q[0], q[1], q[2]) - p[i]).norm());
+    if (!in(g[i], f)) least = std::min(least, (closest_point_on_triangle(q[i], p[0], p[1], p[2]) - q[i]).norm());
+    for (int j = 0; j < 3; ++j) {
+      const int m = (i + 1) % 3, n = (j + 1) % 3;
+      if (f[i] == g[j] || f[i] == g[n] || f[m] == g[j] || f[m] == g[n]) continue;
+      least = std::min(least, distance_between_segments(p[i], p[m], q[j], q[n]));
+    }
+  }
+  return least;
+}
+
 // An edit with all that the questions about it need.
 class Inspection {
  public:
-  Inspection(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved)
-      : complex_(complex), edit_(edit), families_(families), moved_(moved), count_(static_cast<std::uint32_t>(edit.new_faces.size())) {
+  Inspection(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance)
+      : complex_(complex), edit_(edit), families_(families), moved_(moved), clearance_(clearance), count_(static_cast<std::uint32_t>(edit.new_faces.size())) {
     faces_.reserve(count_);
     for (const auto& f : edit.new_faces) {
       std::array<Vec3, 3> corners;
@@ -50,7 +75,7 @@ class Inspection {
       bool touched = moved.empty();
       for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, touched = touched || is_moved(f.v[k]);
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
-      faces_.push_back({corners, rows, box, Plane(corners, box), ~0u, touched});
+      faces_.push_back({corners, rows, box.grown(clearance), Plane(corners, box, clearance), ~0u, touched});
     }
     for (const Family& family : families)
       for (auto i = family.first; i < family.end; ++i)
@@ -66,6 +91,7 @@ class Inspection {
         const int is = orient2d(c[0], c[1], c[2], axis);
         if (is == 0) return {"rounding would leave a face without area", {i}};
         if (was != is) return {"rounding would turn a face over", {i}};
+        if (clearance_ > 0 && faces_[i].touched && height(c) < clearance_) return {"rounding would leave a face that is too thin", {i}};
       }
     }
     return {};
@@ -86,7 +112,7 @@ class Inspection {
         by_x.push_back({point(v).x(), v});
       }
     std::sort(by_x.begin(), by_x.end());
-    const double close = 0x1p-48 * complex_.extent().diagonal();
+    const double close = std::max(clearance_, 0x1p-48 * complex_.extent().diagonal());
     for (std::size_t i = 0; i < by_x.size(); ++i)
       for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first <= by_x[i].first + close; ++j) {
         const VertexId p = by_x[i].second, q = by_x[j].second;
@@ -119,13 +145,13 @@ class Inspection {
         const Box3 there = box_of(corners[0], corners[1], corners[2]);
         if (!there.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;
         const auto& v = complex_.face(f).v;
-        near.push_back({corners, {v[0].value, v[1].value, v[2].value}, there, Plane(corners, there), ~0u, false});
+        near.push_back({corners, {v[0].value, v[1].value, v[2].value}, there, Plane(corners, there, clearance_), ~0u, false});
         ids.push_back(f);
       }
       for (auto i = family.first; i < family.end; ++i)
         for (std::size_t n = 0; n < near.size(); ++n)
-          if (faces_[i].touched && near[n].box.meets(faces_[i].box) && cross(faces_[i], near[n]))
-            return {"rounding would make a new face cross face " + std::to_string(ids[n].value), {i}};
+          if (faces_[i].touched && near[n].box.meets(faces_[i].box))
+            if (const char* what = fault_between(faces_[i], near[n])) return {std::string(what) + " face " + std::to_string(ids[n].value), {i}};
     }
     return {};
   }
@@ -148,7 +174,7 @@ class Inspection {
         if (!a.box.meets(b.box) || !(a.touched || b.touched)) continue;
         // All children of a triangle, none turned over: they cover it once, as before rounding.
         if (a.family != ~0u && a.family == b.family) continue;
-        if (cross(a, b)) return {"rounding would make two new faces cross", {order[i].second, order[j].second}};
+        if (const char* what = fault_between(a, b)) return {std::string(what) + " another new face", {order[i].second, order[j].second}};
       }
     }
     return {};
@@ -168,23 +194,26 @@ class Inspection {
     return v.value < complex_.vertex_count() ? complex_.point(v) : edit_.new_vertices[v.value - complex_.vertex_count()];
   }
   bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
-  static bool cross(const New& f, const New& g) {
-    return !f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) && !g.plane.clears(g.rows, f.rows, f.corners, f.plane.size) &&
-           faces_cross(f.rows, f.corners, g.rows, g.corners);
+  const char* fault_between(const New& f, const New& g) const {
+    if (f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) || g.plane.clears(g.rows, f.rows, f.corners, f.plane.size)) return nullptr;
+    if (faces_cross(f.rows, f.corners, g.rows, g.corners)) return "rounding would make a new face cross";
+    if (clearance_ > 0 && distance_apart(f.rows, f.corners, g.rows, g.corners) < clearance_) return "rounding would leave a new face too near to";
+    return nullptr;
   }
 
   const Complex& complex_;
   const ComplexEdit& edit_;
   std::span<const Family> families_;
   std::span<const std::uint8_t> moved_;
+  double clearance_;
   std::uint32_t count_;
   std::vector<New> faces_;
 };
 
 }  // namespace
 
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved) {
-  const Inspection inspection(complex, edit, families, moved);
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance) {
+  const Inspection inspection(complex, edit, families, moved, clearance);
   Fault fault = inspection.turned();
   if (!fault) fault = inspection.coincident();
   if (!fault) fault = inspection.crossing_old();
@@ -193,8 +222,8 @@ Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<cons
 }
 
 Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
-             std::span<const std::uint8_t> moved, std::size_t& repairs) {
-  Fault fault = find_fault(complex, edit, families, moved);
+             std::span<const std::uint8_t> moved, double clearance, std::size_t& repairs) {
+  Fault fault = find_fault(complex, edit, families, moved, clearance);
   if (!fault) return fault;
   const double last_place = 0x1p-52 * (complex.extent().diagonal() + complex.extent().lo.cwiseAbs().cwiseMax(complex.extent().hi.cwiseAbs()).maxCoeff());
   std::vector<Family> rest(families.begin(), families.end());  // what is left out does not follow the points
@@ -212,7 +241,7 @@ Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> 
         edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * random.direction();
       }
     if (before.empty()) return fault;
-    Fault now = find_fault(complex, edit, rest, moved);
+    Fault now = find_fault(complex, edit, rest, moved, clearance);
     if (!now) {
       ++repairs;
       return now;

@@ -39,7 +39,7 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
 }  // namespace
 
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
-                        std::vector<VertexId>& vertex, CrackWork& work) {
+                        std::vector<VertexId>& vertex, double clearance, CrackWork& work) {
   vertex.clear();
   if (strip.triangles.empty()) {
     for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(arrangement.id(l));
@@ -71,7 +71,7 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   for (Local l = 0; l < vertex.size(); ++l)
     if (vertex[l].valid() && vertex[l].value >= complex.vertex_count())
       moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
-  if (const Fault fault = repair(complex, edit, families, moved, work.repairs)) throw GeometryError(fault.what);
+  if (const Fault fault = repair(complex, edit, families, moved, clearance, work.repairs)) throw GeometryError(fault.what);
   work.guard_seconds += watch.lap();
   CrackDelta delta = complex.apply(edit);
   work.triangles_cut += edit.removed_faces.size();

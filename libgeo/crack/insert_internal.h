@@ -6,9 +6,9 @@
 namespace geo::crack {
 
 /// Inserts what of the strip lies in the material as faces of this crack and returns what changed; empty when nothing
-/// does. `vertex` receives the vertex of each point of the arrangement that has one. Throws GeometryError, K unchanged,
+/// does. `clearance`: see find_fault(). `vertex` receives the vertex of each point of the arrangement that has one. Throws GeometryError, K unchanged,
 /// when rounding would break it.
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
-                        std::vector<VertexId>& vertex, CrackWork& work);
+                        std::vector<VertexId>& vertex, double clearance, CrackWork& work);
 
 }  // namespace geo::crack

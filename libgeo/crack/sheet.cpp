@@ -33,7 +33,7 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
     try {
       crack::Arrangement arrangement(complex, strip);
       std::vector<VertexId> vertex;
-      CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, done);
+      CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, 2 * attempt <= options.attempts ? options.clearance * size : 0, done);
       if (work) *work += done;
       return delta;
     } catch (const GeometryError& e) {

@@ -1,6 +1,7 @@
 #include "geometry/distance.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace geo {
 
@@ -24,6 +25,17 @@ Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (e > 0 ? (d4 - d3) / e : 0.0) * (c - b);
   const double sum = va + vb + vc;
   return sum > 0 ? Vec3(a + ab * (vb / sum) + ac * (vc / sum)) : a;
+}
+
+double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  const Vec3 u = q - p, v = s - r, w = p - r;
+  const double uu = u.dot(u), vv = v.dot(v), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const auto part = [](double up, double down) { return down > 0 ? std::clamp(up / down, 0.0, 1.0) : 0.0; };
+  // The best place on the first line, then the best for it on the second, then for that on the first again.
+  const double first = part(uv * vw - uw * vv, uu * vv - uv * uv);
+  const double second = part(vw + first * uv, vv);
+  const double again = part(second * uv - uw, uu);
+  return (w + again * u - second * v).norm();
 }
 
 Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

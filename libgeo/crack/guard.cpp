@@ -46,21 +46,27 @@ double height(const std::array<Vec3, 3>& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() / std::sqrt(longest);
 }
 
-// The distance between those corners and edges of two triangles that share no vertex by id with the other's.
-double distance_apart(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q) {
+// True when corners or edges of two triangles that do not touch by id are nearer to each other than `clearance`.
+bool too_near(const Plane& of_f, const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const Plane& of_g,
+              const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q, double clearance) {
   const auto in = [](std::uint32_t v, const std::array<std::uint32_t, 3>& t) { return v == t[0] || v == t[1] || v == t[2]; };
-  double least = 1e300;
+  const auto near = [&](const Vec3& x, const Plane& plane, const std::array<Vec3, 3>& t) {
+    return std::abs(plane.normal.dot(x - plane.at)) <= plane.margin && (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() < clearance;
+  };
   for (int i = 0; i < 3; ++i) {
-    // A corner against a triangle that it is not of; where they share others, against the parts that do not meet there.
-    if (!in(f[i], g)) least = std::min(least, (closest_point_on_triangle(p[i], q[0], q[1], q[2]) - p[i]).norm());
-    if (!in(g[i], f)) least = std::min(least, (closest_point_on_triangle(q[i], p[0], p[1], p[2]) - q[i]).norm());
+    if ((!in(f[i], g) && near(p[i], of_g, q)) || (!in(g[i], f) && near(q[i], of_f, p))) return true;
+    const int m = (i + 1) % 3;
     for (int j = 0; j < 3; ++j) {
-      const int m = (i + 1) % 3, n = (j + 1) % 3;
+      const int n = (j + 1) % 3;
       if (f[i] == g[j] || f[i] == g[n] || f[m] == g[j] || f[m] == g[n]) continue;
-      least = std::min(least, distance_between_segments(p[i], p[m], q[j], q[n]));
+      // Their lines are this far apart, or they are parallel.
+      const Vec3 across = (p[m] - p[i]).cross(q[n] - q[j]);
+      const double volume = across.dot(q[j] - p[i]);
+      if (volume * volume > clearance * clearance * across.squaredNorm()) continue;
+      if (distance_between_segments(p[i], p[m], q[j], q[n]) < clearance) return true;
     }
   }
-  return least;
+  return false;
 }
 
 // An edit with all that the questions about it need.
@@ -75,7 +81,7 @@ class Inspection {
       bool touched = moved.empty();
       for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, touched = touched || is_moved(f.v[k]);
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
-      faces_.push_back({corners, rows, box.grown(clearance), Plane(corners, box, clearance), ~0u, touched});
+      faces_.push_back({corners, rows, box.grown(clearance), Plane(corners, box, clearance), ~0u, touched, f.crack > 0});
     }
     for (const Family& family : families)
       for (auto i = family.first; i < family.end; ++i)
@@ -91,7 +97,7 @@ class Inspection {
         const int is = orient2d(c[0], c[1], c[2], axis);
         if (is == 0) return {"rounding would leave a face without area", {i}};
         if (was != is) return {"rounding would turn a face over", {i}};
-        if (clearance_ > 0 && faces_[i].touched && height(c) < clearance_) return {"rounding would leave a face that is too thin", {i}};
+        if (clearance_ > 0 && faces_[i].touched && faces_[i].cracked && height(c) < clearance_) return {"rounding would leave a face that is too thin", {i}};
       }
     }
     return {};
@@ -145,7 +151,7 @@ class Inspection {
         const Box3 there = box_of(corners[0], corners[1], corners[2]);
         if (!there.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;
         const auto& v = complex_.face(f).v;
-        near.push_back({corners, {v[0].value, v[1].value, v[2].value}, there, Plane(corners, there, clearance_), ~0u, false});
+        near.push_back({corners, {v[0].value, v[1].value, v[2].value}, there, Plane(corners, there, clearance_), ~0u, false, complex_.face(f).crack > 0});
         ids.push_back(f);
       }
       for (auto i = family.first; i < family.end; ++i)
@@ -188,6 +194,7 @@ class Inspection {
     Plane plane;
     std::uint32_t family;  // the first child of the same triangle where all are known not to overlap, else ~0u
     bool touched;          // has a vertex that rounding moved
+    bool cracked;          // of a crack, not of the skin
   };
 
   const Vec3& point(VertexId v) const {
@@ -197,7 +204,7 @@ class Inspection {
   const char* fault_between(const New& f, const New& g) const {
     if (f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) || g.plane.clears(g.rows, f.rows, f.corners, f.plane.size)) return nullptr;
     if (faces_cross(f.rows, f.corners, g.rows, g.corners)) return "rounding would make a new face cross";
-    if (clearance_ > 0 && distance_apart(f.rows, f.corners, g.rows, g.corners) < clearance_) return "rounding would leave a new face too near to";
+    if (clearance_ > 0 && f.cracked && g.cracked && too_near(f.plane, f.rows, f.corners, g.plane, g.rows, g.corners, clearance_)) return "rounding would leave a new face too near to";
     return nullptr;
   }
 

@@ -10,15 +10,6 @@
 namespace geo::crack {
 namespace {
 
-std::uint64_t place_of(const Vec3& p) {
-  std::uint64_t h = 1469598103934665603ull;
-  for (int i = 0; i < 3; ++i) {
-    h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: one zero
-    h ^= h >> 29;
-  }
-  return h;
-}
-
 std::uint64_t edge_key(Local a, Local b) { return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
 
 // The side of plane abc that p is on; 0 without asking where p is one of the three.
@@ -33,7 +24,7 @@ int side_of(const Vec3 (&t)[3], const Vec3& p) {
 Arrangement::Arrangement(const Complex& complex, const Strip& strip) : complex_(complex), strip_(strip), triangulator_(points_) {
   for (const Vec3& p : strip.points) {
     const Local l = points_.add(p);
-    strip_places_.emplace(place_of(p), l);
+    if (auto& row = strip_places_[hash_of(p)]; row == no_local) row = l;
   }
   elements.reserve(strip.triangles.size() * 4);
   for (const auto& t : strip.triangles) {
@@ -46,25 +37,14 @@ Arrangement::Arrangement(const Complex& complex, const Strip& strip) : complex_(
 }
 
 Local Arrangement::local_of(VertexId v) {
-  const auto [it, fresh] = by_id_.try_emplace(v, no_local);
-  if (!fresh) return it->second;
+  std::uint32_t& row = by_id_[v.value];
+  if (row != no_local) return row;
   const Vec3& p = complex_.point(v);
-  const auto same = strip_places_.find(place_of(p));
-  it->second = same != strip_places_.end() && points_[same->second] == p ? same->second : points_.add(p);
+  const Local same = strip_places_.find(hash_of(p));
+  row = same != no_local && points_[same] == p ? same : points_.add(p);
   if (ids_.size() < points_.size()) ids_.resize(points_.size());
-  ids_[it->second] = v;
-  return it->second;
-}
-
-std::uint32_t Arrangement::element_of(FaceId f) {
-  const auto [it, fresh] = by_face_.try_emplace(f, static_cast<std::uint32_t>(elements.size()));
-  if (fresh) {
-    Element e;
-    for (int k = 0; k < 3; ++k) e.corner[k] = local_of(complex_.face(f).v[k]);
-    e.face = f;
-    elements.push_back(e);
-  }
-  return it->second;
+  ids_[row] = v;
+  return row;
 }
 
 void Arrangement::meet(CrackWork& work) {
@@ -80,14 +60,21 @@ void Arrangement::meet(CrackWork& work) {
       const Vec3 theirs[3] = {c[0], c[1], c[2]};
       Signs sign;
       if (!signs_of(theirs, mine, sign)) continue;
-      const bool known = by_face_.count(f) > 0;
-      const std::uint32_t e = element_of(f);
-      meet_pair(e, s, sign);
-      if (features_.empty() && !known) {  // apart after all: the last one made is taken back
-        by_face_.erase(f);
-        elements.pop_back();
-        continue;
+      std::uint32_t e = by_face_.find(f.value);
+      const bool known = e != no_local;
+      if (!known) {
+        e = static_cast<std::uint32_t>(elements.size());
+        Element element;
+        for (int k = 0; k < 3; ++k) element.corner[k] = local_of(complex_.face(f).v[k]);
+        element.face = f;
+        elements.push_back(element);
       }
+      meet_pair(e, s, sign);
+      if (known) continue;
+      if (features_.empty())
+        elements.pop_back();  // apart after all
+      else
+        by_face_[f.value] = e;
     }
   }
   // The strip with itself: a sweep may cross or fold back.
@@ -126,40 +113,35 @@ int Arrangement::locate_flat(std::uint32_t e, Local p, std::uint8_t& on) const {
   return 1;
 }
 
+// The key of the point where edges ab and cd cross, in whatever order they are given.
+Arrangement::Key Arrangement::edge_edge(Local a, Local b, Local c, Local d) {
+  const auto [low, high] = std::minmax({edge_key(a, b), edge_key(c, d)});
+  return {low, high | 1ull << 63};  // no element has that number
+}
+
 // Where edge `edge` of an element crosses the other one: inside of it, or on its edge `other_edge` (−1: inside).
 Local Arrangement::crossing(std::uint32_t edge_of, int edge, std::uint32_t other, int other_edge) {
   const auto &c = elements[edge_of].corner, &o = elements[other].corner;
   const Local a = c[edge], b = c[(edge + 1) % 3];
-  Key key{edge_key(a, b), other};
-  if (other_edge >= 0) {
-    key.other = edge_key(o[other_edge], o[(other_edge + 1) % 3]) | 1ull << 63;
-    if ((key.other & ~(1ull << 63)) < key.edge) {
-      const auto swap = key.edge;
-      key.edge = key.other & ~(1ull << 63), key.other = swap | 1ull << 63;
-    }
-  }
-  const auto [it, fresh] = by_key_.try_emplace(key, no_local);
+  Local& row = by_key_[other_edge < 0 ? Key{edge_key(a, b), other} : edge_edge(a, b, o[other_edge], o[(other_edge + 1) % 3])];
   // From the lower end to the higher one, so that the double is the same whoever asks.
-  if (fresh) it->second = points_.add_crossing(points_[std::min(a, b)], points_[std::max(a, b)], points_[o[0]], points_[o[1]], points_[o[2]]);
-  return it->second;
+  if (row == no_local) row = points_.add_crossing(points_[std::min(a, b)], points_[std::max(a, b)], points_[o[0]], points_[o[1]], points_[o[2]]);
+  return row;
 }
 
 // Where two edges of elements in one plane cross.
 Local Arrangement::crossing_flat(std::uint32_t a, int edge_a, std::uint32_t b, int edge_b) {
   const auto &ca = elements[a].corner, &cb = elements[b].corner;
-  Key key{edge_key(ca[edge_a], ca[(edge_a + 1) % 3]), edge_key(cb[edge_b], cb[(edge_b + 1) % 3])};
-  if (key.other < key.edge) std::swap(key.edge, key.other);
-  key.other |= 1ull << 63;
-  const auto [it, fresh] = by_key_.try_emplace(key, no_local);
-  if (fresh) {
+  Local& row = by_key_[edge_edge(ca[edge_a], ca[(edge_a + 1) % 3], cb[edge_b], cb[(edge_b + 1) % 3])];
+  if (row == no_local) {
     // The plane through edge b that stands across the common plane.
     const int axis = view_of(points_, ca).first;
     const Vec3 &c = points_[cb[edge_b]], &d = points_[cb[(edge_b + 1) % 3]];
     Vec3 r = c;
     r[axis] += std::abs(r[axis]) + (d - c).cwiseAbs().maxCoeff();
-    it->second = points_.add_crossing(points_[ca[edge_a]], points_[ca[(edge_a + 1) % 3]], c, d, r);
+    row = points_.add_crossing(points_[ca[edge_a]], points_[ca[(edge_a + 1) % 3]], c, d, r);
   }
-  return it->second;
+  return row;
 }
 
 void Arrangement::feature(Local p, std::uint8_t on_a, std::uint8_t on_b) {

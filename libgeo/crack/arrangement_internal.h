@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "crack/lookup_internal.h"
 #include "crack/sweep.h"
 #include "crack/triangulate_internal.h"
 
@@ -61,13 +62,10 @@ class Arrangement {
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct KeyHash {
-    std::size_t operator()(const Key& k) const {
-      std::uint64_t h = k.edge * 0x9e3779b97f4a7c15ull ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull;
-      return h ^ h >> 29;
-    }
+    std::size_t operator()(const Key& k) const { return Spread()(k.edge ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull); }
   };
   Local local_of(VertexId v);
-  std::uint32_t element_of(FaceId f);
+  static Key edge_edge(Local a, Local b, Local c, Local d);
   using Signs = int[2][3];  // of the corners of each of two elements against the other's plane
   void meet_pair(std::uint32_t a, std::uint32_t b, const Signs& sign);
   bool signs_of(const Vec3 (&s)[3], const Vec3 (&t)[3], Signs& sign) const;
@@ -85,10 +83,9 @@ class Arrangement {
   Points points_;
   Triangulator triangulator_;
   std::vector<VertexId> ids_;
-  std::unordered_map<std::uint64_t, Local> strip_places_;
-  std::unordered_map<VertexId, Local> by_id_;
-  std::unordered_map<FaceId, std::uint32_t> by_face_;
-  std::unordered_map<Key, Local, KeyHash> by_key_;
+  Lookup<std::uint64_t, Spread> strip_places_;  ///< points of the strip by hash_of()
+  Lookup<std::uint64_t, Spread> by_id_, by_face_;
+  Lookup<Key, KeyHash> by_key_;
   std::unordered_map<std::uint64_t, std::vector<Local>> by_place_;  ///< where the strip meets itself
   std::vector<Feature> features_;                                   ///< of the pair at hand
   struct Shared {

@@ -81,7 +81,8 @@ class Inspection {
       bool touched = moved.empty();
       for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, touched = touched || is_moved(f.v[k]);
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
-      faces_.push_back({corners, rows, box.grown(clearance), Plane(corners, box, clearance), ~0u, touched, f.crack > 0});
+      const double apart = f.crack > 0 ? clearance : 0;
+      faces_.push_back({corners, rows, box.grown(apart), Plane(corners, box, apart), ~0u, touched, f.crack > 0});
     }
     for (const Family& family : families)
       for (auto i = family.first; i < family.end; ++i)
@@ -137,27 +138,28 @@ class Inspection {
   Fault crossing_old() const {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
     std::sort(removed.begin(), removed.end());
-    std::vector<New> near;
-    std::vector<FaceId> ids;
     for (const Family& family : families_) {
       Box3 box;
       for (auto i = family.first; i < family.end; ++i)
         if (faces_[i].touched) box.add(faces_[i].box);
       if (box.empty()) continue;
-      near.clear(), ids.clear(), looked_up.clear();
+      looked_up.clear();
       if (family.near.empty()) complex_.near(box, looked_up);
       for (const FaceId f : family.near.empty() ? std::span<const FaceId>(looked_up) : family.near) {
         const auto corners = complex_.corners(f);
         const Box3 there = box_of(corners[0], corners[1], corners[2]);
         if (!there.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;
         const auto& v = complex_.face(f).v;
-        near.push_back({corners, {v[0].value, v[1].value, v[2].value}, there, Plane(corners, there, clearance_), ~0u, false, complex_.face(f).crack > 0});
-        ids.push_back(f);
+        const std::array<std::uint32_t, 3> rows{v[0].value, v[1].value, v[2].value};
+        const double size = (there.hi - there.lo).maxCoeff();
+        for (auto i = family.first; i < family.end; ++i) {
+          const New& face = faces_[i];
+          if (!face.touched || !there.meets(face.box) || face.plane.clears(face.rows, rows, corners, size)) continue;
+          const bool cracked = complex_.face(f).crack > 0;
+          const New old{corners, rows, there, Plane(corners, there, cracked ? clearance_ : 0), ~0u, false, cracked};
+          if (const char* what = fault_between(face, old)) return {std::string(what) + " face " + std::to_string(f.value), {i}};
+        }
       }
-      for (auto i = family.first; i < family.end; ++i)
-        for (std::size_t n = 0; n < near.size(); ++n)
-          if (faces_[i].touched && near[n].box.meets(faces_[i].box))
-            if (const char* what = fault_between(faces_[i], near[n])) return {std::string(what) + " face " + std::to_string(ids[n].value), {i}};
     }
     return {};
   }

@@ -239,6 +239,10 @@ std::uint64_t Points::hash(Local l) const {
   Vec3 p = near_[l];
   if (error_[l] > 0)
     for (int i = 0; i < 3; ++i) p[i] = nearest(quotient(exact(l).p[i], exact(l).w));
+  return hash_of(p);
+}
+
+std::uint64_t hash_of(const Vec3& p) {
   std::uint64_t h = 1469598103934665603ull;
   for (int i = 0; i < 3; ++i) {
     h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: one zero

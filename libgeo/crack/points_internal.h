@@ -17,6 +17,9 @@ namespace geo::crack {
 using Local = std::uint32_t;  ///< row of a point of the arrangement
 constexpr Local no_local = ~0u;
 
+/// Equal for equal points, both zeros being one.
+std::uint64_t hash_of(const Vec3& p);
+
 class Points {
  public:
   Points();

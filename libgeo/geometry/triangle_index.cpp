@@ -37,6 +37,8 @@ class TriangleIndex::Plane {
     reach_ = reach;
   }
   bool known() const { return known_; }
+  /// The axis that the plane is steepest to.
+  int axis() const { return axis_; }
   bool clear_of(const Vec3& middle, const Vec3& half) const {
     return std::abs(n_.dot(middle) - d_) > m_.dot(half) + (doubt(half.maxCoeff()) + reach_) * m_.sum();
   }
@@ -107,7 +109,7 @@ TriangleIndex::Level& TriangleIndex::level_of(const Box3& box) {
   exponent = std::clamp(exponent + 1 + (exponent & 1), -1001, 1001);
   const auto at = std::lower_bound(levels_.begin(), levels_.end(), exponent, [](const Level& l, int e) { return l.exponent < e; });
   if (at != levels_.end() && at->exponent == exponent) return *at;
-  return *levels_.insert(at, Level{exponent, std::ldexp(1.0, exponent), std::vector<Slot>(64), {}});
+  return *levels_.insert(at, Level{exponent, std::ldexp(1.0, exponent), 0, std::vector<Slot>(64), {}});
 }
 
 void TriangleIndex::reserve(std::size_t count) {
@@ -131,6 +133,7 @@ void TriangleIndex::insert(std::uint32_t id, const Box3& box) {
           entry = static_cast<std::uint32_t>(entries_.size()), entries_.emplace_back();
         const unsigned cell = cell_in_block(x, y, z);
         entries_[entry] = {id, block.first[cell]};
+        ++level.entries;
         block.first[cell] = entry;
         block.filled |= 1ull << cell;
       }
@@ -152,6 +155,7 @@ void TriangleIndex::erase(std::uint32_t id) {
         *link = entries_[entry].next;
         entries_[entry].next = free_;
         free_ = entry;
+        --level.entries;
         if (block.first[cell] == none) block.filled &= ~(1ull << cell);
       }
 }
@@ -189,7 +193,7 @@ void TriangleIndex::find(const Box3& box, std::vector<std::uint32_t>& out) const
     const Range cells = level.cells_of(box);
     Range blocks = cells;
     for (int i = 0; i < 3; ++i) blocks.lo[i] >>= block_shift, blocks.hi[i] >>= block_shift;
-    if (blocks.count() > 4.0 * static_cast<double>(level.blocks.size())) {
+    if (4 * blocks.count() > static_cast<double>(level.entries)) {
       visit_all(level, take);
       continue;
     }
@@ -219,7 +223,9 @@ void TriangleIndex::find_near_triangle(const Vec3& a, const Vec3& b, const Vec3&
     const Range cells = level.cells_of(box);
     Range blocks = cells;
     for (int i = 0; i < 3; ++i) blocks.lo[i] >>= block_shift, blocks.hi[i] >>= block_shift;
-    if (blocks.count() > 8.0 * static_cast<double>(level.blocks.size()))
+    // Blocks that the plane passes through are about two to a column; a block costs as much as a few entries.
+    const int w = plane.axis();
+    if (8 * blocks.count() / double(blocks.hi[w] - blocks.lo[w] + 1) > static_cast<double>(level.entries))
       visit_all(level, take);
     else
       plane.each_cube(blocks, side * level.cell, [&](const std::int64_t(&at)[3]) { visit(level, at, cells, &plane, take); });

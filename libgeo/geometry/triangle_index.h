@@ -48,6 +48,7 @@ class TriangleIndex {
   struct Level {
     int exponent;
     double cell;
+    std::size_t entries = 0;
     std::vector<Slot> slots;    // open addressing, a power of two
     std::vector<Block> blocks;  // never fewer: a region that was cut is cut again
     Range cells_of(const Box3& box) const;

@@ -1,0 +1,108 @@
+#include "crack/decimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <queue>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "crack/place_internal.h"
+#include "surface/delta_sum.h"
+
+namespace geo {
+namespace {
+
+class Decimator {
+ public:
+  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateWork& work)
+      : k_(k), contacts_(fronts), options_(options), work_(work), allowed_(options.deviation * k.extent().diagonal()) {
+    rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
+    rules_.skin_keeps = false;
+    limit_ = 1 / std::tan(options.angle * std::numbers::pi / 180);
+  }
+
+  CrackDelta run() {
+    for (std::uint32_t f = 0; f < k_.face_count(); ++f)
+      if (k_.alive(FaceId(f))) queue(FaceId(f));
+    while (!todo_.empty() && k_.live_face_count() > options_.faces) {
+      const auto [length, a, b] = todo_.top();
+      todo_.pop();
+      if (k_.around(a, b).empty()) continue;
+      if (!collapse(b, a)) collapse(a, b);
+    }
+    return delta_.sum();
+  }
+
+ private:
+  struct Edge {
+    double length;
+    VertexId a, b;
+    friend auto operator<=>(const Edge&, const Edge&) = default;
+  };
+  void queue(FaceId f) {
+    for (int e = 0; e < 3; ++e) {
+      const VertexId a = k_.face(f).v[e], b = k_.face(f).v[(e + 1) % 3];
+      todo_.push({(k_.point(b) - k_.point(a)).norm(), std::min(a, b), std::max(a, b)});
+    }
+  }
+  double moved(VertexId v) const {
+    const auto it = moved_.find(v);
+    return it == moved_.end() ? 0.0 : it->second;
+  }
+
+  bool collapse(VertexId b, VertexId a) {
+    if (!contacts_.may_leave_out(b, a)) return false;
+    const auto from = crack::place_of(k_, b, rules_), to = crack::place_of(k_, a, rules_);
+    if (!crack::lies_within(from, to)) return false;
+    double off = 0;
+    if (!from.features.empty()) {
+      const auto c = crack::opposite(from, a);
+      if (!c) return false;
+      off = crack::distance_to_segment(k_.point(b), k_.point(a), k_.point(*c));
+    }
+    // Distances add up: what came to lie at b before was already so far off.
+    if (moved(b) + off > allowed_) return false;
+    auto local = crack::collapse(k_, b, a);
+    if (!local) return false;
+    off = std::max(off, crack::distance_left(k_, *local, k_.point(b), rules_));
+    if (moved(b) + off > allowed_ || crack::worst_new(k_, *local) > std::max(limit_, crack::worst_old(k_, *local))) return false;
+    if (!crack::is_sound(k_, *local)) return ++work_.refused, false;
+    try {
+      const CrackDelta delta = k_.apply(local->edit);
+      for (const FaceId f : delta.new_faces) queue(f);
+      delta_.add(delta);
+    } catch (const GeometryError&) {
+      return ++work_.refused, false;
+    }
+    contacts_.leave_out(b);
+    moved_[a] = std::max(moved(a), moved(b) + off);
+    return ++work_.collapses, true;
+  }
+
+  Complex& k_;
+  crack::Contacts contacts_;
+  const DecimateOptions& options_;
+  DecimateWork& work_;
+  crack::PlaceRules rules_;
+  double allowed_, limit_ = 0;
+  std::priority_queue<Edge, std::vector<Edge>, std::greater<>> todo_;
+  std::unordered_map<VertexId, double> moved_;  // how far off what a vertex stands for may be
+  DeltaSum delta_;
+};
+
+}  // namespace
+
+CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateWork* work) {
+  if (!(options.deviation >= 0) || !(options.crease >= 0 && options.crease <= 180) || !(options.angle > 0 && options.angle < 60))
+    throw InputError("decimation needs a deviation of 0 or more, a crease between 0 and 180 and an angle between 0 and 60 degrees");
+  DecimateWork done;
+  Stopwatch watch;
+  CrackDelta delta = Decimator(complex, fronts, options, done).run();
+  done.seconds = watch.lap();
+  if (work) *work = done;
+  return delta;
+}
+
+}  // namespace geo

@@ -1,0 +1,175 @@
+#include "crack/roughen.h"
+
+#include <algorithm>
+#include <queue>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "crack/place_internal.h"
+#include "surface/complex_internal.h"
+#include "surface/delta_sum.h"
+
+namespace geo {
+namespace {
+
+class Roughener {
+ public:
+  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenWork& work)
+      : k_(k), contacts_(fronts), options_(options), work_(work), size_(k.extent().diagonal()) {
+    rules_.crease = -1;  // bends of a crack are not features here
+  }
+
+  CrackDelta run() {
+    divide(size_ * (options_.edge > 0 ? options_.edge : 0.125 / options_.frequency));
+    displace();
+    return delta_.sum();
+  }
+
+ private:
+  bool is_chosen(FaceId f) const {
+    const auto crack = k_.face(f).crack;
+    return k_.alive(f) && crack > 0 && (options_.cracks.empty() || std::count(options_.cracks.begin(), options_.cracks.end(), crack) > 0);
+  }
+  bool is_inner(VertexId a, VertexId b) const {
+    if (contacts_.holds(a) && contacts_.holds(b)) return false;
+    const auto ring = k_.around(a, b);
+    return ring.size() == 2 && k_.face(ring[0]).crack == k_.face(ring[1]).crack;
+  }
+
+  bool apply(crack::LocalEdit& local) {
+    if (!crack::is_sound(k_, local)) return false;
+    try {
+      const CrackDelta delta = k_.apply(local.edit);
+      delta_.add(delta);
+      last_ = delta.new_faces;
+      return true;
+    } catch (const GeometryError&) {
+      return false;
+    }
+  }
+
+  // The longest inner edge of each face first, so that faces stay about as round as they were.
+  void divide(double longest) {
+    std::vector<FaceId> todo;
+    for (std::uint32_t f = 0; f < k_.face_count(); ++f)
+      if (is_chosen(FaceId(f))) todo.push_back(FaceId(f));
+    while (!todo.empty()) {
+      const FaceId f = todo.back();
+      todo.pop_back();
+      if (!k_.alive(f)) continue;
+      const auto c = k_.corners(f);
+      const auto& v = k_.face(f).v;
+      int best = -1;
+      double length = longest;
+      for (int e = 0; e < 3; ++e)
+        if (const double here = (c[(e + 1) % 3] - c[e]).norm(); here > length && is_inner(v[e], v[(e + 1) % 3])) best = e, length = here;
+      if (best < 0) continue;
+      auto local = crack::divide(k_, v[best], v[(best + 1) % 3], 0.5 * (c[best] + c[(best + 1) % 3]));
+      if (!apply(local)) {
+        ++work_.refused;
+        continue;
+      }
+      ++work_.divisions;
+      todo.insert(todo.end(), last_.begin(), last_.end());
+    }
+  }
+
+  // Ways along edges from what stays as it is, as far as the noise fades.
+  std::unordered_map<VertexId, double> distances(const std::vector<VertexId>& vertices, const std::unordered_set<VertexId>& free, double reach) const {
+    using Way = std::pair<double, VertexId>;
+    std::priority_queue<Way, std::vector<Way>, std::greater<>> queue;
+    std::unordered_map<VertexId, double> distance;
+    for (const VertexId v : vertices)
+      if (!free.count(v)) distance[v] = 0, queue.push({0, v});
+    while (!queue.empty()) {
+      const auto [d, v] = queue.top();
+      queue.pop();
+      if (d > distance.at(v) || d > reach) continue;
+      for (const FaceId f : k_.faces_at(v))
+        if (is_chosen(f))
+          for (const VertexId w : k_.face(f).v) {
+            const double there = d + (k_.point(w) - k_.point(v)).norm();
+            const auto [it, fresh] = distance.try_emplace(w, there);
+            if (!fresh && there >= it->second) continue;
+            it->second = there;
+            queue.push({there, w});
+          }
+    }
+    return distance;
+  }
+
+  void displace() {
+    std::vector<VertexId> vertices;
+    for (std::uint32_t f = 0; f < k_.face_count(); ++f)
+      if (is_chosen(FaceId(f))) vertices.insert(vertices.end(), k_.face(FaceId(f)).v.begin(), k_.face(FaceId(f)).v.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::unordered_set<VertexId> free;
+    for (const VertexId v : vertices) {
+      if (contacts_.holds(v)) continue;
+      const auto place = crack::place_of(k_, v, rules_);
+      if (place.features.empty() && place.sources.empty() && place.cracks.size() == 1) free.insert(v);
+    }
+    const double height = options_.amplitude * size_, fade = 3 * height;
+    const auto distance = distances(vertices, free, fade);
+    struct Move {
+      VertexId vertex;
+      Vec3 by;
+    };
+    std::vector<Move> moves;
+    for (const VertexId v : vertices) {
+      if (!free.count(v)) continue;
+      Vec3 normal = Vec3::Zero();
+      std::int32_t crack = 0;
+      for (const FaceId f : k_.faces_at(v)) {
+        const auto t = k_.corners(f);
+        normal += (t[1] - t[0]).cross(t[2] - t[0]);
+        crack = k_.face(f).crack;
+      }
+      const double length = normal.norm();
+      if (!(length > 0)) continue;
+      double sum = 0, high = 1, fine = options_.frequency / size_;
+      for (int octave = 0; octave < options_.octaves; ++octave, high *= 0.5, fine *= 2)
+        sum += high * noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(crack) * 64 + static_cast<std::uint64_t>(octave));
+      const auto d = distance.find(v);
+      const double near = d == distance.end() ? 1 : std::min(1.0, d->second / fade);
+      moves.push_back({v, height * near * sum / length * normal});
+    }
+    for (Move& move : moves) {
+      for (int tries = 0; tries < 6; ++tries, move.by *= 0.5) {
+        auto local = crack::relocate(k_, move.vertex, k_.point(move.vertex) + move.by);
+        if (!apply(local)) continue;
+        ++work_.moves;
+        work_.lowered += tries > 0;
+        break;
+      }
+    }
+  }
+
+  Complex& k_;
+  crack::Contacts contacts_;
+  const RoughenOptions& options_;
+  RoughenWork& work_;
+  crack::PlaceRules rules_;
+  double size_;
+  std::vector<FaceId> last_;
+  DeltaSum delta_;
+};
+
+}  // namespace
+
+CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenWork* work) {
+  if (!(options.amplitude >= 0 && options.amplitude < 1) || !(options.frequency > 0 && options.frequency < 1e6) || options.octaves < 1 || options.octaves > 16 ||
+      !(options.edge >= 0))
+    throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive, its octaves 1 to 16");
+  RoughenWork done;
+  Stopwatch watch;
+  CrackDelta delta = Roughener(complex, fronts, options, done).run();
+  done.seconds = watch.lap();
+  if (work) *work = done;
+  return delta;
+}
+
+}  // namespace geo

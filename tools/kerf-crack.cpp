@@ -3,98 +3,211 @@
 #include <iostream>
 
 #include "crack/advance.h"
+#include "crack/decimate.h"
+#include "crack/remesh.h"
+#include "crack/roughen.h"
+#include "crack/sheet.h"
 #include "io/front_file.h"
 #include "io/stream.h"
 #include "model.h"
 #include "tool.h"
 
-int main(int argc, char** argv) {
-  tool::Tool t("kerf-crack", "Sweeps fronts through a solid and adds the cracks they leave, both sides of each.",
-               "  kerf-crack bear.off --front halve.front -o cut.ply\n  kerf-crack bear.off --front halve.front --steps 0:6 -o half.ply\n  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply\n  kerf-crack cut.ply --front second.front -o quarters.ply");
+namespace {
+
+struct Wishes {
   std::string model, steps, repro;
-  std::vector<std::string> front_paths;
-  double max_move = 0;
-  t.argument("MESH", model, "A closed surface, or the output of an earlier run to go on with");
-  t.option("--front", front_paths, "Front files, each front a crack of its own");
-  t.option("--steps", steps, "Sweep from time step A to B only, as A:B");
-  t.option("--max-move", max_move, "Divide steps in which a front point moves farther; 0: never");
-  t.option("--repro", repro, "Where to write model and front when a step fails");
-  t.output("The cut surface (PLY with patch and site; .obj on request)");
-  return t.run(argc, argv, [&] {
-    if (front_paths.empty()) throw tool::UsageError("give at least one --front");
-    std::size_t from = 0, to = ~std::size_t(0);
-    if (!steps.empty()) {
-      unsigned long a = 0, b = 0;
-      char rest = 0;
-      if (std::sscanf(steps.c_str(), "%lu:%lu%c", &a, &b, &rest) != 2 || a >= b) throw tool::UsageError("--steps '" + steps + "' is not A:B with A < B");
-      from = a, to = b;
-    }
-    if (max_move < 0) throw tool::UsageError("--max-move must not be negative");
-    const std::string target = t.target(true);
-    std::vector<geo::Front> fronts;
-    for (const auto& path : front_paths) {
-      const auto more = geo::read_fronts(path);
-      fronts.insert(fronts.end(), more.begin(), more.end());
-    }
-    const auto file = tool::read_solid(model);
-    geo::Complex complex = tool::complex_of(file, model);
-    std::vector<geo::FrontState> states = file.fronts;
-    const auto cut_surface = [&] {
-      geo::TriangleMesh mesh = complex.two_sided();
-      geo::carry(file.mesh, mesh);
-      return mesh;
-    };
-    const auto progress = t.progress();
-    geo::CrackOptions options;
-    options.seed = t.seed;
-    std::string json = "[";
+  std::vector<std::string> fronts, sheets;
+  double max_move = 0, remesh = 0, jagged = 0, bumps = 8, decimate = 0;
+  std::size_t from = 0, to = ~std::size_t(0);
+};
+
+void check(Wishes& w) {
+  if (w.fronts.empty() && w.sheets.empty() && !(w.jagged > 0) && !(w.decimate > 0)) throw tool::UsageError("give at least one --front, --sheet, --jagged or --decimate");
+  if (!w.steps.empty()) {
+    unsigned long a = 0, b = 0;
+    char rest = 0;
+    if (std::sscanf(w.steps.c_str(), "%lu:%lu%c", &a, &b, &rest) != 2 || a >= b) throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A < B");
+    w.from = a, w.to = b;
+  }
+  if (!(w.max_move >= 0)) throw tool::UsageError("--max-move must not be negative");
+  if (!(w.remesh >= 0 && w.remesh <= 30)) throw tool::UsageError("--remesh must be an angle between 0 and 30 degrees");
+  if (!(w.jagged >= 0 && w.jagged < 1)) throw tool::UsageError("--jagged must be a fraction of the diagonal, at least 0 and below 1");
+  if (!(w.bumps > 0 && w.bumps <= 1e4)) throw tool::UsageError("--bumps must be positive and at most 10000");
+  if (!(w.decimate >= 0 && w.decimate < 1)) throw tool::UsageError("--decimate must be a fraction of the diagonal, at least 0 and below 1");
+}
+
+class Cutting {
+ public:
+  Cutting(const Wishes& wishes, const tool::Tool& t) : w_(wishes), t_(t), file_(tool::read_solid(w_.model)), complex_(tool::complex_of(file_, w_.model)), states_(file_.fronts) {
+    options_.seed = t.seed;
+  }
+
+  void decimate() {
+    if (!(w_.decimate > 0)) return;
+    geo::DecimateOptions options;
+    options.deviation = w_.decimate;
+    geo::DecimateWork work;
+    geo::decimate(complex_, held(), options, &work);
+    note("\"decimate\":{\"collapses\":" + std::to_string(work.collapses) + ",\"faces\":" + std::to_string(complex_.live_face_count()) + ",\"seconds\":" + tool::number(work.seconds) + "}");
+  }
+
+  void sweep(const std::vector<geo::Front>& fronts) {
+    const auto progress = t_.progress();
     std::size_t done = 0, total = 0;
-    for (const auto& f : fronts) total += std::min(to, f.steps.size() - 1) - std::min(from, f.steps.size() - 1);
+    for (const auto& f : fronts) total += std::min(w_.to, f.steps.size() - 1) - std::min(w_.from, f.steps.size() - 1);
     for (const auto& front : fronts) {
-      const std::size_t last = std::min(to, front.steps.size() - 1);
-      if (from >= last) throw geo::InputError("front '" + front.name + "' has only " + std::to_string(front.steps.size()) + " time steps; change --steps");
-      // A front of this name that stopped where we begin is taken up again, contacts and all.
-      auto state = std::find_if(states.begin(), states.end(), [&](const geo::FrontState& s) { return s.name == front.name && s.step == from && from > 0; });
-      if (state == states.end()) {
-        std::int32_t crack = complex.crack_count();  // fronts that have met nothing yet have their numbers already
-        for (const auto& other : states) crack = std::max(crack, other.crack);
-        states.push_back(geo::begin_front(front.steps[from], front.closed, crack + 1));
-        state = states.end() - 1;
-        state->name = front.name;
-      }
-      state->step = static_cast<std::uint32_t>(from);
-      for (std::size_t step = from; step < last; ++step) {
+      const std::size_t last = std::min(w_.to, front.steps.size() - 1);
+      if (w_.from >= last) throw geo::InputError("front '" + front.name + "' has only " + std::to_string(front.steps.size()) + " time steps; change --steps");
+      const std::size_t row = state_of(front);
+      for (std::size_t step = w_.from; step < last; ++step) {
         geo::report(progress, "crack " + front.name, done++, total);
-        std::vector<geo::Vec3> start;
-        for (const auto& p : state->points) start.push_back(p.position);
-        const auto end = geo::correspond(start, front.steps[step + 1], front.closed);
-        const int parts = max_move > 0 ? geo::substeps(start, end, max_move) : 1;
-        geo::CrackWork work;
-        for (int i = 1; i <= parts; ++i) {
-          std::vector<geo::Vec3> next = end;
-          if (i < parts)
-            for (std::size_t p = 0; p < next.size(); ++p) next[p] = start[p] + (end[p] - start[p]) * (double(i) / parts);
-          try {
-            geo::advance(complex, *state, next, options, &work);
-          } catch (const geo::GeometryError& e) {
-            if (!repro.empty()) {
-              geo::write_all(repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, cut_surface(), states); });
-              geo::write_all(repro + ".front", [&](std::ostream& out) { geo::write_fronts(out, {{front.name, front.closed, {start, next}}}); });
-            }
-            throw geo::GeometryError(model + ": front '" + front.name + "', " + e.what() + "; " + (repro.empty() ? "run again with --repro FILE to keep the case" : "the case is in " + repro + ".ply and .front"));
-          }
-        }
-        state->step = static_cast<std::uint32_t>(step + 1);
-        json += std::string(json.size() > 1 ? "," : "") + "{\"front\":" + tool::quoted(front.name) + ",\"step\":" + std::to_string(step + 1) +
-                ",\"triangles_cut\":" + std::to_string(work.triangles_cut) + ",\"crack_faces\":" + std::to_string(work.new_crack_faces) +
-                ",\"attempts\":" + std::to_string(work.attempts) + ",\"repairs\":" + std::to_string(work.repairs) + ",\"seconds\":{\"near\":" + tool::number(work.near_seconds) + ",\"meet\":" + tool::number(work.meet_seconds) +
-                ",\"split\":" + tool::number(work.split_seconds) + ",\"keep\":" + tool::number(work.keep_seconds) + ",\"stitch\":" + tool::number(work.stitch_seconds) +
-                ",\"guard\":" + tool::number(work.guard_seconds) + ",\"total\":" + tool::number(work.seconds()) + "}}";
+        make_step(front, states_[row], step);
       }
     }
     geo::report(progress, "done", total, total);
+  }
+
+  void insert(const std::string& path) {
+    const auto sheet = geo::read_surface(path).mesh;
+    geo::CrackWork work;
+    geo::CrackDelta delta;
+    try {
+      delta = geo::insert_sheet(complex_, sheet, next_crack(), options_, &work);
+    } catch (const geo::GeometryError& e) {
+      throw geo::GeometryError(path + ": " + e.what());
+    }
+    note("\"sheet\":" + tool::quoted(path) + "," + figures(work) + remeshed(delta.new_faces));
+  }
+
+  void roughen() {
+    if (!(w_.jagged > 0)) return;
+    geo::RoughenOptions options;
+    options.amplitude = w_.jagged, options.frequency = w_.bumps, options.seed = t_.seed;
+    geo::RoughenWork work;
+    geo::roughen(complex_, held(), options, &work);
+    note("\"jagged\":{\"divisions\":" + std::to_string(work.divisions) + ",\"moves\":" + std::to_string(work.moves) + ",\"lowered\":" + std::to_string(work.lowered) + ",\"seconds\":" + tool::number(work.seconds) + "}");
+  }
+
+  void write(const std::string& target) const {
     const auto mesh = cut_surface();
-    geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states, "kerf-crack"); });
-    if (t.json) (target == "-" ? std::cerr : std::cout) << json << "]\n";
+    geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states_, "kerf-crack"); });
+    if (t_.json) (target == "-" ? std::cerr : std::cout) << '[' << json_ << "]\n";
+  }
+
+ private:
+  geo::TriangleMesh cut_surface() const {
+    geo::TriangleMesh mesh = complex_.two_sided();
+    geo::carry(file_.mesh, mesh);
+    return mesh;
+  }
+  void note(const std::string& entry) { json_ += (json_.empty() ? "{" : ",{") + entry + "}"; }
+  std::vector<geo::FrontState*> held() {
+    std::vector<geo::FrontState*> fronts;
+    for (auto& s : states_) fronts.push_back(&s);
+    return fronts;
+  }
+  std::int32_t next_crack() const {
+    std::int32_t crack = complex_.crack_count();  // fronts that have met nothing yet have their numbers already
+    for (const auto& other : states_) crack = std::max(crack, other.crack);
+    return crack + 1;
+  }
+
+  // A front of this name that stopped where we begin is taken up again, contacts and all.
+  std::size_t state_of(const geo::Front& front) {
+    auto state = std::find_if(states_.begin(), states_.end(), [&](const geo::FrontState& s) { return s.name == front.name && s.step == w_.from && w_.from > 0; });
+    if (state == states_.end()) {
+      states_.push_back(geo::begin_front(front.steps[w_.from], front.closed, next_crack()));
+      state = states_.end() - 1;
+      state->name = front.name;
+    }
+    state->step = static_cast<std::uint32_t>(w_.from);
+    return static_cast<std::size_t>(state - states_.begin());
+  }
+
+  void make_step(const geo::Front& front, geo::FrontState& state, std::size_t step) {
+    std::vector<geo::Vec3> start;
+    for (const auto& p : state.points) start.push_back(p.position);
+    const auto end = geo::correspond(start, front.steps[step + 1], front.closed);
+    const int parts = w_.max_move > 0 ? geo::substeps(start, end, w_.max_move) : 1;
+    geo::CrackWork work;
+    std::vector<geo::FaceId> made;
+    for (int i = 1; i <= parts; ++i) {
+      std::vector<geo::Vec3> next = end;
+      if (i < parts)
+        for (std::size_t p = 0; p < next.size(); ++p) next[p] = start[p] + (end[p] - start[p]) * (double(i) / parts);
+      try {
+        const auto delta = geo::advance(complex_, state, next, options_, &work);
+        made.insert(made.end(), delta.new_faces.begin(), delta.new_faces.end());
+      } catch (const geo::GeometryError& e) {
+        if (!w_.repro.empty()) {
+          geo::write_all(w_.repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, cut_surface(), states_); });
+          geo::write_all(w_.repro + ".front", [&](std::ostream& out) { geo::write_fronts(out, {{front.name, front.closed, {start, next}}}); });
+        }
+        throw geo::GeometryError(w_.model + ": front '" + front.name + "', " + e.what() + "; " +
+                                 (w_.repro.empty() ? "run again with --repro FILE to keep the case" : "the case is in " + w_.repro + ".ply and .front"));
+      }
+    }
+    state.step = static_cast<std::uint32_t>(step + 1);
+    note("\"front\":" + tool::quoted(front.name) + ",\"step\":" + std::to_string(step + 1) + "," + figures(work) + remeshed(made));
+  }
+
+  static std::string figures(const geo::CrackWork& work) {
+    return "\"triangles_cut\":" + std::to_string(work.triangles_cut) + ",\"crack_faces\":" + std::to_string(work.new_crack_faces) + ",\"attempts\":" + std::to_string(work.attempts) +
+           ",\"repairs\":" + std::to_string(work.repairs) + ",\"seconds\":{\"near\":" + tool::number(work.near_seconds) + ",\"meet\":" + tool::number(work.meet_seconds) +
+           ",\"split\":" + tool::number(work.split_seconds) + ",\"keep\":" + tool::number(work.keep_seconds) + ",\"stitch\":" + tool::number(work.stitch_seconds) +
+           ",\"guard\":" + tool::number(work.guard_seconds) + ",\"total\":" + tool::number(work.seconds()) + "}";
+  }
+
+  std::string remeshed(const std::vector<geo::FaceId>& faces) {
+    if (!(w_.remesh > 0)) return {};
+    geo::RemeshOptions options;
+    options.angle = w_.remesh;
+    geo::RemeshWork work;
+    geo::remesh(complex_, faces, held(), options, &work);
+    return ",\"remesh\":{\"flips\":" + std::to_string(work.flips) + ",\"collapses\":" + std::to_string(work.collapses) + ",\"moves\":" + std::to_string(work.moves) +
+           ",\"divisions\":" + std::to_string(work.divisions) + ",\"seconds\":" + tool::number(work.seconds) + "}";
+  }
+
+  const Wishes& w_;
+  const tool::Tool& t_;
+  geo::SurfaceFile file_;
+  geo::Complex complex_;
+  std::vector<geo::FrontState> states_;
+  geo::CrackOptions options_;
+  std::string json_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-crack", "Sweeps fronts through a solid and adds the cracks they leave, both sides of each.",
+               "  kerf-crack bear.off --front halve.front -o cut.ply\n  kerf-crack bear.off --front halve.front --steps 0:6 -o half.ply\n  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply\n"
+               "  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply\n  kerf-crack bear.off --sheet plane.obj --jagged 0.01 -o broken.ply");
+  Wishes w;
+  t.argument("MESH", w.model, "A closed surface, or the output of an earlier run to go on with");
+  t.option("--front", w.fronts, "Front files, each front a crack of its own");
+  t.option("--sheet", w.sheets, "Surfaces, open or closed, each inserted whole as a crack of its own");
+  t.option("--steps", w.steps, "Sweep from time step A to B only, as A:B");
+  t.option("--max-move", w.max_move, "Divide steps in which a front point moves farther; 0: never");
+  t.option("--remesh", w.remesh, "After each step, improve new faces with angles below this, in degrees; 0: never");
+  t.option("--jagged", w.jagged, "At last, roughen the cracks: height of the bumps as a fraction of the model's diagonal");
+  t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal");
+  t.option("--decimate", w.decimate, "First, drop vertices whose surface stays within this fraction of the diagonal");
+  t.option("--repro", w.repro, "Where to write model and front when a step fails");
+  t.output("The cut surface (PLY with patch and site; .obj on request)");
+  return t.run(argc, argv, [&] {
+    check(w);
+    const std::string target = t.target(true);
+    std::vector<geo::Front> fronts;
+    for (const auto& path : w.fronts) {
+      const auto more = geo::read_fronts(path);
+      fronts.insert(fronts.end(), more.begin(), more.end());
+    }
+    Cutting cutting(w, t);
+    cutting.decimate();
+    cutting.sweep(fronts);
+    for (const auto& path : w.sheets) cutting.insert(path);
+    cutting.roughen();
+    cutting.write(target);
   });
 }

@@ -62,12 +62,17 @@ class Decimator {
       if (!c) return false;
       off = crack::distance_to_segment(k_.point(b), k_.point(a), k_.point(*c));
     }
-    // Distances add up: what came to lie at b before was already so far off.
-    if (moved(b) + off > allowed_) return false;
+    if (off > allowed_) return false;
     auto local = crack::collapse(k_, b, a);
     if (!local) return false;
     off = std::max(off, crack::distance_left(k_, *local, k_.point(b), rules_));
-    if (moved(b) + off > allowed_ || crack::worst_new(k_, *local) > std::max(limit_, crack::worst_old(k_, *local))) return false;
+    if (crack::worst_new(k_, *local) > std::max(limit_, crack::worst_old(k_, *local))) return false;
+    // Distances add up: all that the corners of the new faces stand for may be this much farther off now.
+    std::vector<std::pair<VertexId, double>> moved_now{{a, std::max(moved(a), moved(b)) + off}};
+    for (const auto& f : local->edit.new_faces)
+      for (const VertexId v : f.v)
+        if (v != a) moved_now.push_back({v, moved(v) + off});
+    if (std::any_of(moved_now.begin(), moved_now.end(), [&](const auto& m) { return m.second > allowed_; })) return false;
     if (!crack::is_sound(k_, *local)) return ++work_.refused, false;
     try {
       const CrackDelta delta = k_.apply(local->edit);
@@ -77,7 +82,7 @@ class Decimator {
       return ++work_.refused, false;
     }
     contacts_.leave_out(b);
-    moved_[a] = std::max(moved(a), moved(b) + off);
+    for (const auto& [v, distance] : moved_now) moved_[v] = distance;
     return ++work_.collapses, true;
   }
 
@@ -88,7 +93,7 @@ class Decimator {
   crack::PlaceRules rules_;
   double allowed_, limit_ = 0;
   std::priority_queue<Edge, std::vector<Edge>, std::greater<>> todo_;
-  std::unordered_map<VertexId, double> moved_;  // how far off what a vertex stands for may be
+  std::unordered_map<VertexId, double> moved_;  // how far off what the faces at a vertex stand for may be
   DeltaSum delta_;
 };
 

@@ -32,10 +32,18 @@ class Roughener {
     const auto crack = k_.face(f).crack;
     return k_.alive(f) && crack > 0 && (options_.cracks.empty() || std::count(options_.cracks.begin(), options_.cracks.end(), crack) > 0);
   }
-  bool is_inner(VertexId a, VertexId b) const {
+  // Inside one crack, or at its tip where no front holds that.
+  bool may_divide(VertexId a, VertexId b) const {
     if (contacts_.holds(a) && contacts_.holds(b)) return false;
     const auto ring = k_.around(a, b);
-    return ring.size() == 2 && k_.face(ring[0]).crack == k_.face(ring[1]).crack;
+    return ring.size() <= 2 && is_chosen(ring[0]) && is_chosen(ring[ring.size() - 1]);
+  }
+  double length_of(FaceId f, int e) const { return (k_.point(k_.face(f).v[(e + 1) % 3]) - k_.point(k_.face(f).v[e])).norm(); }
+  int longest_edge(FaceId f) const {
+    int best = 0;
+    for (int e = 1; e < 3; ++e)
+      if (length_of(f, e) > length_of(f, best)) best = e;
+    return best;
   }
 
   bool apply(crack::LocalEdit& local) {
@@ -50,7 +58,8 @@ class Roughener {
     }
   }
 
-  // The longest inner edge of each face first, so that faces stay about as round as they were.
+  // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so that faces stay about as
+  // round as they were. Where the way there ends at an edge that must stay, the faces before it stay as large.
   void divide(double longest) {
     std::vector<FaceId> todo;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
@@ -58,20 +67,25 @@ class Roughener {
     while (!todo.empty()) {
       const FaceId f = todo.back();
       todo.pop_back();
-      if (!k_.alive(f)) continue;
-      const auto c = k_.corners(f);
-      const auto& v = k_.face(f).v;
-      int best = -1;
-      double length = longest;
-      for (int e = 0; e < 3; ++e)
-        if (const double here = (c[(e + 1) % 3] - c[e]).norm(); here > length && is_inner(v[e], v[(e + 1) % 3])) best = e, length = here;
-      if (best < 0) continue;
-      auto local = crack::divide(k_, v[best], v[(best + 1) % 3], 0.5 * (c[best] + c[(best + 1) % 3]));
+      if (!k_.alive(f) || !(length_of(f, longest_edge(f)) > longest)) continue;
+      FaceId at = f;
+      for (FaceId next = at; next.valid();) {
+        at = next;
+        next = {};
+        const int e = longest_edge(at);
+        for (const FaceId g : k_.around(k_.face(at).v[e], k_.face(at).v[(e + 1) % 3]))
+          if (length_of(g, longest_edge(g)) > length_of(at, e) * (1 + 1e-9)) next = g;
+      }
+      const int e = longest_edge(at);
+      const VertexId a = k_.face(at).v[e], b = k_.face(at).v[(e + 1) % 3];
+      if (!may_divide(a, b)) continue;
+      auto local = crack::divide(k_, a, b, 0.5 * (k_.point(a) + k_.point(b)));
       if (!apply(local)) {
         ++work_.refused;
         continue;
       }
       ++work_.divisions;
+      todo.push_back(f);
       todo.insert(todo.end(), last_.begin(), last_.end());
     }
   }

@@ -170,53 +170,70 @@ std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex
   return pairs;
 }
 
-SurfaceReport check_complex(const Complex& k, bool crossings) {
-  SurfaceReport report;
-  for (std::uint32_t f = 0; f < k.face_count(); ++f) {
-    if (!k.alive(FaceId(f))) continue;
-    const auto& face = k.face(FaceId(f));
-    const auto c = k.corners(FaceId(f));
-    if (collinear(c[0], c[1], c[2])) {
-      ++report.degenerate_faces;
-      note(report, "face " + std::to_string(f) + " is degenerate (no area)");
+namespace {
+
+void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
+  const auto& face = k.face(FaceId(f));
+  const auto c = k.corners(FaceId(f));
+  if (collinear(c[0], c[1], c[2])) {
+    ++report.degenerate_faces;
+    note(report, "face " + std::to_string(f) + " is degenerate (no area)");
+  }
+  for (int e = 0; e < 3; ++e) {
+    const VertexId a = face.v[e], b = face.v[(e + 1) % 3];
+    const auto ring = k.around(a, b);
+    if (std::find(ring.begin(), ring.end(), FaceId(f)) == ring.end()) {
+      report.manifold = false;
+      note(report, "face " + std::to_string(f) + " is missing around its edge " + edge_name(a, b));
+      continue;
     }
-    for (int e = 0; e < 3; ++e) {
-      const VertexId a = face.v[e], b = face.v[(e + 1) % 3];
-      const auto ring = k.around(a, b);
-      if (std::find(ring.begin(), ring.end(), FaceId(f)) == ring.end()) {
+    try {
+      check_ring(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b), [&](FaceId g) { return k.face(g); });
+    } catch (const GeometryError& error) {
+      report.closed = false;
+      note(report, error.what());
+      continue;
+    }
+    for (int which = 0; which < 2; ++which) {
+      const Side s{FaceId(f), which};
+      if (!k.has(s)) continue;
+      // The neighbour's neighbour is the side itself, and both see the same surface vertices at the edge.
+      const Side n = k.neighbor(s, e);
+      const auto& g = k.face(n.face);
+      const int na = corner_at(g, a), nb = corner_at(g, b);
+      const int back = (na + 1) % 3 == nb ? na : nb;
+      if (!k.has(n) || k.neighbor(n, back) != s || k.surface_vertex(n, na) != k.surface_vertex(s, e) ||
+          k.surface_vertex(n, nb) != k.surface_vertex(s, (e + 1) % 3)) {
         report.manifold = false;
-        note(report, "face " + std::to_string(f) + " is missing around its edge " + edge_name(a, b));
-        continue;
+        note(report, "the two sides at edge " + edge_name(a, b) + " of face " + std::to_string(f) + " do not fit");
       }
-      try {
-        check_ring(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b), [&](FaceId g) { return k.face(g); });
-      } catch (const GeometryError& error) {
-        report.closed = false;
-        note(report, error.what());
-        continue;
-      }
-      for (int which = 0; which < 2; ++which) {
-        const Side s{FaceId(f), which};
-        if (!k.has(s)) continue;
-        // The neighbour's neighbour is the side itself, and both see the same surface vertices at the edge.
-        const Side n = k.neighbor(s, e);
-        const auto& g = k.face(n.face);
-        const int na = corner_at(g, a), nb = corner_at(g, b);
-        const int back = (na + 1) % 3 == nb ? na : nb;
-        if (!k.has(n) || k.neighbor(n, back) != s || k.surface_vertex(n, na) != k.surface_vertex(s, e) ||
-            k.surface_vertex(n, nb) != k.surface_vertex(s, (e + 1) % 3)) {
-          report.manifold = false;
-          note(report, "the two sides at edge " + edge_name(a, b) + " of face " + std::to_string(f) + " do not fit");
-        }
-        // Oriented: across the edge the derived triangles run in opposite directions.
-        const bool up_s = runs_upwards(face, a, b) == (which == 0), up_n = runs_upwards(g, a, b) == (n.which == 0);
-        if (up_s == up_n) {
-          report.oriented = false;
-          note(report, "the derived surface is not oriented at edge " + edge_name(a, b));
-        }
+      // Oriented: across the edge the derived triangles run in opposite directions.
+      const bool up_s = runs_upwards(face, a, b) == (which == 0), up_n = runs_upwards(g, a, b) == (n.which == 0);
+      if (up_s == up_n) {
+        report.oriented = false;
+        note(report, "the derived surface is not oriented at edge " + edge_name(a, b));
       }
     }
   }
+}
+
+}  // namespace
+
+SurfaceReport check_near(const Complex& k, std::span<const FaceId> faces) {
+  SurfaceReport report;
+  for (const FaceId f : faces) {
+    if (!k.alive(f)) continue;
+    check_face(k, f.value, report);
+    for (const VertexId v : k.face(f).v)
+      for (const FaceId g : k.faces_at(v)) check_face(k, g.value, report);
+  }
+  return report;
+}
+
+SurfaceReport check_complex(const Complex& k, bool crossings) {
+  SurfaceReport report;
+  for (std::uint32_t f = 0; f < k.face_count(); ++f)
+    if (k.alive(FaceId(f))) check_face(k, f, report);
   if (crossings) {
     const auto pairs = self_intersections(k);
     report.self_intersections = pairs.size();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 /// Checks K: structure (rings list their edges' faces and material sides agree), derived surface closed, oriented,
 /// manifold, no face without area, and with `self_intersections` no two faces crossing or overlapping, exactly.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
+
+/// The structural part of check_complex() for some faces (dead ones are skipped) and those that share a corner with them:
+/// all that a step with these new faces can have broken. Cost follows the faces.
+SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 
 /// True when two triangles, given by vertex ids and points, meet other than in the vertices and edges they share by id.
 /// Exact.

@@ -150,6 +150,7 @@ TEST_CASE("Every kind of front through every model keeps every invariant after e
             const CrackDelta delta = advance(k, front, sweep.rows[s], {}, &work);
             const auto crossing = self_intersections(k, &delta.new_faces);
             if (!crossing.empty()) FAIL("faces " << crossing[0].first.value << " and " << crossing[0].second.value << " cross");
+            if (const auto report = check_near(k, delta.new_faces); !report.good()) FAIL(report.first_problem);
           } catch (const GeometryError& e) {
             const std::string why = e.what();
             ++refused[why.substr(why.find(": ") + 2, 48)];

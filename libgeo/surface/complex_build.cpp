@@ -389,6 +389,22 @@ ComplexEdit Complex::difference(const Complex& other) const {
     edit.new_faces.push_back({shape.v, shape.crack, parent});
     for (int k = 0; k < 3; ++k) touched[key(shape.v[k], shape.v[(k + 1) % 3])] = {shape.v[k], shape.v[(k + 1) % 3]};
   }
+  // What was a crack must still be one there: a body's nodes are on its sides.
+  TriangleIndex made;
+  for (const FaceId f : fresh) made.insert(f.value, other.box(f));
+  for (const FaceId f : edit.removed_faces) {
+    const auto c = corners(f);
+    const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
+    candidates.clear();
+    made.find(Box3{middle, middle}.grown(1e-7 * scale), candidates);
+    const bool found = std::any_of(candidates.begin(), candidates.end(), [&](std::uint32_t id) {
+      const auto p = other.corners(FaceId(id));
+      return other.face(FaceId(id)).crack == face(f).crack && (closest_point_on_triangle(middle, p[0], p[1], p[2]) - middle).norm() < 1e-7 * scale;
+    });
+    if (!found)
+      throw InputError(face(f).crack > 0 ? "crack " + std::to_string(face(f).crack) + " of the body was moved since; build the body anew from the new surface"
+                                         : "the surface has not grown from the body's: skin is gone");
+  }
   for (const FaceId f : edit.removed_faces)
     for (int k = 0; k < 3; ++k) touched[key(face(f).v[k], face(f).v[(k + 1) % 3])] = {face(f).v[k], face(f).v[(k + 1) % 3]};
   for (const auto& [edge, ends] : touched) {

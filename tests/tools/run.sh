@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | stops | simulation
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | stops | simulation
 set -u
 PATH=$1:$2:$PATH models=$3 what=$4
 work=$(mktemp -d)
@@ -171,6 +171,42 @@ attributes)
   quietly kerf-sim -q s.toml -o parts --resume
   cmp run/frames/frame_0002.ply parts/frames/frame_0002.ply || fail "attributes of a frame differ after --resume"
   kerf-info --json run/frames/frame_0002.ply | grep -q '"attributes":\["uv","group","source"\]' || fail "a frame has no attributes"
+  ;;
+details)
+  # Sheets, remeshing, roughening, decimation: valid, the same for one seed, with attributes and fronts kept.
+  kerf-model pumpkin --frequency 12 -o p.ply
+  kerf-model front --around p.ply --steps 6 -o f.front
+  printf 'v -2 -2 0.4\nv 2 -2 0.3\nv 2 2 0.41\nv -2 2 0.5\nf 1 2 3\nf 1 3 4\n' >sheet.obj
+  quietly kerf-crack p.ply --sheet sheet.obj -o sheet.ply
+  quietly kerf-crack p.ply --front f.front --remesh 15 -o remeshed.ply
+  quietly kerf-crack p.ply --front f.front --steps 0:3 --remesh 15 -o half.ply
+  quietly kerf-crack half.ply --front f.front --steps 3:6 --remesh 15 --sheet sheet.obj -o both.ply
+  quietly kerf-crack p.ply --front f.front --jagged 0.01 --seed 3 -o jagged.ply
+  quietly kerf-crack p.ply --front f.front --jagged 0.01 --seed 3 -j 1 -o again.ply
+  quietly kerf-crack p.ply --front f.front --jagged 0.01 --seed 4 -o other.ply
+  quietly kerf-crack p.ply --decimate 0.003 --front f.front -o few.ply
+  for file in sheet remeshed both jagged few; do
+    kerf-info --check --json $file.ply >info.json || fail "$file.ply: $(cat info.json)"
+    grep -q '"pieces":[234]' info.json || fail "$file.ply is not cut through: $(cat info.json)"
+  done
+  cmp jagged.ply again.ply || fail "the same seed gives other bumps"
+  cmp -s jagged.ply other.ply && fail "another seed gives the same bumps"
+  faces() { kerf-info --json $1 | grep -o '"skin_faces":[0-9]*' | cut -d: -f2; }
+  [ "$(faces few.ply)" -lt "$(faces p.ply)" ] || fail "few.ply has $(faces few.ply) faces"
+  kerf-crack p.ply --front f.front --remesh 15 --jagged 0.005 --decimate 0.001 --json -o all.ply | grep -q '"decimate".*"remesh".*"jagged"' || fail "--json does not tell of each"
+  # A body follows a crack that grows, but not one that was displaced since.
+  kerf-sample p.ply --spacing 12% | kerf-graph --surface p.ply -o p.kerf
+  quietly kerf-update p.kerf --surface jagged.ply -o jagged.kerf
+  quietly kerf-info --check -q jagged.kerf
+  kerf-crack p.ply --front f.front -o plain.ply
+  quietly kerf-update p.kerf --surface plain.ply -o plain.kerf
+  quietly kerf-crack plain.ply --jagged 0.01 -o later.ply
+  expect 65 "crack 1 .*moved" kerf-update plain.kerf --surface later.ply -o x.kerf
+  expect 2 "remesh" kerf-crack p.ply --front f.front --remesh 80 -o x.ply
+  expect 2 "jagged" kerf-crack p.ply --jagged nan -o x.ply
+  expect 2 "decimate" kerf-crack p.ply --decimate 2 -o x.ply
+  expect 2 "at least one" kerf-crack p.ply -o x.ply
+  expect 66 "none.obj" kerf-crack p.ply --sheet none.obj -o x.ply
   ;;
 stops)
   kerf-model block --edge 0.06 -o block.ply

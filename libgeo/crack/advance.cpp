@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/stopwatch.h"
+#include "crack/insert_internal.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
-#include "crack/insert_internal.h"
 
 namespace geo {
 namespace {
@@ -113,14 +113,14 @@ Vec3 clear_of_faces(const Complex& complex, Vec3 p, double distance) {
   return p;
 }
 
-struct Attempt {
+struct Step {
   CrackDelta delta;
   FrontState front;
 };
 
-Attempt try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance, CrackWork& work) {
+Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance, CrackWork& work) {
   Stopwatch watch;
-  Attempt result{{}, front};
+  Step result{{}, front};
   Strip strip = sweep(front, next);
   work.snapped += snap_to_vertices(strip, complex, reach);
   work.near_seconds += watch.lap();
@@ -181,16 +181,15 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   CrackWork done;
   std::string reason;
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
-  double jitter = 0;
+  std::vector<Vec3> wanted(next.begin(), next.end());
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (wanted[i] != old.points[i].position) wanted[i] = clear_of_faces(complex, wanted[i], options.clear * size);
   for (int attempt = 0; attempt <= options.attempts; ++attempt) {
-    std::vector<Vec3> target(next.begin(), next.end());
+    const double jitter = crack::attempt_at(attempt, options, size).jitter, clearance = crack::attempt_at(attempt, options, size).clearance;
+    std::vector<Vec3> target = wanted;
     FrontState from = old;
-    for (std::size_t i = 0; i < target.size(); ++i)
-      if (target[i] != old.points[i].position) target[i] = clear_of_faces(complex, target[i], options.clear * size);
     if (attempt > 0) {
-      // Eight times further each time, up to a few millionths; then other directions at that distance.
-      jitter = attempt == 1 ? options.jitter : std::min(jitter * 8, options.jitter * 4096);
-      const auto moved = [&](const Vec3& p) { return Vec3(p + random.uniform(0.2, 1.0) * jitter * size * random.direction()); };
+      const auto moved = [&](const Vec3& p) { return Vec3(p + random.uniform(0.2, 1.0) * jitter * random.direction()); };
       for (std::size_t i = 0; i < target.size(); ++i)
         if (target[i] != old.points[i].position || front.step == 0) target[i] = moved(target[i]);
       if (front.step == 0)
@@ -208,7 +207,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
     }
     ++done.attempts;
     try {
-      Attempt result = try_step(complex, from, target, options.snap * size, 2 * attempt <= options.attempts ? options.clearance * size : 0, done);
+      Step result = try_step(complex, from, target, options.snap * size, clearance, done);
       ++result.front.step;
       front = std::move(result.front);
       if (work) *work += done;

@@ -1,5 +1,8 @@
 #include "crack/insert_internal.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "crack/guard.h"
@@ -38,6 +41,10 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
 
 }  // namespace
 
+Attempt attempt_at(int number, const CrackOptions& options, double size) {
+  return {number == 0 ? 0 : options.jitter * size * std::pow(8.0, std::min(number - 1, 4)), 2 * number <= options.attempts ? options.clearance * size : 0};
+}
+
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
                         std::vector<VertexId>& vertex, double clearance, CrackWork& work) {
   vertex.clear();
@@ -52,8 +59,8 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   work.split_seconds += watch.lap();
   Box3 box;
   for (const Vec3& p : strip.points) box.add(p);
-  if (!box.meets(complex.extent())) {
-    for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(VertexId());
+  if (!box.meets(complex.extent())) {  // divided by itself alone, and nothing to keep
+    vertex.assign(arrangement.points().size(), VertexId());
     return {};
   }
   const EdgeTable edges = edges_of_complex(arrangement);

@@ -4,7 +4,6 @@
 #include "base/random.h"
 #include "base/stopwatch.h"
 #include "crack/insert_internal.h"
-#include "geometry/predicates.h"
 
 namespace geo {
 
@@ -19,21 +18,20 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
   Random random(options.seed * 0x9e3779b97f4a7c15ull);
   CrackWork done;
   std::string reason;
-  double jitter = 0;
   for (int attempt = 0; attempt <= options.attempts; ++attempt) {
-    if (attempt > 0) jitter = attempt == 1 ? options.jitter : std::min(jitter * 8, options.jitter * 4096);
+    const auto [jitter, clearance] = crack::attempt_at(attempt, options, size);
     ++done.attempts;
     Stopwatch watch;
     std::vector<Vec3> points = sheet.vertices;
     if (attempt > 0)
-      for (Vec3& p : points) p += random.uniform(0.2, 1.0) * jitter * size * random.direction();
+      for (Vec3& p : points) p += random.uniform(0.2, 1.0) * jitter * random.direction();
     Strip strip = strip_of(points, sheet.triangles);
     done.snapped += snap_to_vertices(strip, complex, options.snap * size);
     done.near_seconds += watch.lap();
     try {
       crack::Arrangement arrangement(complex, strip);
       std::vector<VertexId> vertex;
-      CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, 2 * attempt <= options.attempts ? options.clearance * size : 0, done);
+      CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, clearance, done);
       if (work) *work += done;
       return delta;
     } catch (const GeometryError& e) {

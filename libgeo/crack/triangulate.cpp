@@ -132,9 +132,10 @@ bool Triangulator::may_flip(int t, int edge, int& other, int& apex) {
   return turn(a, apex, c) > 0 && turn(apex, b, c) > 0;
 }
 
-// The triangle that has the edge from a to b, and where; {−1, 0} when there is none.
-std::pair<int, int> Triangulator::find_edge(int a, int b) {
-  // Around a one way until the edge or a side of the face is met, then the other way.
+// Calls with each triangle at a and a's corner there, one way around until a side of the face is met, then the other way;
+// ends when `visit` says true.
+template <class Visit>
+void Triangulator::around(int a, const Visit& visit) const {
   const int start = at_[static_cast<std::size_t>(a)];
   for (const bool left : {true, false}) {
     int t = start;
@@ -142,12 +143,22 @@ std::pair<int, int> Triangulator::find_edge(int a, int b) {
       const Tri& x = tri_[static_cast<std::size_t>(t)];
       int k = 0;
       while (x.v[k] != a) ++k;
-      if (x.v[(k + 1) % 3] == b) return {t, k};
+      if (visit(t, k)) return;
       t = left ? x.n[(k + 2) % 3] : x.n[k];
     } while (t >= 0 && t != start);
-    if (t == start) break;
+    if (t == start) return;
   }
-  return {-1, 0};
+}
+
+// The triangle that has the edge from a to b, and where; {−1, 0} when there is none.
+std::pair<int, int> Triangulator::find_edge(int a, int b) const {
+  std::pair<int, int> found{-1, 0};
+  around(a, [&](int t, int k) {
+    if (tri_[static_cast<std::size_t>(t)].v[(k + 1) % 3] != b) return false;
+    found = {t, k};
+    return true;
+  });
+  return found;
 }
 
 void Triangulator::insert(int p) {
@@ -198,29 +209,22 @@ void Triangulator::constrain(int a, int b, const Known& known) {
     }
     // The triangle at a through which the way to b leaves, or a vertex on the way.
     int through = -1, edge = -1, ahead = -1;
-    const int start = at_[static_cast<std::size_t>(a)];
-    for (const bool left : {true, false}) {
-      int t = start;
-      do {
-        const Tri& x = tri_[static_cast<std::size_t>(t)];
-        int k = 0;
-        while (x.v[k] != a) ++k;
-        const int p = x.v[(k + 1) % 3], q = x.v[(k + 2) % 3];
-        const int sp = turn(a, b, p), sq = turn(a, b, q);
-        for (const auto& [v, s] : {std::pair{p, sp}, std::pair{q, sq}}) {
-          if (s != 0) continue;
-          // On the line: ahead when it lies on b's side of a.
-          int along = 0;
-          const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)], lv = local_[static_cast<std::size_t>(v)];
-          (points_[lb] - points_[la]).cwiseAbs().maxCoeff(&along);
-          for (int i = 0; i < 3 && points_.compare(lb, la, along) == 0; ++i) along = (along + 1) % 3;
-          if (points_.compare(lb, la, along) == points_.compare(lv, la, along)) ahead = v;
-        }
-        if (sp < 0 && sq > 0) through = t, edge = (k + 1) % 3;
-        t = left ? x.n[(k + 2) % 3] : x.n[k];
-      } while (t >= 0 && t != start && through < 0 && ahead < 0);
-      if (t == start || through >= 0 || ahead >= 0) break;
-    }
+    around(a, [&](int t, int k) {
+      const Tri& x = tri_[static_cast<std::size_t>(t)];
+      const int p = x.v[(k + 1) % 3], q = x.v[(k + 2) % 3];
+      const int sp = turn(a, b, p), sq = turn(a, b, q);
+      for (const auto& [v, s] : {std::pair{p, sp}, std::pair{q, sq}}) {
+        if (s != 0) continue;
+        // On the line: ahead when it lies on b's side of a.
+        int along = 0;
+        const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)], lv = local_[static_cast<std::size_t>(v)];
+        (points_[lb] - points_[la]).cwiseAbs().maxCoeff(&along);
+        for (int i = 0; i < 3 && points_.compare(lb, la, along) == 0; ++i) along = (along + 1) % 3;
+        if (points_.compare(lb, la, along) == points_.compare(lv, la, along)) ahead = v;
+      }
+      if (sp < 0 && sq > 0) through = t, edge = (k + 1) % 3;
+      return through >= 0 || ahead >= 0;
+    });
     if (ahead >= 0) {
       constrain(a, ahead, known);
       a = ahead;

@@ -54,7 +54,9 @@ class Triangulator {
   void split_face(int t, int p);
   void flip(int t, int edge);
   bool may_flip(int t, int edge, int& other, int& apex);
-  std::pair<int, int> find_edge(int a, int b);
+  template <class Visit>
+  void around(int a, const Visit& visit) const;
+  std::pair<int, int> find_edge(int a, int b) const;
   void insert(int p);
   void constrain(int a, int b, const Known& known);
   void improve();

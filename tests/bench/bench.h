@@ -33,9 +33,11 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
 struct Options {
   std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles
   std::vector<std::string> models;    ///< closed meshes in files
+  int cuts = 500;                     ///< through the block
   bool json = false;
 };
 
 int crack(const Options& options);
+int block(const Options& options);
 
 }  // namespace bench

@@ -4,20 +4,22 @@
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-bench", "Measures parts of Kerf beside other libraries, in one run.",
-               "  kerf-bench crack\n  kerf-bench crack --frequency 11 --frequency 45 --json\n  kerf-bench crack --frequency 22 --model bear.off");
+               "  kerf-bench crack\n  kerf-bench crack --frequency 11 --frequency 45 --json\n  kerf-bench crack --frequency 22 --model bear.off\n  kerf-bench block --cuts 100");
   std::string what;
   bench::Options options;
   std::vector<std::string> frequencies;
-  t.argument("WHAT", what, "crack");
+  t.argument("WHAT", what, "crack: progressive cutting beside CGAL; block: many cuts, remeshed");
   t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
+  t.option("--cuts", options.cuts, "How many cuts go through the block");
   t.option("--model", options.models, "Closed meshes to measure as well");
   return t.run(argc, argv, [&] {
-    if (what != "crack") throw tool::UsageError("nothing is known about '" + what + "'; there is crack");
+    if (what != "crack" && what != "block") throw tool::UsageError("nothing is known about '" + what + "'; there are crack and block");
+    if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));
     for (const int f : options.frequencies)
       if (f < 1 || f > 2000) throw tool::UsageError("--frequency is from 1 to 2000");
     if (frequencies.empty()) options.frequencies = {11, 22, 45, 89, 179};
     options.json = t.json;
-    bench::crack(options);
+    what == "crack" ? bench::crack(options) : bench::block(options);
   });
 }

@@ -14,6 +14,8 @@
 namespace geo {
 namespace {
 
+constexpr int rounds = 8;
+
 class Roughener {
  public:
   Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenWork& work)
@@ -22,7 +24,7 @@ class Roughener {
   }
 
   CrackDelta run() {
-    divide(size_ * (options_.edge > 0 ? options_.edge : 0.125 / options_.frequency));
+    divide(size_ * (options_.edge > 0 ? options_.edge : 1.0 / (12 * options_.frequency)));
     displace();
     return delta_.sum();
   }
@@ -130,7 +132,8 @@ class Roughener {
     const auto distance = distances(vertices, free, fade);
     struct Move {
       VertexId vertex;
-      Vec3 by;
+      Vec3 to;
+      bool there = false;
     };
     std::vector<Move> moves;
     for (const VertexId v : vertices) {
@@ -145,21 +148,28 @@ class Roughener {
       const double length = normal.norm();
       if (!(length > 0)) continue;
       double sum = 0, high = 1, fine = options_.frequency / size_;
-      for (int octave = 0; octave < options_.octaves; ++octave, high *= 0.5, fine *= 2)
+      for (int octave = 0; octave < options_.octaves; ++octave, high *= 0.6, fine *= 2)
         sum += high * noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(crack) * 64 + static_cast<std::uint64_t>(octave));
       const auto d = distance.find(v);
       const double near = d == distance.end() ? 1 : std::min(1.0, d->second / fade);
-      moves.push_back({v, height * near * sum / length * normal});
+      moves.push_back({v, k_.point(v) + height * near * sum / length * normal});
     }
-    for (Move& move : moves) {
-      for (int tries = 0; tries < 6; ++tries, move.by *= 0.5) {
-        auto local = crack::relocate(k_, move.vertex, k_.point(move.vertex) + move.by);
-        if (!apply(local)) continue;
-        ++work_.moves;
-        work_.lowered += tries > 0;
-        break;
+    // What a neighbour that has not moved yet is in the way of gets there in a later round.
+    for (int round = 0; round < rounds; ++round)
+      for (Move& move : moves) {
+        if (move.there) continue;
+        const Vec3 from = k_.point(move.vertex);
+        double part = 1;
+        for (int tries = 0; tries < 3; ++tries, part *= 0.5) {
+          auto local = crack::relocate(k_, move.vertex, part == 1 ? move.to : Vec3(from + part * (move.to - from)));
+          const VertexId moved(k_.vertex_count());
+          if (!apply(local)) continue;
+          move.vertex = moved;
+          move.there = part == 1;
+          break;
+        }
       }
-    }
+    for (const Move& move : moves) ++work_.moves, work_.lowered += !move.there;
   }
 
   Complex& k_;

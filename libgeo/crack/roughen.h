@@ -12,8 +12,8 @@ namespace geo {
 struct RoughenOptions {
   double amplitude = 0.01;    ///< of the largest bumps, relative to the extent's diagonal
   double frequency = 8;       ///< of these, per diagonal
-  int octaves = 4;            ///< each twice as fine and half as high
-  double edge = 0;            ///< longest edge inside a crack, relative; 0: an eighth of the largest bumps
+  int octaves = 4;            ///< each twice as fine and 0.6 times as high
+  double edge = 0;            ///< longest edge inside a crack, relative; 0: a twelfth of the largest bumps
   std::uint64_t seed = 1;
   std::vector<std::int32_t> cracks;  ///< which; empty: all
 };

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "crack/place_internal.h"
+#include "geometry/distance.h"
 #include "surface/delta_sum.h"
 
 namespace geo {
@@ -60,7 +61,7 @@ class Decimator {
     if (!from.features.empty()) {
       const auto c = crack::opposite(from, a);
       if (!c) return false;
-      off = crack::distance_to_segment(k_.point(b), k_.point(a), k_.point(*c));
+      off = distance_between_segments(k_.point(b), k_.point(b), k_.point(a), k_.point(*c));
     }
     if (off > allowed_) return false;
     auto local = crack::collapse(k_, b, a);

@@ -22,6 +22,7 @@ struct DecimateWork {
 /// Collapses edges of skin and cracks, the shortest first. Lines where surfaces meet, tips and creases stay lines;
 /// contacts of `fronts` stay or are left out between their neighbours. K never crosses itself, the derived surface stays
 /// closed; volumes change by what the deviation allows. Cost follows the whole. Returns what changed.
+/// Throws InputError for options out of range.
 CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options = {}, DecimateWork* work = nullptr);
 
 }  // namespace geo

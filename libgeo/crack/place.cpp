@@ -90,8 +90,6 @@ void Contacts::leave_out(VertexId b) {
     for (auto& segment : front->segments) std::erase_if(segment, [&](const auto& p) { return p.id == b; });
 }
 
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) { return distance_between_segments(p, p, a, b); }
-
 double distance_left(const Complex& k, const LocalEdit& local, const Vec3& p, const PlaceRules& rules) {
   std::map<std::int32_t, double> nearest;
   for (const auto& f : local.edit.new_faces) {

@@ -47,7 +47,6 @@ class Contacts {
   std::unordered_set<VertexId> held_;
 };
 
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b);
 /// How far p is from the new faces of an edit: the largest, over the surfaces that it changes, of the distances to the
 /// nearest face. Skin that keeps does not count: it stays in its planes.
 double distance_left(const Complex& complex, const LocalEdit& local, const Vec3& p, const PlaceRules& rules);

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <unordered_set>
 
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "crack/place_internal.h"
+#include "geometry/distance.h"
 #include "surface/complex_internal.h"
 #include "surface/delta_sum.h"
 
@@ -31,6 +33,7 @@ class Remesher {
     while (!todo_.empty() && patience-- > 0) {
       const FaceId f = todo_.front();
       todo_.pop_front();
+      waiting_.erase(f);
       if (!k_.alive(f)) continue;
       if (crack::badness(k_.corners(f)) <= limit_) continue;
       ++work_.faces;
@@ -42,7 +45,7 @@ class Remesher {
 
  private:
   void queue(FaceId f) {
-    if (k_.alive(f) && crack::badness(k_.corners(f)) > limit_) todo_.push_back(f);
+    if (k_.alive(f) && crack::badness(k_.corners(f)) > limit_ && waiting_.insert(f).second) todo_.push_back(f);
   }
 
   bool improves(const LocalEdit& local, double factor) const { return crack::worst_new(k_, local) < factor * crack::worst_old(k_, local); }
@@ -88,7 +91,7 @@ class Remesher {
     if (!crack::lies_within(from, to)) return false;
     if (from.features.empty()) return true;
     const auto c = crack::opposite(from, a);
-    return c && crack::distance_to_segment(k_.point(b), k_.point(a), k_.point(*c)) <= options_.deviation * size_;
+    return c && distance_between_segments(k_.point(b), k_.point(b), k_.point(a), k_.point(*c)) <= options_.deviation * size_;
   }
 
   bool collapse(FaceId f) {
@@ -132,7 +135,7 @@ class Remesher {
         goals = {p + (to - to.dot(n) * n), p + 0.5 * (to - to.dot(n) * n)};
       } else if (place.features.size() == 2) {
         const Vec3 a = k_.point(place.features[0]), c = k_.point(place.features[1]);
-        if (crack::distance_to_segment(p, a, c) > options_.deviation * size_) continue;
+        if (distance_between_segments(p, p, a, c) > options_.deviation * size_) continue;
         for (const VertexId w : place.features)
           if (crack::lies_within(place, crack::place_of(k_, w, rules_)))
             for (const double t : {0.5, 0.2}) goals.push_back(p + t * (k_.point(w) - p));
@@ -183,6 +186,7 @@ class Remesher {
   crack::PlaceRules rules_;
   double size_, limit_;
   std::deque<FaceId> todo_;
+  std::unordered_set<FaceId> waiting_;  // what is in todo_
   DeltaSum delta_;
 };
 
@@ -191,6 +195,8 @@ class Remesher {
 double smallest_angle(const std::array<Vec3, 3>& t) { return std::atan2(1.0, crack::badness(t)) * 180 / std::numbers::pi; }
 
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshWork* work) {
+  if (!(options.angle > 0 && options.angle <= 30) || !(options.deviation >= 0) || !(options.shortest > 0) || !(options.crease > 0 && options.crease <= 180))
+    throw InputError("remeshing needs an angle of 0 to 30 degrees, a deviation of 0 or more, a shortest edge above 0 and a crease of 0 to 180 degrees");
   RemeshWork done;
   Stopwatch watch;
   CrackDelta delta = Remesher(complex, fronts, options, done).run(region);

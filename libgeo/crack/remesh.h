@@ -27,7 +27,7 @@ struct RemeshWork {
 /// moves and divisions. What must keep: the skin's surface (vertices stay on the triangles of the input that they lie
 /// on), the lines where cracks meet each other and the skin, crack tips, creases, and the contacts of `fronts`, which
 /// are followed where one is merged with its neighbour. Every edit is guarded: K never intersects itself. Cost follows
-/// the region. Returns what changed in all.
+/// the region. Returns what changed in all. Throws InputError for options out of range.
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
                   const RemeshOptions& options = {}, RemeshWork* work = nullptr);
 

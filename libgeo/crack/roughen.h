@@ -26,7 +26,7 @@ struct RoughenWork {
 /// Divides the inner edges of the cracks and moves their inner vertices along the normal by noise that fades towards the
 /// skin, other cracks and the tips, which stay as they are. Both sides of a crack are alike, the pieces' volumes sum to
 /// what they did, and nothing crosses: where it would, a vertex moves less. Contacts of `fronts` stay. Returns what
-/// changed.
+/// changed. Throws InputError for options out of range.
 CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options = {}, RoughenWork* work = nullptr);
 
 /// Gradient noise (Perlin 2002) in about [−1, 1], the same for the same seed everywhere.

@@ -20,6 +20,20 @@ unsigned cell_in_block(std::int64_t x, std::int64_t y, std::int64_t z) {
   return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
 }
 
+// The cells of the block at a place that lie in a range, as bits.
+template <class Range>
+std::uint64_t cells_in_range(const std::int64_t (&at)[3], const Range& cells) {
+  constexpr std::uint64_t every[3] = {0x1111111111111111ull, 0x000f000f000f000full, 0xffffull};  // one layer across an axis
+  std::uint64_t inside = ~0ull;
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t from = std::max<std::int64_t>(cells.lo[i] - 4 * at[i], 0), to = std::min<std::int64_t>(cells.hi[i] - 4 * at[i], 3);
+    std::uint64_t layers = 0;
+    for (auto layer = from; layer <= to; ++layer) layers |= every[i] << (layer << 2 * i);
+    inside &= layers;
+  }
+  return inside;
+}
+
 }  // namespace
 
 // A triangle's plane against cubes. All tests are for speed alone, so they keep what rounding leaves in doubt.
@@ -166,12 +180,14 @@ void TriangleIndex::visit(const Level& level, const std::int64_t (&at)[3], const
   const auto found = level.block_at(at[0], at[1], at[2]);
   if (found == none) return;
   const Block& block = level.blocks[found];
-  for (std::uint64_t filled = block.filled; filled; filled &= filled - 1) {
+  if (!block.filled) return;
+  for (std::uint64_t filled = block.filled & cells_in_range(at, cells); filled; filled &= filled - 1) {
     const int cell = std::countr_zero(filled);
-    const std::int64_t x = at[0] * side + (cell & 3), y = at[1] * side + (cell >> 2 & 3), z = at[2] * side + (cell >> 4);
-    if (x < cells.lo[0] || x > cells.hi[0] || y < cells.lo[1] || y > cells.hi[1] || z < cells.lo[2] || z > cells.hi[2]) continue;
-    if (plane && plane->clear_of(level.cell * Vec3(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5), Vec3::Constant(0.5 * level.cell)))
-      continue;
+    if (plane) {
+      const std::int64_t x = at[0] * side + (cell & 3), y = at[1] * side + (cell >> 2 & 3), z = at[2] * side + (cell >> 4);
+      const Vec3 middle = level.cell * Vec3(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5);
+      if (plane->clear_of(middle, Vec3::Constant(0.5 * level.cell))) continue;
+    }
     for (auto e = block.first[cell]; e != none; e = entries_[e].next) take(entries_[e].id);
   }
 }

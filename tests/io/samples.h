@@ -42,6 +42,7 @@ class PlyText {
       p.put<std::uint8_t>(3);
       for (const auto v : mesh.triangles[t]) p.put(v);
       if (!mesh.patch.empty()) p.put(mesh.patch[t]);
+      if (!mesh.source.empty()) p.put(mesh.source[t]);
       p.end();
     }
     for (const auto& f : fronts) p.put(f.crack), p.put(f.step), p.put<std::uint8_t>(f.closed), p.end();

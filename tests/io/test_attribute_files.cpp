@@ -150,7 +150,7 @@ TEST_CASE("OBJ: every form of a face") {
   CHECK(colored.attributes.color[0][2] == Color(0, 0, 0.5, 1));
 }
 
-TEST_CASE("OBJ: materials are groups; without any, objects and groups are") {
+TEST_CASE("OBJ: materials are groups, and without any objects and groups are") {
   const auto parts = parse_surface(tetrahedron + "o a\nf 1 3 2\ng b c\nf 1 2 4\no a\nf 2 3 4\n", "a.obj").mesh.attributes;
   CHECK(parts.group == std::vector<std::int32_t>{0, 1, 0});
   CHECK(parts.group_names == std::vector<std::string>{"a", "b c"});

@@ -22,6 +22,7 @@ int side_of(const Vec3 (&t)[3], const Vec3& p) {
 }  // namespace
 
 Arrangement::Arrangement(const Complex& complex, const Strip& strip) : complex_(complex), strip_(strip), triangulator_(points_) {
+  points_.reserve(strip.points.size() * 8 + 64);
   for (const Vec3& p : strip.points) {
     const Local l = points_.add(p);
     if (auto& row = strip_places_[hash_of(p)]; row == no_local) row = l;
@@ -48,6 +49,7 @@ Local Arrangement::local_of(VertexId v) {
 }
 
 void Arrangement::meet(CrackWork& work) {
+  shared_.reserve(8 * strip_size);
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles) boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
   for (std::uint32_t s = 0; s < strip_size; ++s) {
@@ -265,6 +267,8 @@ void Arrangement::unify() {
 
 void Arrangement::split() {
   ids_.resize(points_.size());
+  children.reserve(elements.size() + 2 * shared_.size());
+  marks_.reserve(shared_.size());
   if (meets_itself_) unify();
   // By element; a point that several name once, on all the edges that they say.
   std::stable_sort(shared_.begin(), shared_.end(), [](const Shared& x, const Shared& y) {

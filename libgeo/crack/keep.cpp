@@ -49,6 +49,7 @@ int compare_around(const Arrangement& a, Local u, Local v, const Member& zero, c
 
 EdgeTable edges_of_complex(const Arrangement& a) {
   EdgeTable edges(a.points().size());
+  edges.reserve(2 * a.children.size());
   for (std::uint32_t e = a.strip_size; e < a.elements.size(); ++e)
     for (auto c = a.elements[e].first; c < a.elements[e].end; ++c) {
       const Child& child = a.children[c];
@@ -82,6 +83,7 @@ std::vector<Part> keep_inside(const Arrangement& a, const Complex& complex, cons
     for (auto c = a.elements[e].first; c < a.elements[e].end; ++c)
       if (!a.lies_on_other(e, a.children[c])) parts.push_back({e, c});
   EdgeTable own(a.points().size());
+  own.reserve(3 * parts.size());
   for (std::uint32_t i = 0; i < parts.size(); ++i)
     for (std::uint8_t k = 0; k < 3; ++k) {
       const auto& v = a.children[parts[i].child].v;

@@ -18,6 +18,7 @@ struct Use {
 class EdgeTable {
  public:
   explicit EdgeTable(std::size_t points) : head_(points, ~0u) {}
+  void reserve(std::size_t uses) { entries_.reserve(uses); }
   void add(Local u, Local v, const Use& use);
   /// Replaces `out` by the uses of edge uv, in the order in which they were added.
   void find(Local u, Local v, std::vector<Use>& out) const;

@@ -17,6 +17,7 @@ class Stitcher {
   ComplexEdit run(std::span<const Part> parts, std::int32_t crack) {
     const std::uint32_t base = complex_.face_count();
     face_of_.assign(a_.children.size(), FaceId());
+    edit_.new_faces.reserve(a_.children.size());
     for (auto e = a_.strip_size; e < a_.elements.size(); ++e) {
       const Element& element = a_.elements[e];
       for (auto c = element.first; c < element.end; ++c) {
@@ -32,6 +33,7 @@ class Stitcher {
       if (element.cut) edit_.removed_faces.push_back(element.face);
     }
     EdgeTable own(a_.points().size());
+    own.reserve(3 * parts.size());
     for (const Part& part : parts) {
       const auto& v = a_.children[part.child].v;
       face_of_[part.child] = FaceId(base + static_cast<std::uint32_t>(edit_.new_faces.size()));

@@ -33,9 +33,7 @@ bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
 
 }  // namespace
 
-int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const int sign = orient3d_quick(a, b, c, d);
-  if (sign != 2) return sign;
+int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return static_cast<int>(CGAL::orientation(pt(a), pt(b), pt(c), pt(d)));
 }
 

@@ -36,9 +36,15 @@ inline int orient2d_quick(const Vec3& a, const Vec3& b, const Vec3& c, int axis)
   return value > bound ? 1 : value < -bound ? -1 : 2;
 }
 
+/// orient3d() by exact arithmetic.
+int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /// Sign of det(b−a, c−a, d−a): +1 when d lies on the side of abc that its counter-clockwise normal points to,
 /// −1 on the other side, 0 when the four points are exactly coplanar.
-int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const int sign = orient3d_quick(a, b, c, d);
+  return sign != 2 ? sign : orient3d_exact(a, b, c, d);
+}
 
 /// Sign of the turn abc in the two axes that follow `axis` (0, 1, 2): counter-clockwise positive.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis);

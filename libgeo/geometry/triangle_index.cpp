@@ -20,6 +20,13 @@ unsigned cell_in_block(std::int64_t x, std::int64_t y, std::int64_t z) {
   return static_cast<unsigned>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
 }
 
+// The floor, clamped so that a far query does not overflow.
+std::int64_t lower_integer(double x) {
+  const double y = std::clamp(x, -1e15, 1e15);
+  const auto toward_zero = static_cast<std::int64_t>(y);
+  return toward_zero - (y < static_cast<double>(toward_zero));
+}
+
 // The cells of the block at a place that lie in a range, as bits.
 template <class Range>
 std::uint64_t cells_in_range(const std::int64_t (&at)[3], const Range& cells) {
@@ -66,8 +73,8 @@ class TriangleIndex::Plane {
       for (at[v] = r.lo[v]; at[v] <= r.hi[v]; ++at[v]) {
         const double pu = (static_cast<double>(at[u]) + 0.5) * size, pv = (static_cast<double>(at[v]) + 0.5) * size;
         const double middle = (d_ - n_[u] * pu - n_[v] * pv) / n_[w];
-        const auto from = std::max(r.lo[w], static_cast<std::int64_t>(std::floor(std::clamp((middle - span) / size, -1e15, 1e15))));
-        const auto to = std::min(r.hi[w], static_cast<std::int64_t>(std::floor(std::clamp((middle + span) / size, -1e15, 1e15))));
+        const auto from = std::max(r.lo[w], lower_integer((middle - span) / size));
+        const auto to = std::min(r.hi[w], lower_integer((middle + span) / size));
         for (at[w] = from; at[w] <= to; ++at[w]) visit(at);
       }
   }
@@ -110,9 +117,9 @@ TriangleIndex::Block& TriangleIndex::Level::make_block(std::int64_t x, std::int6
 TriangleIndex::Range TriangleIndex::Level::cells_of(const Box3& box) const {
   Range r;
   for (int i = 0; i < 3; ++i) {
-    // Clamped so that a far query does not overflow; keys wrap around, boxes decide.
-    r.lo[i] = static_cast<std::int64_t>(std::floor(std::clamp(box.lo[i] / cell, -1e15, 1e15)));
-    r.hi[i] = static_cast<std::int64_t>(std::floor(std::clamp(box.hi[i] / cell, -1e15, 1e15)));
+    // Keys wrap around; boxes decide.
+    r.lo[i] = lower_integer(box.lo[i] / cell);
+    r.hi[i] = lower_integer(box.hi[i] / cell);
   }
   return r;
 }

@@ -8,16 +8,6 @@
 
 namespace geo {
 
-std::array<Vec3, 3> Complex::corners(FaceId f) const {
-  const auto& v = face(f).v;
-  return {point(v[0]), point(v[1]), point(v[2])};
-}
-
-Box3 Complex::box(FaceId f) const {
-  const auto& v = face(f).v;
-  return box_of(point(v[0]), point(v[1]), point(v[2]));
-}
-
 int Complex::edge_in(const Face& f, VertexId a, VertexId b) {
   const int k = corner_at(f, a);
   return f.v[(k + 1) % 3] == b ? k : (k + 2) % 3;
@@ -179,6 +169,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   };
   std::vector<NewRing> rings;
   std::vector<FaceId> ring_faces, fresh, ring, wanted, sorted_wanted;
+  rings.reserve(gains.size()), ring_faces.reserve(2 * gains.size());
   auto order = given.begin();
   for (std::size_t at = 0; at < gains.size();) {
     const std::uint64_t edge = gains[at].edge;

@@ -107,8 +107,14 @@ class Complex {
   const Vec3& point(VertexId v) const { return points_[v.index()]; }
   const Face& face(FaceId f) const { return faces_[f.index()]; }
   bool alive(FaceId f) const { return faces_[f.index()].alive; }
-  std::array<Vec3, 3> corners(FaceId f) const;
-  Box3 box(FaceId f) const;
+  std::array<Vec3, 3> corners(FaceId f) const {
+    const auto& v = face(f).v;
+    return {point(v[0]), point(v[1]), point(v[2])};
+  }
+  Box3 box(FaceId f) const {
+    const auto& v = face(f).v;
+    return box_of(point(v[0]), point(v[1]), point(v[2]));
+  }
   /// Bounding box of the skin as first given; never changes. Its diagonal is the length that tolerances scale with.
   const Box3& extent() const { return extent_; }
   std::int32_t crack_count() const { return crack_count_; }  ///< the largest crack number in use

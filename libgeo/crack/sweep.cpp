@@ -1,29 +1,28 @@
 #include "crack/sweep.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
 
+#include "crack/lookup_internal.h"
+#include "crack/points_internal.h"
 #include "geometry/predicates.h"
 
 namespace geo {
 namespace {
 
-struct Less {
-  bool operator()(const Vec3& a, const Vec3& b) const {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-  }
+struct PlaceHash {
+  std::size_t operator()(const Vec3& p) const { return crack::hash_of(p); }
 };
+using Places = crack::Lookup<Vec3, PlaceHash>;  // rows of points by where they are
 
 class Builder {
  public:
   Strip strip;
 
   std::uint32_t point(const Vec3& p, bool carried) {
-    const auto [it, fresh] = rows_.try_emplace(p, static_cast<std::uint32_t>(strip.points.size()));
-    if (fresh) strip.points.push_back(p), strip.carried.push_back(false);
-    if (carried) strip.carried[it->second] = true;
-    return it->second;
+    std::uint32_t& row = rows_[p];
+    if (row == ~0u) row = static_cast<std::uint32_t>(strip.points.size()), strip.points.push_back(p), strip.carried.push_back(false);
+    if (carried) strip.carried[row] = true;
+    return row;
   }
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<int, 3> segment) {
     if (a == b || b == c || c == a || collinear(strip.points[a], strip.points[b], strip.points[c])) return;
@@ -31,7 +30,7 @@ class Builder {
   }
 
  private:
-  std::map<Vec3, std::uint32_t, Less> rows_;
+  Places rows_;
 };
 
 }  // namespace
@@ -101,12 +100,13 @@ std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach)
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  std::set<Vec3, Less> known(strip.points.begin(), strip.points.end());
+  Places known;
+  for (const Vec3& p : strip.points) known[p] = 0;
   std::size_t count = 0;
   const double reach2 = reach * reach;
   for (const VertexId v : vertices) {
     const Vec3 q = complex.point(v);
-    if (known.count(q)) continue;
+    if (known.find(q) != ~0u) continue;
     // A corner within reach moves to the vertex, if it is free to.
     bool done = false;
     for (std::uint32_t i = 0; i < strip.points.size() && !done; ++i) {
@@ -117,14 +117,14 @@ std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach)
         if (n == strip.points[i]) n = q;
       strip.points[i] = q;
       strip.carried[i] = true;
-      known.insert(q);
+      known[q] = 0;
       ++count;
     }
     if (done) continue;
     const auto add_point = [&] {
       strip.points.push_back(q);
       strip.carried.push_back(true);
-      known.insert(q);
+      known[q] = 0;
       ++count;
       return static_cast<std::uint32_t>(strip.points.size() - 1);
     };

@@ -185,11 +185,11 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (wanted[i] != old.points[i].position) wanted[i] = clear_of_faces(complex, wanted[i], options.clear * size);
   for (int attempt = 0; attempt <= options.attempts; ++attempt) {
-    const double jitter = crack::attempt_at(attempt, options, size).jitter, clearance = crack::attempt_at(attempt, options, size).clearance;
+    const crack::Attempt allowed = crack::attempt_at(attempt, options, size);
     std::vector<Vec3> target = wanted;
     FrontState from = old;
     if (attempt > 0) {
-      const auto moved = [&](const Vec3& p) { return Vec3(p + random.uniform(0.2, 1.0) * jitter * random.direction()); };
+      const auto moved = [&](const Vec3& p) { return Vec3(p + random.uniform(0.2, 1.0) * allowed.jitter * random.direction()); };
       for (std::size_t i = 0; i < target.size(); ++i)
         if (target[i] != old.points[i].position || front.step == 0) target[i] = moved(target[i]);
       if (front.step == 0)
@@ -207,7 +207,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
     }
     ++done.attempts;
     try {
-      Step result = try_step(complex, from, target, options.snap * size, clearance, done);
+      Step result = try_step(complex, from, target, options.snap * size, allowed.clearance, done);
       ++result.front.step;
       front = std::move(result.front);
       if (work) *work += done;

@@ -1,7 +1,6 @@
 #include "crack/arrangement_internal.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include "base/error.h"

@@ -10,7 +10,6 @@
 #include "base/stopwatch.h"
 #include "crack/place_internal.h"
 #include "geometry/distance.h"
-#include "surface/delta_sum.h"
 
 namespace geo {
 namespace {
@@ -74,14 +73,9 @@ class Decimator {
       for (const VertexId v : f.v)
         if (v != a) moved_now.push_back({v, moved(v) + off});
     if (std::any_of(moved_now.begin(), moved_now.end(), [&](const auto& m) { return m.second > allowed_; })) return false;
-    if (!crack::is_sound(k_, *local)) return ++work_.refused, false;
-    try {
-      const CrackDelta delta = k_.apply(local->edit);
-      for (const FaceId f : delta.new_faces) queue(f);
-      delta_.add(delta);
-    } catch (const GeometryError&) {
-      return ++work_.refused, false;
-    }
+    const auto delta = crack::carry_out(k_, *local, delta_);
+    if (!delta) return ++work_.refused, false;
+    for (const FaceId f : delta->new_faces) queue(f);
     contacts_.leave_out(b);
     for (const auto& [v, distance] : moved_now) moved_[v] = distance;
     return ++work_.collapses, true;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "geometry/predicates.h"
 #include "surface/complex_internal.h"
 
@@ -204,6 +205,17 @@ bool is_sound(const Complex& k, LocalEdit& local) {
   const bool faulty = static_cast<bool>(find_fault(k, local.edit, local.families, {}));
   for (Family& family : local.families) family.near = {};
   return !faulty && std::none_of(local.swept.begin(), local.swept.end(), [&](const auto& t) { return holds_something(k, t, near); });
+}
+
+std::optional<CrackDelta> carry_out(Complex& k, LocalEdit& local, DeltaSum& sum) {
+  if (!is_sound(k, local)) return {};
+  try {
+    CrackDelta delta = k.apply(local.edit);
+    sum.add(delta);
+    return delta;
+  } catch (const GeometryError&) {
+    return {};
+  }
 }
 
 }  // namespace geo::crack

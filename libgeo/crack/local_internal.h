@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "crack/guard.h"
+#include "surface/delta_sum.h"
 
 namespace geo::crack {
 
@@ -33,5 +34,8 @@ LocalEdit relocate(const Complex& complex, VertexId v, const Vec3& p);
 
 /// True when nothing speaks against it: no face turns over, crosses another or leaves something enclosed behind it.
 bool is_sound(const Complex& complex, LocalEdit& local);
+
+/// Makes the edit if it is sound and K takes it, and adds what changed to `sum`; empty, K unchanged, where it is not.
+std::optional<CrackDelta> carry_out(Complex& complex, LocalEdit& local, DeltaSum& sum);
 
 }  // namespace geo::crack

@@ -11,7 +11,6 @@
 #include "crack/place_internal.h"
 #include "geometry/distance.h"
 #include "surface/complex_internal.h"
-#include "surface/delta_sum.h"
 
 namespace geo {
 namespace {
@@ -54,17 +53,12 @@ class Remesher {
   // Carries an edit out if the guard lets it.
   bool apply(LocalEdit& local) {
     const bool free = !options_.may_pass || std::all_of(local.swept.begin(), local.swept.end(), options_.may_pass);
-    if (!free || !is_sound(k_, local)) return ++work_.refused, false;
-    try {
-      const CrackDelta delta = k_.apply(local.edit);
-      for (const FaceId f : delta.new_faces) {
-        queue(f);
-        for (int e = 0; e < 3; ++e)
-          for (const FaceId g : k_.around(k_.face(f).v[e], k_.face(f).v[(e + 1) % 3])) queue(g);
-      }
-      delta_.add(delta);
-    } catch (const GeometryError&) {
-      return ++work_.refused, false;
+    const auto delta = free ? crack::carry_out(k_, local, delta_) : std::nullopt;
+    if (!delta) return ++work_.refused, false;
+    for (const FaceId f : delta->new_faces) {
+      queue(f);
+      for (int e = 0; e < 3; ++e)
+        for (const FaceId g : k_.around(k_.face(f).v[e], k_.face(f).v[(e + 1) % 3])) queue(g);
     }
     return true;
   }

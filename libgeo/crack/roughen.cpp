@@ -9,7 +9,6 @@
 #include "base/stopwatch.h"
 #include "crack/place_internal.h"
 #include "surface/complex_internal.h"
-#include "surface/delta_sum.h"
 
 namespace geo {
 namespace {
@@ -49,15 +48,9 @@ class Roughener {
   }
 
   bool apply(crack::LocalEdit& local) {
-    if (!crack::is_sound(k_, local)) return false;
-    try {
-      const CrackDelta delta = k_.apply(local.edit);
-      delta_.add(delta);
-      last_ = delta.new_faces;
-      return true;
-    } catch (const GeometryError&) {
-      return false;
-    }
+    const auto delta = crack::carry_out(k_, local, delta_);
+    if (delta) last_ = delta->new_faces;
+    return delta.has_value();
   }
 
   // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so that faces stay about as

@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "crack/place_internal.h"
-#include "geometry/distance.h"
 
 namespace geo {
 namespace {
@@ -56,16 +55,11 @@ class Decimator {
     if (!contacts_.may_leave_out(b, a)) return false;
     const auto from = crack::place_of(k_, b, rules_), to = crack::place_of(k_, a, rules_);
     if (!crack::lies_within(from, to)) return false;
-    double off = 0;
-    if (!from.features.empty()) {
-      const auto c = crack::opposite(from, a);
-      if (!c) return false;
-      off = distance_between_segments(k_.point(b), k_.point(b), k_.point(a), k_.point(*c));
-    }
-    if (off > allowed_) return false;
+    const auto off_line = crack::distance_off_line(k_, from, b, a);
+    if (!off_line || *off_line > allowed_) return false;
     auto local = crack::collapse(k_, b, a);
     if (!local) return false;
-    off = std::max(off, crack::distance_left(k_, *local, k_.point(b), rules_));
+    const double off = std::max(*off_line, crack::distance_left(k_, *local, k_.point(b), rules_));
     if (crack::worst_new(k_, *local) > std::max(limit_, crack::worst_old(k_, *local))) return false;
     // Distances add up: all that the corners of the new faces stand for may be this much farther off now.
     std::vector<std::pair<VertexId, double>> moved_now{{a, std::max(moved(a), moved(b)) + off}};

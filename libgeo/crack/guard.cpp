@@ -9,7 +9,6 @@
 #include "surface/check.h"
 
 namespace geo {
-
 namespace {
 
 // A triangle's plane against points, quickly: by how much the normal's and the products' rounding can be off.
@@ -22,8 +21,8 @@ struct Plane {
       : normal((t[1] - t[0]).cross(t[2] - t[0])), at(t[0]), size((box.hi - box.lo).maxCoeff()), margin(clearance > 0 ? clearance * normal.norm() : 0) {}
 
   // True when those corners of the other that the two do not share are all on one side, for certain, and farther than
-  // the clearance: the two then have nothing else in common. Each entry of the normal is off by 8 roundings of size² at most, an offset by one; boxes meet,
-  // so that no offset is longer than both sizes.
+  // the clearance: the two then have nothing else in common. Each entry of the normal is off by 8 roundings of size² at
+  // most, an offset by one; boxes meet, so that no offset is longer than both sizes.
   bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& rows, const std::array<Vec3, 3>& corners, double other_size) const {
     const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume + margin;
     if (!(volume > filter_smallest && volume < filter_largest)) return false;

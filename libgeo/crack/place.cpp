@@ -68,6 +68,13 @@ std::optional<VertexId> opposite(const Place& place, VertexId a) {
   return {};
 }
 
+std::optional<double> distance_off_line(const Complex& k, const Place& place, VertexId b, VertexId a) {
+  if (place.features.empty()) return 0.0;
+  const auto c = opposite(place, a);
+  if (!c) return {};
+  return distance_between_segments(k.point(b), k.point(b), k.point(a), k.point(*c));
+}
+
 Contacts::Contacts(std::span<FrontState* const> fronts) : fronts_(fronts) {
   for (const FrontState* front : fronts)
     for (const auto& segment : front->segments)

@@ -32,6 +32,9 @@ Place place_of(const Complex& complex, VertexId v, const PlaceRules& rules);
 bool lies_within(const Place& some, const Place& all);
 /// Where a line of features through a vertex goes on, coming from a; empty where it ends, branches or does not pass.
 std::optional<VertexId> opposite(const Place& place, VertexId a);
+/// How far b, which is at `place`, would be from its line of features if it went into a; 0 where no line passes it, empty
+/// where lines end or branch at it.
+std::optional<double> distance_off_line(const Complex& complex, const Place& place, VertexId b, VertexId a);
 
 /// The contacts of fronts, which local edits must keep.
 class Contacts {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <numbers>
 #include <unordered_set>
 
@@ -63,11 +64,16 @@ class Remesher {
     return true;
   }
 
+  template <class Before>
+  static std::array<int, 3> edges_by_length(const std::array<Vec3, 3>& c, const Before& before) {
+    std::array<int, 3> edges{0, 1, 2};
+    std::sort(edges.begin(), edges.end(), [&](int i, int j) { return before((c[(i + 1) % 3] - c[i]).squaredNorm(), (c[(j + 1) % 3] - c[j]).squaredNorm()); });
+    return edges;
+  }
+
   bool flip(FaceId f) {
     const auto c = k_.corners(f);
-    std::array<int, 3> by_length{0, 1, 2};
-    std::sort(by_length.begin(), by_length.end(), [&](int i, int j) { return (c[(i + 1) % 3] - c[i]).squaredNorm() > (c[(j + 1) % 3] - c[j]).squaredNorm(); });
-    for (const int e : by_length) {
+    for (const int e : edges_by_length(c, std::greater<>())) {
       if (crack::is_feature(k_, k_.face(f).v[e], k_.face(f).v[(e + 1) % 3], rules_)) continue;
       auto local = crack::flip(k_, f, e);
       if (!local || !improves(*local, 0.999)) continue;
@@ -83,17 +89,15 @@ class Remesher {
     if (!contacts_.may_leave_out(b, a)) return false;
     const crack::Place from = crack::place_of(k_, b, rules_), to = crack::place_of(k_, a, rules_);
     if (!crack::lies_within(from, to)) return false;
-    if (from.features.empty()) return true;
-    const auto c = crack::opposite(from, a);
-    return c && distance_between_segments(k_.point(b), k_.point(b), k_.point(a), k_.point(*c)) <= options_.deviation * size_;
+    const auto off = crack::distance_off_line(k_, from, b, a);
+    return off && *off <= options_.deviation * size_;
   }
 
   bool collapse(FaceId f) {
     const auto c = k_.corners(f);
     const auto v = k_.face(f).v;
-    std::array<int, 3> by_length{0, 1, 2};
-    std::sort(by_length.begin(), by_length.end(), [&](int i, int j) { return (c[(i + 1) % 3] - c[i]).squaredNorm() < (c[(j + 1) % 3] - c[j]).squaredNorm(); });
-    for (int i = 0; i < 2; ++i)
+    const auto by_length = edges_by_length(c, std::less<>());
+    for (std::size_t i = 0; i < 2; ++i)
       for (const bool backwards : {false, true}) {
         const int e = by_length[i];
         const VertexId from = backwards ? v[e] : v[(e + 1) % 3], to = backwards ? v[(e + 1) % 3] : v[e];

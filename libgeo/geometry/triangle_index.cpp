@@ -27,6 +27,14 @@ std::int64_t lower_integer(double x) {
   return toward_zero - (y < static_cast<double>(toward_zero));
 }
 
+template <class Range, class Visit>
+void each_place(const Range& r, const Visit& visit) {
+  std::int64_t at[3];
+  for (at[0] = r.lo[0]; at[0] <= r.hi[0]; ++at[0])
+    for (at[1] = r.lo[1]; at[1] <= r.hi[1]; ++at[1])
+      for (at[2] = r.lo[2]; at[2] <= r.hi[2]; ++at[2]) visit(at);
+}
+
 // The cells of the block at a place that lie in a range, as bits.
 template <class Range>
 std::uint64_t cells_in_range(const std::int64_t (&at)[3], const Range& cells) {
@@ -142,43 +150,37 @@ void TriangleIndex::insert(std::uint32_t id, const Box3& box) {
   if (boxes_.size() <= id) boxes_.resize(id + 1);
   boxes_[id] = box;
   Level& level = level_of(box);
-  const Range r = level.cells_of(box);
-  for (auto x = r.lo[0]; x <= r.hi[0]; ++x)
-    for (auto y = r.lo[1]; y <= r.hi[1]; ++y)
-      for (auto z = r.lo[2]; z <= r.hi[2]; ++z) {
-        Block& block = level.make_block(x >> block_shift, y >> block_shift, z >> block_shift);
-        std::uint32_t entry = free_;
-        if (entry != none)
-          free_ = entries_[entry].next;
-        else
-          entry = static_cast<std::uint32_t>(entries_.size()), entries_.emplace_back();
-        const unsigned cell = cell_in_block(x, y, z);
-        entries_[entry] = {id, block.first[cell]};
-        ++level.entries;
-        block.first[cell] = entry;
-        block.filled |= 1ull << cell;
-      }
+  each_place(level.cells_of(box), [&](const std::int64_t(&at)[3]) {
+    Block& block = level.make_block(at[0] >> block_shift, at[1] >> block_shift, at[2] >> block_shift);
+    std::uint32_t entry = free_;
+    if (entry != none)
+      free_ = entries_[entry].next;
+    else
+      entry = static_cast<std::uint32_t>(entries_.size()), entries_.emplace_back();
+    const unsigned cell = cell_in_block(at[0], at[1], at[2]);
+    entries_[entry] = {id, block.first[cell]};
+    ++level.entries;
+    block.first[cell] = entry;
+    block.filled |= 1ull << cell;
+  });
 }
 
 void TriangleIndex::erase(std::uint32_t id) {
   const Box3 box = boxes_[id];
   boxes_[id] = Box3{};
   Level& level = level_of(box);
-  const Range r = level.cells_of(box);
-  for (auto x = r.lo[0]; x <= r.hi[0]; ++x)
-    for (auto y = r.lo[1]; y <= r.hi[1]; ++y)
-      for (auto z = r.lo[2]; z <= r.hi[2]; ++z) {
-        Block& block = level.blocks[level.block_at(x >> block_shift, y >> block_shift, z >> block_shift)];
-        const unsigned cell = cell_in_block(x, y, z);
-        std::uint32_t* link = &block.first[cell];
-        while (entries_[*link].id != id) link = &entries_[*link].next;
-        const std::uint32_t entry = *link;
-        *link = entries_[entry].next;
-        entries_[entry].next = free_;
-        free_ = entry;
-        --level.entries;
-        if (block.first[cell] == none) block.filled &= ~(1ull << cell);
-      }
+  each_place(level.cells_of(box), [&](const std::int64_t(&at)[3]) {
+    Block& block = level.blocks[level.block_at(at[0] >> block_shift, at[1] >> block_shift, at[2] >> block_shift)];
+    const unsigned cell = cell_in_block(at[0], at[1], at[2]);
+    std::uint32_t* link = &block.first[cell];
+    while (entries_[*link].id != id) link = &entries_[*link].next;
+    const std::uint32_t entry = *link;
+    *link = entries_[entry].next;
+    entries_[entry].next = free_;
+    free_ = entry;
+    --level.entries;
+    if (block.first[cell] == none) block.filled &= ~(1ull << cell);
+  });
 }
 
 // What the filled cells of the block at a place hold, those in the range and not clear of the plane.
@@ -214,16 +216,12 @@ void TriangleIndex::find(const Box3& box, std::vector<std::uint32_t>& out) const
   };
   for (const Level& level : levels_) {
     const Range cells = level.cells_of(box);
-    Range blocks = cells;
-    for (int i = 0; i < 3; ++i) blocks.lo[i] >>= block_shift, blocks.hi[i] >>= block_shift;
+    const Range blocks = cells.shifted(block_shift);
     if (4 * blocks.count() > static_cast<double>(level.entries)) {
       visit_all(level, take);
       continue;
     }
-    std::int64_t at[3];
-    for (at[0] = blocks.lo[0]; at[0] <= blocks.hi[0]; ++at[0])
-      for (at[1] = blocks.lo[1]; at[1] <= blocks.hi[1]; ++at[1])
-        for (at[2] = blocks.lo[2]; at[2] <= blocks.hi[2]; ++at[2]) visit(level, at, cells, nullptr, take);
+    each_place(blocks, [&](const std::int64_t(&at)[3]) { visit(level, at, cells, nullptr, take); });
   }
   keep_each_once(out, first);
 }
@@ -244,8 +242,7 @@ void TriangleIndex::find_near_triangle(const Vec3& a, const Vec3& b, const Vec3&
   };
   for (const Level& level : levels_) {
     const Range cells = level.cells_of(box);
-    Range blocks = cells;
-    for (int i = 0; i < 3; ++i) blocks.lo[i] >>= block_shift, blocks.hi[i] >>= block_shift;
+    const Range blocks = cells.shifted(block_shift);
     // Blocks that the plane passes through are about two to a column; a block costs as much as a few entries.
     const int w = plane.axis();
     if (8 * blocks.count() / double(blocks.hi[w] - blocks.lo[w] + 1) > static_cast<double>(level.entries))

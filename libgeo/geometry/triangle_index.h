@@ -30,6 +30,7 @@ class TriangleIndex {
   static constexpr int side = 4;  // cells along a block
   struct Range {
     std::int64_t lo[3], hi[3];
+    Range shifted(int bits) const { return {{lo[0] >> bits, lo[1] >> bits, lo[2] >> bits}, {hi[0] >> bits, hi[1] >> bits, hi[2] >> bits}}; }
     double count() const { return double(hi[0] - lo[0] + 1) * double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1); }
   };
   struct Slot {

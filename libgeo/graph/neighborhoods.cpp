@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "base/parallel.h"
+#include "graph/visibility.h"
 
 namespace geo {
 namespace {
@@ -129,18 +130,8 @@ Neighborhoods build_neighborhoods(const NodeSet& nodes, const VisibilityGraph& g
                                   NeighborMethod method, const Progress& progress) {
   const std::size_t n = nodes.size();
   report(progress, "neighbourhoods", 0, n);
-  std::vector<double> free(n);
-  parallel_for(n, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto c = obstacles.closest(nodes.position[i], nodes.radius[i]);
-      free[i] = c.row == ~0u ? nodes.radius[i] : c.distance;
-    }
-  });
-  const std::function<bool(NodeId, NodeId)> blocked = [&](NodeId a, NodeId b) {
-    const Vec3 &p = nodes.position[a.index()], &q = nodes.position[b.index()];
-    if ((p - q).norm() < (free[a.index()] + free[b.index()]) * (1 - 1e-9)) return false;
-    return obstacles.blocks(p, q);
-  };
+  const Visibility sight(nodes.position, obstacles, nodes.radius);
+  const auto blocked = [&](NodeId a, NodeId b) { return sight.blocked(a, b); };
   Neighborhoods all;
   all.rows.resize(n);
   if (method == NeighborMethod::mfw) {

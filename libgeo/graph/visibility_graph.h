@@ -52,13 +52,6 @@ class VisibilityGraph {
 /// The unit of plain lengths for a node set.
 double plain_unit_for(const NodeSet& nodes);
 
-/// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
-/// Missing entries are invalid ids.
-std::vector<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
-
-/// Edges (i < j) of the Euclidean minimum spanning tree.
-std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions);
-
 /// EMST ∪ k nearest, minus every edge that touches a triangle of `obstacles` (closed semantics, exact).
 VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& obstacles, int k,
                                        const Progress& progress = {});

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,11 +34,17 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
 struct Options {
   std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles
   std::vector<std::string> models;    ///< closed meshes in files
+  std::vector<std::size_t> nodes;     ///< in the graph
   int cuts = 500;                     ///< through the block
   bool json = false;
 };
 
 int crack(const Options& options);
 int block(const Options& options);
+int graph(const Options& options);
+
+/// Figures by name: one JSON object on a line, or a table.
+using Figures = std::map<std::string, double>;
+void print(const Figures& figures, bool json);
 
 }  // namespace bench

@@ -4,9 +4,8 @@
 #include <iostream>
 
 #include "base/error.h"
-#include "base/random.h"
 #include "bench.h"
-#include "crack/remesh.h"
+#include "../crack/block_cuts.h"
 #include "surface/shapes.h"
 
 namespace bench {
@@ -18,15 +17,6 @@ struct Window {
   double per_face() const { return 1e6 * (cut + remesh) / double(std::max<std::size_t>(met, 1)); }
 };
 
-double low_angle(const geo::Complex& k) {
-  std::vector<double> angles;
-  for (std::uint32_t f = 0; f < k.face_count(); ++f)
-    if (k.alive(geo::FaceId(f))) angles.push_back(geo::smallest_angle(k.corners(geo::FaceId(f))));
-  const auto at = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 100);
-  std::nth_element(angles.begin(), at, angles.end());
-  return *at;
-}
-
 }  // namespace
 
 int block(const Options& options) {
@@ -37,23 +27,15 @@ int block(const Options& options) {
   int refused = 0;
   if (!options.json) std::printf("%5s %8s %9s | %9s %9s %10s\n", "cuts", "faces", "1% angle", "met", "cut us", "remesh us");
   for (int c = 1; c <= cuts; ++c) {
-    geo::Vec3 p(random.uniform(), random.uniform(), random.uniform());
-    p[static_cast<int>(random.below(3))] = random.below(2);
-    const geo::Vec3 n = random.direction(), u = n.unitOrthogonal(), v = n.cross(u);
-    const double size = 0.5 * random.uniform(0.5, 1);
-    const auto row = [&](double s) {
-      std::vector<geo::Vec3> points;
-      for (int i = 0; i <= 5; ++i) points.push_back(p + size * ((s - 0.5) * u + (i / 5.0 - 0.5) * v));
-      return points;
-    };
-    geo::FrontState front = geo::begin_front(row(0), false, c);
+    const auto rows = block_cut(random);
+    geo::FrontState front = geo::begin_front(rows[0], false, c);
     geo::FrontState* const fronts[] = {&front};
     Window one;
     try {
-      for (int s = 1; s <= 4; ++s) {
+      for (std::size_t s = 1; s < rows.size(); ++s) {
         geo::CrackWork work;
         const double start = cpu_seconds();
-        const auto delta = geo::advance(k, front, row(s / 4.0), {}, &work);
+        const auto delta = geo::advance(k, front, rows[s], {}, &work);
         const double middle = cpu_seconds();
         geo::remesh(k, delta.new_faces, fronts);
         one.cut += middle - start, one.remesh += cpu_seconds() - middle, one.met += work.triangles_cut;

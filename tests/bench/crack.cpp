@@ -1,7 +1,6 @@
 // Progressive cutting: a curved sheet of 12 steps × 40 front points through a model, ours beside CGAL's corefine.
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <map>
 
 #include "bench.h"
@@ -109,7 +108,7 @@ int crack(const Options& options) {
                 1e3 * r.work.stitch_seconds, 1e3 * r.work.guard_seconds, 1e3 * r.oneshot, 1e3 * r.idle, 1e3 * r.restarted, 1e3 * r.corefine, 1e3 * r.floor,
                 r.restarted / r.progressive, r.corefine / r.oneshot, r.progressive / r.floor);
   }
-  std::map<std::string, double> figures;
+  Figures figures;
   const auto size_name = [](std::size_t n) { return n > 300000 ? "640k" : n > 100000 ? "160k" : n > 20000 ? "40k" : n > 5000 ? "10k" : "2k"; };
   for (const Row& r : rows) {
     if (r.name.rfind("pumpkin", 0) != 0) continue;
@@ -124,14 +123,7 @@ int crack(const Options& options) {
     const Row &a = rows[0], &b = rows[options.frequencies.size() - 1];
     figures["progressive_exponent"] = std::log(b.progressive / a.progressive) / std::log(double(b.triangles) / double(a.triangles));
   }
-  if (options.json) {
-    std::cout << '{';
-    bool first = true;
-    for (const auto& [key, value] : figures) std::cout << (first ? "" : ",") << '"' << key << "\":" << value, first = false;
-    std::cout << "}\n";
-  } else {
-    for (const auto& [key, value] : figures) std::printf("%-34s %.4g\n", key.c_str(), value);
-  }
+  print(figures, options.json);
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "cases.h"
+#include "crack/block_cuts.h"
 #include "crack/decimate.h"
 #include "crack/remesh.h"
 #include "crack/roughen.h"
@@ -32,15 +33,6 @@ double skin_area(const Complex& k) {
     }
   return sum;
 }
-// The angle that all but one in a hundred faces have at least.
-double low_angle(const Complex& k) {
-  std::vector<double> angles;
-  for (std::uint32_t f = 0; f < k.face_count(); ++f)
-    if (k.alive(FaceId(f))) angles.push_back(smallest_angle(k.corners(FaceId(f))));
-  const auto at = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 100);
-  std::nth_element(angles.begin(), at, angles.end());
-  return *at;
-}
 std::vector<FaceId> alive(const Complex& k) {
   std::vector<FaceId> faces;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
@@ -50,20 +42,12 @@ std::vector<FaceId> alive(const Complex& k) {
 
 // A partial cut from somewhere on the block's skin, remeshed after each of its steps; false when it was refused.
 bool cut_block(Complex& k, Random& random, std::int32_t crack, bool remeshed) {
-  Vec3 p(random.uniform(), random.uniform(), random.uniform());
-  p[static_cast<int>(random.below(3))] = random.below(2);
-  const Vec3 n = random.direction(), u = n.unitOrthogonal(), v = n.cross(u);
-  const double size = 0.5 * random.uniform(0.5, 1);
-  const auto row = [&](double s) {
-    std::vector<Vec3> points;
-    for (int i = 0; i <= 5; ++i) points.push_back(p + size * ((s - 0.5) * u + (i / 5.0 - 0.5) * v));
-    return points;
-  };
-  FrontState front = begin_front(row(0), false, crack);
+  const auto rows = block_cut(random);
+  FrontState front = begin_front(rows[0], false, crack);
   FrontState* const fronts[] = {&front};
   try {
-    for (int s = 1; s <= 4; ++s) {
-      const CrackDelta delta = advance(k, front, row(s / 4.0));
+    for (std::size_t s = 1; s < rows.size(); ++s) {
+      const CrackDelta delta = advance(k, front, rows[s]);
       if (remeshed) remesh(k, delta.new_faces, fronts);
     }
   } catch (const GeometryError&) {

@@ -6,6 +6,8 @@
 #include "base/random.h"
 #include "cases.h"
 #include "geometry/predicates.h"
+#include "graph/nearest.h"
+#include "graph/spanning_tree.h"
 #include "graph/update.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"

@@ -1,80 +1,92 @@
 #include "sampling/octree.h"
 
-#include <algorithm>
-#include <cmath>
-#include <unordered_set>
+#include <atomic>
+
+#include "sampling/walk.h"
 
 namespace geo {
 namespace {
 
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffull, x = (x | x << 16) & 0x1f0000ff0000ffull, x = (x | x << 8) & 0x100f00f00f00f00full;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ull, x = (x | x << 2) & 0x1249249249249249ull;
-  return x;
-}
-std::uint64_t morton(const std::array<std::int32_t, 3>& c) {
-  return spread(static_cast<std::uint64_t>(c[0])) | spread(static_cast<std::uint64_t>(c[1])) << 1 | spread(static_cast<std::uint64_t>(c[2])) << 2;
+struct Division {
+  int level;  // of the cell to be divided; 0: it cannot be, but should
+  std::uint64_t code;
+  Wall wall;      // thin material that was met
+  bool resolved;  // by dividing
+};
+
+void take_thinner(Wall& wall, const Wall& other) {
+  if (other.thickness < wall.thickness) wall = other;
 }
 
 }  // namespace
 
-std::vector<Cell> build_octree(const Box3& box, double size, int levels, const std::function<double(const Vec3&)>& depth) {
-  const int top = levels - 1;
-  const std::int32_t step = 1 << top;
-  std::array<std::int32_t, 3> cells;
-  for (int i = 0; i < 3; ++i) cells[i] = static_cast<std::int32_t>(std::ceil((box.hi[i] - box.lo[i]) / (size * step))) * step;
-  // Leaves by level, as Morton codes of their corners.
-  std::vector<std::unordered_set<std::uint64_t>> leaves(static_cast<std::size_t>(levels));
-  std::vector<Cell> stack, found;
-  for (std::int32_t z = 0; z < std::max(cells[2], step); z += step)
-    for (std::int32_t y = 0; y < std::max(cells[1], step); y += step)
-      for (std::int32_t x = 0; x < std::max(cells[0], step); x += step) stack.push_back({{x, y, z}, top});
-  const auto divide = [](const Cell& c, const auto& each) {
-    const std::int32_t half = 1 << (c.level - 1);
-    for (int k = 0; k < 8; ++k)
-      each(Cell{{c.corner[0] + (k & 1 ? half : 0), c.corner[1] + (k & 2 ? half : 0), c.corner[2] + (k & 4 ? half : 0)}, c.level - 1});
+void balance(Divisions& divided) {
+  for (std::size_t level = 1; level < divided.size(); ++level) {
+    auto& codes = divided[level];
+    std::sort(codes.begin(), codes.end());
+    codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+    if (level + 1 == divided.size()) break;
+    // The parts of a divided cell want neighbours of its own level: their parents, eight at most, are divided.
+    auto& above = divided[level + 1];
+    const std::int32_t edge = 1 << level;
+    for (const auto code : codes) {
+      const auto c = corner_of(code);
+      for (int k = 0; k < 8; ++k) {
+        std::array<std::int32_t, 3> p;
+        for (int i = 0; i < 3; ++i) p[i] = (c[i] + (k >> i & 1 ? edge : -edge)) & ~(2 * edge - 1);
+        if (std::min({p[0], p[1], p[2]}) < 0) continue;
+        if (const auto m = morton(p); above.empty() || above.back() != m) above.push_back(m);
+      }
+    }
+  }
+}
+
+std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most, ThinPlaces& thin, const Progress& progress) {
+  Divisions divided(static_cast<std::size_t>(shape.top) + 1);
+  const int across = shape.across;
+  if (shape.top == 0 && across == 0) return divided;
+  const int last = std::min(shape.regular, 1);  // level of the last cells to look at
+  std::atomic<std::size_t> count{0};
+  const auto visit = [&](const Region& region, std::vector<Division>& found) {
+    const Cell& cell = region.cell;
+    const double edge = shape.lattice.edge(cell.level);
+    if (count.load(std::memory_order_relaxed) > most) return false;
+    if (cell.level > shape.top) {
+      if (region.cut()) return true;
+      // Deep inside nothing asks to be divided: the parts' middles are that far from the cell's.
+      const double reach = 0.5 * std::sqrt(3.0) * edge + 0.5 * edge * std::max(1.0, 0.5 * (across - 1));
+      return tree.tree().closest(region.probe, reach).row != ~0u;
+    }
+    bool divide = false;
+    Wall wall;
+    if (region.cut()) {
+      divide = cell.level > shape.regular;
+      if (!divide && across > 0) wall = thinnest_wall(tree, shape.lattice, region, across * edge);
+    } else {
+      // Cells of both sides of a wall count; those inside may be as large as what they leave.
+      const double limit = (across - 1) * edge;
+      const auto closest = tree.tree().closest(region.probe, std::max(cell.level > shape.regular ? edge : 0.0, 0.5 * limit));
+      if (closest.row == ~0u) return false;
+      divide = cell.level > shape.regular && closest.distance < edge;
+      if (!divide && across > 0) wall = wall_around(tree, region.probe, closest, limit);
+    }
+    divide |= wall.thickness < std::numeric_limits<double>::infinity();
+    if (divide) {
+      ++count;
+      found.push_back({cell.level, morton(cell.corner), wall, cell.level > last || !(wall.thickness < across * shape.lattice.size)});
+    }
+    return divide && cell.level > last;
   };
-  while (!stack.empty()) {
-    const Cell c = stack.back();
-    stack.pop_back();
-    const double edge = size * double(1 << c.level);
-    const Vec3 middle = box.lo + size * Vec3(c.corner[0], c.corner[1], c.corner[2]) + Vec3::Constant(0.5 * edge);
-    const double d = depth(middle);
-    if (d < -0.9 * edge) continue;  // farther out than half a diagonal: no material in it
-    if (c.level > 0 && d < edge)
-      divide(c, [&](const Cell& part) { stack.push_back(part); });
-    else
-      leaves[static_cast<std::size_t>(c.level)].insert(morton(c.corner)), found.push_back(c);
-  }
-  // Balance: a leaf of level l wants no leaf of level l + 2 or more beside it.
-  for (std::size_t at = 0; at < found.size(); ++at) {
-    const Cell c = found[at];
-    if (!leaves[static_cast<std::size_t>(c.level)].count(morton(c.corner))) continue;  // divided since
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz)
-          for (int level = c.level + 2; level <= top; ++level) {
-            const std::int32_t reach = 1 << c.level;
-            std::array<std::int32_t, 3> p{c.corner[0] + dx * reach, c.corner[1] + dy * reach, c.corner[2] + dz * reach};
-            if (p[0] < 0 || p[1] < 0 || p[2] < 0) continue;
-            for (auto& x : p) x &= ~((1 << level) - 1);
-            if (!leaves[static_cast<std::size_t>(level)].erase(morton(p))) continue;
-            divide({p, level}, [&](const Cell& part) {
-              leaves[static_cast<std::size_t>(part.level)].insert(morton(part.corner));
-              found.push_back(part);
-            });
-            found.push_back(c);  // look again: its neighbour may still be too coarse
-          }
-  }
-  std::sort(found.begin(), found.end(), [](const Cell& a, const Cell& b) {
-    const auto ma = morton(a.corner), mb = morton(b.corner);
-    return ma != mb ? ma < mb : a.level < b.level;
-  });
-  std::vector<Cell> result;
-  for (const Cell& c : found)
-    if (leaves[static_cast<std::size_t>(c.level)].erase(morton(c.corner))) result.push_back(c);
-  return result;
+  const auto lists = walk<Division>(tree, shape.lattice, {{0, 0, 0}, shape.root}, "octree", progress, visit);
+  if (count > most) return std::nullopt;
+  for (const auto& list : lists)
+    for (const Division& d : list) {
+      if (d.level > 0) divided[static_cast<std::size_t>(d.level)].push_back(d.code);
+      take_thinner(thin.thinnest, d.wall);
+      if (!d.resolved) take_thinner(thin.unresolved, d.wall);
+    }
+  balance(divided);
+  return divided;
 }
 
 }  // namespace geo

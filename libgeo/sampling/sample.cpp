@@ -1,155 +1,108 @@
 #include "sampling/sample.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/random.h"
-#include "geometry/bvh.h"
-#include "sampling/node_grid.h"
-#include "sampling/octree.h"
-#include "sampling/signed_distance.h"
+#include "base/stopwatch.h"
+#include "sampling/blue_noise.h"
+#include "sampling/count.h"
+#include "sampling/support.h"
 
 namespace geo {
 namespace {
 
-constexpr int across = 4;            // sample points across a cell
-constexpr double least_share = 0.1;  // a cell with less material than this gives it to its neighbours
-constexpr double keep_off = 0.12;    // a node stays this fraction of its cell away from the surface where it can
-
-struct Candidate {
-  Vec3 position = Vec3::Zero();
-  double share = 0;  // of the cell that is material
-  bool inside = false;
-};
-
-Candidate place(const Cell& cell, const Vec3& origin, double size, const SignedDistance& distance, const TriangleBvh& tree, const SampleOptions& options) {
-  const double edge = size * double(1 << cell.level);
-  const Vec3 corner = origin + size * Vec3(cell.corner[0], cell.corner[1], cell.corner[2]);
-  Candidate c;
-  Vec3 sum = Vec3::Zero(), deepest = Vec3::Zero();
-  double most = 0;
-  int count = 0;
-  for (int i = 0; i < across * across * across; ++i) {
-    const Vec3 p = corner + edge / across * (Vec3(i % across, i / across % across, i / (across * across)) + Vec3::Constant(0.5));
-    const double depth = -distance.at(p);
-    if (depth <= 0) continue;
-    sum += p;
-    ++count;
-    if (depth > most) most = depth, deepest = p;
-  }
-  if (count == 0) return c;
-  c.share = double(count) / (across * across * across);
-  Random random(options.seed ^ (std::uint64_t(cell.corner[0]) << 42 ^ std::uint64_t(cell.corner[1]) << 21 ^ std::uint64_t(cell.corner[2])) * 0x9e3779b97f4a7c15ull);
-  Vec3 shift;
-  for (int k = 0; k < 3; ++k) shift[k] = options.jitter * edge * random.uniform(-1, 1);
-  // A whole cell's node is jittered about its middle; a cut cell's stands in the middle of its material.
-  for (const Vec3& p : {Vec3(sum / count + (count == across * across * across ? shift : Vec3(0.3 * shift))), Vec3(sum / count), deepest}) {
-    c.position = p;
-    const auto close = tree.closest(p, keep_off * edge);
-    if (close.row != ~0u) {
-      if (close.distance == 0) continue;
-      Vec3 away = (p - close.point) / close.distance;
-      if (!tree.inside(p)) continue;
-      const Vec3 pushed = close.point + keep_off * edge * away;
-      if (tree.closest(pushed, 0.5 * keep_off * edge).row == ~0u && tree.inside(pushed)) c.position = pushed;
+/// Material of leaves without a node goes to the nearest node; what cut leaves hold, which is an estimate, is scaled so
+/// that all together have the body's volume.
+void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole, const std::vector<Leaf>& orphans, double volume) {
+  double exact = 0, estimate = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) (whole[i] ? exact : estimate) += nodes.volume[i];
+  const auto volume_of = [&](const Leaf& leaf) { return leaf.share * std::pow(lattice.edge(leaf.cell.level), 3); };
+  for (const Leaf& leaf : orphans) estimate += volume_of(leaf);
+  const bool cut_only = estimate > 0 && exact < volume;
+  const double scale = cut_only ? (volume - exact) / estimate : volume / (exact + estimate);
+  std::vector<std::uint32_t> heir(orphans.size());
+  parallel_for(orphans.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3 middle = lattice.middle(orphans[k].cell);
+      double best = std::numeric_limits<double>::infinity();
+      for (int level = orphans[k].cell.level + 1; best == std::numeric_limits<double>::infinity(); ++level)
+        index.around(orphans[k].cell, level, [&](std::uint32_t row) {
+          const double d = (nodes.position[row] - middle).squaredNorm();
+          if (d < best || (d == best && row < heir[k])) best = d, heir[k] = row;
+        });
     }
-    if (tree.inside(c.position)) {
-      c.inside = true;
-      return c;
-    }
-  }
-  return c;
+  });
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!cut_only || !whole[i]) nodes.volume[i] *= scale;
+  for (std::size_t k = 0; k < orphans.size(); ++k) nodes.volume[heir[k]] += scale * volume_of(orphans[k]);
 }
 
-NodeSet sample_at(const TriangleMesh& solid, const TriangleBvh& tree, double size, const SampleOptions& options, const Progress& progress) {
-  report(progress, "distance field", 0, 1);
-  const SignedDistance distance(solid, 0.5 * size);
-  Box3 box = bounding_box(solid);
-  box = box.grown(0.01 * size);
-  // The finest cells are centred on the body, so that a symmetric model is sampled symmetrically.
-  const double coarse = size * double(1 << (options.levels - 1));
-  for (int i = 0; i < 3; ++i) {
-    const double rest = std::ceil((box.hi[i] - box.lo[i]) / coarse) * coarse - (box.hi[i] - box.lo[i]);
-    box.lo[i] -= 0.5 * rest, box.hi[i] += 0.5 * rest;
+NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double volume, const SampleOptions& options, const Progress& progress, SampleReport& found) {
+  Stopwatch clock;
+  std::vector<std::size_t> first(lists.size() + 1, 0);
+  std::vector<Leaf> orphans;
+  for (std::size_t l = 0; l < lists.size(); ++l) {
+    first[l + 1] = first[l];
+    for (const Leaf& leaf : lists[l]) keep(leaf) ? void(++first[l + 1]) : orphans.push_back(leaf);
   }
-  const auto cells = build_octree(box, size, options.levels, [&](const Vec3& p) { return -distance.at(p); });
-  report(progress, "nodes", 0, cells.size());
-  std::vector<Candidate> candidates(cells.size());
-  parallel_for(cells.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) candidates[i] = place(cells[i], box.lo, size, distance, tree, options);
-  });
-
+  const std::size_t n = first.back();
   NodeSet nodes;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto& c = candidates[i];
-    if (!c.inside || c.share < least_share) continue;
-    const double edge = size * double(1 << cells[i].level);
-    nodes.position.push_back(c.position);
-    nodes.spacing.push_back(edge);
-    nodes.volume.push_back(c.share * edge * edge * edge);
-  }
-  if (nodes.size() == 0) return nodes;
-  // Material of cells without a node goes to the nearest node; then all volumes are scaled to the body's.
-  const NodeGrid grid(1.5 * size, nodes.position);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto& c = candidates[i];
-    if ((c.inside && c.share >= least_share) || c.share == 0) continue;
-    const double edge = size * double(1 << cells[i].level);
-    const Vec3 middle = box.lo + size * Vec3(cells[i].corner[0], cells[i].corner[1], cells[i].corner[2]) + Vec3::Constant(0.5 * edge);
-    const auto nearest = grid.nearest(nodes.position, middle, 1, ~0u, [](auto) { return true; });
-    nodes.volume[nearest[0]] += c.share * edge * edge * edge;
-  }
-  const double wanted = signed_volume(solid), have = std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0);
-  for (double& v : nodes.volume) v *= wanted / have;
-  nodes.radius.resize(nodes.size());
-  parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      // Wide enough for a dozen others: fewer seldom span all directions.
-      const auto near = grid.nearest(nodes.position, nodes.position[i], 12, static_cast<std::uint32_t>(i), [](auto) { return true; });
-      const double reach = near.empty() ? 0 : (nodes.position[near.back()] - nodes.position[i]).norm();
-      nodes.radius[i] = std::max(options.support * nodes.spacing[i], 1.05 * std::min(reach, 3 * nodes.spacing[i]));
+  if (n == 0) return nodes;
+  if (n >= ~0u) throw InputError("more than four thousand million nodes; choose a larger spacing");
+  nodes.position.resize(n), nodes.spacing.resize(n), nodes.volume.resize(n);
+  std::vector<std::uint64_t> codes(n);
+  std::vector<std::uint8_t> levels(n);
+  std::vector<char> whole(n);
+  parallel_for(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t l = begin; l < end; ++l) {
+      std::size_t i = first[l];
+      for (const Leaf& leaf : lists[l]) {
+        if (!keep(leaf)) continue;
+        const double edge = lattice.edge(leaf.cell.level);
+        nodes.position[i] = leaf.position, nodes.spacing[i] = edge, nodes.volume[i] = leaf.share * edge * edge * edge;
+        codes[i] = morton(leaf.cell.corner), levels[i] = static_cast<std::uint8_t>(leaf.cell.level), whole[i] = leaf.whole;
+        ++i;
+      }
+      std::vector<Leaf>().swap(lists[l]);
     }
   });
+  const LeafIndex index(std::move(codes), std::move(levels));
+  share_volume(nodes, index, lattice, whole, orphans, volume);
+  if (options.pattern == Pattern::blue) push_apart(nodes, index, lattice, whole, progress);
+  found.node_seconds += clock.lap();
+  set_support_radii(nodes, index, options.support, progress);
+  found.support_seconds += clock.lap();
   return nodes;
 }
 
 }  // namespace
 
-NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress) {
-  const Box3 box = bounding_box(solid);
+NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress, SampleReport* report) {
+  const double diagonal = bounding_box(solid).diagonal(), volume = signed_volume(solid);
   if (options.levels < 1 || options.levels > 10) throw InputError("levels must be from 1 to 10");
   if (!(options.spacing >= 0)) throw InputError("the spacing must be positive");
-  std::vector<std::array<Vec3, 3>> soup;
-  for (const auto& [a, b, c] : solid.triangles) soup.push_back({solid.vertices[a], solid.vertices[b], solid.vertices[c]});
-  const TriangleBvh tree(soup);
-  const auto limit = [&](double size) {
-    if (!(size > box.diagonal() * 1e-4)) throw InputError("the spacing is less than 0.01 % of the model's diagonal; choose a larger one");
+  if (!(options.jitter >= 0 && options.jitter <= 0.5)) throw InputError("the jitter must be from 0 to 0.5");
+  if (!(options.support > 0)) throw InputError("the support must be positive");
+  if (options.across < 0 || options.across > 100) throw InputError("nodes across thin material must be from 0 to 100");
+  const LeafFinder finder(solid, options, progress);
+  SampleReport found;
+  Found leaves;
+  if (options.count > 0) {
+    leaves = finder.with_count(options.count, volume, found);
+  } else {
+    const double spacing = options.spacing > 0 ? options.spacing : 0.03 * diagonal;
+    leaves = finder.at(spacing, finder.thin_levels(), ~std::size_t(0), found).value();
+  }
+  const NodeSet nodes = gather(std::move(leaves.lists), leaves.lattice, leaves.keep, volume, options, progress, found);
+  if (nodes.size() == 0) throw InputError("no node fits inside at spacing " + std::to_string(found.spacing) + "; choose a smaller one");
+  const auto tell = [](const Wall& wall, double& thickness, Vec3& at) {
+    thickness = std::isfinite(wall.thickness) ? wall.thickness : 0, at = wall.at;
   };
-  if (options.count == 0) {
-    const double size = options.spacing > 0 ? options.spacing : 0.03 * box.diagonal();
-    limit(size);
-    NodeSet nodes = sample_at(solid, tree, size, options, progress);
-    if (nodes.size() == 0) throw InputError("no node fits inside at spacing " + std::to_string(size) + "; choose a smaller one");
-    return nodes;
-  }
-  // More nodes at smaller spacing: bisection on its logarithm.
-  const double target = double(options.count), volume = signed_volume(solid);
-  double lo = std::cbrt(volume / target) * 0.25, hi = std::cbrt(volume / target) * 2.5;
-  NodeSet best;
-  double error = 1e300;
-  for (int i = 0; i < 24 && error > 0.015 * target; ++i) {
-    const double size = std::sqrt(lo * hi);
-    limit(size);
-    NodeSet nodes = sample_at(solid, tree, size, options, progress);
-    const double off = double(nodes.size()) - target;
-    if (std::abs(off) < error) error = std::abs(off), best = nodes;
-    (off > 0 ? lo : hi) = size;
-  }
-  if (best.size() == 0) throw InputError("no node fits inside; ask for more nodes");
-  return best;
+  tell(leaves.thin.thinnest, found.thinnest, found.thinnest_at);
+  tell(leaves.thin.unresolved, found.unresolved, found.unresolved_at);
+  if (report) *report = found;
+  return nodes;
 }
 
 }  // namespace geo

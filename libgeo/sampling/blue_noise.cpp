@@ -1,0 +1,32 @@
+#include "sampling/blue_noise.h"
+
+#include "base/parallel.h"
+#include "sampling/leaves.h"
+
+namespace geo {
+
+void push_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free, const Progress& progress) {
+  constexpr int steps = 8;
+  constexpr double strength = 0.5, room = 0.5 - keep_off;
+  std::vector<Vec3> moved(nodes.size());
+  for (int step = 0; step < steps; ++step) {
+    report(progress, "blue noise", static_cast<std::size_t>(step), steps);
+    parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vec3& p = moved[i] = nodes.position[i];
+        if (!free[i]) continue;
+        const Cell cell = leaves.cell(i);
+        Vec3 push = Vec3::Zero();
+        leaves.around(cell, cell.level, [&](std::uint32_t row) {
+          const double wanted = 0.5 * (nodes.spacing[i] + nodes.spacing[row]), d = (p - nodes.position[row]).norm();
+          if (row != i && d > 0 && d < wanted) push += (wanted / d - 1) * (p - nodes.position[row]);
+        });
+        const Vec3 middle = lattice.middle(cell), reach = Vec3::Constant(room * nodes.spacing[i]);
+        moved[i] = (p + strength * push).cwiseMax(middle - reach).cwiseMin(middle + reach);
+      }
+    });
+    nodes.position.swap(moved);
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,114 @@
+#include "sampling/count.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "base/stopwatch.h"
+
+namespace geo {
+namespace {
+
+// A cell with this share of material always has a node where the number of nodes is asked for, one with less than that
+// never: between them some have, so that the number is met.
+constexpr float surely = 0.35f, hardly = 0.03f;
+
+std::size_t count_above(const LeafLists& lists, float share) {
+  std::size_t n = 0;
+  for (const auto& list : lists)
+    for (const Leaf& leaf : list) n += leaf.node && leaf.share > share;
+  return n;
+}
+
+/// The rule that keeps `count` leaves, or as near to that as may be.
+Keep keep_count(const LeafLists& lists, std::size_t count) {
+  const std::size_t sure = count_above(lists, surely);
+  std::vector<std::pair<float, std::uint64_t>> rest;
+  for (const auto& list : lists)
+    for (const Leaf& leaf : list)
+      if (leaf.node && leaf.share <= surely && leaf.share >= hardly) rest.push_back({leaf.share, Keep::ticket_of(leaf)});
+  if (count <= sure) return {surely, ~std::uint64_t(0)};
+  if (count - sure >= rest.size()) return {hardly, 0};
+  const auto least = rest.begin() + static_cast<std::ptrdiff_t>(count - sure - 1);
+  std::nth_element(rest.begin(), least, rest.end(), std::greater<>());
+  return {least->first, least->second};
+}
+
+/// Numbers of nodes by spacing, as measured, and guesses between and beyond them: a power law in pieces.
+class CountCurve {
+ public:
+  void add(double spacing, double count) { points_.insert(std::upper_bound(points_.begin(), points_.end(), std::pair{std::log(spacing), 0.0}), {std::log(spacing), std::log(count + 0.5)}); }
+  double guess(double count) const {
+    const double y = std::log(count + 0.5);
+    std::size_t i = 0;  // the first with fewer nodes
+    while (i < points_.size() && points_[i].second > y) ++i;
+    const bool between = i > 0 && i < points_.size();
+    const std::size_t a = between ? i - 1 : i == 0 ? 0 : points_.size() - 1, b = between ? i : i == 0 ? 1 : points_.size() - 2;
+    double slope = -2.8;
+    if (points_.size() > 1) slope = (points_[b].second - points_[a].second) / (points_[b].first - points_[a].first);
+    if (!between) slope = std::clamp(slope, -4.0, -1.5);
+    double x = points_[a].first + (y - points_[a].second) / slope;
+    if (between) {  // well inside the bracket, or a step in the curve would be approached from one side for ever
+      const double lo = points_[a].first, hi = points_[b].first;
+      x = std::clamp(x, lo + 0.1 * (hi - lo), hi - 0.1 * (hi - lo));
+    }
+    return std::exp(x);
+  }
+
+ private:
+  std::vector<std::pair<double, double>> points_;
+};
+
+}  // namespace
+
+std::uint64_t Keep::ticket_of(const Leaf& leaf) { return Random(morton(leaf.cell.corner)).bits(); }
+
+std::optional<Found> LeafFinder::at(double spacing, int thin_levels, std::size_t most, SampleReport& report) const {
+  if (!(spacing > box_.diagonal() * 1e-4)) throw InputError("the spacing is less than 0.01 % of the model's diagonal; choose a larger one");
+  Stopwatch clock;
+  // The cells are centred on the body, so that a symmetric model is sampled symmetrically.
+  OctreeShape shape{{box_.lo, std::ldexp(spacing, -thin_levels)}, 0, thin_levels + options_.levels - 1, thin_levels, options_.across};
+  shape.root = shape.top;
+  const double coarse = shape.lattice.edge(shape.top);
+  for (int i = 0; i < 3; ++i) {
+    const double length = box_.hi[i] - box_.lo[i] + 0.02 * spacing, cells = std::max(1.0, std::ceil(length / coarse));
+    shape.lattice.origin[i] = box_.center()[i] - 0.5 * cells * coarse;
+    while (std::ldexp(1.0, shape.root - shape.top) < cells) ++shape.root;
+  }
+  Found found{{}, shape.lattice, {}, {}};
+  report.spacing = spacing;
+  const auto divided = plan_octree(tree_, shape, most, found.thin, progress_);
+  report.octree_seconds += clock.lap();
+  if (!divided) return std::nullopt;
+  found.lists = find_leaves(tree_, shape, *divided, options_, progress_);
+  report.node_seconds += clock.lap();
+  return found;
+}
+
+Found LeafFinder::with_count(std::size_t count, double volume, SampleReport& report) const {
+  const double target = double(count), most = 4 * target + 1000;
+  CountCurve curve;
+  int thin = thin_levels();
+  // A large spacing first: it costs little, and it shows how fine thin material may be.
+  double spacing = 2.5 * std::cbrt(volume / target);
+  std::optional<Found> found;
+  std::size_t nodes = 0;
+  const auto look = [&] {
+    found.reset();
+    found = at(spacing, thin, static_cast<std::size_t>(most), report);
+    nodes = found ? count_above(found->lists, 0.1f) : static_cast<std::size_t>(2 * most);
+  };
+  for (look(); thin > 0 && nodes > count; look()) --thin;
+  for (int round = 0; round < 30; ++round) {
+    curve.add(spacing, double(nodes));
+    if (found && count_above(found->lists, surely) <= count && count_above(found->lists, hardly) >= count) break;
+    // On the way to a large number a quarter of it shows where to go.
+    spacing = curve.guess(target > 20000 && round == 0 && nodes < target / 8 ? target / 4 : target);
+    look();
+  }
+  if (!found) throw InputError("no spacing gives " + std::to_string(count) + " nodes; ask for more");
+  found->keep = keep_count(found->lists, count);
+  return std::move(*found);
+}
+
+}  // namespace geo

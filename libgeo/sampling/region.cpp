@@ -1,0 +1,104 @@
+#include "sampling/region.h"
+
+#include "geometry/predicates.h"
+
+namespace geo {
+namespace {
+
+/// Crossings of segment pq with a triangle of whose plane the ends are on sides sp and sq: 0 or 1, or −1 where it
+/// touches the plane, an edge or a corner.
+int crossings(const Vec3& p, const Vec3& q, int sp, int sq, const std::array<Vec3, 3>& t) {
+  if (sp == 0 || sq == 0) return segment_meets_triangle(p, q, t[0], t[1], t[2]) ? -1 : 0;
+  if (sp == sq) return 0;
+  const int e0 = orient3d(p, q, t[0], t[1]), e1 = orient3d(p, q, t[1], t[2]), e2 = orient3d(p, q, t[2], t[0]);
+  const bool plus = e0 > 0 || e1 > 0 || e2 > 0, minus = e0 < 0 || e1 < 0 || e2 < 0;
+  if (plus && minus) return 0;
+  return e0 == 0 || e1 == 0 || e2 == 0 ? -1 : 1;
+}
+
+}  // namespace
+
+bool may_meet(const Box3& box, const Vec3& a, const Vec3& b, const Vec3& c) {
+  if (!box_of(a, b, c).meets(box)) return false;
+  const auto corner = [&](int k) { return Vec3(k & 1 ? box.hi.x() : box.lo.x(), k & 2 ? box.hi.y() : box.lo.y(), k & 4 ? box.hi.z() : box.lo.z()); };
+  // All corners strictly on one side of its plane.
+  const int side = orient3d_quick(a, b, c, corner(0));
+  if (side != 2) {
+    int k = 1;
+    while (k < 8 && orient3d_quick(a, b, c, corner(k)) == side) ++k;
+    if (k == 8) return false;
+  }
+  // Seen along an axis: all corners strictly on the far side of an edge.
+  for (int axis = 0; axis < 3; ++axis) {
+    const int turn = orient2d_quick(a, b, c, axis);
+    if (turn == 2) continue;
+    const int i = 1 << (axis + 1) % 3, j = 1 << (axis + 2) % 3;
+    const auto beyond = [&](const Vec3& p, const Vec3& q) {
+      for (const int k : {0, i, j, i | j})
+        if (orient2d_quick(p, q, corner(k), axis) != -turn) return false;
+      return true;
+    };
+    if (beyond(a, b) || beyond(b, c) || beyond(c, a)) return false;
+  }
+  return true;
+}
+
+RegionTree::RegionTree(const TriangleMesh& solid) {
+  corners_.reserve(solid.triangles.size());
+  for (const auto& [a, b, c] : solid.triangles) {
+    corners_.push_back({solid.vertices[a], solid.vertices[b], solid.vertices[c]});
+    const auto& t = corners_.back();
+    normals_.push_back((t[1] - t[0]).cross(t[2] - t[0]).stableNormalized());
+  }
+  tree_ = TriangleBvh(corners_);
+}
+
+Region RegionTree::root(const Lattice& lattice, const Cell& cell) const {
+  Region region{cell, lattice.middle(cell), false, {}};
+  region.inside = tree_.inside(region.probe);
+  region.rows.resize(corners_.size());
+  for (std::uint32_t i = 0; i < region.rows.size(); ++i) region.rows[i] = i;
+  return region;
+}
+
+Region RegionTree::child(const Lattice& lattice, const Region& region, const Cell& cell) const {
+  Region part{cell, lattice.middle(cell), region.inside, {}};
+  if (!region.cut()) return part;
+  const Box3 box = lattice.box(cell);
+  for (const auto row : region.rows)
+    if (const auto& t = corners_[row]; may_meet(box, t[0], t[1], t[2])) part.rows.push_back(row);
+  part.inside = inside(region, part.probe);
+  return part;
+}
+
+bool RegionTree::inside(const Region& region, const Vec3& p) const {
+  bool odd = false;
+  for (const auto row : region.rows) {
+    const auto& t = corners_[row];
+    const int n = crossings(region.probe, p, orient3d(t[0], t[1], t[2], region.probe), orient3d(t[0], t[1], t[2], p), t);
+    if (n < 0) return tree_.inside(p);
+    odd ^= n == 1;
+  }
+  return region.inside != odd;
+}
+
+void RegionTree::inside(const Region& region, std::span<const Vec3> points, std::span<char> answers) const {
+  // From each point to the next; a triangle with both on one side of its plane is not between them.
+  std::vector<char> known(points.size(), 1), odd(points.size(), 0);
+  for (const auto row : region.rows) {
+    const auto& t = corners_[row];
+    int before = orient3d(t[0], t[1], t[2], region.probe);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const int side = orient3d(t[0], t[1], t[2], points[i]);
+      if (before != side || side == 0) {
+        const int n = crossings(i ? points[i - 1] : region.probe, points[i], before, side, t);
+        n < 0 ? known[i] = 0 : odd[i] ^= n == 1;
+      }
+      before = side;
+    }
+  }
+  bool at = region.inside;
+  for (std::size_t i = 0; i < points.size(); ++i) answers[i] = at = known[i] ? at != bool(odd[i]) : tree_.inside(points[i]);
+}
+
+}  // namespace geo

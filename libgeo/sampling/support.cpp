@@ -1,0 +1,57 @@
+#include "sampling/support.h"
+
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace geo {
+namespace {
+
+constexpr std::size_t dozen = 12;
+
+struct Near {
+  double squared;
+  std::uint32_t row;
+  bool operator<(const Near& b) const { return squared != b.squared ? squared < b.squared : row < b.row; }
+};
+
+/// The twelve nodes nearest to node i of those that can be within three spacings.
+void find_dozen(const NodeSet& nodes, const LeafIndex& leaves, std::size_t i, std::vector<Near>& near) {
+  const Cell cell = leaves.cell(i);
+  // Two cells of the next level reach two spacings far, which does nearly always, those of the one after that four.
+  for (int up = 1; up <= 2; ++up) {
+    near.clear();
+    const double reach = up * 2 * nodes.spacing[i];
+    leaves.around(cell, cell.level + up, [&](std::uint32_t row) {
+      const double d = (nodes.position[row] - nodes.position[i]).squaredNorm();
+      if (d <= reach * reach && row != i) near.push_back({d, row});
+    });
+    if (near.size() >= dozen) break;
+  }
+  if (near.size() <= dozen) return;
+  std::nth_element(near.begin(), near.begin() + dozen - 1, near.end());
+  near.resize(dozen);
+}
+
+}  // namespace
+
+void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, const Progress& progress) {
+  nodes.radius.resize(nodes.size());
+  const std::size_t share = std::max<std::size_t>(1 << 16, nodes.size() / 64);
+  for (std::size_t first = 0; first < nodes.size(); first += share) {
+    report(progress, "support", first, nodes.size());
+    parallel_for(std::min(share, nodes.size() - first), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<Near> near;
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        find_dozen(nodes, leaves, i, near);
+        const double own = nodes.spacing[i];
+        double spacing = own, squared = 0;
+        for (const Near& n : near) spacing += nodes.spacing[n.row], squared = std::max(squared, n.squared);
+        const double reach = near.size() < std::min(dozen, nodes.size() - 1) ? 3 * own : std::min(std::sqrt(squared), 3 * own);
+        nodes.radius[i] = std::max(support * spacing / double(near.size() + 1), 1.05 * reach);
+      }
+    });
+  }
+}
+
+}  // namespace geo

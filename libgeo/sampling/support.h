@@ -1,0 +1,15 @@
+// What a node has around it: support radii, and blue noise.
+#pragma once
+
+#include "base/progress.h"
+#include "sampling/leaf_index.h"
+#include "sampling/node_set.h"
+
+namespace geo {
+
+/// Support radii (§ 3.1): `support` times the mean spacing of a node and its twelve nearest, so that radii change
+/// gradually where the spacing halves; wide enough for a dozen others within three spacings: fewer seldom span all
+/// directions. Row i of the nodes is leaf i.
+void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, const Progress& progress);
+
+}  // namespace geo

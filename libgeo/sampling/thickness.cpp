@@ -1,0 +1,88 @@
+#include "sampling/thickness.h"
+
+#include <cmath>
+
+namespace geo {
+namespace {
+
+constexpr double facing = 0.9;
+constexpr double none = std::numeric_limits<double>::infinity();
+
+/// Where the ray from p leaves the material, `from` being the row it starts on; infinite where it does not within
+/// `length`, or not through a face across its way.
+double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from) {
+  constexpr int parts = 8;  // short boxes: a slanting ray's whole box would hold most of what is near
+  std::vector<std::uint32_t> rows;
+  for (int part = 0; part < parts; ++part) {
+    Box3 box;
+    box.add(p + direction * (length * part / parts));
+    box.add(p + direction * (length * (part + 1) / parts));
+    rows.clear();
+    tree.tree().near(box, rows);
+    double first = none;
+    bool across = false;
+    for (const auto row : rows) {
+      if (row == from) continue;
+      const auto& [a, b, c] = tree.corners(row);
+      const Vec3 u = b - a, v = c - a, w = direction.cross(v);
+      const double det = u.dot(w);
+      if (det == 0) continue;
+      const Vec3 s = p - a, q = s.cross(u);
+      const double x = s.dot(w) / det, y = direction.dot(q) / det, t = v.dot(q) / det;
+      if (x < 0 || y < 0 || x + y > 1 || !(t > 0) || t > length || t >= first) continue;
+      first = t, across = tree.normal(row).dot(direction) >= facing;
+    }
+    // A hit beyond this part may have another before it.
+    if (first <= length * (part + 1) / parts) return across ? first : none;
+  }
+  return none;
+}
+
+/// The middle of the corners of the part of a triangle that is in a box; false where there is none.
+bool middle_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle) {
+  Vec3 polygon[2][10];  // each of six planes adds one corner at most
+  int n = 3, now = 0;
+  std::copy(t.begin(), t.end(), polygon[0]);
+  for (int plane = 0; plane < 6 && n > 0; ++plane) {
+    const int axis = plane / 2;
+    const auto depth = [&](const Vec3& p) { return plane % 2 ? box.hi[axis] - p[axis] : p[axis] - box.lo[axis]; };
+    const Vec3* in = polygon[now];
+    Vec3* out = polygon[1 - now];
+    int count = 0;
+    for (int i = 0; i < n; ++i) {
+      const Vec3 &p = in[i], &q = in[(i + 1) % n];
+      const double dp = depth(p), dq = depth(q);
+      if (dp >= 0) out[count++] = p;
+      if ((dp >= 0) != (dq >= 0)) out[count++] = p + dp / (dp - dq) * (q - p);
+    }
+    n = count, now = 1 - now;
+  }
+  middle = Vec3::Zero();
+  for (int i = 0; i < n; ++i) middle += polygon[now][i] / n;
+  return n > 0;
+}
+
+}  // namespace
+
+Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit) {
+  Wall wall;
+  const Box3 box = lattice.box(cut.cell);
+  for (const auto row : cut.rows) {
+    Vec3 p;
+    if (!middle_in_box(tree.corners(row), box, p)) continue;
+    const double t = way_out(tree, p, -tree.normal(row), std::min(limit, wall.thickness), row);
+    if (t < wall.thickness) wall = {t, p - 0.5 * t * tree.normal(row)};
+  }
+  return wall;
+}
+
+Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Closest& closest, double limit) {
+  if (!(closest.distance > 0)) return {};
+  const Vec3 direction = (p - closest.point) / closest.distance;
+  if (tree.normal(closest.row).dot(direction) > -facing) return {};
+  const double rest = way_out(tree, p, direction, limit - closest.distance, closest.row);
+  if (!(rest < none)) return {};
+  return {closest.distance + rest, p + 0.5 * (rest - closest.distance) * direction};
+}
+
+}  // namespace geo

@@ -1,0 +1,21 @@
+// How thick the material is: the other side of a wall, seen along the normal.
+#pragma once
+
+#include "sampling/region.h"
+
+namespace geo {
+
+struct Wall {
+  double thickness = std::numeric_limits<double>::infinity();  ///< infinite: no wall that is thinner than asked for
+  Vec3 at = Vec3::Zero();                                      ///< a point in it
+};
+
+/// The thinnest wall of those thinner than `limit` that a triangle of a cut cell belongs to, looking inwards from the
+/// middle of its part in the cell. The two sides of a wall face away from each other within 26° (cosine −0.9): a sharper
+/// edge than that counts as a wall that tapers off, a blunter one as an edge.
+Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit);
+
+/// The same for a wall that point p is inside, of which `closest` (within limit / 2) is one side.
+Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Closest& closest, double limit);
+
+}  // namespace geo

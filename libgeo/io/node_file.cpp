@@ -1,5 +1,6 @@
 #include "io/node_file.h"
 
+#include <array>
 #include <cstring>
 
 #include "io/ply_internal.h"
@@ -11,11 +12,17 @@ namespace {
 
 constexpr const char* fields[] = {"x", "y", "z", "radius", "spacing", "volume"};
 
+NodeSet with_room(std::size_t count) {
+  NodeSet nodes;
+  nodes.position.reserve(count), nodes.radius.reserve(count), nodes.spacing.reserve(count), nodes.volume.reserve(count);
+  return nodes;
+}
+
 void add(NodeSet& nodes, const double (&v)[6], const std::string& name) {
-  const auto row = std::to_string(nodes.size());
+  const auto fail = [&](const char* what) { throw InputError(name + ": node " + std::to_string(nodes.size()) + " has a " + what); };
   for (const double x : v)
-    if (!(std::abs(x) <= largest_coordinate)) throw InputError(name + ": node " + row + " has a value that is not a finite number of sensible size; repair the file");
-  if (!(v[3] > 0) || !(v[4] > 0) || !(v[5] > 0)) throw InputError(name + ": node " + row + " has a radius, spacing or volume that is not positive");
+    if (!(std::abs(x) <= largest_coordinate)) fail("value that is not a finite number of sensible size; repair the file");
+  if (!(v[3] > 0) || !(v[4] > 0) || !(v[5] > 0)) fail("radius, spacing or volume that is not positive");
   nodes.position.push_back({v[0], v[1], v[2]});
   nodes.radius.push_back(v[3]);
   nodes.spacing.push_back(v[4]);
@@ -31,7 +38,7 @@ NodeSet from_ply(const std::string& bytes, const std::string& name) {
     columns[i] = vertex->find(fields[i]);
     if (!columns[i] || columns[i]->count_type) throw InputError(name + ": has no field '" + fields[i] + "'; nodes come from kerf-sample");
   }
-  NodeSet nodes;
+  NodeSet nodes = with_room(vertex->count);
   for (std::size_t i = 0; i < vertex->count; ++i) {
     double v[6];
     for (int k = 0; k < 6; ++k) v[k] = columns[k]->values[i];
@@ -82,7 +89,7 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
   }
   for (int k = 0; k < 6; ++k)
     if (column[k] == ~std::size_t(0)) throw InputError(name + ": has no field '" + fields[k] + "'; nodes come from kerf-sample");
-  NodeSet nodes;
+  NodeSet nodes = with_room(static_cast<std::size_t>(points));  // the file has a byte for each at least
   const std::size_t at = header.position();
   if (data == 1) {
     if (bytes.size() - at != stride * static_cast<std::size_t>(points))
@@ -116,9 +123,13 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
 }
 
 void put_rows(std::ostream& out, const NodeSet& nodes) {
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double row[6] = {nodes.position[i].x(), nodes.position[i].y(), nodes.position[i].z(), nodes.radius[i], nodes.spacing[i], nodes.volume[i]};
-    out.write(reinterpret_cast<const char*>(row), sizeof row);
+  constexpr std::size_t share = 4096;  // rows in one go
+  std::vector<std::array<double, 6>> rows;
+  for (std::size_t first = 0; first < nodes.size(); first += share) {
+    rows.clear();
+    for (std::size_t i = first; i < std::min(first + share, nodes.size()); ++i)
+      rows.push_back({nodes.position[i].x(), nodes.position[i].y(), nodes.position[i].z(), nodes.radius[i], nodes.spacing[i], nodes.volume[i]});
+    out.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
   }
 }
 

@@ -9,9 +9,10 @@
 namespace geo {
 namespace {
 
-// A cell with this share of material always has a node where the number of nodes is asked for, one with less than that
-// never: between them some have, so that the number is met.
-constexpr float surely = 0.35f, hardly = 0.03f;
+// Where the number of nodes is asked for, cells with more material than `surely` always have one and those with less
+// than `hardly` never: between them some have, so that the number is met. Models with flat faces across the axes lose or
+// gain all cells of a face at once, half filled: where nothing else helps some of those have none.
+constexpr float surely = 0.35f, at_worst = 0.6f, hardly = 0.03f;
 
 std::size_t count_above(const LeafLists& lists, float share) {
   std::size_t n = 0;
@@ -21,7 +22,7 @@ std::size_t count_above(const LeafLists& lists, float share) {
 }
 
 /// The rule that keeps `count` leaves, or as near to that as may be.
-Keep keep_count(const LeafLists& lists, std::size_t count) {
+Keep keep_count(const LeafLists& lists, std::size_t count, float surely) {
   const std::size_t sure = count_above(lists, surely);
   std::vector<std::pair<float, std::uint64_t>> rest;
   for (const auto& list : lists)
@@ -99,15 +100,17 @@ Found LeafFinder::with_count(std::size_t count, double volume, SampleReport& rep
     nodes = found ? count_above(found->lists, 0.1f) : static_cast<std::size_t>(2 * most);
   };
   for (look(); thin > 0 && nodes > count; look()) --thin;
+  float sure = surely;
   for (int round = 0; round < 30; ++round) {
     curve.add(spacing, double(nodes));
-    if (found && count_above(found->lists, surely) <= count && count_above(found->lists, hardly) >= count) break;
+    if (round == 6) sure = at_worst;
+    if (found && count_above(found->lists, sure) <= count && count_above(found->lists, hardly) >= count) break;
     // On the way to a large number a quarter of it shows where to go.
     spacing = curve.guess(target > 20000 && round == 0 && nodes < target / 8 ? target / 4 : target);
     look();
   }
   if (!found) throw InputError("no spacing gives " + std::to_string(count) + " nodes; ask for more");
-  found->keep = keep_count(found->lists, count);
+  found->keep = keep_count(found->lists, count, sure);
   return std::move(*found);
 }
 

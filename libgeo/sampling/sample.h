@@ -16,12 +16,12 @@ struct SampleOptions {
   double spacing = 0;      ///< cells at the surface, model units; 0: 3 % of the diagonal, or what `count` asks for
   std::size_t count = 0;   ///< wanted number of nodes; 0: by spacing. Reached exactly, or within 2 % where symmetry forbids
   int levels = 2;          ///< resolution levels, each twice as coarse as the one before; 1 to 10
-  double jitter = 0.15;    ///< random displacement of a node, as a fraction of its cell; up to 0.5
+  double jitter = 0.15;    ///< random displacement of a node, as a fraction of its cell; up to 0.5; of pattern `jitter`
   double support = 1.8;    ///< support radius over the spacing around, enlarged until enough nodes are within it
   std::uint64_t seed = 1;
   Pattern pattern = Pattern::jitter;
-  int across = 3;  ///< nodes wanted across thin material: cells there are up to 32 times finer; 0: as fine as elsewhere.
-                   ///< With `count`, as far as it affords
+  int across = 0;  ///< nodes wanted across thin material: cells there are up to 32 times finer, with `count` as far as
+                   ///< it affords; 0: as fine as elsewhere
 };
 
 /// What a sampling found out.

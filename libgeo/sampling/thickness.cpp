@@ -10,8 +10,8 @@ constexpr double none = std::numeric_limits<double>::infinity();
 
 /// Where the ray from p leaves the material, `from` being the row it starts on; infinite where it does not within
 /// `length`, or not through a face across its way.
-double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from) {
-  constexpr int parts = 8;  // short boxes: a slanting ray's whole box would hold most of what is near
+/// Looks for triangles in boxes about so many parts of the ray: the one box of a slanting ray holds most of what is near.
+double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from, int parts) {
   std::vector<std::uint32_t> rows;
   for (int part = 0; part < parts; ++part) {
     Box3 box;
@@ -67,10 +67,14 @@ bool middle_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle) 
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit) {
   Wall wall;
   const Box3 box = lattice.box(cut.cell);
-  for (const auto row : cut.rows) {
+  // Of very many small triangles some: a wall worth cells of its own is made of more than a few of them.
+  const std::size_t step = 1 + cut.rows.size() / 64;
+  const int parts = cut.rows.size() < 8 ? 1 : 8;
+  for (std::size_t i = 0; i < cut.rows.size(); i += step) {
+    const std::uint32_t row = cut.rows[i];
     Vec3 p;
     if (!middle_in_box(tree.corners(row), box, p)) continue;
-    const double t = way_out(tree, p, -tree.normal(row), std::min(limit, wall.thickness), row);
+    const double t = way_out(tree, p, -tree.normal(row), std::min(limit, wall.thickness), row, parts);
     if (t < wall.thickness) wall = {t, p - 0.5 * t * tree.normal(row)};
   }
   return wall;
@@ -80,7 +84,7 @@ Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Close
   if (!(closest.distance > 0)) return {};
   const Vec3 direction = (p - closest.point) / closest.distance;
   if (tree.normal(closest.row).dot(direction) > -facing) return {};
-  const double rest = way_out(tree, p, direction, limit - closest.distance, closest.row);
+  const double rest = way_out(tree, p, direction, limit - closest.distance, closest.row, 2);
   if (!(rest < none)) return {};
   return {closest.distance + rest, p + 0.5 * (rest - closest.distance) * direction};
 }

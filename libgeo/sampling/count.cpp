@@ -97,7 +97,7 @@ Found LeafFinder::with_count(std::size_t count, double volume, SampleReport& rep
   const auto look = [&] {
     found.reset();
     found = at(spacing, thin, static_cast<std::size_t>(most), report);
-    nodes = found ? count_above(found->lists, 0.1f) : static_cast<std::size_t>(2 * most);
+    nodes = found ? count_above(found->lists, float(least_share)) : static_cast<std::size_t>(2 * most);
   };
   for (look(); thin > 0 && nodes > count; look()) --thin;
   float sure = surely;

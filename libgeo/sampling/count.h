@@ -7,7 +7,7 @@ namespace geo {
 
 /// Which leaves get a node: those with enough material, ties decided at random.
 struct Keep {
-  float share = 0.1f;  // a cell with less material than this gives it to its neighbours
+  float share = float(least_share);
   std::uint64_t ticket = 0;
   static std::uint64_t ticket_of(const Leaf& leaf);
   bool operator()(const Leaf& leaf) const { return leaf.node && (leaf.share != share ? leaf.share > share : ticket_of(leaf) >= ticket); }

@@ -23,7 +23,7 @@ bool settle(const RegionTree& tree, const Region& region, const Box3& box, doubl
   if (close.row == ~0u || !(close.distance > 0)) return true;
   const Vec3 pushed = close.point + away / close.distance * (p - close.point);
   if (tree.tree().closest(pushed, 0.5 * away).row != ~0u) return true;
-  if (Box3{pushed, pushed}.meets(box) && (pushed.array() >= box.lo.array()).all() && (pushed.array() <= box.hi.array()).all() ? tree.inside(region, pushed) : tree.tree().inside(pushed)) p = pushed;
+  if (box.meets({pushed, pushed}) ? tree.inside(region, pushed) : tree.tree().inside(pushed)) p = pushed;
   return true;
 }
 
@@ -44,7 +44,14 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
   for (int i = 0; i < points; ++i)
     if (in[i]) sum += at[i], ++count;
   leaf.share = float(count) / points;
-  if (count == 0) return leaf;
+  if (count == 0) {
+    // A wall between the sample points: it has a node in its middle where it fills most of the cell's cross-section.
+    const Wall wall = thinnest_wall(tree, lattice, region, edge);
+    if (wall.area < edge * edge || !box.meets({wall.at, wall.at})) return leaf;
+    leaf.position = wall.at, leaf.node = tree.inside(region, wall.at);
+    leaf.share = float(std::max(least_share, 0.5 * wall.thickness * wall.area / (edge * edge * edge)));
+    return leaf;
+  }
   const Vec3 middle = sum / count;
   for (const Vec3& p : {Vec3(middle + (count == points ? 1.0 : 0.3) * edge * shift), middle}) {
     leaf.position = p;

@@ -25,5 +25,7 @@ LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Di
 
 /// The part of its cell's edge that a node keeps off the surface where it can.
 constexpr double keep_off = 0.12;
+/// A cell with less material than this share gives it to its neighbours.
+constexpr double least_share = 0.1;
 
 }  // namespace geo

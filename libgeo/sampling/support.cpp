@@ -45,10 +45,10 @@ void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, 
       for (std::size_t i = first + begin; i < first + end; ++i) {
         find_dozen(nodes, leaves, i, near);
         const double own = nodes.spacing[i];
-        double spacing = own, squared = 0;
-        for (const Near& n : near) spacing += nodes.spacing[n.row], squared = std::max(squared, n.squared);
+        double sum = own, squares = own * own, squared = 0;
+        for (const Near& n : near) sum += nodes.spacing[n.row], squares += nodes.spacing[n.row] * nodes.spacing[n.row], squared = std::max(squared, n.squared);
         const double reach = near.size() < std::min(dozen, nodes.size() - 1) ? 3 * own : std::min(std::sqrt(squared), 3 * own);
-        nodes.radius[i] = std::max(support * spacing / double(near.size() + 1), 1.05 * reach);
+        nodes.radius[i] = std::max(support * std::min(own, squares / sum), 1.05 * reach);
       }
     });
   }

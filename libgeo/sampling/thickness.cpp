@@ -38,8 +38,8 @@ double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, dou
   return none;
 }
 
-/// The middle of the corners of the part of a triangle that is in a box; false where there is none.
-bool middle_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle) {
+/// The middle of the corners of the part of a triangle that is in a box, and that part's area; false where there is none.
+bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, double& area) {
   Vec3 polygon[2][10];  // each of six planes adds one corner at most
   int n = 3, now = 0;
   std::copy(t.begin(), t.end(), polygon[0]);
@@ -58,7 +58,9 @@ bool middle_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle) 
     n = count, now = 1 - now;
   }
   middle = Vec3::Zero();
-  for (int i = 0; i < n; ++i) middle += polygon[now][i] / n;
+  Vec3 twice = Vec3::Zero();
+  for (int i = 0; i < n; ++i) middle += polygon[now][i] / n, twice += (polygon[now][i] - polygon[now][0]).cross(polygon[now][(i + 1) % n] - polygon[now][0]);
+  area = 0.5 * twice.norm();
   return n > 0;
 }
 
@@ -73,9 +75,11 @@ Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region&
   for (std::size_t i = 0; i < cut.rows.size(); i += step) {
     const std::uint32_t row = cut.rows[i];
     Vec3 p;
-    if (!middle_in_box(tree.corners(row), box, p)) continue;
-    const double t = way_out(tree, p, -tree.normal(row), std::min(limit, wall.thickness), row, parts);
-    if (t < wall.thickness) wall = {t, p - 0.5 * t * tree.normal(row)};
+    double area;
+    if (!part_in_box(tree.corners(row), box, p, area)) continue;
+    const double t = way_out(tree, p, -tree.normal(row), limit, row, parts);
+    if (t < none) wall.area += area;
+    if (t < wall.thickness) wall.thickness = t, wall.at = p - 0.5 * t * tree.normal(row);
   }
   return wall;
 }
@@ -86,7 +90,7 @@ Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Close
   if (tree.normal(closest.row).dot(direction) > -facing) return {};
   const double rest = way_out(tree, p, direction, limit - closest.distance, closest.row, 2);
   if (!(rest < none)) return {};
-  return {closest.distance + rest, p + 0.5 * (rest - closest.distance) * direction};
+  return {closest.distance + rest, p + 0.5 * (rest - closest.distance) * direction, 0};
 }
 
 }  // namespace geo

@@ -7,7 +7,8 @@ namespace geo {
 
 struct Wall {
   double thickness = std::numeric_limits<double>::infinity();  ///< infinite: no wall that is thinner than asked for
-  Vec3 at = Vec3::Zero();                                      ///< a point in it
+  Vec3 at = Vec3::Zero();                                      ///< a point in its middle
+  double area = 0;                                             ///< of both its sides, as far as looked at
 };
 
 /// The thinnest wall of those thinner than `limit` that a triangle of a cut cell belongs to, looking inwards from the

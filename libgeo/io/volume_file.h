@@ -9,8 +9,8 @@
 namespace geo {
 
 struct VolumeOptions {
-  std::string grid;           ///< which grid, by name; empty: the only one of numbers
-  std::optional<double> iso;  ///< the surface's level; default: 0 of a level set, 0.5 of a fog volume
+  std::string grid = {};      ///< which grid, by name; empty: the only one of numbers
+  std::optional<double> iso = {};  ///< the surface's level; default: 0 of a level set, 0.5 of a fog volume
   double adaptivity = 0;      ///< 0: triangles of a voxel's size everywhere; up to 1: larger where the surface is flat
 };
 

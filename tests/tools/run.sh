@@ -101,6 +101,14 @@ contract)
     expect 2 "see $tool --help" $tool --no-such-option
   done
   expect 2 "spacing" kerf-sample block.ply --spacing banana -o x.pcd
+  for options in "--spacing -1" "--spacing 0" "--spacing nan" "--spacing 3%%" "--spacing 0.1 -n 5" "-n -5" "--levels 0" "--levels 11" "--jitter 0.5" "--pattern red" "--min-across -1" "--min-across 101" "--iso 0" "--grid a" "--surface s.ply"; do
+    expect 2 "${options%% *}" kerf-sample block.ply $options -o x.pcd
+  done
+  expect 65 "0.01 %" kerf-sample block.ply --spacing 1e-7 -o x.pcd
+  kerf-model block --edge 0.5 -o level.vdb
+  expect 65 "named 'none'" kerf-sample level.vdb --grid none --spacing 0.2 -o x.pcd
+  expect 65 "level 5" kerf-sample level.vdb --iso 5 --spacing 0.2 -o x.pcd
+  expect 2 "iso" kerf-sample level.vdb --iso high --spacing 0.2 -o x.pcd
   expect 73 "cannot" kerf-sample block.ply --spacing 12% -o none/x.pcd
   expect 73 "cannot" kerf-crack block.ply --front ok.front -o none/x.ply
   expect 73 "cannot be written" kerf-crack block.ply --front ok.front -o /dev/full
@@ -117,7 +125,10 @@ contract)
   kerf-sample block.ply --spacing 12% -o file.pcd
   cmp stdin.pcd file.pcd || fail "standard input gives other nodes"
   kerf-view block.ply --size 80x60 --samples 1 -o a.png && kerf-view -j1 block.ply --size 80x60 --samples 1 -o b.png && cmp a.png b.png || fail "pictures differ"
-  kerf-model block --edge 0.5 -o level.vdb && kerf-sample level.vdb --spacing 0.2 -o vdb.pcd || fail "volume input"
+  kerf-model block --edge 0.5 -o level.vdb && kerf-sample level.vdb --spacing 0.2 --surface level.ply -o vdb.pcd || fail "volume input"
+  quietly kerf-graph vdb.pcd --surface level.ply -o vdb.kerf
+  quietly kerf-info --check -q vdb.kerf
+  kerf-sample block.ply -n 500 --levels 3 --pattern blue --json -o figures.pcd | grep -q '^{"nodes":500,.*"levels":\[{"spacing":.*"thinnest":null,"too_thin":null,"seconds":{"read":' || fail "kerf-sample --json"
   ;;
 kinds)
   # A file is known by what it holds, not by its first line.

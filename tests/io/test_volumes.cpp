@@ -1,0 +1,99 @@
+// Volumes: what OpenVDB wrote is read as a solid that nodes fit into.
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "geometry/bvh.h"
+#include "io/volume_file.h"
+#include "sampling/sample.h"
+#include "surface/check.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+/// A file in a folder of its own, removed at the end.
+struct Scratch {
+  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("kerf-volumes-" + std::to_string(std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName())));
+  std::string file = (folder / "v.vdb").string();
+  Scratch() { std::filesystem::create_directories(folder); }
+  ~Scratch() { std::filesystem::remove_all(folder); }
+  void write(const openvdb::GridPtrVec& grids) const {
+    openvdb::initialize();
+    std::ofstream out(file, std::ios::binary);
+    openvdb::io::Stream(out).write(grids);
+  }
+};
+
+template <class Grid>
+typename Grid::Ptr ball(const char* name, double value) {
+  auto grid = Grid::create(0);
+  grid->setName(name);
+  auto accessor = grid->getAccessor();
+  for (int x = -8; x <= 8; ++x)
+    for (int y = -8; y <= 8; ++y)
+      for (int z = -8; z <= 8; ++z)
+        if (const double d = 7 - std::sqrt(double(x * x + y * y + z * z)); d > 0) accessor.setValue({x, y, z}, static_cast<typename Grid::ValueType>(value * std::min(1.0, d / 4)));
+  return grid;
+}
+
+}  // namespace
+
+TEST_CASE("a level set and a fog volume come back as the solid that was written, and nodes are inside it") {
+  const Scratch scratch;
+  for (const auto& [name, mesh] : std::vector<std::pair<std::string, TriangleMesh>>{{"sphere", make_sphere(8)}, {"block", make_block({2, 1, 1}, 0.25)}, {"pumpkin", make_pumpkin(8)}, {"polyp", make_polyp(8)}, {"letter", make_letter('K', 0.25, 12)}})
+    for (const bool fog : {false, true}) {
+      INFO(name << (fog ? ", fog" : ", level set"));
+      const double voxel = 0.012 * bounding_box(mesh).diagonal();
+      write_level_set(scratch.file, mesh, voxel, fog);
+      const TriangleMesh surface = read_volume(scratch.file);
+      require_solid(surface);
+      // A fog volume is full three voxels deep: its half-density level lies that much further in.
+      if (!fog) CHECK(signed_volume(surface) == Approx(signed_volume(mesh)).epsilon(0.03));
+      else CHECK(signed_volume(surface) < signed_volume(mesh));
+      SampleOptions options;
+      options.count = 800, options.across = 3;
+      const NodeSet nodes = sample_nodes(surface, options);
+      CHECK(nodes.size() == 800);
+      std::vector<std::array<Vec3, 3>> soup;
+      for (const auto& [a, b, c] : surface.triangles) soup.push_back({surface.vertices[a], surface.vertices[b], surface.vertices[c]});
+      const TriangleBvh tree(soup);
+      for (const Vec3& p : nodes.position) REQUIRE(tree.inside(p));
+    }
+}
+
+TEST_CASE("a grid is chosen by name, its surface by level") {
+  const Scratch scratch;
+  openvdb::initialize();
+  scratch.write({ball<openvdb::FloatGrid>("density", 1), ball<openvdb::DoubleGrid>("heat", 5), openvdb::BoolGrid::create()});
+  CHECK_THROWS_WITH(read_volume(scratch.file), Catch::Contains("several grids, 'density', 'heat'"));
+  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "smoke"}), Catch::Contains("'smoke'") && Catch::Contains("'density', 'heat'"));
+  const double half = signed_volume(read_volume(scratch.file, {.grid = "density"}));
+  CHECK(half == Approx(4.0 / 3 * 3.14159 * 125).epsilon(0.06));  // 0.5 is two voxels deep in a ball of radius 7
+  CHECK(signed_volume(read_volume(scratch.file, {.grid = "heat", .iso = 2.5})) == Approx(half).epsilon(1e-6));
+  CHECK(signed_volume(read_volume(scratch.file, {.grid = "density", .iso = 0.2})) > 1.3 * half);
+  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "density", .iso = 2}), Catch::Contains("no surface at the level"));
+  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "density", .iso = -1}), Catch::Contains("choose another"));
+  const auto fine = read_volume(scratch.file, {.grid = "density"}), rough = read_volume(scratch.file, {.grid = "density", .adaptivity = 1});
+  CHECK(rough.triangles.size() < fine.triangles.size());
+}
+
+TEST_CASE("volumes with nothing to sample are refused") {
+  const Scratch scratch;
+  openvdb::initialize();
+  scratch.write({openvdb::BoolGrid::create()});
+  CHECK_THROWS_WITH(read_volume(scratch.file), Catch::Contains("no grid of numbers"));
+  scratch.write({openvdb::FloatGrid::create(1)});
+  CHECK_THROWS_WITH(read_volume(scratch.file), Catch::Contains("empty"));
+  scratch.write({});
+  CHECK_THROWS_AS(read_volume(scratch.file), InputError);
+  scratch.write({ball<openvdb::FloatGrid>("a", 1), ball<openvdb::FloatGrid>("a", 1)});
+  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "a"}), Catch::Contains("told apart"));
+  std::ofstream(scratch.file, std::ios::binary) << "no volume";
+  CHECK_THROWS_WITH(read_volume(scratch.file), Catch::Contains("OpenVDB"));
+}

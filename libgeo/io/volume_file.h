@@ -9,9 +9,9 @@
 namespace geo {
 
 struct VolumeOptions {
-  std::string grid = {};      ///< which grid, by name; empty: the only one of numbers
+  std::string grid = {};           ///< which grid, by name; empty: the only one of numbers
   std::optional<double> iso = {};  ///< the surface's level; default: 0 of a level set, 0.5 of a fog volume
-  double adaptivity = 0;      ///< 0: triangles of a voxel's size everywhere; up to 1: larger where the surface is flat
+  double adaptivity = 0;           ///< 0: triangles of a voxel's size everywhere; up to 1: larger where the surface is flat
 };
 
 /// The surface of a scalar grid of a `.vdb` file ("-": standard input), at values below the level for a level set, above

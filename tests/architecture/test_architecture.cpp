@@ -20,7 +20,7 @@ const std::set<std::pair<std::string, std::string>> strangers{{"crack", "graph"}
 // Heavy libraries have one door each: the rooms whose sources may include them. No header may.
 const std::map<std::string, std::set<std::string>> doors{{"CGAL/", {"geometry"}},
                                                          {"gmp", {"crack"}},
-                                                         {"openvdb/", {"sampling", "io"}},
+                                                         {"openvdb/", {"io"}},
                                                          {"pcl/", {"graph", "io"}},
                                                          {"tbb/", {"base"}},
                                                          {"toml++/", {"io"}},

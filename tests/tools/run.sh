@@ -101,7 +101,7 @@ contract)
     expect 2 "see $tool --help" $tool --no-such-option
   done
   expect 2 "spacing" kerf-sample block.ply --spacing banana -o x.pcd
-  for options in "--spacing -1" "--spacing 0" "--spacing nan" "--spacing 3%%" "--spacing 0.1 -n 5" "-n -5" "--levels 0" "--levels 11" "--jitter 0.5" "--pattern red" "--min-across -1" "--min-across 101" "--iso 0" "--grid a" "--surface s.ply"; do
+  for options in "--spacing -1" "--spacing 0" "--spacing nan" "--spacing 3%%" "--spacing 0.1 -n 5" "--count -5" "--levels 0" "--levels 11" "--jitter 0.5" "--pattern red" "--min-across -1" "--min-across 101" "--iso 0" "--grid a" "--surface s.ply"; do
     expect 2 "${options%% *}" kerf-sample block.ply $options -o x.pcd
   done
   expect 65 "0.01 %" kerf-sample block.ply --spacing 1e-7 -o x.pcd

@@ -111,12 +111,6 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
 }
 
-TEST_CASE("a killed write after a commit is passed over and an older commit is found") {
-  const std::string kerf = bytes_of([&](auto& out) { write_body(out, small_body()); });
-  const Body body = parse_body(kerf + std::string(1000, 'x'), "b.kerf");
-  CHECK(body.nodes.size() > 0);
-}
-
 TEST_CASE("a newer version, a text transfer and another kind of file are told apart") {
   std::string kerf = bytes_of([&](auto& out) { write_body(out, small_body()); });
   std::string newer = kerf;

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "io/kerf_bytes.h"
 #include "io/kerf_container.h"
 #include "io/samples.h"
 #include "io/scene_file.h"
@@ -27,17 +28,8 @@ std::string sealed(Random& random, const std::string& good) {
   Mutator mutator(random);
   KerfSections sections = parse_kerf(good, "good");
   if (random.below(4) == 0) {
-    const std::size_t record = good.size() - 32;
-    std::uint64_t at, length;
-    std::memcpy(&at, good.data() + record + 8, 8);
-    std::memcpy(&length, good.data() + record + 16, 8);
-    const std::string table = mutator.damaged(good.substr(at, length), {good.substr(at, length)});
-    std::string bytes = good.substr(0, at) + table, end = good.substr(record);
-    length = table.size();
-    const std::uint64_t hash = fingerprint(table);
-    std::memcpy(end.data() + 16, &length, 8);
-    std::memcpy(end.data() + 24, &hash, 8);
-    return bytes + end;
+    const std::string table = last_segment(good).table;
+    return with_table(good, mutator.damaged(table, {table}));
   }
   for (auto changes = 1 + random.below(2); changes-- > 0;) {
     const auto pick = [&] { return std::next(sections.begin(), random.below(static_cast<std::uint32_t>(sections.size()))); };

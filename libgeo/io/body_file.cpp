@@ -168,9 +168,9 @@ void read_nodes(const KerfFile& in, Body& body) {
       in.fail("node " + std::to_string(i) + " has a radius, spacing or volume that is not positive or of no sensible size");
 }
 
-// Where each row of a group ends, of which there are n with `size` entries in all. Version 1 has the ends themselves.
+// Where each row of a group ends, of which there are n with `size` entries in all. Version 1 had the ends themselves.
 std::vector<std::uint64_t> row_ends(const KerfFile& in, const std::string& group, std::size_t n, std::size_t size) {
-  const bool counted = in.sections().count(group + "/count") > 0 || in.version() > 1;
+  const bool counted = in.sections().count(group + "/ends") == 0;
   const std::string section = group + (counted ? "/count" : "/ends");
   const auto values = in.read<std::uint32_t>(section);
   std::vector<std::uint64_t> ends(values.begin(), values.end());

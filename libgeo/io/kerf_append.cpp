@@ -119,6 +119,11 @@ std::uint64_t KerfUpdate::commit(const std::vector<KerfArray>& arrays) {
   return size;
 }
 
+void KerfUpdate::compact() {
+  require_same_file();
+  write_all(path_, [&](std::ostream& out) { write_compacted(out, *file_); });
+}
+
 std::vector<kerf::Stored> KerfUpdate::changes(const std::vector<KerfArray>& arrays) const {
   std::vector<kerf::Stored> changed;
   for (const auto& array : arrays) {

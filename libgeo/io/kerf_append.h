@@ -32,6 +32,9 @@ class KerfUpdate {
   /// array twice. Throws OutputError, the state before stays.
   std::uint64_t commit(const std::vector<KerfArray>& arrays);
 
+  /// Folds all that was appended: the same state in a single segment, written aside and renamed.
+  void compact();
+
  private:
   std::vector<kerf::Stored> changes(const std::vector<KerfArray>& arrays) const;
   void append(const std::vector<kerf::Stored>& changed);

@@ -12,13 +12,13 @@
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-update", "Cuts a body's visibility graph with the cracks of a surface, samples new nodes near them, and updates neighbourhoods and binding.",
-               "  kerf-update bear.kerf --surface cut.ply -o cut.kerf");
+               "  kerf-update bear.kerf --surface cut.ply -o cut.kerf\n  kerf-update bear.kerf --surface cut.ply -o bear.kerf");
   std::string body_path, surface_path;
   bool no_resample = false;
   t.argument("BODY", body_path, "The body before (.kerf)");
   t.option("--surface", surface_path, "The cut surface from kerf-crack");
   t.flag("--no-resample", no_resample, "No new nodes near cracks");
-  t.output("The body after (.kerf)");
+  t.output("The body after (.kerf); BODY itself: what changed is appended to it");
   return t.run(argc, argv, [&] {
     if (surface_path.empty()) throw tool::UsageError("give the cut surface with --surface");
     if (surface_path == "-" && body_path == "-") throw tool::UsageError("body and surface cannot both come from standard input");

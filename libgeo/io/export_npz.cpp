@@ -53,7 +53,8 @@ void write_npz(std::ostream& out, const KerfFile& file) {
   std::uint64_t at = 0;
   std::string directory;
   std::uint64_t entries = 0;
-  for (const auto& [key, section] : file.sections()) {
+  for (const auto& item : file.sections()) {
+    const auto& [key, section] = item;
     if (kerf::size_of(section.dtype) == 0) continue;
     const bool json = section.dtype == "json";
     const std::string name = key + (json ? ".json" : ".npy"), header = json ? std::string() : npy_header(section);
@@ -65,7 +66,7 @@ void write_npz(std::ostream& out, const KerfFile& file) {
     const auto pass = [&](const KerfSink::Take& take) {
       KerfSink sink(take);
       sink.write(std::as_bytes(std::span(header)));
-      file.stream(key, sink);
+      file.stream(item.first, sink);
       return sink.finish();
     };
     const std::uint64_t size = pass(sum);

@@ -15,15 +15,13 @@
 namespace geo {
 
 Input::Input(const std::string& path) : name_(path) {
-  if (path != "-") {
+  struct stat info {};
+  if (path != "-" && ::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0) {
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file_ < 0) throw MissingInputError(path + ": cannot be opened (" + std::strerror(errno) + "); check the name");
-    struct stat info {};
-    if (::fstat(file_, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0) {
-      size_ = static_cast<std::uint64_t>(info.st_size);
-      return;
-    }
-    ::close(std::exchange(file_, -1));
+    if (::fstat(file_, &info) != 0 || !S_ISREG(info.st_mode)) info.st_size = 0;  // exchanged just now
+    size_ = static_cast<std::uint64_t>(info.st_size);
+    return;
   }
   bytes_ = read_all(path);
   size_ = bytes_.size();

@@ -38,7 +38,7 @@ inline std::string with_table(const std::string& bytes, const std::string& table
   commit.table_hash = geo::kerf::hash_of(table.data(), table.size()), commit.head_hash = last.head.hash;
   commit.hash = commit.own_hash();
   std::string out = bytes.substr(0, last.head.table) + table;
-  std::memcpy(out.data() + last.start, &last.head, sizeof last.head);
+  out.replace(last.start, sizeof last.head, reinterpret_cast<const char*>(&last.head), sizeof last.head);
   out.resize(geo::kerf::aligned(out.size()));
   return out.append(reinterpret_cast<const char*>(&commit), sizeof commit);
 }

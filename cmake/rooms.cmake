@@ -14,6 +14,10 @@ if(KERF_SANITIZE)
   target_compile_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE})
 endif()
+if(KERF_FUZZ)
+  target_compile_options(kerf_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(kerf_flags INTERFACE -fsanitize=address,undefined)
+endif()
 
 set(KERF_ROOMS base geometry surface sampling graph crack body mechanics contact simulation io)
 

@@ -1,11 +1,13 @@
 // kerf-info: what a file holds, and whether it is sound.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <numeric>
 
 #include "body/body.h"
 #include "io/body_file.h"
+#include "io/export.h"
 #include "io/front_file.h"
 #include "io/node_file.h"
 #include "io/stream.h"
@@ -124,32 +126,19 @@ std::string body_report(const geo::Body& body, std::size_t bytes, bool check, Re
   return problem;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  tool::Tool t("kerf-info", "Says what a surface, node, body or front file holds; --check verifies every invariant.",
-               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off");
-  std::string path;
-  bool check = false;
-  t.argument("FILE", path, "Any file of Kerf's; - reads standard input");
-  t.flag("--check", check, "Verify everything; exit code 1 names the first offending ids");
-  return t.run(argc, argv, [&] {
-    const std::string bytes = geo::read_all(path);
-    Report report;
-    std::string problem;
-    const auto kind = tool::kind_of(bytes, path);
-    if (kind == tool::Kind::body) {
-      problem = body_report(geo::parse_body(bytes, path), bytes.size(), check, report);
-    } else if (kind == tool::Kind::nodes) {
+std::string other_report(const std::string& bytes, const std::string& path, bool check, Report& report) {
+  switch (tool::kind_of(bytes, path)) {
+    case tool::Kind::nodes: {
       const auto nodes = geo::parse_nodes(bytes, path);
-      if (check) problem = twins(nodes);
       const auto [lo, hi] = std::minmax_element(nodes.spacing.begin(), nodes.spacing.end());
       report.add("kind", tool::quoted("nodes"));
       report.add("nodes", nodes.size());
       report.add("spacing_min", number(*lo));
       report.add("spacing_max", number(*hi));
       report.add("volume", number(std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0)));
-    } else if (kind == tool::Kind::fronts) {
+      return check ? twins(nodes) : std::string();
+    }
+    case tool::Kind::fronts: {
       const auto fronts = geo::parse_fronts(bytes, path);
       report.add("kind", tool::quoted("fronts"));
       report.add("fronts", fronts.size());
@@ -160,8 +149,55 @@ int main(int argc, char** argv) {
       }
       report.add("steps", steps);
       report.add("points", points);
+      return {};
+    }
+    default: return surface_report(geo::parse_surface(bytes, path), check, report);
+  }
+}
+
+using Exporter = std::function<void(std::ostream&, const geo::KerfFile&, const geo::Body&)>;
+Exporter exporter(const std::string& path) {
+  if (path.ends_with(".vtu")) return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_vtu(out, body); };
+  if (path.ends_with(".hdf")) return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_vtkhdf(out, body); };
+  if (path.ends_with(".ply")) return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_graph_ply(out, body); };
+  if (path.ends_with(".npz")) return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_npz(out, file); };
+  if (path.ends_with(".json")) return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_json(out, file); };
+  throw tool::UsageError("--export writes .vtu, .hdf, .ply, .npz or .json, not '" + path + "'");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-info", "Says what a surface, node, body or front file holds; --check verifies every invariant.",
+               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off\n  kerf-info cut.kerf --export cut.vtu\n  kerf-info --compact cut.kerf");
+  std::string path;
+  bool check = false, compact = false;
+  std::string exported;
+  t.argument("FILE", path, "Any file of Kerf's; - reads standard input");
+  t.flag("--check", check, "Verify everything; exit code 1 names the first offending ids");
+  t.flag("--compact", compact, "Fold what updates appended to a body, in the file itself or into that of --output");
+  t.option("--export", exported, "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end");
+  t.output("Where --compact writes");
+  return t.run(argc, argv, [&] {
+    if (!t.output_path.empty() && !compact) throw tool::UsageError("--output goes with --compact");
+    const Exporter write = exported.empty() ? Exporter() : exporter(exported);
+    if (compact && path != "-" && (t.output_path.empty() || geo::same_file(path, t.output_path))) return geo::KerfUpdate(path).compact();
+    const std::string target = compact ? t.target(true) : std::string();
+    geo::Input input(path);
+    const auto size = input.size();
+    const bool kerf = geo::looks_like_kerf(input.text(0, 16));
+    if (!kerf && (compact || write)) throw geo::InputError(path + ": is not a .kerf file, which alone can be compacted or exported");
+    Report report;
+    std::string problem;
+    if (kerf) {
+      const geo::KerfFile file(std::move(input));
+      if (compact) return geo::write_all(target, [&](std::ostream& out) { geo::write_compacted(out, file); });
+      const geo::Body body = geo::read_body(file);
+      if (write) return geo::write_all(exported, [&](std::ostream& out) { write(out, file, body); });
+      problem = body_report(body, size, check, report);
+      report.add("appended", static_cast<std::size_t>(file.updates()));
     } else {
-      problem = surface_report(geo::parse_surface(bytes, path), check, report);
+      problem = other_report(input.text(0, size), path, check, report);
     }
     if (!t.quiet || t.json) report.print(t.json);
     if (check && !problem.empty()) throw tool::Failure(path + ": " + problem);

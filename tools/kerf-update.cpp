@@ -1,6 +1,7 @@
 // kerf-update: brings a body up to a surface that has been cut since.
 #include <chrono>
 #include <iostream>
+#include <memory>
 
 #include "body/body.h"
 #include "io/body_file.h"
@@ -11,19 +12,25 @@
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-update", "Cuts a body's visibility graph with the cracks of a surface, samples new nodes near them, and updates neighbourhoods and binding.",
-               "  kerf-update bear.kerf --surface cut.ply -o cut.kerf");
+               "  kerf-update bear.kerf --surface cut.ply -o cut.kerf\n  kerf-update bear.kerf --surface cut.ply -o bear.kerf");
   std::string body_path, surface_path;
   bool no_resample = false;
   t.argument("BODY", body_path, "The body before (.kerf)");
   t.option("--surface", surface_path, "The cut surface from kerf-crack");
   t.flag("--no-resample", no_resample, "No new nodes near cracks");
-  t.output("The body after (.kerf)");
+  t.output("The body after (.kerf); BODY itself: what changed is appended to it");
   return t.run(argc, argv, [&] {
     if (surface_path.empty()) throw tool::UsageError("give the cut surface with --surface");
     if (surface_path == "-" && body_path == "-") throw tool::UsageError("body and surface cannot both come from standard input");
     const std::string target = t.target(true);
-    const std::string body_bytes = geo::read_all(body_path);
-    geo::Body body = geo::parse_body(body_bytes, body_path);
+    // Into the file that it came from, what changed is appended.
+    const auto in_place = target != "-" && geo::same_file(body_path, target) ? std::make_unique<geo::KerfUpdate>(body_path) : nullptr;
+    std::uint64_t state = 0;
+    const auto load = [&](const geo::KerfFile& file) {
+      state = file.fingerprint();
+      return geo::read_body(file);
+    };
+    geo::Body body = in_place ? load(in_place->file()) : load(geo::KerfFile(geo::Input(body_path)));
     const std::string surface_bytes = geo::read_all(surface_path);
     const auto file = tool::parse_solid(surface_bytes, surface_path);
     if (no_resample) body.resample_limit = 0;
@@ -37,8 +44,9 @@ int main(int argc, char** argv) {
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     body.history.push_back({"kerf-update", KERF_VERSION, no_resample ? "--no-resample" : "",
-                            {tool::named_hash(body_path, geo::fingerprint(body_bytes)), tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
-    geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
+                            {tool::named_hash(body_path, state), tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
+    if (in_place) geo::write_body(*in_place, body);
+    else geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
     if (t.json)
       (target == "-" ? std::cerr : std::cout) << "{\"triangles_cut\":" << triangles_cut << ",\"edges_cut\":" << work.edges_cut << ",\"edges_added\":" << work.edges_added << ",\"nodes_updated\":" << work.nodes_updated
                                               << ",\"nodes_added\":" << work.nodes_added << ",\"nodes_moved\":" << work.nodes_moved << ",\"seconds\":{\"resample\":" << tool::number(work.resample_seconds)

@@ -2,209 +2,230 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include "io/json_internal.h"
-#include "io/kerf_container.h"
-#include "io/stream.h"
 
 namespace geo {
 namespace {
 
-template <class T>
-constexpr const char* dtype_of() {
-  if constexpr (std::is_same_v<T, double>) return "f8";
-  if constexpr (std::is_same_v<T, float>) return "f4";
-  if constexpr (std::is_same_v<T, std::uint32_t>) return "u4";
-  if constexpr (std::is_same_v<T, std::int32_t>) return "i4";
-  if constexpr (std::is_same_v<T, std::uint8_t>) return "u1";
-}
+// ---- Writing: each part of a body as arrays, which refer to the body and to what is kept beside them.
 
-template <class T>
-void put(KerfSections& sections, const std::string& name, const std::vector<T>& values, std::uint64_t columns = 1) {
-  KerfSection s;
-  s.dtype = dtype_of<T>();
-  s.shape = {values.size() / columns};
-  if (columns > 1) s.shape.push_back(columns);
-  s.bytes.assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-  sections[name] = std::move(s);
-}
+std::span<const double> flat(const std::vector<Vec3>& points) { return {points.empty() ? nullptr : points[0].data(), 3 * points.size()}; }
 
-class Reader {
- public:
-  Reader(const KerfSections& sections, const std::string& name) : sections_(sections), name_(name) {}
+struct Arrays {
+  const Body& body;
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
+  std::vector<std::uint32_t> master_node, master, parent, closest;
+  std::vector<std::uint8_t> about;
+  std::vector<KerfArray> all;
   template <class T>
-  std::vector<T> get(const std::string& section, std::uint64_t columns = 1) const {
-    const auto it = sections_.find(section);
-    if (it == sections_.end()) fail("has no section '" + section + "'");
-    const auto& s = it->second;
-    if (s.dtype != dtype_of<T>() || s.shape.size() != (columns > 1 ? 2u : 1u) || (columns > 1 && s.shape[1] != columns))
-      fail("section '" + section + "' is not of the expected type and shape");
-    std::vector<T> values(s.bytes.size() / sizeof(T));
-    if (!values.empty()) std::memcpy(values.data(), s.bytes.data(), values.size() * sizeof(T));
-    return values;
+  void add(const std::string& name, std::span<const T> values, std::uint64_t columns = 1) {
+    all.push_back(kerf_array(name, values, columns));
   }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(name_ + ": " + what + "; the file is damaged"); }
-
- private:
-  const KerfSections& sections_;
-  const std::string& name_;
+  template <class T>
+  void add(const std::string& name, const std::vector<T>& values) {
+    add(name, std::span<const T>(values));
+  }
+  template <class T>
+  void add(const std::string& name, std::uint64_t count, std::function<void(KerfSink&)> fill) {
+    all.push_back(kerf_array<T>(name, count, 1, std::move(fill)));
+  }
 };
 
-std::vector<double> flat(const std::vector<Vec3>& points) {
-  std::vector<double> values;
-  values.reserve(points.size() * 3);
-  for (const Vec3& p : points) values.insert(values.end(), {p.x(), p.y(), p.z()});
-  return values;
+void add_surface(Arrays& a) {
+  a.mesh = a.body.surface.two_sided(&a.rows);
+  a.add("surface/vertices", flat(a.mesh.vertices), 3);
+  a.add("surface/triangles", std::span<const std::uint32_t>(a.mesh.triangles.empty() ? nullptr : a.mesh.triangles[0].data(), 3 * a.mesh.triangles.size()), 3);
+  a.add("surface/patch", a.mesh.patch);
+  a.add("surface/site", a.mesh.site);
+  a.add("surface/source", a.mesh.source);
 }
 
-}  // namespace
+void add_nodes(Arrays& a) {
+  a.add("nodes/position", flat(a.body.nodes.position), 3);
+  a.add("nodes/radius", a.body.nodes.radius);
+  a.add("nodes/spacing", a.body.nodes.spacing);
+  a.add("nodes/volume", a.body.nodes.volume);
+  a.add("nodes/debris", a.body.debris);
+}
 
-void write_body(std::ostream& out, const Body& body) {
-  KerfSections s;
-  std::vector<std::uint32_t> rows;
-  const TriangleMesh mesh = body.surface.two_sided(&rows);
-  std::vector<std::uint32_t> triangles;
-  for (const auto& t : mesh.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-  put(s, "surface/vertices", flat(mesh.vertices), 3);
-  put(s, "surface/triangles", triangles, 3);
-  put(s, "surface/patch", mesh.patch);
-  put(s, "surface/site", mesh.site);
-  put(s, "surface/source", mesh.source);
-  put(s, "nodes/position", flat(body.nodes.position), 3);
-  put(s, "nodes/radius", body.nodes.radius);
-  put(s, "nodes/spacing", body.nodes.spacing);
-  put(s, "nodes/volume", body.nodes.volume);
-  put(s, "nodes/debris", body.debris);
-  std::vector<std::uint32_t> ends, to, warped;
-  std::vector<float> distance;
-  for (std::uint32_t i = 0; i < body.nodes.size(); ++i) {
+// Graph and neighbourhoods. Rows are given by their lengths: what changes in one row changes no other.
+void add_rows(Arrays& a) {
+  const Body& body = a.body;
+  const auto n = static_cast<std::uint32_t>(body.nodes.size());
+  const auto upper = [&body](std::uint32_t i, std::vector<std::uint32_t>& row) {
+    row.clear();
     for (const auto& arc : body.graph.arcs(NodeId(i)))
-      if (arc.to.value > i) to.push_back(arc.to.value);
-    std::sort(to.begin() + (ends.empty() ? 0 : ends.back()), to.end());
-    ends.push_back(static_cast<std::uint32_t>(to.size()));
+      if (arc.to.value > i) row.push_back(arc.to.value);
+    std::sort(row.begin(), row.end());
+  };
+  a.add<double>("graph/plain_unit", 1, [&body](KerfSink& out) { out.put(body.graph.plain_unit()); });
+  a.add<std::uint32_t>("graph/count", n, [upper, n](KerfSink& out) {
+    std::vector<std::uint32_t> row;
+    for (std::uint32_t i = 0; i < n; ++i) upper(i, row), out.put(static_cast<std::uint32_t>(row.size()));
+  });
+  a.add<std::uint32_t>("graph/to", body.graph.edge_count(), [upper, n](KerfSink& out) {
+    std::vector<std::uint32_t> row;
+    for (std::uint32_t i = 0; i < n; ++i) upper(i, row), out.write(std::as_bytes(std::span(row)));
+  });
+  std::uint64_t pairs = 0;
+  for (std::uint32_t i = 0; i < n; ++i) pairs += body.neighbors.of(NodeId(i)).size();
+  a.add<std::uint32_t>("neighbors/count", n, [&body, n](KerfSink& out) {
+    for (std::uint32_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(body.neighbors.of(NodeId(i)).size()));
+  });
+  const auto each = [&body, n](const auto& put) {
+    return [&body, n, put](KerfSink& out) {
+      for (std::uint32_t i = 0; i < n; ++i)
+        for (const auto& neighbor : body.neighbors.of(NodeId(i))) put(out, neighbor);
+    };
+  };
+  a.add<std::uint32_t>("neighbors/to", pairs, each([](KerfSink& out, const Neighbor& x) { out.put(x.to.value); }));
+  a.add<std::uint32_t>("neighbors/warped", pairs, each([](KerfSink& out, const Neighbor& x) { out.put(x.warped); }));
+  a.add<float>("neighbors/distance", pairs, each([](KerfSink& out, const Neighbor& x) { out.put(x.distance); }));
+}
+
+void add_binding(Arrays& a) {
+  const Body& body = a.body;
+  const auto row_of = [&](SurfaceVertexId v) { return v.valid() && body.surface.alive(v) ? a.rows[v.index()] : ~0u; };
+  for (std::uint32_t v = 0; v < a.rows.size(); ++v) {
+    if (a.rows[v] == ~0u) continue;
+    a.master_node.push_back(body.binding.master_node[v].value);
+    a.master.push_back(row_of(body.binding.master[v]));
+    a.parent.push_back(row_of(body.binding.parent[v]));
   }
-  put(s, "graph/ends", ends);
-  put(s, "graph/to", to);
-  put(s, "graph/plain_unit", std::vector<double>{body.graph.plain_unit()});
-  ends.clear(), to.clear();
-  for (const auto& row : body.neighbors.rows) {
-    for (const auto& n : row) to.push_back(n.to.value), warped.push_back(n.warped), distance.push_back(n.distance);
-    ends.push_back(static_cast<std::uint32_t>(to.size()));
-  }
-  put(s, "neighbors/ends", ends);
-  put(s, "neighbors/to", to);
-  put(s, "neighbors/warped", warped);
-  put(s, "neighbors/distance", distance);
-  const auto row_of = [&](SurfaceVertexId v) { return v.valid() && body.surface.alive(v) ? rows[v.index()] : ~0u; };
-  std::vector<std::uint32_t> node, master, parent, closest;
-  for (std::uint32_t v = 0; v < rows.size(); ++v) {
-    if (rows[v] == ~0u) continue;
-    node.push_back(body.binding.master_node[v].value);
-    master.push_back(row_of(body.binding.master[v]));
-    parent.push_back(row_of(body.binding.parent[v]));
-  }
-  for (const auto v : body.binding.closest) closest.push_back(row_of(v));
-  put(s, "binding/master_node", node);
-  put(s, "binding/master", master);
-  put(s, "binding/parent", parent);
-  put(s, "binding/closest", closest);
+  for (const auto v : body.binding.closest) a.closest.push_back(row_of(v));
+  a.add("binding/master_node", a.master_node);
+  a.add("binding/master", a.master);
+  a.add("binding/parent", a.parent);
+  a.add("binding/closest", a.closest);
+}
+
+void add_about(Arrays& a) {
+  const Body& body = a.body;
   nlohmann::ordered_json about = {{"k", body.k}, {"updates", body.updates}, {"resample_limit", body.resample_limit}, {"cell", body.grid.cell()}, {"crack_count", body.surface.crack_count()}};
   about["history"] = nlohmann::ordered_json::array();
   for (const auto& p : body.history) about["history"].push_back({{"tool", p.tool}, {"version", p.version}, {"arguments", p.arguments}, {"inputs", p.inputs}});
   const std::string text = about.dump();
-  s["about"] = {"json", {text.size()}, text};
-  write_kerf(out, s);
+  a.about.assign(text.begin(), text.end());
+  a.add("about", a.about);
+  a.all.back().dtype = "json";
 }
 
-Body read_body(const std::string& path) { return parse_body(read_all(path), path); }
+void add_all(Arrays& a) {
+  add_surface(a);
+  add_nodes(a);
+  add_rows(a);
+  add_binding(a);
+  add_about(a);
+}
 
-Body parse_body(const std::string& bytes, const std::string& name) {
-  const KerfSections sections = parse_kerf(bytes, name);
-  const Reader in(sections, name);
-  Body body;
+// ---- Reading: each part, checked before the next one refers to it.
+
+std::vector<Vec3> points(const KerfFile& in, const std::string& section) {
+  const auto values = in.read<double>(section, 3);
+  std::vector<Vec3> result;
+  result.reserve(values.size() / 3);
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    result.push_back({values[i], values[i + 1], values[i + 2]});
+    if (!in_range(result.back())) in.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
+  }
+  return result;
+}
+
+void read_surface(const KerfFile& in, Body& body) {
   TriangleMesh mesh;
-  const auto points = [&](const std::string& section) {
-    const auto values = in.get<double>(section, 3);
-    std::vector<Vec3> result;
-    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-      result.push_back({values[i], values[i + 1], values[i + 2]});
-      if (!in_range(result.back())) in.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
-    }
-    return result;
-  };
-  mesh.vertices = points("surface/vertices");
-  const auto triangles = in.get<std::uint32_t>("surface/triangles", 3);
+  mesh.vertices = points(in, "surface/vertices");
+  const auto triangles = in.read<std::uint32_t>("surface/triangles", 3);
+  mesh.triangles.reserve(triangles.size() / 3);
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) mesh.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
-  mesh.patch = in.get<std::int32_t>("surface/patch");
-  mesh.site = in.get<std::uint32_t>("surface/site");
+  mesh.patch = in.read<std::int32_t>("surface/patch");
+  mesh.site = in.read<std::uint32_t>("surface/site");
   if (mesh.site.empty()) in.fail("the surface is empty");
-  const bool traced = sections.count("surface/source") > 0;
-  if (traced) mesh.source = in.get<std::uint32_t>("surface/source");
+  const bool traced = in.sections().count("surface/source") > 0;
+  if (traced) mesh.source = in.read<std::uint32_t>("surface/source");
   try {
     body.surface = Complex::from_two_sided(mesh);
     if (traced) body.surface.trace_sources(mesh.source);
   } catch (const InputError& e) {
     in.fail(e.what());
   }
-  body.nodes.position = points("nodes/position");
-  body.nodes.radius = in.get<double>("nodes/radius");
-  body.nodes.spacing = in.get<double>("nodes/spacing");
-  body.nodes.volume = in.get<double>("nodes/volume");
-  body.debris = in.get<std::uint8_t>("nodes/debris");
-  const std::size_t n = body.nodes.size();
-  if (n == 0 || body.nodes.radius.size() != n || body.nodes.spacing.size() != n || body.nodes.volume.size() != n || body.debris.size() != n)
+}
+
+void read_nodes(const KerfFile& in, Body& body) {
+  NodeSet& nodes = body.nodes;
+  nodes.position = points(in, "nodes/position");
+  nodes.radius = in.read<double>("nodes/radius");
+  nodes.spacing = in.read<double>("nodes/spacing");
+  nodes.volume = in.read<double>("nodes/volume");
+  body.debris = in.read<std::uint8_t>("nodes/debris");
+  const std::size_t n = nodes.size();
+  if (n == 0 || n >= NodeId::none || nodes.radius.size() != n || nodes.spacing.size() != n || nodes.volume.size() != n || body.debris.size() != n)
     in.fail("the sections of nodes have different lengths");
   for (std::size_t i = 0; i < n; ++i)
-    if (!(body.nodes.radius[i] > 0) || !(body.nodes.spacing[i] > 0) || !(body.nodes.volume[i] > 0) || !(body.nodes.radius[i] + body.nodes.spacing[i] + body.nodes.volume[i] <= largest_coordinate))
+    if (!(nodes.radius[i] > 0) || !(nodes.spacing[i] > 0) || !(nodes.volume[i] > 0) || !(nodes.radius[i] + nodes.spacing[i] + nodes.volume[i] <= largest_coordinate))
       in.fail("node " + std::to_string(i) + " has a radius, spacing or volume that is not positive or of no sensible size");
-  const auto rows = [&](const std::string& group, std::size_t size) {
-    const auto ends = in.get<std::uint32_t>(group + "/ends");
-    std::uint32_t last = 0;
-    for (const auto e : ends) {
-      if (e < last) in.fail("section '" + group + "/ends' is not ascending");
-      last = e;
-    }
-    if (ends.size() != n || last != size) in.fail("section '" + group + "/ends' does not fit");
-    return ends;
-  };
-  const auto unit = in.get<double>("graph/plain_unit");
+}
+
+// Where each row of a group ends, of which there are n with `size` entries in all. Version 1 had the ends themselves.
+std::vector<std::uint64_t> row_ends(const KerfFile& in, const std::string& group, std::size_t n, std::size_t size) {
+  const bool counted = in.sections().count(group + "/ends") == 0;
+  const std::string section = group + (counted ? "/count" : "/ends");
+  const auto values = in.read<std::uint32_t>(section);
+  std::vector<std::uint64_t> ends(values.begin(), values.end());
+  if (counted) std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  if (!std::is_sorted(ends.begin(), ends.end())) in.fail("section '" + section + "' is not ascending");
+  if (ends.size() != n || ends.back() != size) in.fail("section '" + section + "' does not fit");
+  return ends;
+}
+
+void read_rows(const KerfFile& in, Body& body) {
+  const auto n = static_cast<std::uint32_t>(body.nodes.size());
+  const auto unit = in.read<double>("graph/plain_unit");
   if (unit.size() != 1 || !(unit[0] > 0) || !std::isfinite(unit[0])) in.fail("the unit of plain lengths is not positive");
   body.graph.set_plain_unit(unit[0]);
   body.graph.resize(n);
-  const auto to = in.get<std::uint32_t>("graph/to");
-  const auto graph_ends = rows("graph", to.size());
+  const auto to = in.read<std::uint32_t>("graph/to");
+  const auto graph_ends = row_ends(in, "graph", n, to.size());
   for (std::uint32_t i = 0; i < n; ++i)
     for (auto e = i ? graph_ends[i - 1] : 0; e < graph_ends[i]; ++e)
       if (to[e] >= n || to[e] <= i || !body.graph.add(body.nodes, NodeId(i), NodeId(to[e]))) in.fail("edge " + std::to_string(e) + " of the graph is out of range or there twice");
-  const auto neighbor = in.get<std::uint32_t>("neighbors/to"), warped = in.get<std::uint32_t>("neighbors/warped");
-  const auto distance = in.get<float>("neighbors/distance");
-  const auto ends = rows("neighbors", neighbor.size());
+  const auto neighbor = in.read<std::uint32_t>("neighbors/to"), warped = in.read<std::uint32_t>("neighbors/warped");
+  const auto distance = in.read<float>("neighbors/distance");
+  const auto ends = row_ends(in, "neighbors", n, neighbor.size());
   if (warped.size() != neighbor.size() || distance.size() != neighbor.size()) in.fail("the sections of neighbours have different lengths");
   body.neighbors.rows.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i)
+  for (std::uint32_t i = 0; i < n; ++i) {
+    auto& row = body.neighbors.rows[i];
+    row.reserve(ends[i] - (i ? ends[i - 1] : 0));
     for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
       if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e])) in.fail("neighbour " + std::to_string(e) + " is out of range");
-      body.neighbors.rows[i].push_back({NodeId(neighbor[e]), warped[e], distance[e]});
+      row.push_back({NodeId(neighbor[e]), warped[e], distance[e]});
     }
-  const auto ids = [&](const std::string& section, std::size_t size, std::size_t limit) {
-    const auto values = in.get<std::uint32_t>(section);
-    if (values.size() != size) in.fail("section '" + section + "' has another length than expected");
-    for (const auto v : values)
-      if (v != ~0u && v >= limit) in.fail("section '" + section + "' holds an id out of range");
-    return values;
-  };
-  const std::size_t vertices = mesh.vertices.size();
-  for (const auto v : ids("binding/master_node", vertices, n)) body.binding.master_node.push_back(NodeId(v));
-  for (const auto v : ids("binding/master", vertices, vertices)) {
-    if (v != ~0u && !body.binding.master_node[v].valid()) in.fail("a master has no node");
-    body.binding.master.push_back(SurfaceVertexId(v));
   }
-  for (const auto v : ids("binding/parent", vertices, vertices)) body.binding.parent.push_back(SurfaceVertexId(v));
-  for (const auto v : ids("binding/closest", n, vertices)) body.binding.closest.push_back(SurfaceVertexId(v));
-  const auto about_section = sections.find("about");
-  const auto about = about_section == sections.end() ? nlohmann::json() : nlohmann::json::parse(about_section->second.bytes, nullptr, false);
+}
+
+void read_binding(const KerfFile& in, Body& body) {
+  const std::size_t vertices = in.sections().at("surface/vertices").shape[0], n = body.nodes.size();
+  const auto ids = [&](const std::string& section, std::size_t size, std::size_t limit, auto& out) {
+    const auto values = in.read<std::uint32_t>(section);
+    if (values.size() != size) in.fail("section '" + section + "' has another length than expected");
+    for (const auto v : values) {
+      if (v != ~0u && v >= limit) in.fail("section '" + section + "' holds an id out of range");
+      out.emplace_back(v);
+    }
+  };
+  ids("binding/master_node", vertices, n, body.binding.master_node);
+  ids("binding/master", vertices, vertices, body.binding.master);
+  ids("binding/parent", vertices, vertices, body.binding.parent);
+  ids("binding/closest", n, vertices, body.binding.closest);
+  for (const auto v : body.binding.master)
+    if (v.valid() && !body.binding.master_node[v.index()].valid()) in.fail("a master has no node");
+}
+
+void read_about(const KerfFile& in, Body& body) {
+  const auto about = nlohmann::json::parse(in.text("about"), nullptr, false);
   double cell = 0;
   try {
     body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
@@ -218,7 +239,33 @@ Body parse_body(const std::string& bytes, const std::string& name) {
   }
   if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0)) in.fail("section 'about' holds an impossible value");
   body.grid = NodeGrid(cell, body.nodes.position);
+}
+
+}  // namespace
+
+void write_body(std::ostream& out, const Body& body) {
+  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}};
+  add_all(a);
+  write_kerf(out, a.all);
+}
+
+std::uint64_t write_body(KerfUpdate& file, const Body& body) {
+  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}};
+  add_all(a);
+  return file.commit(a.all);
+}
+
+Body read_body(const KerfFile& file) {
+  Body body;
+  read_surface(file, body);
+  read_nodes(file, body);
+  read_rows(file, body);
+  read_binding(file, body);
+  read_about(file, body);
   return body;
 }
+
+Body read_body(const std::string& path) { return read_body(KerfFile(Input(path))); }
+Body parse_body(const std::string& bytes, const std::string& name) { return read_body(KerfFile(Input(bytes, name))); }
 
 }  // namespace geo

@@ -5,17 +5,22 @@
 #include <string>
 
 #include "body/body.h"
+#include "io/kerf_append.h"
+#include "io/kerf_reader.h"
 
 namespace geo {
 
-constexpr std::uint32_t kerf_format_version = 1;
-
-/// Reads and checks a body: magic, version, endianness, every section's size, range and hash, before any of it is used.
-/// Throws InputError: truncated (after the last commit), newer version, damaged section, ids out of range.
+/// Reads and checks a body: every section's size, range and hash, before any of it is used. Throws InputError as KerfFile
+/// does, or when a section is missing, of another kind, or holds ids or numbers out of range.
+Body read_body(const KerfFile& file);
 Body read_body(const std::string& path);
 Body parse_body(const std::string& bytes, const std::string& name);
 
 /// Writes a body whole. Deterministic: the same body gives the same bytes.
 void write_body(std::ostream& out, const Body& body);
+
+/// Brings a file up to a body, which has grown from the file's, by appending what changed. Returns how many bytes were
+/// written.
+std::uint64_t write_body(KerfUpdate& file, const Body& body);
 
 }  // namespace geo

@@ -32,22 +32,30 @@ class DescriptorBuffer : public std::streambuf {
     if (c != traits_type::eof()) sputc(static_cast<char>(c));
     return 0;
   }
+  // What fills the buffer goes past it.
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    if (size < static_cast<std::streamsize>(sizeof buffer_)) return std::streambuf::xsputn(text, size);
+    return sync() == 0 && pass_on(text, text + size) ? size : 0;
+  }
   int sync() override {
-    const char* at = pbase();
-    while (at < pptr()) {
-      const auto n = ::write(fd_, at, static_cast<std::size_t>(pptr() - at));
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) {
-        error_ = errno;
-        return -1;
-      }
-      at += n;
-    }
+    if (!pass_on(pbase(), pptr())) return -1;
     setp(buffer_, buffer_ + sizeof buffer_);
     return 0;
   }
 
  private:
+  bool pass_on(const char* at, const char* end) {
+    while (at < end) {
+      const auto n = ::write(fd_, at, static_cast<std::size_t>(end - at));
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) {
+        error_ = errno;
+        return false;
+      }
+      at += n;
+    }
+    return true;
+  }
   int fd_, error_ = 0;
   char buffer_[1 << 16];
 };

@@ -25,6 +25,7 @@ const std::map<std::string, std::set<std::string>> doors{{"CGAL/", {"geometry"}}
                                                          {"tbb/", {"base"}},
                                                          {"toml++/", {"io"}},
                                                          {"nlohmann/", {"io"}},
+                                                         {"hdf5.h", {"io"}},
                                                          {"CLI/", {}},
                                                          {"embree3/", {}},
                                                          {"png.h", {}}};

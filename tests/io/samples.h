@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "io/front_file.h"
 #include "io/node_file.h"
 #include "io/run_files.h"
+#include "io/stream.h"
 #include "io/surface_file.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
@@ -140,6 +143,27 @@ inline geo::Body cut_body() {
   geo::FrontState front = geo::begin_front(std::vector<geo::Vec3>{{-0.5, -0.5, 0.512}, {-0.5, 1.5, 0.52}}, false, 1);
   geo::split(body, front, {{0.6, -0.5, 0.53}, {0.61, 1.5, 0.5}});
   return body;
+}
+
+/// A body as it was built, whole, and the same with a cut appended.
+struct BodyFiles {
+  std::string whole, appended;
+};
+inline BodyFiles sample_body_files() {
+  geo::Body body = cut_body();
+  BodyFiles files;
+  files.whole = bytes_of([&](auto& out) { geo::write_body(out, body); });
+  const std::string path = (std::filesystem::temp_directory_path() / ("kerf-sample-" + std::to_string(std::random_device{}()) + ".kerf")).string();
+  geo::write_all(path, [&](std::ostream& out) { out << files.whole; });
+  geo::FrontState front = geo::begin_front(std::vector<geo::Vec3>{{0.512, -0.5, -0.5}, {0.52, 1.5, -0.5}}, false, 2);
+  geo::split(body, front, {{0.53, -0.5, 0.3}, {0.5, 1.5, 0.31}});
+  {
+    geo::KerfUpdate update(path);
+    geo::write_body(update, body);
+  }
+  files.appended = geo::read_all(path);
+  std::filesystem::remove(path);
+  return files;
 }
 
 inline std::vector<std::string> sample_nodes_files(const geo::NodeSet& nodes) {

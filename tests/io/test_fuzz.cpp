@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "io/kerf_bytes.h"
 #include "io/kerf_container.h"
 #include "io/samples.h"
 #include "io/scene_file.h"
@@ -27,22 +28,13 @@ std::string sealed(Random& random, const std::string& good) {
   Mutator mutator(random);
   KerfSections sections = parse_kerf(good, "good");
   if (random.below(4) == 0) {
-    const std::size_t record = good.size() - 32;
-    std::uint64_t at, length;
-    std::memcpy(&at, good.data() + record + 8, 8);
-    std::memcpy(&length, good.data() + record + 16, 8);
-    const std::string table = mutator.damaged(good.substr(at, length), {good.substr(at, length)});
-    std::string bytes = good.substr(0, at) + table, end = good.substr(record);
-    length = table.size();
-    const std::uint64_t hash = fingerprint(table);
-    std::memcpy(end.data() + 16, &length, 8);
-    std::memcpy(end.data() + 24, &hash, 8);
-    return bytes + end;
+    const std::string table = last_segment(good).table;
+    return with_table(good, mutator.damaged(table, {table}));
   }
   for (auto changes = 1 + random.below(2); changes-- > 0;) {
     const auto pick = [&] { return std::next(sections.begin(), random.below(static_cast<std::uint32_t>(sections.size()))); };
     auto& [name, s] = *pick();
-    const std::size_t size = s.bytes.size(), row = s.shape[0] > 0 ? std::max<std::size_t>(1, size / s.shape[0]) : 1;
+    const std::size_t size = s.bytes.size();
     switch (random.below(10)) {
       case 3: case 4: case 5: case 6: mutator.damage_number(s.bytes, s.dtype == "f8" ? 8 : s.dtype == "u1" || s.dtype == "json" ? 1 : 4); break;
       case 0: s.bytes = pick()->second.bytes; break;
@@ -50,9 +42,10 @@ std::string sealed(Random& random, const std::string& good) {
       case 2: s.dtype = random.below(2) ? "u4" : "f8"; break;
       default: s.bytes = mutator.damaged(s.bytes, {s.bytes, pick()->second.bytes});
     }
-    // Most keep their size; of the others most have one that fits their shape.
+    // Most keep their size; what fits no shape is for the table above.
     if (random.below(4)) s.bytes.resize(size);
-    else if (random.below(4)) s.bytes.resize(s.bytes.size() / row * row), s.shape[0] = s.bytes.size() / row;
+    const std::size_t width = kerf::size_of(s.dtype) * (s.shape.size() > 1 ? s.shape[1] : 1);
+    s.bytes.resize(s.bytes.size() / width * width), s.shape[0] = s.bytes.size() / width;
   }
   return bytes_of([&](auto& out) { write_kerf(out, sections); });
 }
@@ -115,15 +108,24 @@ TEST_CASE("damaged scenes are read or refused", "[fuzz]") {
 }
 
 TEST_CASE("damaged bodies are read or refused", "[fuzz]") {
-  const std::string good = bytes_of([&](auto& out) { write_body(out, cut_body()); });
+  const auto [whole, appended] = sample_body_files();
+  REQUIRE(KerfFile(Input(appended, "a.kerf")).updates() == 1);
   const fuzz::Read read = [](const auto& bytes, const auto& name) -> Use {
     return [body = std::make_shared<Body>(parse_body(bytes, name))] {
       check_body(*body);
       bytes_of([&](auto& out) { write_body(out, *body); });
     };
   };
-  fuzz::campaign("kerf", 1000, read, damage_to({good, good + good.substr(64)}));
-  fuzz::campaign("body", 3000, read, [&](Random& random) { return sealed(random, good); });
+  fuzz::campaign("kerf", 1000, read, damage_to({whole, appended}));
+  fuzz::campaign("body", 3000, read, [&, good = whole](Random& random) { return sealed(random, good); });
+  fuzz::campaign("delta", 3000, read, [&, good = appended, begin = whole.size()](Random& random) {
+    // Where the last update is: its head, runs, rows and table.
+    Mutator mutator(random);
+    std::string update = good.substr(begin);
+    if (random.below(4) == 0) return with_table(good, mutator.damaged(last_segment(good).table, {update}));
+    for (auto changes = 1 + random.below(3); changes-- > 0;) mutator.damage_number(update, random.below(2) ? 8 : 4);
+    return resealed(good.substr(0, begin) + update);
+  });
 }
 
 TEST_CASE("damaged checkpoints are read or refused", "[fuzz]") {

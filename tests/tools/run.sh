@@ -1,7 +1,8 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | stops | simulation
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation
 set -u
+script=$(realpath "$0")
 PATH=$1:$2:$PATH models=$3 what=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -218,6 +219,66 @@ details)
   expect 2 "decimate" kerf-crack p.ply --decimate 2 -o x.ply
   expect 2 "at least one" kerf-crack p.ply -o x.ply
   expect 66 "none.obj" kerf-crack p.ply --sheet none.obj -o x.ply
+  ;;
+files)
+  # A body that is updated in its own file, folded, exported, and read by a program that is not ours.
+  here=$(dirname "$script")
+  export PYTHONDONTWRITEBYTECODE=1
+  kerf-model block --edge 0.1 -o block.ply
+  printf 'front a\nstep 0\n-1 0.53 3\n2 0.53 3\nstep 1\n-1 0.53 0.7\n2 0.53 0.7\n' >a.front
+  kerf-sample block.ply --spacing 6% | kerf-graph --surface block.ply -o body.kerf
+  quietly kerf-crack block.ply --front a.front -o cut.ply
+  quietly kerf-update body.kerf --surface cut.ply -o whole.kerf
+  before=$(stat -c %s body.kerf)
+  cp body.kerf appended.kerf
+  quietly kerf-update appended.kerf --surface cut.ply -o appended.kerf
+  after=$(stat -c %s appended.kerf)
+  [ $((after - before)) -lt $((before / 2)) ] || fail "$((after - before)) bytes were appended to $before"
+  head -c $before appended.kerf | cmp - body.kerf || fail "appending changed what was there"
+  kerf-info --json appended.kerf | grep -q '"appended":1' || fail "nothing was appended"
+  quietly kerf-info --check -q appended.kerf
+  # At any stage of a write that was killed, and then updated again.
+  head -c $((after - 1)) appended.kerf >killed.kerf
+  kerf-info --json killed.kerf | grep -q '"updates":0' || fail "a killed update counts"
+  quietly kerf-update killed.kerf --surface cut.ply -o killed.kerf
+  kerf-info --json killed.kerf | grep -q '"appended":1' || fail "a killed update cannot be done again"
+  quietly kerf-info --compact appended.kerf -o folded.kerf
+  cat appended.kerf | kerf-info --compact - >piped.kerf || fail "--compact of a pipe"
+  cmp folded.kerf piped.kerf || fail "--compact of a pipe differs"
+  cp appended.kerf itself.kerf
+  quietly kerf-info --compact itself.kerf
+  cmp folded.kerf itself.kerf || fail "--compact in place differs"
+  python3 -c '
+import sys; sys.path.insert(0, sys.argv[1])
+from read_kerf import read_kerf
+a, b, c = map(read_kerf, ("appended.kerf", "folded.kerf", "whole.kerf"))
+assert a == b
+del a["about"], c["about"]
+assert a == c' "$here" || fail "appended, folded and whole bodies differ"
+  for format in json npz ply vtu hdf; do
+    quietly kerf-info appended.kerf --export e.$format
+    quietly kerf-info folded.kerf --export f.$format
+    cmp e.$format f.$format || fail "e.$format differs from f.$format"
+  done
+  python3 "$here/check_exports.py" appended.kerf e || fail "exports"
+  head -c 8 e.hdf | cmp - <(printf '\211HDF\r\n\032\n') || fail "e.hdf is no HDF5 file"
+  # Refused: another update at the same time, damage, and what cannot be.
+  exec 9<appended.kerf
+  flock -x 9
+  expect 73 "being updated by another" kerf-update appended.kerf --surface cut.ply -o appended.kerf
+  expect 73 "being updated by another" kerf-info --compact appended.kerf
+  exec 9<&-
+  { head -c $((after - 40)) appended.kerf; printf x; tail -c 39 appended.kerf; } >damaged.kerf
+  expect 65 "damaged" kerf-info damaged.kerf
+  expect 65 "damaged" kerf-update damaged.kerf --surface cut.ply -o damaged.kerf
+  expect 65 "damaged" kerf-info --compact damaged.kerf
+  expect 65 "damaged" kerf-info damaged.kerf --export x.vtu
+  expect 65 "not a .kerf" kerf-info --compact block.ply
+  expect 65 "not a .kerf" kerf-info block.ply --export x.vtu
+  expect 66 "cannot" kerf-info --compact missing.kerf
+  expect 2 "export" kerf-info body.kerf --export x.xyz
+  expect 2 "goes with --compact" kerf-info body.kerf -o x.kerf
+  expect 73 "cannot" kerf-info body.kerf --export none/x.npz
   ;;
 stops)
   kerf-model block --edge 0.06 -o block.ply

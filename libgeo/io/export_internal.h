@@ -1,0 +1,16 @@
+// What every export of the graph shares.
+#pragma once
+
+#include "body/body.h"
+
+namespace geo {
+
+/// Calls each(i, j) for every edge i < j of the graph, i ascending.
+template <class Each>
+void each_edge(const Body& body, const Each& each) {
+  for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
+    for (const auto& arc : body.graph.arcs(NodeId(i)))
+      if (arc.to.value > i) each(i, arc.to.value);
+}
+
+}  // namespace geo

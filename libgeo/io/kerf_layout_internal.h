@@ -1,0 +1,78 @@
+// The bytes of a `.kerf` file that are no arrays: segment heads, commit records, types and hashes. See docs/formats.md.
+#pragma once
+
+#include <xxhash.h>
+
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace geo::kerf {
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian");
+
+constexpr std::size_t alignment = 64;
+constexpr std::size_t hash_block = 1 << 18;            ///< bytes that are hashed together
+constexpr std::uint64_t literal = ~std::uint64_t(0);  ///< where the rows of a run come from, when not from before
+
+constexpr std::uint64_t aligned(std::uint64_t at) { return (at + alignment - 1) / alignment * alignment; }
+
+inline std::uint64_t hash_of(const void* bytes, std::size_t size) { return XXH3_64bits(bytes, size); }
+
+/// A section's hash is that of its blocks' hashes, so that they may be taken by many threads.
+inline std::uint64_t hash_of(const std::vector<std::uint64_t>& blocks) { return hash_of(blocks.data(), 8 * blocks.size()); }
+
+inline std::string hex(std::uint64_t hash) {
+  std::string text(16, '0');
+  for (int i = 15; i >= 0; --i, hash >>= 4) text[static_cast<std::size_t>(i)] = "0123456789abcdef"[hash & 15];
+  return text;
+}
+
+/// Bytes of one number; 0: a type that this version does not know.
+inline std::size_t size_of(const std::string& dtype) {
+  return dtype == "f8" || dtype == "u8" ? 8 : dtype == "f4" || dtype == "u4" || dtype == "i4" ? 4 : dtype == "u2" ? 2 : dtype == "u1" || dtype == "json" ? 1 : 0;
+}
+
+/// Each segment begins with one. The magic is like PNG's: a byte over 127, the name, CR LF, end-of-file for DOS, LF:
+/// any text transfer breaks it.
+struct Head {
+  char magic[9] = {'\x8b', 'K', 'E', 'R', 'F', '\r', '\n', '\x1a', '\n'};
+  char zero[3] = {};
+  std::uint32_t version = 2, endian = 0x01020304;
+  std::uint32_t number = 0;                       ///< of the segment, from 0
+  std::uint64_t table = 0, table_length = 0;      ///< where the table is
+  std::uint64_t previous = 0;                     ///< hash of the commit record before
+  std::uint64_t reserved = 0;
+  std::uint64_t hash = 0;                         ///< of all before it
+  std::uint64_t own_hash() const { return hash_of(this, sizeof *this - 8); }
+};
+static_assert(sizeof(Head) == 64);
+
+/// Each segment ends with one: only then it counts.
+struct Commit {
+  char word[8] = {'K', 'C', 'O', 'M', 'M', 'I', 'T', '\n'};
+  std::uint32_t number = 0, zero = 0;
+  std::uint64_t table = 0, table_length = 0, table_hash = 0;
+  std::uint64_t head_hash = 0;
+  std::uint64_t reserved = 0;
+  std::uint64_t hash = 0;  ///< of all before it
+  std::uint64_t own_hash() const { return hash_of(this, sizeof *this - 8); }
+};
+static_assert(sizeof(Commit) == 64);
+
+/// Some rows of an array: copied from the array before, from row `from` on, or given.
+struct Run {
+  std::uint64_t from = literal, count = 0;
+};
+static_assert(sizeof(Run) == 16);
+
+template <class T>
+std::span<const std::byte> bytes_of_one(const T& value) {
+  return std::as_bytes(std::span<const T, 1>(&value, 1));
+}
+
+}  // namespace geo::kerf

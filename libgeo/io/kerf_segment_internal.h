@@ -1,0 +1,26 @@
+// One segment of a `.kerf` file as it is written: a whole file has one, each update appends one.
+#pragma once
+
+#include "io/kerf_layout_internal.h"
+#include "io/kerf_writer.h"
+
+namespace geo::kerf {
+
+/// An array, or the runs that make it from the array of that name before.
+struct Stored {
+  KerfArray array;
+  std::vector<Run> runs;           ///< none: the array is stored whole
+  std::uint64_t literal_rows = 0;  ///< with runs: how many rows `array.fill` puts
+  std::uint64_t hash = 0;          ///< with runs: of the array that results
+};
+
+/// Bytes of a row of an array.
+std::uint64_t row_bytes(const std::string& dtype, const std::vector<std::uint64_t>& shape);
+
+/// Writes a segment that begins at `start`, up to its commit record, which it returns: that comes next.
+Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous, const std::vector<Stored>& sections);
+
+/// How long a segment that begins at `start` will be, commit record included.
+std::uint64_t segment_size(std::uint64_t start, const std::vector<Stored>& sections);
+
+}  // namespace geo::kerf

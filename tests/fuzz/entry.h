@@ -1,0 +1,38 @@
+// What libFuzzer calls: a reader that may refuse its input by an InputError, and do nothing else.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
+
+namespace fuzz {
+
+template <class Read>
+int attempt(const std::uint8_t* data, std::size_t size, const Read& read) {
+  try {
+    read(std::string(reinterpret_cast<const char*>(data), size), "fuzzed");
+  } catch (const geo::InputError& e) {
+    if (std::string(e.what()).rfind("fuzzed:", 0) != 0) std::abort();
+  }
+  return 0;
+}
+
+/// The first folder of the command line, where it is empty, is filled with samples.
+inline void begin_with(int argc, char** argv, const std::vector<std::string>& samples) {
+  for (int i = 1; i < argc; ++i)
+    if (const std::filesystem::path folder = argv[i]; std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder)) {
+      for (std::size_t s = 0; s < samples.size(); ++s) std::ofstream(folder / ("sample-" + std::to_string(s)), std::ios::binary) << samples[s];
+      return;
+    }
+}
+
+}  // namespace fuzz

@@ -24,6 +24,8 @@ class TriangleIndex {
   /// Makes room for ids below `count` in all.
   void reserve(std::size_t count);
   bool contains(std::uint32_t id) const;
+  /// The box that was inserted.
+  const Box3& box(std::uint32_t id) const { return boxes_[id]; }
 
  private:
   static constexpr std::uint32_t none = ~0u;

@@ -137,23 +137,30 @@ class Inspection {
   Fault crossing_old() const {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
     std::sort(removed.begin(), removed.end());
-    for (const Family& family : families_) {
+    for (std::size_t at = 0, next; at < families_.size(); at = next) {
+      // Families that are to look at the same faces look together.
+      const Family& family = families_[at];
+      for (next = at + 1; next < families_.size() && !family.near.empty() && families_[next].near.data() == family.near.data() &&
+                          families_[next].first == families_[next - 1].end;)
+        ++next;
+      const auto end = families_[next - 1].end;
       Box3 box;
-      for (auto i = family.first; i < family.end; ++i)
+      for (auto i = family.first; i < end; ++i)
         if (faces_[i].touched) box.add(faces_[i].box);
       if (box.empty()) continue;
       looked_up.clear();
       if (family.near.empty()) complex_.near(box, looked_up);
       for (const FaceId f : family.near.empty() ? std::span<const FaceId>(looked_up) : family.near) {
-        const auto corners = complex_.corners(f);
-        const Box3 there = box_of(corners[0], corners[1], corners[2]);
+        const Box3& there = complex_.box(f);
         if (!there.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;
-        const auto& v = complex_.face(f).v;
-        const std::array<std::uint32_t, 3> rows{v[0].value, v[1].value, v[2].value};
         const double size = (there.hi - there.lo).maxCoeff();
-        for (auto i = family.first; i < family.end; ++i) {
+        for (auto i = family.first; i < end; ++i) {
           const New& face = faces_[i];
-          if (!face.touched || !there.meets(face.box) || face.plane.clears(face.rows, rows, corners, size)) continue;
+          if (!face.touched || !there.meets(face.box)) continue;
+          const auto corners = complex_.corners(f);
+          const auto& v = complex_.face(f).v;
+          const std::array<std::uint32_t, 3> rows{v[0].value, v[1].value, v[2].value};
+          if (face.plane.clears(face.rows, rows, corners, size)) continue;
           const bool cracked = complex_.face(f).crack > 0;
           const New old{corners, rows, there, Plane(corners, there, cracked ? clearance_ : 0), ~0u, false, cracked};
           if (const char* what = fault_between(face, old)) return {std::string(what) + " face " + std::to_string(f.value), {i}};

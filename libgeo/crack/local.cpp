@@ -178,7 +178,8 @@ bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, std::span<c
   if (side == 0) return false;
   Box3 box = box_of(t[0], t[1], t[2]);
   box.add(t[3]);
-  for (const FaceId f : near)
+  for (const FaceId f : near) {
+    if (!k.box(f).meets(box)) continue;
     for (const Vec3& p : k.corners(f)) {
       if (p == t[0] || p == t[1] || p == t[2] || p == t[3]) continue;
       if (!Box3{p, p}.meets(box)) continue;
@@ -186,6 +187,7 @@ bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, std::span<c
           orient3d(t[2], t[3], t[0], p) != -side)
         return true;
     }
+  }
   return false;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "crack/place_internal.h"
@@ -23,20 +24,28 @@ double badness(const std::array<Vec3, 3>& t) {
   return 0.5 * (ab + bc + ca - 2 * std::min({ab, bc, ca})) / std::max(area, 1e-300);
 }
 
-bool is_feature(const Complex& k, VertexId a, VertexId b, const PlaceRules& rules) {
-  const auto ring = k.around(a, b);
-  if (ring.size() != 2) return true;
-  const auto &f = k.face(ring[0]), &g = k.face(ring[1]);
+namespace {
+
+// True when the surface that two faces of one edge lie on ends or bends there.
+bool is_feature_between(const Complex& k, FaceId ff, FaceId gg, VertexId a, VertexId b, const PlaceRules& rules) {
+  const auto &f = k.face(ff), &g = k.face(gg);
   if (f.crack != g.crack || (f.crack == 0 && rules.skin_keeps && f.source != g.source)) return true;
-  const auto p = k.corners(ring[0]), q = k.corners(ring[1]);
+  const auto p = k.corners(ff), q = k.corners(gg);
   const Vec3 m = (p[1] - p[0]).cross(p[2] - p[0]), n = (q[1] - q[0]).cross(q[2] - q[0]);
   const double turn = runs_upwards(f, a, b) == runs_upwards(g, a, b) ? -m.dot(n) : m.dot(n);
-  return turn < rules.crease * m.norm() * n.norm();
+  return turn < rules.crease * std::sqrt(m.squaredNorm() * n.squaredNorm());
+}
+
+}  // namespace
+
+bool is_feature(const Complex& k, VertexId a, VertexId b, const PlaceRules& rules) {
+  const auto ring = k.around(a, b);
+  return ring.size() != 2 || is_feature_between(k, ring[0], ring[1], a, b, rules);
 }
 
 Place place_of(const Complex& k, VertexId v, const PlaceRules& rules) {
   Place place;
-  std::vector<VertexId> link;
+  std::vector<std::pair<VertexId, FaceId>> spokes;  // each face by the other ends of its edges at v
   for (const FaceId f : k.faces_at(v)) {
     const auto& face = k.face(f);
     if (face.crack == 0 && rules.skin_keeps)
@@ -44,15 +53,18 @@ Place place_of(const Complex& k, VertexId v, const PlaceRules& rules) {
     else
       place.cracks.push_back(face.crack);
     for (const VertexId w : face.v)
-      if (w != v) link.push_back(w);
+      if (w != v) spokes.push_back({w, f});
   }
   const auto once = [](auto& row) {
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
   };
-  once(place.sources), once(place.cracks), once(link);
-  for (const VertexId w : link)
-    if (is_feature(k, v, w, rules)) place.features.push_back(w);
+  once(place.sources), once(place.cracks);
+  std::sort(spokes.begin(), spokes.end());
+  for (std::size_t i = 0, end; i < spokes.size(); i = end) {
+    for (end = i + 1; end < spokes.size() && spokes[end].first == spokes[i].first;) ++end;
+    if (end != i + 2 || is_feature_between(k, spokes[i].second, spokes[i + 1].second, v, spokes[i].first, rules)) place.features.push_back(spokes[i].first);
+  }
   return place;
 }
 
@@ -109,6 +121,18 @@ double distance_left(const Complex& k, const LocalEdit& local, const Vec3& p, co
   double most = 0;
   for (const auto& [crack, d] : nearest) most = std::max(most, d);
   return most;
+}
+
+std::pair<double, double> worst_if_moved(const Complex& k, VertexId v, const Vec3& p, VertexId into) {
+  double before = 0, after = 0;
+  for (const FaceId f : k.faces_at(v)) {
+    auto t = k.corners(f);
+    before = std::max(before, badness(t));
+    if (into.valid() && corner_at(k.face(f), into) >= 0) continue;
+    t[static_cast<std::size_t>(corner_at(k.face(f), v))] = p;
+    after = std::max(after, badness(t));
+  }
+  return {before, after};
 }
 
 double worst_old(const Complex& k, const LocalEdit& local) {

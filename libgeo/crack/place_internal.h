@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "crack/advance.h"
@@ -53,6 +54,8 @@ class Contacts {
 /// How far p is from the new faces of an edit: the largest, over the surfaces that it changes, of the distances to the
 /// nearest face. Skin that keeps does not count: it stays in its planes.
 double distance_left(const Complex& complex, const LocalEdit& local, const Vec3& p, const PlaceRules& rules);
+/// The worst of the faces at v as they are, and if v were moved to p; those that also have `into` would go.
+std::pair<double, double> worst_if_moved(const Complex& complex, VertexId v, const Vec3& p, VertexId into = {});
 /// The worst of the faces that an edit removes, and of those that it makes.
 double worst_old(const Complex& complex, const LocalEdit& local);
 double worst_new(const Complex& complex, const LocalEdit& local);

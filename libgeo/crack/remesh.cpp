@@ -101,9 +101,10 @@ class Remesher {
       for (const bool backwards : {false, true}) {
         const int e = by_length[i];
         const VertexId from = backwards ? v[e] : v[(e + 1) % 3], to = backwards ? v[(e + 1) % 3] : v[e];
-        if (!may_merge(from, to)) continue;
+        const auto [before, after] = crack::worst_if_moved(k_, from, k_.point(to), to);
+        if (after >= 0.999 * before || !may_merge(from, to)) continue;
         auto local = crack::collapse(k_, from, to);
-        if (!local || !improves(*local, 0.999)) continue;
+        if (!local) continue;
         if (!stays_close(*local, k_.point(from))) continue;
         if (!apply(*local)) continue;
         contacts_.leave_out(from);
@@ -140,8 +141,10 @@ class Remesher {
       }
       for (const Vec3& goal : goals) {
         if (!goal.allFinite() || goal == p) continue;
+        const auto [before, after] = crack::worst_if_moved(k_, v, goal);
+        if (after >= 0.9 * before) continue;
         auto local = crack::relocate(k_, v, goal);
-        if (!improves(local, 0.9) || !stays_close(local, p)) continue;
+        if (!stays_close(local, p)) continue;
         if (apply(local)) return ++work_.moves, true;
       }
     }

@@ -24,6 +24,8 @@ class TriangleIndex {
   /// Makes room for ids below `count` in all.
   void reserve(std::size_t count);
   bool contains(std::uint32_t id) const;
+  /// The box that was inserted.
+  const Box3& box(std::uint32_t id) const { return boxes_[id]; }
 
  private:
   static constexpr std::uint32_t none = ~0u;
@@ -34,40 +36,56 @@ class TriangleIndex {
     double count() const { return double(hi[0] - lo[0] + 1) * double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1); }
   };
   struct Slot {
-    std::uint64_t key = ~0ull;  // no block has this one
+    std::int64_t at[3] = {};
     std::uint32_t block = none;
   };
-  /// 4 × 4 × 4 cells: which of them hold anything, and the first entry of each.
+  /// 4 × 4 × 4 cells: which of them hold anything, in which there is a block of the next finer level that does, and the
+  /// first bunch of each.
   struct Block {
-    std::uint64_t filled = 0;
+    std::uint64_t filled = 0, below = 0;
     std::uint32_t first[side * side * side];
+    bool empty() const { return !(filled | below); }
   };
-  struct Entry {
-    std::uint32_t id, next;
+  /// A box within a cell, in 256ths of its edge, rounded outwards: boxes that meet there do so here, too.
+  struct Part {
+    std::uint8_t lo[3], hi[3];
+    bool meets(const Part& b) const {
+      return (lo[0] <= b.hi[0]) & (b.lo[0] <= hi[0]) & (lo[1] <= b.hi[1]) & (b.lo[1] <= hi[1]) & (lo[2] <= b.hi[2]) & (b.lo[2] <= hi[2]);
+    }
   };
+  /// Some triangles of a cell, one cache line. Only the first of a cell's bunches has free places, at its end.
+  struct alignas(64) Bunch {
+    static constexpr int size = 6;
+    std::uint32_t next;
+    std::uint32_t id[size];
+    Part part[size];
+  };
+  static_assert(sizeof(Bunch) == 64);
   /// The triangles whose boxes are between an eighth and half of a cell long.
   struct Level {
     int exponent;
     double cell;
-    std::size_t entries = 0;
     std::vector<Slot> slots;    // open addressing, a power of two
     std::vector<Block> blocks;  // never fewer: a region that was cut is cut again
     Range cells_of(const Box3& box) const;
-    std::size_t slot_of(std::uint64_t key) const;
-    std::uint32_t block_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
-    Block& make_block(std::int64_t x, std::int64_t y, std::int64_t z);
+    Part part_of(const Box3& box, const std::int64_t (&at)[3]) const;
+    std::size_t slot_of(const std::int64_t (&at)[3]) const;
+    std::uint32_t block_at(const std::int64_t (&at)[3]) const { return slots[slot_of(at)].block; }
+    Block& make_block(const std::int64_t (&at)[3]);
   };
   class Plane;
-  Level& level_of(const Box3& box);
+  std::size_t level_of(const Box3& box) const;
+  void make_levels(int exponent);
+  void tell_above(std::size_t level, const std::int64_t (&block)[3]);
+  void forget_above(std::size_t level, const std::int64_t (&block)[3]);
   template <class Take>
-  void visit(const Level& level, const std::int64_t (&at)[3], const Range& cells, const Plane* plane, const Take& take) const;
+  void visit(std::size_t level, const std::int64_t (&block)[3], const Box3& box, const Plane* plane, const Take& take) const;
   template <class Take>
-  void visit_all(const Level& level, const Take& take) const;
-  static void keep_each_once(std::vector<std::uint32_t>& out, std::size_t first);
+  void search(const Box3& box, const Plane* plane, const Take& take, std::vector<std::uint32_t>& out) const;
 
-  std::vector<Level> levels_;   // by exponent
-  std::vector<Entry> entries_;  // lists, one a cell
-  std::uint32_t free_ = none;   // list of entries to use again
+  std::vector<Level> levels_;   // finest first, each four times as coarse as the one before
+  std::vector<Bunch> bunches_;  // lists, one a cell
+  std::uint32_t free_ = none;   // list of bunches to use again
   std::vector<Box3> boxes_;     // by id; empty box: not in the index
 };
 

@@ -251,7 +251,8 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
           for (int which = 0; which < 2; ++which)
             corner_vertex_[f.index() * 6 + which * 3 + k] = corner_vertex_[n.parent.index() * 6 + which * 3 + pk];
     }
-    index_.insert(f.value, box(f));
+    const auto c = corners(f);
+    index_.insert(f.value, box_of(c[0], c[1], c[2]));
     crack_count_ = std::max(crack_count_, n.crack);
     delta.new_faces.push_back(f);
     if (n.crack > 0 && !n.parent.valid()) delta.new_crack_faces.push_back(f);

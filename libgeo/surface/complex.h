@@ -111,10 +111,7 @@ class Complex {
     const auto& v = face(f).v;
     return {point(v[0]), point(v[1]), point(v[2])};
   }
-  Box3 box(FaceId f) const {
-    const auto& v = face(f).v;
-    return box_of(point(v[0]), point(v[1]), point(v[2]));
-  }
+  const Box3& box(FaceId f) const { return index_.box(f.value); }  ///< of a living face
   /// Bounding box of the skin as first given; never changes. Its diagonal is the length that tolerances scale with.
   const Box3& extent() const { return extent_; }
   std::int32_t crack_count() const { return crack_count_; }  ///< the largest crack number in use

@@ -95,7 +95,10 @@ class ComplexBuilder {
         if (f.crack == 0) k.extent_.add(k.point(v));
     if (k.extent_.empty()) throw InputError("the surface has cracks but no skin");
     if (!(k.extent_.diagonal() * largest_coordinate > 1)) throw InputError("the surface has no extent: its points are at one place or nearly so; scale it up");
-    for (std::uint32_t f = 0; f < k.faces_.size(); ++f) k.index_.insert(f, k.box(FaceId(f)));
+    for (std::uint32_t f = 0; f < k.faces_.size(); ++f) {
+      const auto c = k.corners(FaceId(f));
+      k.index_.insert(f, box_of(c[0], c[1], c[2]));
+    }
   }
 
   /// Room for the first cracks, so that they do not copy everything to a larger place.

@@ -114,3 +114,38 @@ TEST_CASE("the index finds every box that a triangle meets") {
     }
   }
 }
+
+TEST_CASE("the index is right while boxes of all sizes come, go and come again") {
+  const std::uint64_t seed = GENERATE(11, 12, 13, 14);
+  CAPTURE(seed);
+  Random random(seed);
+  const Vec3 shift = seed % 2 ? Vec3(1e6, -1e6, 3) : Vec3::Zero();
+  const double scale = seed % 3 ? 1 : 1e-6;
+  TriangleIndex index;
+  std::vector<Box3> boxes(600);
+  // Coarser and finer levels come up as it goes on; many boxes share a cell.
+  const auto box = [&](int step) {
+    const double reach = std::min(12, step / 100);
+    const double size = scale * std::exp2(random.uniform(-reach, 0.5 * reach));
+    Box3 b;
+    b.add(shift + scale * (random.below(3) == 0 ? 8.0 : 0.5) * random.uniform() * random.direction());
+    b.add(b.lo + size * random.uniform() * random.direction());
+    return b;
+  };
+  for (int step = 0; step < cases(3000); ++step) {
+    const auto id = static_cast<std::uint32_t>(random.below(boxes.size()));
+    const bool empties = step % 1000 > 800;
+    if (!boxes[id].empty())
+      index.erase(id), boxes[id] = Box3{};
+    else if (!empties)
+      index.insert(id, boxes[id] = box(step));
+    REQUIRE(index.contains(id) == !boxes[id].empty());
+    if (step % 5) continue;
+    const Box3 query = box(step);
+    std::vector<std::uint32_t> found, expected;
+    index.find(query, found);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      if (!boxes[i].empty() && boxes[i].meets(query)) expected.push_back(i);
+    REQUIRE(found == expected);
+  }
+}

@@ -1,19 +1,23 @@
 // The nodes nearest to each node (§ 6.1).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "base/ids.h"
 #include "base/vec.h"
+#include "graph/node_tree.h"
 
 namespace geo {
 
 /// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
-/// Missing entries are invalid ids.
+/// Missing entries are invalid ids. Exact: squared distances are those of doubles, (x_j − x_i).squaredNorm().
 std::vector<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
+std::vector<NodeId> nearest_nodes(const NodeTree& tree, int k);
 
-/// The edge of a grid cell that holds about one node and a half, model units.
-double grid_cell_for(std::span<const Vec3> positions);
+/// The same, a row at a time and none of them kept: `take(i, row)` is called once for each node, in no set order and from
+/// several threads; the row is gone after the call.
+void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& take);
 
 }  // namespace geo

@@ -8,7 +8,13 @@
 #include "sampling/node_grid.h"
 
 namespace geo {
-
+static double grid_cell_for(std::span<const Vec3> positions) {
+  Box3 box;
+  for (const Vec3& p : positions) box.add(p);
+  if (positions.size() < 2 || !(box.diagonal() > 0)) return 1;
+  const Vec3 size = (box.hi - box.lo).cwiseMax(1e-3 * box.diagonal());
+  return std::cbrt(1.5 * size.prod() / double(positions.size()));
+}
 std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions) {
   // Boruvka: each component's shortest way out, round by round. A node first asks its nearest others; only where all of
   // them are in its own component is the grid searched further.

@@ -23,6 +23,7 @@ const std::map<std::string, std::set<std::string>> doors{{"CGAL/", {"geometry"}}
                                                          {"openvdb/", {"io"}},
                                                          {"pcl/", {"graph", "io"}},
                                                          {"tbb/", {"base"}},
+                                                         {"hwy/", {"geometry", "graph"}},
                                                          {"toml++/", {"io"}},
                                                          {"nlohmann/", {"io"}},
                                                          {"hdf5.h", {"io"}},

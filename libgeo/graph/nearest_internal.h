@@ -1,0 +1,16 @@
+// Nearest nodes in vector lanes: what nearest.cpp calls.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "base/ids.h"
+#include "graph/node_tree.h"
+
+namespace geo {
+
+/// visit_nearest() for the nodes of some leaves, by the widest vectors that the processor has.
+void nearest_of_leaves(const NodeTree& tree, std::span<const std::uint32_t> leaves, std::uint32_t k,
+                       const std::function<void(NodeId, std::span<const NodeId>)>& take);
+
+}  // namespace geo

@@ -1,0 +1,246 @@
+// The nodes of a leaf search together. Candidates within `reach` of the leaf's box are gathered once, as floats relative
+// to it; each node then takes those within reach of itself, ranks them by counting, and puts the first k in their exact
+// order by doubles. A row holds when its last node is within reach, since all nodes that were left out are farther
+// (NodeTree::Cell::gap). The vectors' width decides how fast that goes, never what comes out.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "graph/nearest_lanes.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "graph/nearest_internal.h"
+
+#ifndef KERF_NEAREST_LANES_ONCE
+#define KERF_NEAREST_LANES_ONCE
+namespace geo {
+namespace {
+
+using TakeRow = std::function<void(NodeId, std::span<const NodeId>)>;
+
+// Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within 2⁻²⁴ (1 + 2⁻²⁸) of the
+// exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at most. For a distance d ≤ 1 the sum of squares
+// is then off by 2 η √3 d + 3 η² from the coordinates and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
+constexpr double float_error = 0x1p-19;
+constexpr std::size_t most_ranked = 256;
+
+struct Exact {
+  double square;
+  std::uint32_t node;
+  bool operator<(const Exact& o) const { return square != o.square ? square < o.square : node < o.node; }
+};
+
+struct Gathered {
+  std::vector<float> along[3];
+  std::vector<std::uint32_t> slot;
+  std::size_t size = 0;
+  void room(std::size_t more) {
+    if (size + more <= slot.size()) return;
+    const std::size_t n = 2 * (size + more);
+    for (auto& a : along) a.resize(n);
+    slot.resize(n);
+  }
+};
+
+}  // namespace
+}  // namespace geo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace geo {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+class LeafSearch {
+ public:
+  LeafSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take) : tree_(tree), k_(k), take_(take), row_(k) {
+    wanted_ = static_cast<std::uint32_t>(std::min<std::size_t>(std::size_t(k) + 1, tree.size()));
+  }
+
+  void operator()(std::uint32_t leaf) {
+    const auto cells = tree_.cells();
+    const NodeTree::Cell& home = cells[leaf];
+    // A cell around with enough nodes bounds how far the last of them can be, and tells about how far it will be.
+    std::uint32_t around = leaf;
+    while (cells[around].count() < wanted_) around = cells[around].parent;
+    const double farthest = cells[around].diagonal();
+    double reach = std::clamp(learned_, 0.06 * farthest, 0.36 * farthest);
+    pending_.clear();
+    for (auto slot = home.begin; slot < home.end; ++slot) pending_.push_back(slot);
+    learned_ = 0;
+    for (;;) {
+      gather(home, reach);
+      std::size_t left = 0;
+      for (const auto slot : pending_)
+        if (!search(slot, reach)) pending_[left++] = slot;
+      pending_.resize(left);
+      if (left == 0) break;
+      reach = std::min(reach > 0 ? 1.6 * reach : farthest, farthest);
+    }
+    learned_ *= 1.06;
+  }
+
+ private:
+  // All nodes within the square root of `reach` of the box of `home`, and perhaps some more.
+  void gather(const NodeTree::Cell& home, double reach) {
+    double widest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      middle_[axis] = 0.5 * home.lo[axis] + 0.5 * home.hi[axis];
+      widest = std::max({widest, home.hi[axis] - middle_[axis], middle_[axis] - home.lo[axis]});
+    }
+    unit_ = widest + std::sqrt(reach);
+    if (!(unit_ > 1e-150)) unit_ = 1;  // all at one place, as far as squares can tell
+    scale_ = 1 / unit_;
+    near_.size = 0;
+    const auto cells = tree_.cells();
+    stack_.assign(1, 0);
+    while (!stack_.empty()) {
+      const NodeTree::Cell& cell = cells[stack_.back()];
+      stack_.pop_back();
+      if (cell.leaf()) {
+        take_leaf(cell, home, reach);
+        continue;
+      }
+      for (const auto child : {cell.children + 1, cell.children})
+        if (cells[child].gap(home.lo, home.hi) <= reach) stack_.push_back(child);
+    }
+    // Whole vectors are read: those behind the last are far away.
+    const hn::ScalableTag<float> d;
+    near_.room(hn::Lanes(d));
+    for (auto& a : near_.along) std::fill_n(a.begin() + static_cast<std::ptrdiff_t>(near_.size), hn::Lanes(d), 1e15f);
+  }
+
+  void take_leaf(const NodeTree::Cell& cell, const NodeTree::Cell& home, double reach) {
+    const hn::ScalableTag<double> dd;
+    const hn::Rebind<float, decltype(dd)> df;
+    const hn::Rebind<std::uint32_t, decltype(dd)> du;
+    const std::size_t lanes = hn::Lanes(dd);
+    // Of nodes at one place the first k + 1 are enough: nobody has the others among its k nearest.
+    const auto end = cell.count() > NodeTree::leaf_size ? std::min(cell.end, cell.begin + std::max(wanted_, NodeTree::leaf_size)) : cell.end;
+    near_.room(end - cell.begin + lanes);
+    const auto limit = hn::Set(df, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
+    const auto zero = hn::Zero(df);
+    for (std::size_t at = cell.begin; at < end; at += lanes) {
+      const auto local = [&](int axis) {
+        return hn::DemoteTo(df, hn::Mul(hn::Sub(hn::LoadU(dd, tree_.along(axis) + at), hn::Set(dd, middle_[axis])), hn::Set(dd, scale_)));
+      };
+      const auto x = local(0), y = local(1), z = local(2);
+      const auto outside = [&](auto v, int axis) {
+        const double half = std::max(home.hi[axis] - middle_[axis], middle_[axis] - home.lo[axis]);
+        return hn::Max(hn::Sub(hn::Abs(v), hn::Set(df, static_cast<float>(half * scale_))), zero);
+      };
+      const auto gx = outside(x, 0), gy = outside(y, 1), gz = outside(z, 2);
+      const auto gap = hn::Add(hn::Mul(gx, gx), hn::Add(hn::Mul(gy, gy), hn::Mul(gz, gz)));
+      const auto mask = hn::And(hn::Le(gap, limit), hn::FirstN(df, end - at));
+      hn::StoreU(hn::Compress(x, mask), df, near_.along[0].data() + near_.size);
+      hn::StoreU(hn::Compress(y, mask), df, near_.along[1].data() + near_.size);
+      hn::StoreU(hn::Compress(z, mask), df, near_.along[2].data() + near_.size);
+      hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(at)), hn::RebindMask(du, mask)), du, near_.slot.data() + near_.size);
+      near_.size += hn::CountTrue(df, mask);
+    }
+  }
+
+  // The row of one node, if all of it is within reach.
+  bool search(std::uint32_t slot, double reach) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const std::size_t lanes = hn::Lanes(d);
+    if (square_.size() < near_.size + 2 * lanes) square_.resize(2 * near_.size + 2 * lanes), which_.resize(square_.size());
+    double p[3];
+    for (int axis = 0; axis < 3; ++axis) p[axis] = tree_.along(axis)[slot];
+    const auto local = [&](int axis) { return hn::Set(d, static_cast<float>((p[axis] - middle_[axis]) * scale_)); };
+    const auto px = local(0), py = local(1), pz = local(2);
+    const auto limit = hn::Set(d, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < near_.size; at += lanes) {
+      const auto x = hn::Sub(hn::LoadU(d, near_.along[0].data() + at), px), y = hn::Sub(hn::LoadU(d, near_.along[1].data() + at), py),
+                 z = hn::Sub(hn::LoadU(d, near_.along[2].data() + at), pz);
+      const auto square = hn::Add(hn::Mul(x, x), hn::Add(hn::Mul(y, y), hn::Mul(z, z)));
+      const auto mask = hn::Le(square, limit);
+      hn::StoreU(hn::Compress(square, mask), d, square_.data() + count);
+      hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(at)), hn::RebindMask(du, mask)), du, which_.data() + count);
+      count += hn::CountTrue(d, mask);
+    }
+    if (count < wanted_) return false;
+    exact_.clear();
+    const auto add = [&](std::uint32_t which) {
+      const auto s = near_.slot[which];
+      const double x = tree_.along(0)[s] - p[0], y = tree_.along(1)[s] - p[1], z = tree_.along(2)[s] - p[2];
+      exact_.push_back({x * x + (y * y + z * z), tree_.nodes()[s]});
+    };
+    if (count > most_ranked) {
+      for (std::size_t i = 0; i < count; ++i) add(which_[i]);
+      std::nth_element(exact_.begin(), exact_.begin() + (wanted_ - 1), exact_.end());
+      exact_.resize(wanted_);
+      std::sort(exact_.begin(), exact_.end());
+    } else {
+      rank(count, add);
+    }
+    if (exact_[wanted_ - 1].square > reach) return false;
+    learned_ = std::max(learned_, exact_[wanted_ - 1].square);
+    const auto self = tree_.nodes()[slot];
+    std::uint32_t length = 0;
+    for (std::uint32_t i = 0; i < wanted_ && length < k_; ++i)
+      if (exact_[i].node != self) row_[length++] = NodeId(exact_[i].node);
+    take_(NodeId(self), std::span<const NodeId>(row_.data(), length));
+    return true;
+  }
+
+  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put behind them, in order.
+  template <class Add>
+  void rank(std::size_t count, const Add& add) {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto one = hn::Set(du, 1u);
+    std::memset(taken_, 0, count);
+    for (std::size_t at = 0; at < count; at += lanes) {
+      const auto mine = hn::LoadU(d, square_.data() + at);
+      auto before = hn::Zero(du);
+      for (std::size_t j = 0; j < count; ++j)
+        before = hn::Add(before, hn::IfThenElseZero(hn::RebindMask(du, hn::Lt(hn::Set(d, square_[j]), mine)), one));
+      hn::StoreU(before, du, rank_ + at);
+    }
+    for (std::size_t i = 0; i < count; ++i) order_[rank_[i] + taken_[rank_[i]]++] = static_cast<std::uint32_t>(i);
+    const float last = square_[order_[wanted_ - 1]] + static_cast<float>(2 * float_error);
+    for (std::size_t i = 0; i < count && (i < wanted_ || square_[order_[i]] <= last); ++i) {
+      add(which_[order_[i]]);
+      for (std::size_t j = exact_.size() - 1; j > 0 && exact_[j] < exact_[j - 1]; --j) std::swap(exact_[j], exact_[j - 1]);
+    }
+  }
+
+  const NodeTree& tree_;
+  const std::uint32_t k_;
+  const TakeRow& take_;
+  std::uint32_t wanted_;    // of the nearest, the node itself included
+  double learned_ = 0;      // the farthest last of a row in the leaf before, squared
+  double middle_[3], unit_ = 1, scale_ = 1;
+  Gathered near_;
+  std::vector<std::uint32_t> pending_, stack_, which_;
+  std::vector<float> square_;
+  std::vector<Exact> exact_;
+  std::vector<NodeId> row_;
+  std::uint32_t rank_[most_ranked + 64], order_[most_ranked + 64];
+  std::uint8_t taken_[most_ranked];
+};
+
+void nearest_of_leaves(const NodeTree& tree, std::span<const std::uint32_t> leaves, std::uint32_t k, const TakeRow& take) {
+  LeafSearch search(tree, k, take);
+  for (const auto leaf : leaves) search(leaf);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace geo
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(nearest_of_leaves);
+void nearest_of_leaves(const NodeTree& tree, std::span<const std::uint32_t> leaves, std::uint32_t k, const TakeRow& take) {
+  HWY_DYNAMIC_DISPATCH(nearest_of_leaves)(tree, leaves, k, take);
+}
+}  // namespace geo
+#endif

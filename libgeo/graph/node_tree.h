@@ -1,0 +1,62 @@
+// Nodes in Morton order under a tree of tight boxes: what nearest nodes and the spanning tree search in.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace geo {
+
+/// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot tell nodes apart, they
+/// are coded anew within their own box. So any distribution gives small leaves, and O(n) time but for one sort of digits.
+/// About 45 bytes a node.
+class NodeTree {
+ public:
+  /// A leaf has at most this many nodes, or any number of nodes at one place.
+  static constexpr std::uint32_t leaf_size = 10;
+
+  struct Cell {
+    double lo[3], hi[3];          ///< tight, closed
+    std::uint32_t begin, end;     ///< slots of its nodes
+    std::uint32_t parent;         ///< of the root: itself
+    std::uint32_t children = 0;   ///< the first of two in a row; 0: a leaf
+    bool leaf() const { return children == 0; }
+    std::uint32_t count() const { return end - begin; }
+    /// The square of the gap to another box (or point: twice the same), and of the diagonal. Both are rounded as squared distances of points are,
+    /// and rounding is monotone: a computed squared distance between nodes of two cells is never less than their gap, and
+    /// within a cell never more than its diagonal.
+    double gap(const double* from, const double* to) const {
+      const double x = apart(0, from, to), y = apart(1, from, to), z = apart(2, from, to);
+      return x * x + (y * y + z * z);
+    }
+    double diagonal() const {
+      const double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
+      return x * x + (y * y + z * z);
+    }
+
+   private:
+    double apart(int axis, const double* from, const double* to) const {
+      const double below = lo[axis] - to[axis], above = from[axis] - hi[axis], more = below > above ? below : above;
+      return more > 0 ? more : 0;
+    }
+  };
+
+  explicit NodeTree(std::span<const Vec3> positions);
+
+  std::size_t size() const { return node_.size(); }
+  /// Parents come before their children; [0] is the root, of no nodes when there are none.
+  std::span<const Cell> cells() const { return cells_; }
+  /// The node in each slot, ascending in a leaf whose nodes are at one place.
+  std::span<const std::uint32_t> nodes() const { return node_; }
+  /// One coordinate of the node in each slot; 16 more doubles may be read behind the last.
+  const double* along(int axis) const { return coordinate_[axis].data(); }
+
+ private:
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> node_;
+  std::vector<double> coordinate_[3];
+};
+
+}  // namespace geo

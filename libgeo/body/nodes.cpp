@@ -18,7 +18,7 @@ NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   nodes.volume.push_back(double(nodes.volume[donor.index()]));
   body.debris.push_back(0);
   body.donors.push_back(donor);
-  body.grid.insert(id.value, x);
+  body.grid.insert(nodes.position, id.value);
   return id;
 }
 
@@ -77,7 +77,7 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
         if (is_blocked(body.surface, from, to)) continue;
         body.grid.erase(i, x);
         body.nodes.position[i] = to;
-        body.grid.insert(i, to);
+        body.grid.insert(body.nodes.position, i);
         moved.push_back(NodeId(i));
         break;
       }

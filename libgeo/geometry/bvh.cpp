@@ -49,7 +49,11 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles) : corne
     }
     int axis = 0;
     (spread.hi - spread.lo).maxCoeff(&axis);
-    const auto middle = (job.begin + job.end) / 2;
+    // Whole blocks of lanes stay together, and whole blocks of these.
+    const auto count = job.end - job.begin;
+    std::uint32_t unit = 1;
+    while (unit < (count + TriangleLanes::width - 1) / TriangleLanes::width) unit *= TriangleLanes::width;
+    const auto middle = job.begin + ((count + unit - 1) / unit + 1) / 2 * unit;
     std::nth_element(order_.begin() + job.begin, order_.begin() + middle, order_.begin() + job.end, [&](auto a, auto b) {
       return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
     });
@@ -60,29 +64,13 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles) : corne
     jobs.push_back({left, job.begin, middle});
     jobs.push_back({left + 1, middle, job.end});
   }
+  lanes_ = TriangleLanes(corners_, order_);
 }
 
 bool TriangleBvh::blocks(const Vec3& p, const Vec3& q) const {
-  if (nodes_.empty()) return false;
-  Box3 box{p, p};
-  box.add(q);
-  std::uint32_t stack[64];
-  int top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (!node.box.meets(box)) continue;
-    if (node.count == 0) {
-      stack[top++] = node.first;
-      stack[top++] = node.first + 1;
-      continue;
-    }
-    for (auto i = node.first; i < node.first + node.count; ++i) {
-      const auto& t = corners_[order_[i]];
-      if (segment_meets_triangle(p, q, t[0], t[1], t[2])) return true;
-    }
-  }
-  return false;
+  std::uint8_t result = 0;
+  blocks(p, {&q, 1}, &result);
+  return result != 0;
 }
 
 void TriangleBvh::near(const Box3& box, std::vector<std::uint32_t>& rows) const {

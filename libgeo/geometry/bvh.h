@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "geometry/triangle_lanes.h"
 
 namespace geo {
 
@@ -21,6 +22,9 @@ class TriangleBvh {
 
   /// True when the closed segment pq touches any triangle: exact.
   bool blocks(const Vec3& p, const Vec3& q) const;
+  /// The same for many segments from p, all at once: 1 in `result` where the one to `ends[i]` is blocked. Fast where the
+  /// ends are near p and each other.
+  void blocks(const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const { lanes_.blocked(corners_, order_, p, ends, result); }
   /// Appends the rows of all triangles whose boxes meet `box`, in no particular order.
   void near(const Box3& box, std::vector<std::uint32_t>& rows) const;
 
@@ -44,6 +48,7 @@ class TriangleBvh {
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
   std::vector<std::array<Vec3, 3>> corners_;
+  TriangleLanes lanes_;  // over the same order
   Box3 box_;
 };
 

@@ -11,13 +11,16 @@ namespace geo {
 void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& take) {
   if (k < 0) throw InputError("nearest nodes: k is " + std::to_string(k) + ", give zero or more");
   if (tree.size() == 0) return;
-  std::vector<std::uint32_t> leaves;
-  for (std::uint32_t c = 0; c < tree.cells().size(); ++c)
-    if (tree.cells()[c].leaf()) leaves.push_back(c);
-  // Along the Morton curve, so that each leaf can learn from the one before how far to look.
-  std::sort(leaves.begin(), leaves.end(), [&](auto a, auto b) { return tree.cells()[a].begin < tree.cells()[b].begin; });
-  parallel_for(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
-    nearest_of_leaves(tree, std::span(leaves).subspan(begin, end - begin), static_cast<std::uint32_t>(k), take);
+  // Nodes that search together: as many as make up for gathering candidates, as few as have most candidates in common.
+  constexpr std::uint32_t company = 32;
+  const auto cells = tree.cells();
+  std::vector<std::uint32_t> groups;
+  for (std::uint32_t c = 0; c < cells.size(); ++c)
+    if ((cells[c].leaf() || cells[c].count() <= company) && (c == 0 || cells[cells[c].parent].count() > company)) groups.push_back(c);
+  // Along the Morton curve, so that each group can learn from the one before how far to look.
+  std::sort(groups.begin(), groups.end(), [&](auto a, auto b) { return cells[a].begin < cells[b].begin; });
+  parallel_for(groups.size(), 16, [&](std::size_t begin, std::size_t end) {
+    nearest_of_groups(tree, std::span(groups).subspan(begin, end - begin), static_cast<std::uint32_t>(k), take);
   });
 }
 

@@ -9,8 +9,8 @@
 
 namespace geo {
 
-/// visit_nearest() for the nodes of some leaves, by the widest vectors that the processor has.
-void nearest_of_leaves(const NodeTree& tree, std::span<const std::uint32_t> leaves, std::uint32_t k,
+/// visit_nearest() for the nodes of some cells, by the widest vectors that the processor has.
+void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,
                        const std::function<void(NodeId, std::span<const NodeId>)>& take);
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// The nodes of a leaf search together. Candidates within `reach` of the leaf's box are gathered once, as floats relative
+// Nodes of a small cell search together. Candidates within `reach` of its box are gathered once, as floats relative
 // to it; each node then takes those within reach of itself, ranks them by counting, and puts the first k in their exact
 // order by doubles. A row holds when its last node is within reach, since all nodes that were left out are farther
 // (NodeTree::Cell::gap). The vectors' width decides how fast that goes, never what comes out.
@@ -54,17 +54,17 @@ namespace geo {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-class LeafSearch {
+class GroupSearch {
  public:
-  LeafSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take) : tree_(tree), k_(k), take_(take), row_(k) {
+  GroupSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take) : tree_(tree), k_(k), take_(take), row_(k) {
     wanted_ = static_cast<std::uint32_t>(std::min<std::size_t>(std::size_t(k) + 1, tree.size()));
   }
 
-  void operator()(std::uint32_t leaf) {
+  void operator()(std::uint32_t group) {
     const auto cells = tree_.cells();
-    const NodeTree::Cell& home = cells[leaf];
+    const NodeTree::Cell& home = cells[group];
     // A cell around with enough nodes bounds how far the last of them can be, and tells about how far it will be.
-    std::uint32_t around = leaf;
+    std::uint32_t around = group;
     while (cells[around].count() < wanted_) around = cells[around].parent;
     const double farthest = cells[around].diagonal();
     double reach = std::clamp(learned_, 0.06 * farthest, 0.36 * farthest);
@@ -216,7 +216,7 @@ class LeafSearch {
   const std::uint32_t k_;
   const TakeRow& take_;
   std::uint32_t wanted_;    // of the nearest, the node itself included
-  double learned_ = 0;      // the farthest last of a row in the leaf before, squared
+  double learned_ = 0;      // the farthest last of a row in the group before, squared
   double middle_[3], unit_ = 1, scale_ = 1;
   Gathered near_;
   std::vector<std::uint32_t> pending_, stack_, which_;
@@ -227,9 +227,9 @@ class LeafSearch {
   std::uint8_t taken_[most_ranked];
 };
 
-void nearest_of_leaves(const NodeTree& tree, std::span<const std::uint32_t> leaves, std::uint32_t k, const TakeRow& take) {
-  LeafSearch search(tree, k, take);
-  for (const auto leaf : leaves) search(leaf);
+void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k, const TakeRow& take) {
+  GroupSearch search(tree, k, take);
+  for (const auto group : groups) search(group);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -238,9 +238,9 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace geo {
-HWY_EXPORT(nearest_of_leaves);
-void nearest_of_leaves(const NodeTree& tree, std::span<const std::uint32_t> leaves, std::uint32_t k, const TakeRow& take) {
-  HWY_DYNAMIC_DISPATCH(nearest_of_leaves)(tree, leaves, k, take);
+HWY_EXPORT(nearest_of_groups);
+void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k, const TakeRow& take) {
+  HWY_DYNAMIC_DISPATCH(nearest_of_groups)(tree, groups, k, take);
 }
 }  // namespace geo
 #endif

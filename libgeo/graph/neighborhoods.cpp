@@ -130,7 +130,7 @@ Neighborhoods build_neighborhoods(const NodeSet& nodes, const VisibilityGraph& g
                                   NeighborMethod method, const Progress& progress) {
   const std::size_t n = nodes.size();
   report(progress, "neighbourhoods", 0, n);
-  const Visibility sight(nodes.position, obstacles, nodes.radius);
+  const Visibility sight(nodes.position, obstacles);
   const auto blocked = [&](NodeId a, NodeId b) { return sight.blocked(a, b); };
   Neighborhoods all;
   all.rows.resize(n);

@@ -38,8 +38,7 @@ class NodeTree {
 
    private:
     double apart(int axis, const double* from, const double* to) const {
-      const double below = lo[axis] - to[axis], above = from[axis] - hi[axis], more = below > above ? below : above;
-      return more > 0 ? more : 0;
+      return std::max(std::max(lo[axis] - to[axis], from[axis] - hi[axis]), 0.0);
     }
   };
 

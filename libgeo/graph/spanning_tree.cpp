@@ -1,3 +1,6 @@
+// Boruvka: each component's shortest way out, round by round. A node's nearest nodes are asked first. One that has none
+// of another component among them is searched for in the tree, unless its component knows a way out that is shorter than
+// the distance to the last of them: where nodes are spread evenly it always does.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>
@@ -5,64 +8,141 @@
 #include <numeric>
 
 #include "graph/nearest.h"
-#include "sampling/node_grid.h"
 
 namespace geo {
-static double grid_cell_for(std::span<const Vec3> positions) {
-  Box3 box;
-  for (const Vec3& p : positions) box.add(p);
-  if (positions.size() < 2 || !(box.diagonal() > 0)) return 1;
-  const Vec3 size = (box.hi - box.lo).cwiseMax(1e-3 * box.diagonal());
-  return std::cbrt(1.5 * size.prod() / double(positions.size()));
-}
-std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions) {
-  // Boruvka: each component's shortest way out, round by round. A node first asks its nearest others; only where all of
-  // them are in its own component is the grid searched further.
-  const std::size_t n = positions.size();
-  constexpr int k = 8;
-  const auto near = nearest_nodes(positions, k);
-  const NodeGrid grid(grid_cell_for(positions), positions);
-  std::vector<std::uint32_t> root(n);
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  struct Way {
-    double length = std::numeric_limits<double>::infinity();
-    std::uint32_t i = ~0u, j = ~0u;
-    bool operator<(const Way& o) const { return length != o.length ? length < o.length : i != o.i ? i < o.i : j < o.j; }
-  };
-  std::vector<std::pair<NodeId, NodeId>> tree;
-  while (tree.size() + 1 < n) {
-    std::vector<std::uint32_t> component(n);
-    for (std::uint32_t i = 0; i < n; ++i) component[i] = find(i);
-    std::vector<Way> best(n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-      std::uint32_t j = ~0u;
-      for (int q = 0; q < k && j == ~0u; ++q)
-        if (const NodeId c = near[i * k + static_cast<std::size_t>(q)]; c.valid() && component[c.index()] != component[i]) j = c.value;
-      Way& way = best[component[i]];
-      if (j == ~0u) {
-        const NodeId farthest = near[i * k + k - 1];
-        // Nothing closer than its k-th nearest leads out; skip the search when the component knows a shorter way.
-        if (farthest.valid() && (positions[farthest.index()] - positions[i]).squaredNorm() > way.length) continue;
-        const auto out = grid.nearest(positions, positions[i], 1, i, [&](std::uint32_t r) { return component[r] != component[i]; });
-        if (out.empty()) continue;
-        j = out[0];
+namespace {
+
+constexpr std::uint32_t none = ~0u;
+
+struct Way {
+  double square = std::numeric_limits<double>::infinity();
+  std::uint32_t i = none, j = none;
+  bool operator<(const Way& o) const { return square != o.square ? square < o.square : i != o.i ? i < o.i : j < o.j; }
+};
+
+class Boruvka {
+ public:
+  Boruvka(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k)
+      : tree_(tree), x_(positions), near_(near), k_(static_cast<std::size_t>(k)), component_(positions.size()), best_(positions.size()),
+        asked_(positions.size(), 0) {
+    std::iota(component_.begin(), component_.end(), 0u);
+  }
+
+  std::vector<Way> run() {
+    std::vector<Way> edges;
+    while (edges.size() + 1 < x_.size()) {
+      std::fill(best_.begin(), best_.end(), Way());
+      for (std::uint32_t i = 0; i < x_.size(); ++i) ask_near(i);
+      search();
+      for (std::uint32_t c = 0; c < best_.size(); ++c) {
+        const Way& way = best_[c];
+        if (way.i == none) continue;
+        const auto a = find(way.i), b = find(way.j);
+        if (a == b) continue;
+        component_[std::max(a, b)] = std::min(a, b);
+        edges.push_back(way);
       }
-      const Way mine{(positions[i] - positions[j]).squaredNorm(), std::min(i, j), std::max(i, j)};
-      if (mine < way) way = mine;
+      for (std::uint32_t i = 0; i < x_.size(); ++i) component_[i] = component_[component_[i]];  // roots come first
     }
-    for (std::uint32_t c = 0; c < n; ++c) {
-      const Way& way = best[c];
-      if (way.i == ~0u || find(way.i) == find(way.j)) continue;
-      root[std::max(find(way.i), find(way.j))] = std::min(find(way.i), find(way.j));
-      tree.push_back({NodeId(way.i), NodeId(way.j)});
+    return edges;
+  }
+
+ private:
+  NodeId near(std::uint32_t i, std::size_t q) const { return near_[i * k_ + q]; }
+  double square(std::uint32_t i, std::uint32_t j) const { return (x_[i] - x_[j]).squaredNorm(); }
+  std::uint32_t find(std::uint32_t v) {
+    while (component_[v] != v) v = component_[v] = component_[component_[v]];
+    return v;
+  }
+  void offer(std::uint32_t i, std::uint32_t j) {
+    Way& way = best_[component_[i]];
+    way = std::min(way, Way{square(i, j), std::min(i, j), std::max(i, j)});
+  }
+
+  // What is in a node's component stays there, so a row is read once.
+  void ask_near(std::uint32_t i) {
+    auto& q = asked_[i];
+    while (q < k_ && near(i, q).valid() && component_[near(i, q).index()] == component_[i]) ++q;
+    if (q < k_ && near(i, q).valid()) offer(i, near(i, q).value);
+  }
+
+  // Ways out of nodes whose rows have none, where they may be the shortest.
+  void search() {
+    owner_.clear();
+    for (const auto i : tree_.nodes()) {
+      if (asked_[i] < k_) continue;  // a way is in its row, or its row holds all nodes
+      if (k_ > 0 && square(i, near(i, k_ - 1).value) > best_[component_[i]].square) continue;
+      if (owner_.empty()) own_cells();
+      search(0, i);
     }
   }
-  std::sort(tree.begin(), tree.end());
-  return tree;
+
+  // The component of all nodes of a cell, or none.
+  void own_cells() {
+    const auto cells = tree_.cells();
+    owner_.resize(cells.size());
+    for (std::size_t c = cells.size(); c-- > 0;) {
+      if (!cells[c].leaf()) {
+        const auto l = owner_[cells[c].children], r = owner_[cells[c].children + 1];
+        owner_[c] = l == r ? l : none;
+        continue;
+      }
+      owner_[c] = component_[tree_.nodes()[cells[c].begin]];
+      for (auto slot = cells[c].begin; slot < cells[c].end; ++slot)
+        if (component_[tree_.nodes()[slot]] != owner_[c]) owner_[c] = none;
+    }
+  }
+
+  void search(std::uint32_t at, std::uint32_t i) {
+    const auto cells = tree_.cells();
+    if (owner_[at] == component_[i]) return;
+    if (cells[at].leaf()) {
+      for (auto slot = cells[at].begin; slot < cells[at].end; ++slot)
+        if (const auto j = tree_.nodes()[slot]; component_[j] != component_[i]) offer(i, j);
+      return;
+    }
+    const auto l = cells[at].children, r = l + 1;
+    const double to_l = cells[l].gap(x_[i].data(), x_[i].data()), to_r = cells[r].gap(x_[i].data(), x_[i].data());
+    const double& reach = best_[component_[i]].square;
+    for (const bool left : {to_l <= to_r, to_l > to_r})
+      if ((left ? to_l : to_r) <= reach) search(left ? l : r, i);
+  }
+
+  const NodeTree& tree_;
+  std::span<const Vec3> x_;
+  std::span<const NodeId> near_;
+  const std::size_t k_;
+  std::vector<std::uint32_t> component_;  // its lowest node, between rounds
+  std::vector<Way> best_;                 // of each component, by that node
+  std::vector<std::uint32_t> asked_;      // how many of a node's nearest are in its component
+  std::vector<std::uint32_t> owner_;
+};
+
+std::vector<std::pair<NodeId, NodeId>> as_pairs(const std::vector<Way>& edges) {
+  std::vector<std::pair<NodeId, NodeId>> pairs;
+  for (const Way& e : edges) pairs.push_back({NodeId(e.i), NodeId(e.j)});
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions) {
+  constexpr int k = 8;
+  const NodeTree tree(positions);
+  const auto near = nearest_nodes(tree, k);
+  return as_pairs(Boruvka(tree, positions, near, k).run());
+}
+
+std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k) {
+  auto edges = Boruvka(tree, positions, near, k).run();
+  const auto length = static_cast<std::size_t>(k);
+  const auto has = [&](std::uint32_t i, std::uint32_t j) {
+    const auto row = near.subspan(i * length, length);
+    return std::find(row.begin(), row.end(), NodeId(j)) != row.end();
+  };
+  std::erase_if(edges, [&](const Way& e) { return has(e.i, e.j) || has(e.j, e.i); });
+  return as_pairs(edges);
 }
 
 }  // namespace geo

@@ -6,28 +6,25 @@
 
 namespace geo {
 
-Visibility::Visibility(std::span<const Vec3> positions, const TriangleBvh& obstacles, std::span<const double> reach)
-    : positions_(positions), obstacles_(obstacles), clearance_(positions.size()) {
-  parallel_for(positions.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto c = obstacles.closest(positions[i], reach[i]);
-      clearance_[i] = c.row == ~0u ? reach[i] : c.distance;
-    }
-  });
-}
-
-bool Visibility::blocked(NodeId i, NodeId j) const {
-  const auto a = std::min(i, j).index(), b = std::max(i, j).index();
-  const Vec3 &p = positions_[a], &q = positions_[b];
-  // Two empty balls that cover the segment: nothing can block it. The margin is for rounding in the distances.
-  if ((p - q).norm() < (clearance_[a] + clearance_[b]) * (1 - 1e-9)) return false;
-  return obstacles_.blocks(p, q);
+void Visibility::blocked(NodeId i, std::span<const NodeId> to, std::span<std::uint8_t> result) const {
+  constexpr std::size_t most = 32;
+  Vec3 ends[most];
+  for (std::size_t first = 0; first < to.size(); first += most) {
+    const std::size_t count = std::min(most, to.size() - first);
+    for (std::size_t q = 0; q < count; ++q) ends[q] = positions_[to[first + q].index()];
+    obstacles_.blocks(positions_[i.index()], {ends, count}, result.data() + first);
+  }
 }
 
 std::vector<std::uint8_t> Visibility::blocked(std::span<const std::pair<NodeId, NodeId>> pairs) const {
   std::vector<std::uint8_t> result(pairs.size());
-  parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) result[e] = blocked(pairs[e].first, pairs[e].second);
+  parallel_for(pairs.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<NodeId> to;
+    for (std::size_t e = begin; e < end; e += to.size()) {
+      to.clear();
+      while (e + to.size() < end && pairs[e + to.size()].first == pairs[e].first) to.push_back(pairs[e + to.size()].second);
+      blocked(pairs[e].first, to, std::span(result).subspan(e, to.size()));
+    }
   });
   return result;
 }

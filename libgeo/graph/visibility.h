@@ -9,22 +9,22 @@
 
 namespace geo {
 
-/// Visibility between nodes, exact, with closed semantics: a face that touches the segment blocks it. Most pairs are
-/// settled by the empty balls around their nodes. Refers to positions and obstacles, which must outlive it.
+/// Visibility between nodes, exact, with closed semantics: a face that touches the segment blocks it. Refers to positions
+/// and obstacles, which must outlive it. Safe to use from several threads.
 class Visibility {
  public:
-  /// `reach`: how far from each node the surface is looked for, in model units; pairs farther apart are slower.
-  Visibility(std::span<const Vec3> positions, const TriangleBvh& obstacles, std::span<const double> reach);
+  Visibility(std::span<const Vec3> positions, const TriangleBvh& obstacles) : positions_(positions), obstacles_(obstacles) {}
 
-  /// True when a face touches the closed segment between two nodes. Safe to call from several threads.
-  bool blocked(NodeId i, NodeId j) const;
-  /// The same for many pairs, in parallel: 1 where blocked.
+  /// True when a face touches the closed segment between two nodes.
+  bool blocked(NodeId i, NodeId j) const { return obstacles_.blocks(positions_[i.index()], positions_[j.index()]); }
+  /// The same for many segments from one node, which share the search: 1 in `result`, as long as `to`, where blocked.
+  void blocked(NodeId i, std::span<const NodeId> to, std::span<std::uint8_t> result) const;
+  /// The same for many pairs, in parallel: 1 where blocked. Fast where pairs with the same first node follow each other.
   std::vector<std::uint8_t> blocked(std::span<const std::pair<NodeId, NodeId>> pairs) const;
 
  private:
   std::span<const Vec3> positions_;
   const TriangleBvh& obstacles_;
-  std::vector<double> clearance_;  // of each node: nothing is closer
 };
 
 }  // namespace geo

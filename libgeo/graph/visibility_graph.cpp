@@ -73,24 +73,20 @@ VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& 
   graph.resize(n);
   graph.set_plain_unit(plain_unit_for(nodes));
   report(progress, "nearest nodes", 0, n);
-  const auto near = nearest_nodes(nodes.position, k);
+  const NodeTree tree(nodes.position);
+  const auto near = nearest_nodes(tree, k);
   std::vector<std::pair<NodeId, NodeId>> edges;
   for (std::uint32_t i = 0; i < n; ++i)
     for (int q = 0; q < k; ++q)
       if (const NodeId j = near[i * static_cast<std::size_t>(k) + static_cast<std::size_t>(q)]; j.valid()) edges.push_back(std::minmax(NodeId(i), j));
   report(progress, "spanning tree", 0, n);
-  const auto tree = spanning_tree(nodes.position);
-  edges.insert(edges.end(), tree.begin(), tree.end());
+  const auto beyond = spanning_tree_beyond(tree, nodes.position, near, k);
+  edges.insert(edges.end(), beyond.begin(), beyond.end());
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
   report(progress, "visibility", 0, edges.size());
-  std::vector<double> longest(n, 0);
-  for (const auto& [i, j] : edges) {
-    const double d = (nodes.position[i.index()] - nodes.position[j.index()]).norm();
-    for (const NodeId end : {i, j}) longest[end.index()] = std::max(longest[end.index()], d);
-  }
-  const auto blocked = Visibility(nodes.position, obstacles, longest).blocked(edges);
+  const auto blocked = Visibility(nodes.position, obstacles).blocked(edges);
   for (std::size_t e = 0; e < edges.size(); ++e)
     if (!blocked[e]) graph.add(nodes, edges[e].first, edges[e].second);
   return graph;

@@ -29,8 +29,8 @@ std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> fa
         near.clear();
         grid.within(positions, p, 0.8 * spacing, near);
         if (!near.empty()) continue;
-        grid.insert(static_cast<std::uint32_t>(positions.size()), p);
         positions.push_back(p);
+        grid.insert(positions, static_cast<std::uint32_t>(positions.size() - 1));
         samples.push_back({p, base, f, side});
       }
     }

@@ -6,8 +6,6 @@
 #include "base/random.h"
 #include "cases.h"
 #include "geometry/predicates.h"
-#include "graph/nearest.h"
-#include "graph/spanning_tree.h"
 #include "graph/update.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
@@ -32,44 +30,6 @@ NodeSet jittered(Random& random, int n, double jitter) {
 using Soup = std::vector<std::array<Vec3, 3>>;
 
 }  // namespace
-
-TEST_CASE("nearest nodes are those of a full scan") {
-  Random random(3);
-  const NodeSet nodes = jittered(random, 7, 0.4);
-  const auto near = nearest_nodes(nodes.position, 9);
-  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-    std::vector<std::pair<double, std::uint32_t>> all;
-    for (std::uint32_t j = 0; j < nodes.size(); ++j)
-      if (j != i) all.push_back({(nodes.position[j] - nodes.position[i]).squaredNorm(), j});
-    std::sort(all.begin(), all.end());
-    for (std::size_t q = 0; q < 9; ++q) REQUIRE(near[i * 9 + q] == NodeId(all[q].second));
-  }
-}
-
-TEST_CASE("the spanning tree is as short as Prim's, for scattered clusters too") {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    CAPTURE(seed);
-    Random random(seed);
-    std::vector<Vec3> p;
-    for (int c = 0; c < 5; ++c) {
-      const Vec3 at = 10 * random.direction();
-      for (int i = 0; i < 30; ++i) p.push_back(at + random.uniform() * random.direction());
-    }
-    double mine = 0, prim = 0;
-    for (const auto& [i, j] : spanning_tree(p)) mine += (p[i.index()] - p[j.index()]).norm();
-    std::vector<double> best(p.size(), 1e300);
-    std::vector<bool> in(p.size(), false);
-    best[0] = 0;
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      std::size_t at = p.size();
-      for (std::size_t i = 0; i < p.size(); ++i)
-        if (!in[i] && (at == p.size() || best[i] < best[at])) at = i;
-      in[at] = true, prim += best[at];
-      for (std::size_t i = 0; i < p.size(); ++i) best[i] = std::min(best[i], (p[i] - p[at]).norm());
-    }
-    CHECK(mine == Approx(prim).epsilon(1e-12));
-  }
-}
 
 TEST_CASE("edges are those that no triangle touches and every method and thread count gives the same rows") {
   Random random(7);
@@ -129,7 +89,7 @@ TEST_CASE("incremental updates equal a build from scratch, bit for bit") {
         for (int i = 0; i < 3; ++i) {
           const Vec3 p(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
           nodes.position.push_back(p), nodes.radius.push_back(0.22), nodes.spacing.push_back(0.1), nodes.volume.push_back(1e-4);
-          grid.insert(static_cast<std::uint32_t>(nodes.size() - 1), p);
+          grid.insert(nodes.position, static_cast<std::uint32_t>(nodes.size() - 1));
         }
       const auto near = [&](const Box3& box, Soup& out) {
         for (const auto& t : all)

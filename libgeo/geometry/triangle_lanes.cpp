@@ -1,0 +1,214 @@
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "geometry/triangle_lanes.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cmath>
+
+#include "geometry/predicates.h"
+#include "geometry/triangle_lanes.h"
+
+#ifndef KERF_TRIANGLE_LANES_ONCE
+#define KERF_TRIANGLE_LANES_ONCE
+namespace geo {
+namespace {
+
+constexpr std::size_t most_segments = 32;
+
+// Segments from one point, in the frame of the boxes.
+struct Packet {
+  float p[3];
+  alignas(64) float end[3][most_segments], lo[3][most_segments], hi[3][most_segments];
+  float all_lo[3], all_hi[3];
+  std::size_t count = 0;
+  bool near = true;  // within twice the frame, where slabs are valid
+};
+
+using Corners = std::span<const std::array<Vec3, 3>>;
+using Order = std::span<const std::uint32_t>;
+
+}  // namespace
+}  // namespace geo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace geo {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::CappedTag<float, TriangleLanes::width>;
+
+template <class Mask>
+std::uint32_t bits_of(const Mask& mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Floats(), mask, bytes);
+  return bytes[0] | std::uint32_t(bytes[1]) << 8;
+}
+
+// Which of a block's boxes meet a box.
+std::uint32_t meeting(const TriangleLanes::Boxes& boxes, const float* lo, const float* hi) {
+  const Floats d;
+  std::uint32_t bits = 0;
+  for (std::size_t at = 0; at < TriangleLanes::width; at += hn::Lanes(d)) {
+    auto mask = hn::Le(hn::Load(d, boxes.lo[0] + at), hn::Set(d, hi[0]));
+    mask = hn::And(mask, hn::Ge(hn::Load(d, boxes.hi[0] + at), hn::Set(d, lo[0])));
+    for (int axis = 1; axis < 3; ++axis) {
+      mask = hn::And(mask, hn::Le(hn::Load(d, boxes.lo[axis] + at), hn::Set(d, hi[axis])));
+      mask = hn::And(mask, hn::Ge(hn::Load(d, boxes.hi[axis] + at), hn::Set(d, lo[axis])));
+    }
+    bits |= bits_of(mask) << at;
+  }
+  return bits;
+}
+
+// Which of a packet's segments have boxes that meet one box of a block.
+std::uint32_t meeting(const Packet& packet, const TriangleLanes::Boxes& boxes, std::uint32_t lane) {
+  const Floats d;
+  std::uint32_t bits = 0;
+  for (std::size_t at = 0; at < packet.count; at += hn::Lanes(d)) {
+    auto mask = hn::Ge(hn::Load(d, packet.hi[0] + at), hn::Set(d, boxes.lo[0][lane]));
+    mask = hn::And(mask, hn::Le(hn::Load(d, packet.lo[0] + at), hn::Set(d, boxes.hi[0][lane])));
+    for (int axis = 1; axis < 3; ++axis) {
+      mask = hn::And(mask, hn::Ge(hn::Load(d, packet.hi[axis] + at), hn::Set(d, boxes.lo[axis][lane])));
+      mask = hn::And(mask, hn::Le(hn::Load(d, packet.lo[axis] + at), hn::Set(d, boxes.hi[axis][lane])));
+    }
+    bits |= bits_of(mask) << at;
+  }
+  return bits;
+}
+
+// Which triangles of a block a segment may touch: their boxes meet, and their slabs do not tell them apart.
+std::uint32_t suspects(const TriangleLanes::Boxes& boxes, const TriangleLanes::Slabs& slabs, const Packet& packet, std::size_t s) {
+  const float lo[3] = {packet.lo[0][s], packet.lo[1][s], packet.lo[2][s]}, hi[3] = {packet.hi[0][s], packet.hi[1][s], packet.hi[2][s]};
+  std::uint32_t bits = meeting(boxes, lo, hi);
+  if (bits == 0 || !packet.near) return bits;
+  const Floats d;
+  std::uint32_t apart = 0;
+  for (std::size_t at = 0; at < TriangleLanes::width; at += hn::Lanes(d)) {
+    const auto x = hn::Load(d, slabs.normal[0] + at), y = hn::Load(d, slabs.normal[1] + at), z = hn::Load(d, slabs.normal[2] + at);
+    const auto along = [&](float px, float py, float pz) {
+      return hn::Add(hn::Mul(x, hn::Set(d, px)), hn::Add(hn::Mul(y, hn::Set(d, py)), hn::Mul(z, hn::Set(d, pz))));
+    };
+    const auto p = along(packet.p[0], packet.p[1], packet.p[2]), q = along(packet.end[0][s], packet.end[1][s], packet.end[2][s]);
+    const auto mask = hn::Or(hn::Gt(hn::Min(p, q), hn::Load(d, slabs.to + at)), hn::Lt(hn::Max(p, q), hn::Load(d, slabs.from + at)));
+    apart |= bits_of(mask) << at;
+  }
+  return bits & ~apart;
+}
+
+void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, const Vec3* ends, const Packet& packet, std::uint8_t* result) {
+  const auto& levels = tree.levels();
+  struct Place {
+    std::uint32_t level, block;
+  };
+  Place stack[8 * TriangleLanes::width];  // 2³² triangles have eight levels
+  int top = 0;
+  stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
+  std::uint32_t open = packet.count == 32 ? ~0u : (1u << packet.count) - 1;
+  while (top > 0 && open != 0) {
+    const auto [level, block] = stack[--top];
+    const auto& boxes = levels[level][block];
+    for (auto lanes = meeting(boxes, packet.all_lo, packet.all_hi); lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), child = block * TriangleLanes::width + lane;
+      if (level > 1) {
+        stack[top++] = {level - 1, child};
+        continue;
+      }
+      for (auto segments = meeting(packet, boxes, lane) & open; segments != 0; segments &= segments - 1) {
+        const auto s = static_cast<std::uint32_t>(std::countr_zero(segments));
+        for (auto rest = suspects(levels[0][child], tree.slabs()[child], packet, s); rest != 0; rest &= rest - 1) {
+          const auto& t = corners[order[child * TriangleLanes::width + static_cast<std::uint32_t>(std::countr_zero(rest))]];
+          if (!segment_meets_triangle(p, ends[s], t[0], t[1], t[2])) continue;
+          result[s] = 1;
+          open &= ~(1u << s);
+          break;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace geo
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(blocked_packet);
+
+TriangleLanes::TriangleLanes(Corners corners, Order order) {
+  if (order.empty()) return;
+  Box3 box;
+  for (const auto& t : corners) box.add(box_of(t[0], t[1], t[2]));
+  middle_ = 0.5 * box.lo + 0.5 * box.hi;
+  const double extent = (box.hi - middle_).cwiseMax(middle_ - box.lo).maxCoeff();
+  if (extent > 1e-150) scale_ = 1 / extent;
+  const auto start = [](std::size_t count) {
+    Boxes none;
+    for (int axis = 0; axis < 3; ++axis)
+      for (std::uint32_t lane = 0; lane < width; ++lane) none.lo[axis][lane] = INFINITY, none.hi[axis][lane] = -INFINITY;
+    return std::vector<Boxes>((count + width - 1) / width, none);
+  };
+  // Coordinates in the frame, at most 2, are off by 2⁻²³ (1 + 2⁻²⁸); the product of one with a direction of length 1 by
+  // that times √3, and by 3 · 2⁻²⁴ · 2 √3 from its own rounding: together below 15 · 2⁻²⁴. Rounding `from` and `to` adds
+  // 2⁻²³ at most.
+  constexpr double margin = 0x1p-19;
+  levels_.push_back(start(order.size()));
+  slabs_.resize(levels_[0].size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Boxes& boxes = levels_[0][i / width];
+    Slabs& slabs = slabs_[i / width];
+    const auto lane = i % width;
+    const auto& t = corners[order[i]];
+    const Box3 b = box_of(t[0], t[1], t[2]);
+    const Vec3 u = (t[1] - t[0]) * scale_, v = (t[2] - t[0]) * scale_;
+    const Eigen::Vector3f normal = u.cross(v).stableNormalized().cast<float>();
+    double from = INFINITY, to = -INFINITY;
+    for (const Vec3& corner : t) {
+      const double along = normal.cast<double>().dot((corner - middle_) * scale_);
+      from = std::min(from, along), to = std::max(to, along);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes.lo[axis][lane] = local(b.lo[axis], axis), boxes.hi[axis][lane] = local(b.hi[axis], axis);
+      slabs.normal[axis][lane] = normal[axis];
+    }
+    slabs.from[lane] = static_cast<float>(from - margin), slabs.to[lane] = static_cast<float>(to + margin);
+  }
+  while (levels_.size() < 2 || levels_.back().size() > 1) {
+    const auto& below = levels_.back();
+    auto level = start(below.size());
+    for (std::size_t i = 0; i < below.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        level[i / width].lo[axis][i % width] = *std::min_element(below[i].lo[axis], below[i].lo[axis] + width);
+        level[i / width].hi[axis][i % width] = *std::max_element(below[i].hi[axis], below[i].hi[axis] + width);
+      }
+    levels_.push_back(std::move(level));
+  }
+}
+
+void TriangleLanes::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const {
+  std::fill_n(result, ends.size(), std::uint8_t(0));
+  if (levels_.empty()) return;
+  Packet packet;
+  for (std::size_t first = 0; first < ends.size(); first += most_segments) {
+    packet.count = std::min(most_segments, ends.size() - first);
+    const std::size_t whole = (packet.count + width - 1) / width * width;
+    for (int axis = 0; axis < 3; ++axis) {
+      packet.p[axis] = packet.all_lo[axis] = packet.all_hi[axis] = local(p[axis], axis);
+      for (std::size_t s = 0; s < whole; ++s) {
+        const float q = s < packet.count ? local(ends[first + s][axis], axis) : packet.p[axis];
+        packet.end[axis][s] = q;
+        packet.lo[axis][s] = std::min(packet.p[axis], q), packet.hi[axis][s] = std::max(packet.p[axis], q);
+        packet.all_lo[axis] = std::min(packet.all_lo[axis], q), packet.all_hi[axis] = std::max(packet.all_hi[axis], q);
+      }
+    }
+    packet.near = true;
+    for (int axis = 0; axis < 3; ++axis) packet.near = packet.near && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
+    HWY_DYNAMIC_DISPATCH(blocked_packet)(*this, corners, order, p, ends.data() + first, packet, result + first);
+  }
+}
+
+}  // namespace geo
+#endif

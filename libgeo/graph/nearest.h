@@ -12,7 +12,7 @@
 namespace geo {
 
 /// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
-/// Missing entries are invalid ids. Exact: squared distances are those of doubles, (x_j − x_i).squaredNorm().
+/// Missing entries are invalid ids. Exact: by squared_distance(), then id.
 std::vector<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
 std::vector<NodeId> nearest_nodes(const NodeTree& tree, int k);
 

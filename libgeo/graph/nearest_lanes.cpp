@@ -168,8 +168,7 @@ class GroupSearch {
     exact_.clear();
     const auto add = [&](std::uint32_t which) {
       const auto s = near_.slot[which];
-      const double x = tree_.along(0)[s] - p[0], y = tree_.along(1)[s] - p[1], z = tree_.along(2)[s] - p[2];
-      exact_.push_back({x * x + (y * y + z * z), tree_.nodes()[s]});
+      exact_.push_back({square_of(tree_.along(0)[s] - p[0], tree_.along(1)[s] - p[1], tree_.along(2)[s] - p[2]), tree_.nodes()[s]});
     };
     if (count > most_ranked) {
       for (std::size_t i = 0; i < count; ++i) add(which_[i]);

@@ -9,6 +9,10 @@
 
 namespace geo {
 
+/// The square of the distance between two nodes as the graph compares it: in doubles, in this order of rounding.
+inline double square_of(double x, double y, double z) { return (x * x + y * y) + z * z; }
+inline double squared_distance(const Vec3& p, const Vec3& q) { return square_of(p.x() - q.x(), p.y() - q.y(), p.z() - q.z()); }
+
 /// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot tell nodes apart, they
 /// are coded anew within their own box. So any distribution gives small leaves, and O(n) time but for one sort of digits.
 /// About 45 bytes a node.
@@ -27,14 +31,8 @@ class NodeTree {
     /// The square of the gap to another box (or point: twice the same), and of the diagonal. Both are rounded as squared distances of points are,
     /// and rounding is monotone: a computed squared distance between nodes of two cells is never less than their gap, and
     /// within a cell never more than its diagonal.
-    double gap(const double* from, const double* to) const {
-      const double x = apart(0, from, to), y = apart(1, from, to), z = apart(2, from, to);
-      return x * x + (y * y + z * z);
-    }
-    double diagonal() const {
-      const double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
-      return x * x + (y * y + z * z);
-    }
+    double gap(const double* from, const double* to) const { return square_of(apart(0, from, to), apart(1, from, to), apart(2, from, to)); }
+    double diagonal() const { return square_of(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]); }
 
    private:
     double apart(int axis, const double* from, const double* to) const {

@@ -49,7 +49,7 @@ class Boruvka {
 
  private:
   NodeId near(std::uint32_t i, std::size_t q) const { return near_[i * k_ + q]; }
-  double square(std::uint32_t i, std::uint32_t j) const { return (x_[i] - x_[j]).squaredNorm(); }
+  double square(std::uint32_t i, std::uint32_t j) const { return squared_distance(x_[i], x_[j]); }
   std::uint32_t find(std::uint32_t v) {
     while (component_[v] != v) v = component_[v] = component_[component_[v]];
     return v;

@@ -31,6 +31,9 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
   return best;
 }
 
+/// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn. Leaves one thread.
+double threads_speedup(const std::function<void()>& work);
+
 struct Options {
   std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles
   std::vector<std::string> models;    ///< closed meshes in files

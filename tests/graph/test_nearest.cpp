@@ -16,7 +16,7 @@ std::vector<NodeId> by_full_scan(const std::vector<Vec3>& x, int k) {
   for (std::uint32_t i = 0; i < x.size(); ++i) {
     std::vector<std::pair<double, std::uint32_t>> all;
     for (std::uint32_t j = 0; j < x.size(); ++j)
-      if (j != i) all.push_back({(x[j] - x[i]).squaredNorm(), j});
+      if (j != i) all.push_back({squared_distance(x[i], x[j]), j});
     std::sort(all.begin(), all.end());
     for (std::size_t q = 0; q < static_cast<std::size_t>(k); ++q) rows.push_back(q < all.size() ? NodeId(all[q].second) : NodeId());
   }
@@ -27,7 +27,7 @@ std::vector<NodeId> by_full_scan(const std::vector<Vec3>& x, int k) {
 std::vector<std::pair<NodeId, NodeId>> by_all_pairs(const std::vector<Vec3>& x) {
   std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> all;
   for (std::uint32_t i = 0; i < x.size(); ++i)
-    for (std::uint32_t j = i + 1; j < x.size(); ++j) all.push_back({(x[j] - x[i]).squaredNorm(), i, j});
+    for (std::uint32_t j = i + 1; j < x.size(); ++j) all.push_back({squared_distance(x[i], x[j]), i, j});
   std::sort(all.begin(), all.end());
   std::vector<std::uint32_t> of(x.size());
   for (std::uint32_t i = 0; i < x.size(); ++i) of[i] = i;
@@ -52,7 +52,7 @@ TEST_CASE("nearest nodes are those of a full scan, in its order, however the nod
     const auto x = cloud(random, kind, 1 + static_cast<int>(random.below(random.below(4) ? 300 : 12)));
     CAPTURE(seed, kind, k, x.size());
     const auto expected = by_full_scan(x, k);
-    on_every_target([&] { REQUIRE(nearest_nodes(x, k) == expected); });
+    on_every_target([&] { REQUIRE((nearest_nodes(x, k) == expected)); });
   }
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("nearest nodes of large sets are those of a full scan too, for any num
     const auto expected = by_full_scan(x, 26);
     for (const int threads : {1, 2, 4}) {
       set_threads(threads);
-      CHECK(nearest_nodes(x, 26) == expected);
+      CHECK((nearest_nodes(x, 26) == expected));
     }
     set_threads(0);
   }
@@ -79,7 +79,7 @@ TEST_CASE("the spanning tree is the one of all pairs, ties and all, and says wha
     const auto x = cloud(random, kind, 1 + static_cast<int>(random.below(random.below(4) ? 150 : 12)));
     CAPTURE(seed, kind, k, x.size());
     auto expected = by_all_pairs(x);
-    REQUIRE(spanning_tree(x) == expected);
+    REQUIRE((spanning_tree(x) == expected));
     const NodeTree tree(x);
     const auto near = nearest_nodes(tree, k);
     const auto has = [&](NodeId i, NodeId j) {
@@ -87,7 +87,7 @@ TEST_CASE("the spanning tree is the one of all pairs, ties and all, and says wha
       return std::find(row, row + k, j) != row + k;
     };
     std::erase_if(expected, [&](const auto& e) { return has(e.first, e.second) || has(e.second, e.first); });
-    REQUIRE(spanning_tree_beyond(tree, x, near, k) == expected);
+    REQUIRE((spanning_tree_beyond(tree, x, near, k) == expected));
     beyond_found += expected.size();
   }
   CHECK(beyond_found > 0);

@@ -9,8 +9,8 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "graph/nearest_internal.h"
 
@@ -25,7 +25,10 @@ using TakeRow = std::function<void(NodeId, std::span<const NodeId>)>;
 // exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at most. For a distance d ≤ 1 the sum of squares
 // is then off by 2 η √3 d + 3 η² from the coordinates and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
 constexpr double float_error = 0x1p-19;
-constexpr std::size_t most_ranked = 256;
+// Candidates are told apart by the low bits of their squares, whose place is then the candidate's: that takes away a share
+// of key_error at most.
+constexpr std::uint32_t most_keyed = 2048, most_ranked = 255;
+constexpr double key_error = 0x1p-12;
 
 struct Exact {
   double square;
@@ -56,7 +59,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 class GroupSearch {
  public:
-  GroupSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take) : tree_(tree), k_(k), take_(take), row_(k) {
+  GroupSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take) : tree_(tree), k_(k), take_(take), row_(std::size_t(k) + 1) {
     wanted_ = static_cast<std::uint32_t>(std::min<std::size_t>(std::size_t(k) + 1, tree.size()));
   }
 
@@ -148,66 +151,80 @@ class GroupSearch {
     const hn::ScalableTag<float> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     const std::size_t lanes = hn::Lanes(d);
-    if (square_.size() < near_.size + 2 * lanes) square_.resize(2 * near_.size + 2 * lanes), which_.resize(square_.size());
+    const bool keyed = near_.size <= most_keyed;
+    if (key_.size() < near_.size + 5 * lanes) key_.resize(2 * near_.size + 5 * lanes);
     double p[3];
     for (int axis = 0; axis < 3; ++axis) p[axis] = tree_.along(axis)[slot];
     const auto local = [&](int axis) { return hn::Set(d, static_cast<float>((p[axis] - middle_[axis]) * scale_)); };
     const auto px = local(0), py = local(1), pz = local(2);
     const auto limit = hn::Set(d, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
-    std::size_t count = 0;
-    for (std::size_t at = 0; at < near_.size; at += lanes) {
-      const auto x = hn::Sub(hn::LoadU(d, near_.along[0].data() + at), px), y = hn::Sub(hn::LoadU(d, near_.along[1].data() + at), py),
-                 z = hn::Sub(hn::LoadU(d, near_.along[2].data() + at), pz);
-      const auto square = hn::Add(hn::Mul(x, x), hn::Add(hn::Mul(y, y), hn::Mul(z, z)));
-      const auto mask = hn::Le(square, limit);
-      hn::StoreU(hn::Compress(square, mask), d, square_.data() + count);
-      hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(at)), hn::RebindMask(du, mask)), du, which_.data() + count);
-      count += hn::CountTrue(d, mask);
+    const auto kept = hn::Set(du, keyed ? ~(most_keyed - 1) : 0u);
+    const float *const near_x = near_.along[0].data(), *const near_y = near_.along[1].data(), *const near_z = near_.along[2].data();
+    std::uint32_t* const keys = key_.data();
+    std::uint32_t count = 0;
+    auto at = hn::Iota(du, 0u);
+    const auto step = hn::Set(du, static_cast<std::uint32_t>(lanes));
+    for (std::size_t i = 0; i < near_.size; i += lanes) {
+      const auto x = hn::Sub(hn::LoadU(d, near_x + i), px), y = hn::Sub(hn::LoadU(d, near_y + i), py), z = hn::Sub(hn::LoadU(d, near_z + i), pz);
+      const auto square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+      const auto mask = hn::RebindMask(du, hn::Le(square, limit));
+      hn::StoreU(hn::Compress(hn::Or(hn::And(hn::BitCast(du, square), kept), at), mask), du, keys + count);
+      count += static_cast<std::uint32_t>(hn::CountTrue(du, mask));
+      at = hn::Add(at, step);
     }
     if (count < wanted_) return false;
-    exact_.clear();
-    const auto add = [&](std::uint32_t which) {
+    if (exact_.size() < count) exact_.resize(2 * count);
+    const auto exact = [&](std::uint32_t which) {
       const auto s = near_.slot[which];
-      exact_.push_back({square_of(tree_.along(0)[s] - p[0], tree_.along(1)[s] - p[1], tree_.along(2)[s] - p[2]), tree_.nodes()[s]});
+      return Exact{square_of(tree_.along(0)[s] - p[0], tree_.along(1)[s] - p[1], tree_.along(2)[s] - p[2]), tree_.nodes()[s]};
     };
-    if (count > most_ranked) {
-      for (std::size_t i = 0; i < count; ++i) add(which_[i]);
-      std::nth_element(exact_.begin(), exact_.begin() + (wanted_ - 1), exact_.end());
-      exact_.resize(wanted_);
-      std::sort(exact_.begin(), exact_.end());
+    if (keyed && count <= most_ranked) {
+      rank(count, exact);
     } else {
-      rank(count, add);
+      for (std::uint32_t i = 0; i < count; ++i) exact_[i] = exact(keyed ? keys[i] & (most_keyed - 1) : keys[i]);
+      std::nth_element(exact_.begin(), exact_.begin() + (wanted_ - 1), exact_.begin() + count);
+      std::sort(exact_.begin(), exact_.begin() + wanted_);
     }
     if (exact_[wanted_ - 1].square > reach) return false;
     learned_ = std::max(learned_, exact_[wanted_ - 1].square);
     const auto self = tree_.nodes()[slot];
     std::uint32_t length = 0;
-    for (std::uint32_t i = 0; i < wanted_ && length < k_; ++i)
-      if (exact_[i].node != self) row_[length++] = NodeId(exact_[i].node);
+    for (std::uint32_t i = 0; i < wanted_ && length < k_; ++i) {
+      row_[length] = NodeId(exact_[i].node);
+      length += exact_[i].node != self;
+    }
     take_(NodeId(self), std::span<const NodeId>(row_.data(), length));
     return true;
   }
 
   // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put behind them, in order.
-  template <class Add>
-  void rank(std::size_t count, const Add& add) {
-    const hn::ScalableTag<float> d;
-    const hn::RebindToUnsigned<decltype(d)> du;
-    const std::size_t lanes = hn::Lanes(d);
+  template <class ToExact>
+  void rank(std::uint32_t count, const ToExact& exact) {
+    const hn::ScalableTag<std::uint32_t> du;
+    const std::size_t lanes = hn::Lanes(du);
     const auto one = hn::Set(du, 1u);
-    std::memset(taken_, 0, count);
-    for (std::size_t at = 0; at < count; at += lanes) {
-      const auto mine = hn::LoadU(d, square_.data() + at);
-      auto before = hn::Zero(du);
-      for (std::size_t j = 0; j < count; ++j)
-        before = hn::Add(before, hn::IfThenElseZero(hn::RebindMask(du, hn::Lt(hn::Set(d, square_[j]), mine)), one));
-      hn::StoreU(before, du, rank_ + at);
+    const std::uint32_t* const keys = key_.data();
+    for (std::size_t at = 0; at < count; at += 3 * lanes) {
+      const auto a = hn::LoadU(du, keys + at), b = hn::LoadU(du, keys + at + lanes), c = hn::LoadU(du, keys + at + 2 * lanes);
+      auto below_a = hn::Zero(du), below_b = below_a, below_c = below_a;
+      for (std::uint32_t j = 0; j < count; ++j) {
+        const auto key = hn::Set(du, keys[j]);
+        below_a = hn::IfThenElse(hn::Lt(key, a), hn::Add(below_a, one), below_a);
+        below_b = hn::IfThenElse(hn::Lt(key, b), hn::Add(below_b, one), below_b);
+        below_c = hn::IfThenElse(hn::Lt(key, c), hn::Add(below_c, one), below_c);
+      }
+      hn::StoreU(below_a, du, rank_ + at);
+      hn::StoreU(below_b, du, rank_ + at + lanes);
+      hn::StoreU(below_c, du, rank_ + at + 2 * lanes);
     }
-    for (std::size_t i = 0; i < count; ++i) order_[rank_[i] + taken_[rank_[i]]++] = static_cast<std::uint32_t>(i);
-    const float last = square_[order_[wanted_ - 1]] + static_cast<float>(2 * float_error);
-    for (std::size_t i = 0; i < count && (i < wanted_ || square_[order_[i]] <= last); ++i) {
-      add(which_[order_[i]]);
-      for (std::size_t j = exact_.size() - 1; j > 0 && exact_[j] < exact_[j - 1]; --j) std::swap(exact_[j], exact_[j - 1]);
+    for (std::uint32_t i = 0; i < count; ++i) order_[rank_[i]] = keys[i];
+    const float square = std::bit_cast<float>(order_[wanted_ - 1]);
+    const auto last = std::bit_cast<std::uint32_t>(square * static_cast<float>(1 + 4 * key_error) + static_cast<float>(2 * float_error));
+    for (std::uint32_t i = 0; i < count && (i < wanted_ || order_[i] <= last); ++i) {
+      const Exact mine = exact(order_[i] & (most_keyed - 1));
+      std::uint32_t j = i;
+      for (; j > 0 && mine < exact_[j - 1]; --j) exact_[j] = exact_[j - 1];
+      exact_[j] = mine;
     }
   }
 
@@ -218,12 +235,10 @@ class GroupSearch {
   double learned_ = 0;      // the farthest last of a row in the group before, squared
   double middle_[3], unit_ = 1, scale_ = 1;
   Gathered near_;
-  std::vector<std::uint32_t> pending_, stack_, which_;
-  std::vector<float> square_;
+  std::vector<std::uint32_t> pending_, stack_, key_;  // key_: the squares of a node's candidates, and which they are
   std::vector<Exact> exact_;
   std::vector<NodeId> row_;
-  std::uint32_t rank_[most_ranked + 64], order_[most_ranked + 64];
-  std::uint8_t taken_[most_ranked];
+  std::uint32_t rank_[2 * most_ranked], order_[most_ranked];
 };
 
 void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k, const TakeRow& take) {

@@ -98,7 +98,38 @@ std::uint32_t suspects(const TriangleLanes::Boxes& boxes, const TriangleLanes::S
   return bits & ~apart;
 }
 
-void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, const Vec3* ends, const Packet& packet, std::uint8_t* result) {
+// The segments from p to some points, in the frame; lanes behind them are p itself.
+void fill(const TriangleLanes& tree, const Vec3& p, const Vec3* ends, Packet& packet) {
+  const hn::CappedTag<double, TriangleLanes::width> dd;
+  const hn::Rebind<float, decltype(dd)> df;
+  const std::size_t lanes = hn::Lanes(dd), whole = (packet.count + TriangleLanes::width - 1) / TriangleLanes::width * TriangleLanes::width;
+  alignas(64) double at[3][most_segments];
+  for (std::size_t s = 0; s < whole; ++s) {
+    const double* const end = s < packet.count ? ends[s].data() : p.data();
+    for (int axis = 0; axis < 3; ++axis) at[axis][s] = end[axis];
+  }
+  packet.near = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    packet.p[axis] = tree.local(p[axis], axis);
+    const auto from = hn::Set(df, packet.p[axis]);
+    auto all_lo = from, all_hi = from;
+    for (std::size_t s = 0; s < whole; s += lanes) {
+      const auto to = hn::DemoteTo(df, hn::Mul(hn::Sub(hn::Load(dd, at[axis] + s), hn::Set(dd, tree.middle()[axis])), hn::Set(dd, tree.scale())));
+      const auto lo = hn::Min(from, to), hi = hn::Max(from, to);
+      hn::Store(to, df, packet.end[axis] + s);
+      hn::Store(lo, df, packet.lo[axis] + s);
+      hn::Store(hi, df, packet.hi[axis] + s);
+      all_lo = hn::Min(all_lo, lo), all_hi = hn::Max(all_hi, hi);
+    }
+    packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo)), packet.all_hi[axis] = hn::GetLane(hn::MaxOfLanes(df, all_hi));
+    packet.near = packet.near && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
+  }
+}
+
+void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) {
+  Packet packet;
+  packet.count = ends.size();
+  fill(tree, p, ends.data(), packet);
   const auto& levels = tree.levels();
   struct Place {
     std::uint32_t level, block;
@@ -191,23 +222,8 @@ TriangleLanes::TriangleLanes(Corners corners, Order order) {
 void TriangleLanes::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const {
   std::fill_n(result, ends.size(), std::uint8_t(0));
   if (levels_.empty()) return;
-  Packet packet;
-  for (std::size_t first = 0; first < ends.size(); first += most_segments) {
-    packet.count = std::min(most_segments, ends.size() - first);
-    const std::size_t whole = (packet.count + width - 1) / width * width;
-    for (int axis = 0; axis < 3; ++axis) {
-      packet.p[axis] = packet.all_lo[axis] = packet.all_hi[axis] = local(p[axis], axis);
-      for (std::size_t s = 0; s < whole; ++s) {
-        const float q = s < packet.count ? local(ends[first + s][axis], axis) : packet.p[axis];
-        packet.end[axis][s] = q;
-        packet.lo[axis][s] = std::min(packet.p[axis], q), packet.hi[axis][s] = std::max(packet.p[axis], q);
-        packet.all_lo[axis] = std::min(packet.all_lo[axis], q), packet.all_hi[axis] = std::max(packet.all_hi[axis], q);
-      }
-    }
-    packet.near = true;
-    for (int axis = 0; axis < 3; ++axis) packet.near = packet.near && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
-    HWY_DYNAMIC_DISPATCH(blocked_packet)(*this, corners, order, p, ends.data() + first, packet, result + first);
-  }
+  for (std::size_t first = 0; first < ends.size(); first += most_segments)
+    HWY_DYNAMIC_DISPATCH(blocked_packet)(*this, corners, order, p, ends.subspan(first, std::min(most_segments, ends.size() - first)), result + first);
 }
 
 }  // namespace geo

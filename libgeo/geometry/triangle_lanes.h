@@ -34,6 +34,9 @@ class TriangleLanes {
   void blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p, std::span<const Vec3> ends,
                std::uint8_t* result) const;
 
+  /// The frame: a coordinate's place in it is its difference from middle(), times scale(), as a float.
+  const Vec3& middle() const { return middle_; }
+  double scale() const { return scale_; }
   float local(double x, int axis) const { return static_cast<float>((x - middle_[axis]) * scale_); }
   /// levels()[0] holds boxes of triangles, levels()[l] those of blocks of levels()[l − 1]; two levels at least.
   const std::vector<std::vector<Boxes>>& levels() const { return levels_; }

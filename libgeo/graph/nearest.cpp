@@ -12,7 +12,7 @@ void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId,
   if (k < 0) throw InputError("nearest nodes: k is " + std::to_string(k) + ", give zero or more");
   if (tree.size() == 0) return;
   // Nodes that search together: as many as make up for gathering candidates, as few as have most candidates in common.
-  constexpr std::uint32_t company = 32;
+  constexpr std::uint32_t company = 48;
   const auto cells = tree.cells();
   std::vector<std::uint32_t> groups;
   for (std::uint32_t c = 0; c < cells.size(); ++c)

@@ -1,11 +1,11 @@
-// Passages too narrow for the sampling: nodes are inserted until G has as many components as the material has pieces.
+// Passages too narrow for the sampling, and pieces without a node.
 #include <algorithm>
 #include <map>
+#include <set>
 
+#include "body/connect.h"
 #include "body/locate.h"
-#include "body/nodes.h"
 #include "geometry/predicates.h"
-#include "surface/pieces.h"
 
 namespace geo {
 namespace {
@@ -146,83 +146,78 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
   }
 }
 
+// A node on the line from the middle of the shell's largest face straight into it, half way to what comes next.
+NodeId insert_into(Body& body, SurfaceVertexId v) {
+  const Complex& k = body.surface;
+  std::vector<SurfaceVertexId> shell{v}, around;
+  std::set<SurfaceVertexId> seen{v};
+  Side best;
+  double most = -1;
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    for (const FaceId f : k.faces_at(k.site(shell[i])))
+      for (int which = 0; which < 2; ++which)
+        for (int c = 0; c < 3; ++c) {
+          if (!k.has({f, which}) || k.surface_vertex({f, which}, c) != shell[i]) continue;
+          const auto t = k.corners(f);
+          const double area = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+          if (area > most || (area == most && Side{f, which} < best)) most = area, best = {f, which};
+        }
+    around.clear();
+    k.surface_neighbors(shell[i], around);
+    for (const auto w : around)
+      if (seen.insert(w).second) shell.push_back(w);
+  }
+  const auto t = k.corners(best.face);
+  const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+  const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+  const NodeId donor(body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; })[0]);
+  double step = body.nodes.spacing[donor.index()];
+  while (step > 1e-12 * k.extent().diagonal() && !stands_before(k, best, middle, middle + step * inwards)) step *= 0.6;
+  return insert_node(body, middle + 0.5 * step * inwards, donor, body.nodes.spacing[donor.index()]);
+}
+
 }  // namespace
 
-void connect_pieces(Body& body, const std::function<void(NodeId, std::span<const NodePair>)>& after) {
+void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
-  for (int round = 0; round < 12; ++round, scale *= 0.8) {
-    std::vector<std::uint32_t> component;
-    const auto count = body.graph.components(component);
-    const Pieces pieces = find_pieces(body.surface);
-    const auto piece_of = [&](std::uint32_t i) {
-      const Side s = side_seen_from(body.surface, body.nodes.position[i], body.nodes.spacing[i]);
-      return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
-    };
-    // The largest component of each piece stands for it; the others want a way to it.
-    std::vector<std::uint32_t> size(count, 0), first(count, ~0u);
-    for (std::uint32_t i = 0; i < component.size(); ++i)
-      if (size[component[i]]++ == 0) first[component[i]] = i;
-    std::vector<std::int32_t> piece(count);
-    std::vector<std::uint32_t> main(pieces.count, ~0u);
-    for (std::uint32_t c = 0; c < count; ++c) {
-      piece[c] = piece_of(first[c]);
-      if (piece[c] < 0) continue;
-      auto& m = main[static_cast<std::size_t>(piece[c])];
-      if (m == ~0u || size[c] > size[m]) m = c;
-    }
-    bool whole = true;
-    for (std::uint32_t c = 0; c < count; ++c) whole = whole && (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c);
-    for (const auto m : main) whole = whole && m != ~0u;
-    if (whole) return;
+  for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
+    for (const auto v : found.empty) found.known[body.upkeep.piece[v.index()]] = insert_into(body, v);
+    Regions before = components_of(body);
     std::vector<NodePair> joins;
-    for (std::uint32_t p = 0; p < pieces.count; ++p) {
-      if (main[p] != ~0u) continue;
-      // No node at all: one on the line from the middle of its largest face straight into it, half way to what comes
-      // next.
-      Side best;
-      double most = -1;
-      for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
-        for (int which = 0; which < 2; ++which)
-          if (pieces.of_side[f * 2 + static_cast<std::uint32_t>(which)] == static_cast<std::int32_t>(p)) {
-            const auto t = body.surface.corners(FaceId(f));
-            const double a = (t[1] - t[0]).cross(t[2] - t[0]).norm();
-            if (a > most) most = a, best = {FaceId(f), which};
-          }
-      const auto t = body.surface.corners(best.face);
-      const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-      const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-      const auto donor = body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; });
-      double step = body.nodes.spacing[donor[0]];
-      while (step > 1e-12 * body.surface.extent().diagonal() &&
-             !stands_before(body.surface, best, middle, middle + step * inwards))
-        step *= 0.6;
-      insert_node(body, middle + 0.5 * step * inwards, NodeId(donor[0]), body.nodes.spacing[donor[0]]);
-    }
     std::vector<FaceId> narrow;
-    for (std::uint32_t i = 0; i < component.size(); ++i) {
-      const auto c = component[i];
-      if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-      body.surface.near(Box3{body.nodes.position[i], body.nodes.position[i]}.grown(1.5 * body.nodes.spacing[i]),
-                        narrow);
+    for (const auto& [a, b] : found.apart) {
+      before.seed(a.value), before.seed(b.value);
+      if (before.joined(a.value, b.value)) continue;
+      const NodeId i = before.whole(a.value) ? a : b;  // in the smaller part
+      auto part = before.inside(i.value);
+      std::sort(part.begin(), part.end());
+      for (const auto n : part)
+        body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
+      if (round == 0) continue;
+      const auto piece = piece_of(body, i);
+      const auto near = body.grid.nearest(body.nodes.position, body.nodes.position[i.index()], 1, i.value, [&](std::uint32_t n) {
+        return n < first_new.value && !std::binary_search(part.begin(), part.end(), n) && piece_of(body, NodeId(n)) == piece;
+      });
+      if (!near.empty()) insert_along(body, i, NodeId(near[0]), scale * body.grid.cell(), joins);
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
     // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
     insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
-    if (round >= 1)
-      for (std::uint32_t c = 0; c < count; ++c) {
-        if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-        const auto target = main[static_cast<std::size_t>(piece[c])];
-        const auto near =
-            body.grid.nearest(body.nodes.position, body.nodes.position[first[c]], 1, first[c],
-                              [&](std::uint32_t i) { return i < component.size() && component[i] == target; });
-        if (!near.empty()) insert_along(body, NodeId(first[c]), NodeId(near[0]), scale * body.grid.cell(), joins);
-      }
     if (first_new.index() < body.nodes.size() || !joins.empty())
       after(first_new, joins);
     else if (round >= 1)
       return;
+    Disagreement left;
+    left.known = std::move(found.known);
+    Regions now = components_of(body);
+    for (const auto& [a, b] : found.apart) {
+      now.seed(a.value), now.seed(b.value);
+      if (!now.joined(a.value, b.value)) left.apart.push_back({a, b});
+    }
+    pair_new_nodes(body, now, first_new, left);
+    found = std::move(left);
   }
 }
 

@@ -92,6 +92,7 @@ Pieces find_pieces(const Complex& k) {
   }
 
   Pieces pieces;
+  pieces.shells = static_cast<std::uint32_t>(shells.size());
   std::vector<double> volume(shells.size(), 0);
   for (std::uint32_t s = 0; s < shells.size(); ++s) volume[owner[s]] += shells[s].volume;
   std::stable_sort(outer.begin(), outer.end(), [&](auto a, auto b) { return volume[a] > volume[b]; });

@@ -20,7 +20,10 @@ void look_at(Regions& components, std::int32_t piece, NodeId i, Disagreement& fo
   if (piece < 0) return;
   const NodeId other = found.known.try_emplace(piece, i).first->second;
   components.seed(i.value), components.seed(other.value);
-  if (!components.joined(other.value, i.value)) found.apart.push_back({std::min(i, other), std::max(i, other)});
+  if (components.joined(other.value, i.value)) return;
+  for (const auto& [a, b] : found.apart)
+    if ((a == other && components.joined(b.value, i.value)) || (b == other && components.joined(a.value, i.value))) return;
+  found.apart.push_back({std::min(i, other), std::max(i, other)});
 }
 
 }  // namespace

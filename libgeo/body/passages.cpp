@@ -1,7 +1,9 @@
 // Passages too narrow for the sampling, and pieces without a node.
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include "body/connect.h"
 #include "body/locate.h"
@@ -16,10 +18,14 @@ struct Sight {
   Vec3 at;  ///< on the face
 };
 
-// The sides that a node sees along the axes and where its closest face is. One node may see several shells.
+// The sides that a node sees along the axes and at the middles of near faces. One node may see several shells.
 std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
   std::vector<Sight> sights;
   std::vector<FaceId> faces;
+  // What is seen on an edge is no foothold: the other face there is in the way.
+  const auto add = [&](Side s, const Vec3& at) {
+    if (stands_before(k, s, at, x)) sights.push_back({s, at});
+  };
   const auto look = [&](const Vec3& to) {
     Box3 box{x, x};
     box.add(to);
@@ -33,15 +39,19 @@ std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
       const double along = n.dot(to - x), at = along != 0 ? n.dot(t[0] - x) / along : 2;
       if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2])) first = at, sight = {{f, along < 0 ? 1 : 0}, x + at * (to - x)};
     }
-    if (sight.side.face.valid() && k.has(sight.side)) sights.push_back(sight);
+    if (sight.side.face.valid()) add(sight.side, sight.at);
   };
-  const Side near = side_seen_from(k, x, reach);
-  const auto t = k.corners(near.face);
-  look(x + 1.001 * ((t[0] + t[1] + t[2]) / 3 - x));
   for (int i = 0; i < 6; ++i) {
     Vec3 to = x;
     to[i % 3] = i < 3 ? k.extent().hi[i % 3] + reach : k.extent().lo[i % 3] - reach;
     look(to);
+  }
+  const Side near = side_seen_from(k, x, reach);
+  std::vector<FaceId> targets{near.face};
+  k.near(Box3{x, x}.grown(reach), targets);
+  for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 32); ++i) {
+    const auto t = k.corners(targets[i]);
+    add({targets[i], orient3d(t[0], t[1], t[2], x) > 0 ? 1 : 0}, (t[0] + t[1] + t[2]) / 3);
   }
   return sights;
 }
@@ -75,10 +85,17 @@ bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge,
   for (double height = 0.25 * spacing; height > 1e-13 * k.extent().diagonal(); height *= 0.5) {
     const double low = 0.25 * height;
     std::vector<Vec3> way{a.base + height * a.up};
+    // Within less than half a turn of material the straight way may do, and stays clear of the edge.
+    const Vec3 end = b.base + height * b.up;
+    if (!reflex && stands_before(k, a.side, a.base, way.front()) && stands_before(k, b.side, b.base, end) && !is_blocked(k, way.front(), end)) {
+      out.push_back(way.front());
+      out.push_back(end);
+      return true;
+    }
     if (reflex) way.push_back(middle + low * rise);
     way.push_back(middle + low * turn);
     if (reflex) way.push_back(middle + low * land);
-    way.push_back(b.base + height * b.up);
+    way.push_back(end);
     if (!stands_before(k, a.side, a.base, way.front()) || !stands_before(k, b.side, b.base, way.back())) continue;
     bool open = true;
     for (std::size_t i = 0; i + 1 < way.size() && open; ++i) open = !is_blocked(k, way[i], way[i + 1]);
@@ -133,13 +150,19 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
   way.push_back(xj);
   for (std::size_t s = 0; s + 1 < way.size(); ++s)
     if (is_blocked(k, way[s], way[s + 1])) return;
-  // As few of them as see each other, none farther apart than the nodes are anyway.
+  // As few of them as see each other, none farther apart than the nodes are anyway. All give volume in turn.
+  std::deque<NodeId> donors{i};
   NodeId last = i;
   for (std::size_t s = 0; s + 1 < way.size();) {
     std::size_t next = s + 1;
     for (std::size_t n = s + 2; n < way.size() && (way[n] - way[s]).norm() <= body.grid.cell(); ++n)
       if (!is_blocked(k, way[s], way[n])) next = n;
-    const NodeId node = next + 1 == way.size() ? j : insert_node(body, way[next], i, spacing);
+    NodeId node = j;
+    if (next + 1 < way.size()) {
+      node = insert_node(body, way[next], donors.front(), spacing);
+      donors.push_back(donors.front()), donors.push_back(node);
+      donors.pop_front();
+    }
     joins.push_back({std::min(last, node), std::max(last, node)});
     last = node;
     s = next;
@@ -176,6 +199,42 @@ NodeId insert_into(Body& body, SurfaceVertexId v) {
   return insert_node(body, middle + 0.5 * step * inwards, donor, body.nodes.spacing[donor.index()]);
 }
 
+/// Finds other nodes of a node's piece; what was found out about a node is kept.
+class Neighborhood {
+ public:
+  explicit Neighborhood(const Body& body) : body_(body), count_(static_cast<std::uint32_t>(body.nodes.size())) {}
+  /// The nodes nearest to i in its piece, without those of `part` (ascending) and without nodes inserted since.
+  std::vector<std::uint32_t> nearest(NodeId i, std::size_t count, const std::vector<std::uint32_t>& part) {
+    const auto piece = of(i.value);
+    return body_.grid.nearest(body_.nodes.position, body_.nodes.position[i.index()], count, i.value, [&](std::uint32_t n) {
+      return n < count_ && !std::binary_search(part.begin(), part.end(), n) && of(n) == piece;
+    });
+  }
+
+ private:
+  std::int32_t of(std::uint32_t i) {
+    const auto [at, fresh] = piece_.try_emplace(i, 0);
+    return fresh ? at->second = piece_of(body_, NodeId(i)) : at->second;
+  }
+  const Body& body_;
+  std::uint32_t count_;
+  std::unordered_map<std::uint32_t, std::int32_t> piece_;
+};
+
+// An edge between a part of G and another part of the same piece, not longer than edges are anyway: what is hidden
+// from its k nearest nodes may see others. At most 16 of the part's nodes are asked.
+bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std::uint32_t>& part, std::vector<NodePair>& joins) {
+  for (std::size_t n = 0; n < part.size(); n += 1 + part.size() / 16)
+    for (const auto other : pieces.nearest(NodeId(part[n]), 8, part)) {
+      const Vec3 &p = body.nodes.position[part[n]], &q = body.nodes.position[other];
+      const auto [low, high] = std::minmax(part[n], other);
+      if ((p - q).norm() > body.graph.plain_unit() * 0x1p26 || is_blocked(body.surface, body.nodes.position[low], body.nodes.position[high])) continue;
+      joins.push_back({NodeId(low), NodeId(high)});
+      return true;
+    }
+  return false;
+}
+
 }  // namespace
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
@@ -184,27 +243,28 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
     const NodeId first_new(body.nodes.size());
     for (const auto v : found.empty) found.known[body.upkeep.piece[v.index()]] = insert_into(body, v);
     Regions before = components_of(body);
+    Neighborhood pieces(body);
     std::vector<NodePair> joins;
     std::vector<FaceId> narrow;
+    std::set<std::uint32_t> done;  // parts, by their lowest nodes
     for (const auto& [a, b] : found.apart) {
       before.seed(a.value), before.seed(b.value);
       if (before.joined(a.value, b.value)) continue;
       const NodeId i = before.whole(a.value) ? a : b;  // in the smaller part
+      if (!done.insert(before.lowest(i.value)).second) continue;
       auto part = before.inside(i.value);
       std::sort(part.begin(), part.end());
-      for (const auto n : part)
-        body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
-      if (round == 0) continue;
-      const auto piece = piece_of(body, i);
-      const auto near = body.grid.nearest(body.nodes.position, body.nodes.position[i.index()], 1, i.value, [&](std::uint32_t n) {
-        return n < first_new.value && !std::binary_search(part.begin(), part.end(), n) && piece_of(body, NodeId(n)) == piece;
-      });
-      if (!near.empty()) insert_along(body, i, NodeId(near[0]), scale * body.grid.cell(), joins);
+      if (join_by_sight(body, pieces, part, joins)) continue;
+      if (round == 0)
+        for (const auto n : part)
+          body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
+      else if (const auto near = pieces.nearest(i, 1, part); !near.empty())
+        insert_along(body, i, NodeId(near[0]), scale * body.grid.cell(), joins);
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
-    // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
-    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
+    // Bounded, so that a passage that stays closed costs little.
+    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u, 100);
     if (first_new.index() < body.nodes.size() || !joins.empty())
       after(first_new, joins);
     else if (round >= 1)

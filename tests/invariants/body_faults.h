@@ -75,7 +75,7 @@ inline std::string fault_of(const Body& body, double volume) {
   again.surface = k, again.binding = body.binding;
   begin_upkeep(again);
   const Upkeep &kept = body.upkeep, &fresh = again.upkeep;
-  if (kept.piece.empty()) return {};
+  if (kept.depth.empty()) return {};  // nothing was split yet
   if (kept.depth != fresh.depth) return "depths are not those of scratch";
   if (kept.strays != fresh.strays) return "strays are not those of scratch";
   if (fresh.inner_shells && !kept.inner_shells) return "an inner shell is not known";

@@ -1,6 +1,6 @@
 // Bodies cut at random: after every step graph, rows and binding are those of scratch, components are pieces, nodes are
 // inside. A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]'; one case of it: KERF_CASE=7000123 and the
-// name of the test.
+// name of the test; KERF_TELL=1 tells of every step.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <optional>
@@ -44,9 +44,13 @@ Outcome cut(const Body& model, const std::vector<Crack>& cracks, bool check) {
       const Body before = check ? result.body : Body();
       ++result.steps;
       std::string fault;
+      SplitWork work;
       try {
-        const BodyDelta delta = split(result.body, front, cracks[c].rows[s]);
+        const BodyDelta delta = split(result.body, front, cracks[c].rows[s], {}, &work);
         result.parted += delta.parted.size();
+        if (check && std::getenv("KERF_TELL"))
+          WARN("crack " << c + 1 << " step " << s << ": " << delta.crack.new_crack_faces.size() << " crack faces, " << result.body.nodes.size() << " nodes, "
+                        << delta.parted.size() << " pieces more, " << work.resample_seconds << " + " << work.graph_seconds << " + " << work.binding_seconds << " s");
         if (check && !delta.crack.empty()) fault = body_faults::fault_of(before, result.body, delta, volume);
       } catch (const GeometryError&) {
         ++result.refused;
@@ -214,6 +218,7 @@ TEST_CASE("Cut bodies are as from scratch after every step: cracks through nodes
     const Outcome result = cut_grid(random_case(seed));
     steps += result.steps, refused += result.refused;
     if (result.fault.empty()) continue;
+    if (std::getenv("KERF_TELL")) WARN("KERF_CASE=" << seed << ", " << result.where << ": " << result.fault);
     const std::string kind = kind_of(result.fault), file = "body-" + std::to_string(seed) + ".front";
     const GridCase small = shrink(random_case(seed), [&](const GridCase& g) { return kind_of(cut_grid(g).fault) == kind; });
     write_all(file, [&](std::ostream& out) { write_case(out, small, "found with seed " + std::to_string(seed) + ": " + result.fault); });

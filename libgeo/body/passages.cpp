@@ -22,9 +22,9 @@ struct Sight {
 std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
   std::vector<Sight> sights;
   std::vector<FaceId> faces;
-  // What is seen on an edge is no foothold: the other face there is in the way.
+  // What is seen on an edge, or next to it, is no foothold: the other face there is in the way.
   const auto add = [&](Side s, const Vec3& at) {
-    if (stands_before(k, s, at, x)) sights.push_back({s, at});
+    if (stands_before(k, s, at, x) && stands_before(k, s, at, at + 1e-9 * (x - at))) sights.push_back({s, at});
   };
   const auto look = [&](const Vec3& to) {
     Box3 box{x, x};

@@ -26,6 +26,8 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   if (delta.crack.empty()) return delta;
   std::vector<std::array<Vec3, 3>> faces;
   for (const FaceId f : delta.crack.new_faces) faces.push_back(body.surface.corners(f));
+  // Where rounding moved a part of a face, two nodes may see each other past it now.
+  for (const FaceId f : delta.crack.removed_faces) faces.push_back(body.surface.corners(f));
   const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
     triangles_near(body.surface, box, out);
   };

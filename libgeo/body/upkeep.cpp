@@ -1,6 +1,7 @@
 #include "body/upkeep.h"
 
 #include <algorithm>
+#include <map>
 
 #include "body/locate.h"
 #include "body/regions.h"
@@ -105,31 +106,44 @@ std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recou
   for (const auto v : delta.new_surface_vertices)
     if (of[v.index()] == -1) unknown |= !fill(body, v, -1);
 
-  std::vector<std::array<SurfaceVertexId, 2>> across;  // the two sides of each new crack face
-  for (const FaceId f : delta.new_faces)
-    if (k.face(f).crack > 0) across.push_back({k.surface_vertex({f, 0}, 0), k.surface_vertex({f, 1}, 0)});
+  std::vector<std::array<SurfaceVertexId, 2>> across;  // the two sides of each crack face where there was material
+  for (const FaceId f : delta.new_crack_faces) across.push_back({k.surface_vertex({f, 0}, 0), k.surface_vertex({f, 1}, 0)});
   // A piece of new surface vertices alone was a part of what is across its faces.
-  for (bool more = unknown; more;) {
-    more = unknown = false;
-    for (const auto& [a, b] : across) {
-      const bool has_a = of[a.index()] >= 0, has_b = of[b.index()] >= 0;
-      if (has_a != has_b) more = fill(body, has_a ? b : a, of[(has_a ? a : b).index()]);
-      unknown |= !has_a && !has_b;
+  const auto fill_across = [&] {
+    for (bool more = unknown; more;) {
+      more = unknown = false;
+      for (const auto& [a, b] : across) {
+        const bool has_a = of[a.index()] >= 0, has_b = of[b.index()] >= 0;
+        if (has_a != has_b) more |= fill(body, has_a ? b : a, of[(has_a ? a : b).index()]);
+        unknown |= !has_a && !has_b;
+      }
     }
-  }
-  if (unknown) place_inner(body);
+  };
+  fill_across();
+  if (unknown) place_inner(body), fill_across();
 
   Regions shells = shells_of(k);
-  for (const auto& [a, b] : across)
-    if (a != b && of[a.index()] == of[b.index()]) shells.seed(a.value), shells.seed(b.value);
+  std::erase_if(across, [&](const auto& sides) { return sides[0] == sides[1] || of[sides[0].index()] != of[sides[1].index()]; });
+  for (const auto& sides : across)
+    for (const auto v : sides) shells.seed(v.value);
   shells.grow_seeds();
-  std::vector<Offcut> offcuts;
+  std::map<std::int32_t, std::vector<SurfaceVertexId>> parts;  // of each piece that came apart
   for (const auto& [a, b] : across) {
-    if (a == b || of[a.index()] != of[b.index()] || shells.joined(a.value, b.value)) continue;
-    const bool first = shells.whole(a.value) && (!shells.whole(b.value) || shells.inside(a.value).size() < shells.inside(b.value).size());
-    const Offcut offcut{body.upkeep.pieces++, of[a.index()], first ? a : b, first ? b : a};
-    for (const auto v : shells.inside(offcut.at.value)) of[v] = offcut.piece;
-    offcuts.push_back(offcut);
+    if (shells.joined(a.value, b.value)) continue;
+    auto& known = parts[of[a.index()]];
+    for (const auto v : {a, b})
+      if (std::none_of(known.begin(), known.end(), [&](SurfaceVertexId w) { return shells.joined(v.value, w.value); })) known.push_back(v);
+  }
+  std::vector<Offcut> offcuts;
+  for (const auto& [from, known] : parts) {
+    SurfaceVertexId rest = known[0];  // keeps the number
+    for (const auto v : known)
+      if (shells.whole(rest.value) && (!shells.whole(v.value) || shells.inside(v.value).size() > shells.inside(rest.value).size())) rest = v;
+    for (const auto v : known) {
+      if (v == rest) continue;
+      offcuts.push_back({body.upkeep.pieces++, from, v, rest});
+      for (const auto w : shells.inside(v.value)) of[w] = offcuts.back().piece;
+    }
   }
   recounted = !offcuts.empty() && body.upkeep.inner_shells;
   if (recounted) count_pieces(body);

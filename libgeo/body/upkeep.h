@@ -17,7 +17,7 @@ std::int32_t piece_of(const Body& body, NodeId i);
 /// A piece that a step cut off.
 struct Offcut {
   std::int32_t piece, from;  ///< its number, and the number of what it was cut from
-  SurfaceVertexId at, rest;  ///< a surface vertex of it, and one across the crack
+  SurfaceVertexId at, rest;  ///< a surface vertex of it, and one of the part that keeps the number
 };
 
 /// Brings the pieces of surface vertices up to date after a step: only what new crack faces can have separated is looked

@@ -46,7 +46,7 @@ inline std::string fault_of(const Body& body, double volume) {
   const Pieces pieces = find_pieces(k);
   std::vector<std::uint32_t> component;
   const auto components = body.graph.components(component);
-  if (components != pieces.count) return name(components) + " components and " + name(pieces.count) + " pieces";
+  if (components != pieces.count) return name(components) + " components and " + name(pieces.count) + " pieces, " + std::to_string(body.upkeep.pieces) + " known";
   std::vector<std::set<std::int32_t>> met(components);
   std::set<std::int32_t> all;
   for (std::uint32_t i = 0; i < x.size(); ++i) {
@@ -60,7 +60,12 @@ inline std::string fault_of(const Body& body, double volume) {
   const auto rows = build_neighborhoods(body.nodes, body.graph, faces);
   for (std::uint32_t i = 0; i < x.size(); ++i) {
     const auto a = rows.of(NodeId(i)), b = body.neighbors.of(NodeId(i));
-    if (!std::equal(a.begin(), a.end(), b.begin(), b.end())) return "the row of node " + name(i) + " is not that of scratch";
+    const auto [at, other] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+    const auto tell = [](std::span<const Neighbor> row, auto n) {
+      return n == row.end() ? "none" : std::to_string(n->to.value) + " at " + std::to_string(n->warped) + ", " + std::to_string(n->distance);
+    };
+    if (at != a.end() || other != b.end())
+      return "the row of node " + name(i) + " is not that of scratch: " + tell(b, other) + " for " + tell(a, at);
   }
   const Binding binding = build_binding(body);
   for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
@@ -82,7 +87,7 @@ inline std::string fault_of(const Body& body, double volume) {
   std::map<std::int32_t, std::int32_t> number, back;
   for (std::size_t v = 0; v < kept.piece.size(); ++v)
     if (number.try_emplace(kept.piece[v], fresh.piece[v]).first->second != fresh.piece[v] || back.try_emplace(fresh.piece[v], kept.piece[v]).first->second != kept.piece[v])
-      return "surface vertex " + name(static_cast<std::uint32_t>(v)) + " is in another piece";
+      return "surface vertex " + name(static_cast<std::uint32_t>(v)) + " is in piece " + std::to_string(kept.piece[v]) + " of " + std::to_string(kept.pieces) + ", from scratch in " + std::to_string(fresh.piece[v]) + " of " + std::to_string(fresh.pieces);
   return {};
 }
 

@@ -22,9 +22,13 @@ struct Sight {
 std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
   std::vector<Sight> sights;
   std::vector<FaceId> faces;
-  // What is seen on an edge, or next to it, is no foothold: the other face there is in the way.
+  // What is seen near an edge is no foothold: the other face there may be in the way.
   const auto add = [&](Side s, const Vec3& at) {
-    if (stands_before(k, s, at, x) && stands_before(k, s, at, at + 1e-9 * (x - at))) sights.push_back({s, at});
+    const auto t = k.corners(s.face);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    for (int e = 0; e < 3; ++e)
+      if (n.dot((t[(e + 1) % 3] - t[e]).cross(at - t[e])) < 0.01 * n.squaredNorm()) return;
+    if (stands_before(k, s, at, x)) sights.push_back({s, at});
   };
   const auto look = [&](const Vec3& to) {
     Box3 box{x, x};
@@ -82,7 +86,7 @@ bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge,
   const bool reflex = a.side.face == b.side.face || behind > 0;
   // The middle of the material's wedge, from whatever says it best: near half a turn the normals do.
   const Vec3 turn = (from.dot(to) < 0 ? Vec3(rise + land) : reflex ? Vec3(-(from + to)) : Vec3(from + to)).normalized();
-  for (double height = 0.25 * spacing; height > 1e-13 * k.extent().diagonal(); height *= 0.5) {
+  for (double height = 0.25 * spacing; height > 1e-16 * k.extent().diagonal(); height *= 0.5) {
     const double low = 0.25 * height;
     std::vector<Vec3> way{a.base + height * a.up};
     // Within less than half a turn of material the straight way may do, and stays clear of the edge.
@@ -107,8 +111,8 @@ bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge,
 }
 
 // Nodes along the surface from where i looks at it to where j does: what the material joins is joined beside its
-// boundary, however narrow it is. Nothing when the two see different shells only.
-void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
+// boundary, however narrow it is. False, and no nodes, when the two see different shells only or doubles are too coarse.
+bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
   const Complex& k = body.surface;
   const Vec3 xi = body.nodes.position[i.index()], xj = body.nodes.position[j.index()];
   std::map<Side, std::pair<Side, int>> before;
@@ -123,7 +127,7 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
     for (int e = 0; e < 3; ++e)
       if (const Side n = k.neighbor(queue[q], e); before.try_emplace(n, queue[q], e).second) queue.push_back(n);
   }
-  if (!to.face.valid()) return;
+  if (!to.face.valid()) return false;
   std::vector<std::pair<Foothold, int>> path;  // backwards; the edge that leads on to the one before in this list
   int edge = 0;
   for (Side s = to;; s = before.at(s).first) {
@@ -138,18 +142,18 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
   start.base = starts.at(start.side), start.up = (xi - start.base).normalized();
   if (path.size() > 1) path.back().first.base = ends.at(to), path.back().first.up = (xj - ends.at(to)).normalized();
   for (std::size_t s = 0; s + 1 < path.size(); ++s)
-    if (!step_over(k, path[s].first, path[s + 1].first, path[s].second, spacing, way)) return;
+    if (!step_over(k, path[s].first, path[s + 1].first, path[s].second, spacing, way)) return false;
   if (path.size() == 1) {
     // Both see one face: across it, low enough.
     const Vec3 base = ends.at(to), up = (xj - base).normalized();
     double height = 0.25 * spacing;
-    while (height > 1e-13 * k.extent().diagonal() && is_blocked(k, start.base + height * start.up, base + height * up)) height *= 0.5;
+    while (height > 1e-16 * k.extent().diagonal() && is_blocked(k, start.base + height * start.up, base + height * up)) height *= 0.5;
     way.push_back(start.base + height * start.up);
     way.push_back(base + height * up);
   }
   way.push_back(xj);
   for (std::size_t s = 0; s + 1 < way.size(); ++s)
-    if (is_blocked(k, way[s], way[s + 1])) return;
+    if (is_blocked(k, way[s], way[s + 1])) return false;
   // As few of them as see each other, none farther apart than the nodes are anyway. All give volume in turn.
   std::deque<NodeId> donors{i};
   NodeId last = i;
@@ -167,6 +171,7 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
     last = node;
     s = next;
   }
+  return true;
 }
 
 // A node on the line from the middle of the shell's largest face straight into it, half way to what comes next.
@@ -195,7 +200,7 @@ NodeId insert_into(Body& body, SurfaceVertexId v) {
   const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
   const NodeId donor(body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; })[0]);
   double step = body.nodes.spacing[donor.index()];
-  while (step > 1e-12 * k.extent().diagonal() && !stands_before(k, best, middle, middle + step * inwards)) step *= 0.6;
+  while (step > 1e-15 * k.extent().diagonal() && !stands_before(k, best, middle, middle + step * inwards)) step *= 0.6;
   return insert_node(body, middle + 0.5 * step * inwards, donor, body.nodes.spacing[donor.index()]);
 }
 
@@ -258,8 +263,11 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
       if (round == 0)
         for (const auto n : part)
           body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
-      else if (const auto near = pieces.nearest(i, 1, part); !near.empty())
-        insert_along(body, i, NodeId(near[0]), scale * body.grid.cell(), joins);
+      else
+        for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
+          const auto near = pieces.nearest(from, 4, part);
+          if (std::any_of(near.begin(), near.end(), [&](auto to) { return insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins); })) break;
+        }
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());

@@ -83,7 +83,7 @@ inline std::string fault_of(const Body& body, double volume) {
   if (kept.depth.empty()) return {};  // nothing was split yet
   if (kept.depth != fresh.depth) return "depths are not those of scratch";
   if (kept.strays != fresh.strays) return "strays are not those of scratch";
-  if (fresh.inner_shells && !kept.inner_shells) return "an inner shell is not known";
+  if (fresh.inner_shells && !kept.inner_shells) return "an inner shell is not known: " + std::to_string(kept.pieces) + " pieces known, " + std::to_string(fresh.pieces) + " from scratch";
   std::map<std::int32_t, std::int32_t> number, back;
   for (std::size_t v = 0; v < kept.piece.size(); ++v)
     if (number.try_emplace(kept.piece[v], fresh.piece[v]).first->second != fresh.piece[v] || back.try_emplace(fresh.piece[v], kept.piece[v]).first->second != kept.piece[v])

@@ -174,34 +174,41 @@ bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
   return true;
 }
 
-// A node on the line from the middle of the shell's largest face straight into it, half way to what comes next.
+// A node on the line from the middle of one of the shell's largest faces straight into it, half way to what comes next.
+// Invalid where doubles have no room for one: a crumb some last places thick.
 NodeId insert_into(Body& body, SurfaceVertexId v) {
   const Complex& k = body.surface;
   std::vector<SurfaceVertexId> shell{v}, around;
   std::set<SurfaceVertexId> seen{v};
-  Side best;
-  double most = -1;
+  std::vector<std::pair<double, Side>> sides;  // by area, the largest first
   for (std::size_t i = 0; i < shell.size(); ++i) {
     for (const FaceId f : k.faces_at(k.site(shell[i])))
       for (int which = 0; which < 2; ++which)
         for (int c = 0; c < 3; ++c) {
           if (!k.has({f, which}) || k.surface_vertex({f, which}, c) != shell[i]) continue;
           const auto t = k.corners(f);
-          const double area = (t[1] - t[0]).cross(t[2] - t[0]).norm();
-          if (area > most || (area == most && Side{f, which} < best)) most = area, best = {f, which};
+          sides.push_back({-(t[1] - t[0]).cross(t[2] - t[0]).norm(), Side{f, which}});
         }
     around.clear();
     k.surface_neighbors(shell[i], around);
     for (const auto w : around)
       if (seen.insert(w).second) shell.push_back(w);
   }
-  const auto t = k.corners(best.face);
-  const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-  const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-  const NodeId donor(body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; })[0]);
-  double step = body.nodes.spacing[donor.index()];
-  while (step > 1e-15 * k.extent().diagonal() && !stands_before(k, best, middle, middle + step * inwards)) step *= 0.6;
-  return insert_node(body, middle + 0.5 * step * inwards, donor, body.nodes.spacing[donor.index()]);
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  for (std::size_t i = 0; i < std::min<std::size_t>(sides.size(), 16); ++i) {
+    const Side s = sides[i].second;
+    const auto t = k.corners(s.face);
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    const NodeId donor(body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; })[0]);
+    for (double step = body.nodes.spacing[donor.index()]; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
+      const Vec3 x = middle + 0.5 * step * inwards;
+      if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) && !is_blocked(k, x, x))
+        return insert_node(body, x, donor, body.nodes.spacing[donor.index()]);
+    }
+  }
+  return {};
 }
 
 /// Finds other nodes of a node's piece; what was found out about a node is kept.
@@ -246,7 +253,11 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
-    for (const auto v : found.empty) found.known[body.upkeep.piece[v.index()]] = insert_into(body, v);
+    for (const auto v : found.empty)
+      if (const NodeId i = insert_into(body, v); i.valid())
+        found.known[body.upkeep.piece[v.index()]] = i;
+      else
+        found.known.erase(body.upkeep.piece[v.index()]);
     Regions before = components_of(body);
     Neighborhood pieces(body);
     std::vector<NodePair> joins;

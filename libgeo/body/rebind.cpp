@@ -74,7 +74,8 @@ class Rebinding {
   std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
 };
 
-// A node's closest vertex depends on faces within its support radius and a twentieth more.
+// A node's closest vertex depends on faces no farther than it, and a twentieth more; where there is none, on all within
+// the support radius.
 void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
   const auto& x = body_.nodes.position;
   const double reach = longest_reach(body_);
@@ -85,8 +86,11 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
     const double size = std::sqrt(std::max({(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}));
     near.clear();
     body_.grid.within(x, middle, size + 1.06 * reach, near);
-    for (const auto i : near)
-      if ((closest_point_on_triangle(x[i], t[0], t[1], t[2]) - x[i]).norm() <= 1.06 * body_.nodes.radius[i]) stale.push_back(i);
+    for (const auto i : near) {
+      const auto closest = b_.closest[i];
+      const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
+      if ((closest_point_on_triangle(x[i], t[0], t[1], t[2]) - x[i]).norm() <= 1.06 * far) stale.push_back(i);
+    }
   }
   for (std::uint32_t i = first_new.value; i < x.size(); ++i) stale.push_back(i);
   for (const NodeId i : moved) stale.push_back(i.value);

@@ -53,7 +53,7 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
 }
 
 // True when the shell encloses something: a fold of a crack onto itself does not, whatever rounding makes of its volume.
-// Nor does rounding decide of a crumb: it is not what encloses a larger shell across its faces.
+// Nor does rounding decide of a crumb: were it an inner shell, it would enclose the shells across its faces.
 bool is_outer(const Complex& k, std::uint32_t id, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
   const Shell& shell = shells[id];
   bool thick = false, beside_larger = false;
@@ -63,10 +63,10 @@ bool is_outer(const Complex& k, std::uint32_t id, const std::vector<Shell>& shel
     thick = true;
     if (other >= 0) {
       const Shell& next = shells[static_cast<std::size_t>(other)];
-      beside_larger |= std::abs(next.volume) > 2 * (shell.doubt + next.doubt);
+      beside_larger |= std::abs(next.volume) > 2 * std::abs(shell.volume) + shell.doubt + next.doubt;
     }
   }
-  return thick && (shell.volume > 0 || (beside_larger && std::abs(shell.volume) <= shell.doubt));
+  return thick && (shell.volume > 0 || beside_larger);
 }
 
 }  // namespace

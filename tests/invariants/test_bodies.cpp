@@ -215,7 +215,7 @@ TEST_CASE("Cut bodies are as from scratch after every step: slits beside each ot
 }
 
 TEST_CASE("Cut bodies are as from scratch after every step: cracks through nodes of a grid", "[bodies][aligned]") {
-  const Seeds which = seeds(15 * share);
+  const Seeds which = seeds(14 * share);
   std::size_t steps = 0, refused = 0;
   for (int c = 0; c < which.count; ++c) {
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(c);

@@ -1,6 +1,7 @@
 // What does not hold of a body after a step: everything is found again from scratch, as slowly as it takes.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
@@ -57,7 +58,8 @@ inline std::string fault_of(const Body& body, double volume) {
     met[component[i]].insert(piece), all.insert(piece);
     if (met[component[i]].size() > 1) return "node " + name(i) + " is connected to another piece";
   }
-  if (components != all.size()) return name(components) + " components in " + std::to_string(all.size()) + " pieces";
+  if (const auto found = static_cast<std::size_t>(std::ranges::count_if(met, [](const auto& of) { return !of.empty(); })); found != all.size())
+    return std::to_string(found) + " components in " + std::to_string(all.size()) + " pieces";
   for (std::int32_t p = 0; p < static_cast<std::int32_t>(pieces.count); ++p)
     if (!all.count(p) && !dust(p)) return "piece " + std::to_string(p) + " has no node";
 

@@ -54,10 +54,11 @@ SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
     const int above = orient3d(t[0], t[1], t[2], p);
     const Side s{f, above > 0 ? 1 : 0};
     if (above == 0 || !k.has(s)) continue;
-    // A point of the face near its corner at v, so that little can stand between.
+    // A point of the face near its corner at v, so that little can stand between, and what does is not far.
     const auto& c = k.face(f).v;
     const int corner = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
-    const Vec3 q = k.point(v) + 0.05 * ((t[0] + t[1] + t[2]) / 3 - k.point(v));
+    const Vec3 inwards = (t[0] + t[1] + t[2]) / 3 - k.point(v);
+    const Vec3 q = k.point(v) + std::min(0.05, 0.05 * (p - k.point(v)).norm() / inwards.norm()) * inwards;
     Box3 box{p, p};
     box.add(q);
     std::vector<FaceId> faces;
@@ -88,9 +89,35 @@ SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
   return {};
 }
 
-void grow_trees(Body& body) {
+double longest_reach(const Body& body) { return body.graph.plain_unit() * 0x1p26; }
+
+NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v) {
+  const Vec3& q = body.surface.point(body.surface.site(v));
+  std::vector<std::uint32_t> near;
+  body.grid.within(body.nodes.position, q, longest_reach(body), near);
+  NodeId best;
+  double least = 0;
+  for (const auto i : near) {
+    if (binding.closest[i] != v) continue;
+    const double d = (body.nodes.position[i] - q).norm();
+    if (!best.valid() || d < least) least = d, best = NodeId(i);
+  }
+  return best;
+}
+
+NodeId stray_node_of(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& in_piece) {
+  const auto near = body.grid.nearest(body.nodes.position, body.surface.point(body.surface.site(v)), 1, ~0u,
+                                      [&](std::uint32_t i) { return in_piece(NodeId(i)); });
+  return near.empty() ? NodeId() : NodeId(near[0]);
+}
+
+Binding build_binding(const Body& body) {
   const Complex& k = body.surface;
-  Binding& b = body.binding;
+  Binding b;
+  b.closest.resize(body.nodes.size());
+  parallel_for(body.nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) b.closest[i] = closest_vertex(k, body.nodes.position[i], body.nodes.radius[i]);
+  });
   const std::size_t n = k.surface_vertex_count();
   b.master_node.assign(n, NodeId());
   b.master.assign(n, SurfaceVertexId());
@@ -124,36 +151,22 @@ void grow_trees(Body& body) {
   spread();
   // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece.
   Pieces pieces;
+  const auto piece_at = [&](Side s) { return k.has(s) ? pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)] : -1; };
   for (std::uint32_t v = 0; v < n; ++v) {
     const SurfaceVertexId id(v);
     if (!k.alive(id) || b.master[v].valid()) continue;
     if (pieces.of_side.empty()) pieces = find_pieces(k);
-    const auto [side, corner] = k.corner_of(id);
-    const auto piece = pieces.of_side[side.face.index() * 2 + static_cast<std::size_t>(side.which)];
-    const auto near = body.grid.nearest(body.nodes.position, k.point(k.site(id)), 1, ~0u, [&](std::uint32_t i) {
-      const Side s = side_seen_from(k, body.nodes.position[i], body.nodes.spacing[i]);
-      return k.has(s) && pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)] == piece;
+    const auto piece = piece_at(k.corner_of(id).first);
+    const NodeId node = stray_node_of(body, id, [&](NodeId i) {
+      return piece_at(side_seen_from(k, body.nodes.position[i.index()], body.nodes.spacing[i.index()])) == piece;
     });
-    if (near.empty()) continue;
-    b.master_node[v] = NodeId(near[0]);
+    if (!node.valid()) continue;
+    b.master_node[v] = node;
     b.master[v] = b.parent[v] = id;
     level.assign(1, id);
     spread();
   }
-}
-
-Binding build_binding(const Body& body) {
-  Body scratch;
-  scratch.surface = body.surface;
-  scratch.nodes = body.nodes;
-  scratch.grid = NodeGrid(body.grid.cell(), body.nodes.position);
-  scratch.binding.closest.resize(body.nodes.size());
-  parallel_for(body.nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      scratch.binding.closest[i] = closest_vertex(body.surface, body.nodes.position[i], body.nodes.radius[i]);
-  });
-  grow_trees(scratch);
-  return scratch.binding;
+  return b;
 }
 
 void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out) {

@@ -24,6 +24,15 @@ struct Binding {
   friend bool operator==(const Binding&, const Binding&) = default;
 };
 
+/// What a split keeps for the next one, so that it need not look at the whole body; derived by the first split.
+struct Upkeep {
+  std::vector<std::int32_t> piece;   ///< per surface vertex: a number for its piece of material, −1: dead
+  std::int32_t pieces = 0;           ///< how many numbers there are
+  bool inner_shells = false;         ///< a piece may be bounded by several shells: cavities, cracks inside
+  std::vector<std::uint32_t> depth;  ///< per surface vertex: edges to its master; ~0u: orphan
+  std::vector<SurfaceVertexId> strays;  ///< masters of shells that no node looks at, ascending
+};
+
 /// Where a file came from: printed by kerf-info, written into every body.
 struct Provenance {
   std::string tool, version, arguments;
@@ -38,6 +47,7 @@ struct Body {
   Binding binding;
   std::vector<NodeId> donors;    ///< of the nodes inserted last, in order; derived, never in a file
   NodeGrid grid;                     ///< over nodes.position; derived, never in a file
+  Upkeep upkeep;                     ///< derived, never in a file
   int k = 26;                        ///< nearest neighbours per node in the graph
   double resample_limit = 1;         ///< new nodes may be at most this many per crack face area over spacing²; 0: none
   std::uint32_t updates = 0;         ///< cracks steps applied since the build
@@ -72,7 +82,8 @@ struct BodyDelta {
   std::vector<NodeId> donors;            ///< per new node: the node that gave it half of its volume
   std::vector<NodeId> moved_nodes;       ///< old nodes moved off a crack face, ascending
   std::vector<NodeId> updated_nodes;     ///< rows changed (new and moved ones included), ascending
-  std::vector<SurfaceVertexId> rebound;  ///< surface vertices whose binding changed
+  std::vector<SurfaceVertexId> rebound;  ///< surface vertices that another node carries now, ascending
+  std::vector<std::vector<NodeId>> parted;  ///< of each piece that came off, the nodes, ascending; the largest part is not among them
 };
 
 /// One front step through all seven steps of § 4: crack, cut graph, sample, update neighbours, re-bind. Commits all or

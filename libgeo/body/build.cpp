@@ -1,9 +1,8 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "body/binding.h"
+#include "body/connect.h"
 #include "body/locate.h"
-#include "body/nodes.h"
 
 namespace geo {
 
@@ -28,7 +27,9 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
                        " is not inside the surface; sample the same model that the body is made of");
   body.graph = build_visibility_graph(body.nodes, obstacles, body.k, progress);
   body.neighbors.rows.resize(body.nodes.size());
-  connect_pieces(body, [&](NodeId first_new, std::span<const NodePair> joins) {
+  count_pieces(body);
+  auto found = find_disagreement(body);
+  mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     update_graph(
         body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
         body.k, body.grid, body.graph, body.neighbors, joins);

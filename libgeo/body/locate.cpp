@@ -39,7 +39,7 @@ bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
 }
 
 Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
-  std::vector<FaceId> faces;
+  std::vector<FaceId> faces, between;
   const double everything = 4 * (complex.extent().diagonal() + (p - complex.extent().center()).norm());
   for (double r = reach;; r *= 2) {
     faces.clear();
@@ -51,18 +51,36 @@ Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
     const auto t = complex.corners(f);
     return Vec3((t[0] + t[1] + t[2]) / 3);
   };
-  FaceId target = faces[0];
-  for (const FaceId f : faces)
-    if ((middle(f) - p).squaredNorm() < (middle(target) - p).squaredNorm()) target = f;
-  // What the line to the target's middle meets first.
+  // The nearest middle that nothing hides tells without doubt, unless p is in the face's plane.
+  std::vector<std::pair<double, FaceId>> targets;
+  for (const FaceId f : faces) targets.push_back({(middle(f) - p).squaredNorm(), f});
+  std::sort(targets.begin(), targets.end());
+  for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 16); ++i) {
+    const FaceId f = targets[i].second;
+    const auto t = complex.corners(f);
+    const int above = orient3d(t[0], t[1], t[2], p);
+    if (above == 0) continue;
+    const Vec3 q = middle(f);
+    Box3 box{p, p};
+    box.add(q);
+    between.clear();
+    complex.near(box, between);
+    if (std::none_of(between.begin(), between.end(), [&](FaceId g) {
+          const auto u = complex.corners(g);
+          return g != f && segment_meets_triangle(p, q, u[0], u[1], u[2]);
+        }))
+      return {f, above > 0 ? 1 : 0};
+  }
+  // Else what the line to the nearest middle meets first.
+  const FaceId target = targets[0].second;
   const Vec3 q = middle(target);
   Box3 box{p, p};
   box.add(q);
-  faces.clear();
-  complex.near(box, faces);
+  between.clear();
+  complex.near(box, between);
   FaceId first = target;
   double best = 1;
-  for (const FaceId f : faces) {
+  for (const FaceId f : between) {
     const auto t = complex.corners(f);
     if (f == target || !segment_meets_triangle(p, q, t[0], t[1], t[2])) continue;
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);

@@ -1,8 +1,7 @@
 // Nodes that a body gains: near cracks, in narrow passages, in pieces that have none.
 #pragma once
 
-#include <functional>
-#include <span>
+#include <utility>
 
 #include "body/body.h"
 
@@ -20,11 +19,6 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
 
 /// Moves nodes that are on or very near one of the faces off it, each to the side it is on. Returns them, ascending.
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);
-
-/// Where G has more components than the material has pieces, or a piece has no node, inserts nodes until they agree
-/// (several rounds, each finer). `after` is called when nodes were added, to update the graph; `joins` are pairs that
-/// see each other and are to have an edge, near or not. Global: costs once over body and surface.
-void connect_pieces(Body& body, const std::function<void(NodeId first_new, std::span<const NodePair> joins)>& after);
 
 /// Marks nodes with too few neighbours for a shape function.
 void mark_debris(Body& body, const std::vector<NodeId>& nodes);

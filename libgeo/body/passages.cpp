@@ -1,11 +1,13 @@
-// Passages too narrow for the sampling: nodes are inserted until G has as many components as the material has pieces.
+// Passages too narrow for the sampling, and pieces without a node.
 #include <algorithm>
+#include <deque>
 #include <map>
+#include <set>
+#include <unordered_map>
 
+#include "body/connect.h"
 #include "body/locate.h"
-#include "body/nodes.h"
 #include "geometry/predicates.h"
-#include "surface/pieces.h"
 
 namespace geo {
 namespace {
@@ -16,10 +18,18 @@ struct Sight {
   Vec3 at;  ///< on the face
 };
 
-// The sides that a node sees along the axes and where its closest face is. One node may see several shells.
+// The sides that a node sees along the axes and at the middles of near faces. One node may see several shells.
 std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
   std::vector<Sight> sights;
   std::vector<FaceId> faces;
+  // What is seen near an edge is no foothold: the other face there may be in the way.
+  const auto add = [&](Side s, const Vec3& at) {
+    const auto t = k.corners(s.face);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+    for (int e = 0; e < 3; ++e)
+      if (n.dot((t[(e + 1) % 3] - t[e]).cross(at - t[e])) < 0.01 * n.squaredNorm()) return;
+    if (stands_before(k, s, at, x)) sights.push_back({s, at});
+  };
   const auto look = [&](const Vec3& to) {
     Box3 box{x, x};
     box.add(to);
@@ -33,15 +43,19 @@ std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
       const double along = n.dot(to - x), at = along != 0 ? n.dot(t[0] - x) / along : 2;
       if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2])) first = at, sight = {{f, along < 0 ? 1 : 0}, x + at * (to - x)};
     }
-    if (sight.side.face.valid() && k.has(sight.side)) sights.push_back(sight);
+    if (sight.side.face.valid()) add(sight.side, sight.at);
   };
-  const Side near = side_seen_from(k, x, reach);
-  const auto t = k.corners(near.face);
-  look(x + 1.001 * ((t[0] + t[1] + t[2]) / 3 - x));
   for (int i = 0; i < 6; ++i) {
     Vec3 to = x;
     to[i % 3] = i < 3 ? k.extent().hi[i % 3] + reach : k.extent().lo[i % 3] - reach;
     look(to);
+  }
+  const Side near = side_seen_from(k, x, reach);
+  std::vector<FaceId> targets{near.face};
+  k.near(Box3{x, x}.grown(reach), targets);
+  for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 32); ++i) {
+    const auto t = k.corners(targets[i]);
+    add({targets[i], orient3d(t[0], t[1], t[2], x) > 0 ? 1 : 0}, (t[0] + t[1] + t[2]) / 3);
   }
   return sights;
 }
@@ -72,13 +86,20 @@ bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge,
   const bool reflex = a.side.face == b.side.face || behind > 0;
   // The middle of the material's wedge, from whatever says it best: near half a turn the normals do.
   const Vec3 turn = (from.dot(to) < 0 ? Vec3(rise + land) : reflex ? Vec3(-(from + to)) : Vec3(from + to)).normalized();
-  for (double height = 0.25 * spacing; height > 1e-13 * k.extent().diagonal(); height *= 0.5) {
+  for (double height = 0.25 * spacing; height > 1e-16 * k.extent().diagonal(); height *= 0.5) {
     const double low = 0.25 * height;
     std::vector<Vec3> way{a.base + height * a.up};
+    // Within less than half a turn of material the straight way may do, and stays clear of the edge.
+    const Vec3 end = b.base + height * b.up;
+    if (!reflex && stands_before(k, a.side, a.base, way.front()) && stands_before(k, b.side, b.base, end) && !is_blocked(k, way.front(), end)) {
+      out.push_back(way.front());
+      out.push_back(end);
+      return true;
+    }
     if (reflex) way.push_back(middle + low * rise);
     way.push_back(middle + low * turn);
     if (reflex) way.push_back(middle + low * land);
-    way.push_back(b.base + height * b.up);
+    way.push_back(end);
     if (!stands_before(k, a.side, a.base, way.front()) || !stands_before(k, b.side, b.base, way.back())) continue;
     bool open = true;
     for (std::size_t i = 0; i + 1 < way.size() && open; ++i) open = !is_blocked(k, way[i], way[i + 1]);
@@ -90,8 +111,8 @@ bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge,
 }
 
 // Nodes along the surface from where i looks at it to where j does: what the material joins is joined beside its
-// boundary, however narrow it is. Nothing when the two see different shells only.
-void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
+// boundary, however narrow it is. False, and no nodes, when the two see different shells only or doubles are too coarse.
+bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
   const Complex& k = body.surface;
   const Vec3 xi = body.nodes.position[i.index()], xj = body.nodes.position[j.index()];
   std::map<Side, std::pair<Side, int>> before;
@@ -106,7 +127,7 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
     for (int e = 0; e < 3; ++e)
       if (const Side n = k.neighbor(queue[q], e); before.try_emplace(n, queue[q], e).second) queue.push_back(n);
   }
-  if (!to.face.valid()) return;
+  if (!to.face.valid()) return false;
   std::vector<std::pair<Foothold, int>> path;  // backwards; the edge that leads on to the one before in this list
   int edge = 0;
   for (Side s = to;; s = before.at(s).first) {
@@ -121,108 +142,161 @@ void insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
   start.base = starts.at(start.side), start.up = (xi - start.base).normalized();
   if (path.size() > 1) path.back().first.base = ends.at(to), path.back().first.up = (xj - ends.at(to)).normalized();
   for (std::size_t s = 0; s + 1 < path.size(); ++s)
-    if (!step_over(k, path[s].first, path[s + 1].first, path[s].second, spacing, way)) return;
+    if (!step_over(k, path[s].first, path[s + 1].first, path[s].second, spacing, way)) return false;
   if (path.size() == 1) {
     // Both see one face: across it, low enough.
     const Vec3 base = ends.at(to), up = (xj - base).normalized();
     double height = 0.25 * spacing;
-    while (height > 1e-13 * k.extent().diagonal() && is_blocked(k, start.base + height * start.up, base + height * up)) height *= 0.5;
+    while (height > 1e-16 * k.extent().diagonal() && is_blocked(k, start.base + height * start.up, base + height * up)) height *= 0.5;
     way.push_back(start.base + height * start.up);
     way.push_back(base + height * up);
   }
   way.push_back(xj);
   for (std::size_t s = 0; s + 1 < way.size(); ++s)
-    if (is_blocked(k, way[s], way[s + 1])) return;
-  // As few of them as see each other, none farther apart than the nodes are anyway.
+    if (is_blocked(k, way[s], way[s + 1])) return false;
+  // As few of them as see each other, none farther apart than the nodes are anyway. All give volume in turn.
+  std::deque<NodeId> donors{i};
   NodeId last = i;
   for (std::size_t s = 0; s + 1 < way.size();) {
     std::size_t next = s + 1;
     for (std::size_t n = s + 2; n < way.size() && (way[n] - way[s]).norm() <= body.grid.cell(); ++n)
       if (!is_blocked(k, way[s], way[n])) next = n;
-    const NodeId node = next + 1 == way.size() ? j : insert_node(body, way[next], i, spacing);
+    NodeId node = j;
+    if (next + 1 < way.size()) {
+      node = insert_node(body, way[next], donors.front(), spacing);
+      donors.push_back(donors.front()), donors.push_back(node);
+      donors.pop_front();
+    }
     joins.push_back({std::min(last, node), std::max(last, node)});
     last = node;
     s = next;
   }
+  return true;
+}
+
+// A node on the line from the middle of one of the shell's largest faces straight into it, half way to what comes next.
+// Invalid where doubles have no room for one: a crumb some last places thick.
+NodeId insert_into(Body& body, SurfaceVertexId v) {
+  const Complex& k = body.surface;
+  std::vector<SurfaceVertexId> shell{v}, around;
+  std::set<SurfaceVertexId> seen{v};
+  std::vector<std::pair<double, Side>> sides;  // by area, the largest first
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    for (const FaceId f : k.faces_at(k.site(shell[i])))
+      for (int which = 0; which < 2; ++which)
+        for (int c = 0; c < 3; ++c) {
+          if (!k.has({f, which}) || k.surface_vertex({f, which}, c) != shell[i]) continue;
+          const auto t = k.corners(f);
+          sides.push_back({-(t[1] - t[0]).cross(t[2] - t[0]).norm(), Side{f, which}});
+        }
+    around.clear();
+    k.surface_neighbors(shell[i], around);
+    for (const auto w : around)
+      if (seen.insert(w).second) shell.push_back(w);
+  }
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  for (std::size_t i = 0; i < std::min<std::size_t>(sides.size(), 16); ++i) {
+    const Side s = sides[i].second;
+    const auto t = k.corners(s.face);
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    const NodeId donor(body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; })[0]);
+    for (double step = body.nodes.spacing[donor.index()]; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
+      const Vec3 x = middle + 0.5 * step * inwards;
+      if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) && !is_blocked(k, x, x))
+        return insert_node(body, x, donor, body.nodes.spacing[donor.index()]);
+    }
+  }
+  return {};
+}
+
+/// Finds other nodes of a node's piece; what was found out about a node is kept.
+class Neighborhood {
+ public:
+  explicit Neighborhood(const Body& body) : body_(body), count_(static_cast<std::uint32_t>(body.nodes.size())) {}
+  /// The nodes nearest to i in its piece, without those of `part` (ascending) and without nodes inserted since.
+  std::vector<std::uint32_t> nearest(NodeId i, std::size_t count, const std::vector<std::uint32_t>& part) {
+    const auto piece = of(i.value);
+    return body_.grid.nearest(body_.nodes.position, body_.nodes.position[i.index()], count, i.value, [&](std::uint32_t n) {
+      return n < count_ && !std::binary_search(part.begin(), part.end(), n) && of(n) == piece;
+    });
+  }
+
+ private:
+  std::int32_t of(std::uint32_t i) {
+    const auto [at, fresh] = piece_.try_emplace(i, 0);
+    return fresh ? at->second = piece_of(body_, NodeId(i)) : at->second;
+  }
+  const Body& body_;
+  std::uint32_t count_;
+  std::unordered_map<std::uint32_t, std::int32_t> piece_;
+};
+
+// An edge between a part of G and another part of the same piece, not longer than edges are anyway: what is hidden
+// from its k nearest nodes may see others. At most 16 of the part's nodes are asked.
+bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std::uint32_t>& part, std::vector<NodePair>& joins) {
+  for (std::size_t n = 0; n < part.size(); n += 1 + part.size() / 16)
+    for (const auto other : pieces.nearest(NodeId(part[n]), 8, part)) {
+      const Vec3 &p = body.nodes.position[part[n]], &q = body.nodes.position[other];
+      const auto [low, high] = std::minmax(part[n], other);
+      if ((p - q).norm() > body.graph.plain_unit() * 0x1p26 || is_blocked(body.surface, body.nodes.position[low], body.nodes.position[high])) continue;
+      joins.push_back({NodeId(low), NodeId(high)});
+      return true;
+    }
+  return false;
 }
 
 }  // namespace
 
-void connect_pieces(Body& body, const std::function<void(NodeId, std::span<const NodePair>)>& after) {
+void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
-  for (int round = 0; round < 12; ++round, scale *= 0.8) {
-    std::vector<std::uint32_t> component;
-    const auto count = body.graph.components(component);
-    const Pieces pieces = find_pieces(body.surface);
-    const auto piece_of = [&](std::uint32_t i) {
-      const Side s = side_seen_from(body.surface, body.nodes.position[i], body.nodes.spacing[i]);
-      return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
-    };
-    // The largest component of each piece stands for it; the others want a way to it.
-    std::vector<std::uint32_t> size(count, 0), first(count, ~0u);
-    for (std::uint32_t i = 0; i < component.size(); ++i)
-      if (size[component[i]]++ == 0) first[component[i]] = i;
-    std::vector<std::int32_t> piece(count);
-    std::vector<std::uint32_t> main(pieces.count, ~0u);
-    for (std::uint32_t c = 0; c < count; ++c) {
-      piece[c] = piece_of(first[c]);
-      if (piece[c] < 0) continue;
-      auto& m = main[static_cast<std::size_t>(piece[c])];
-      if (m == ~0u || size[c] > size[m]) m = c;
-    }
-    bool whole = true;
-    for (std::uint32_t c = 0; c < count; ++c) whole = whole && (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c);
-    for (const auto m : main) whole = whole && m != ~0u;
-    if (whole) return;
+  for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
+    for (const auto v : found.empty)
+      if (const NodeId i = insert_into(body, v); i.valid())
+        found.known[body.upkeep.piece[v.index()]] = i;
+      else
+        found.known.erase(body.upkeep.piece[v.index()]);
+    Regions before = components_of(body);
+    Neighborhood pieces(body);
     std::vector<NodePair> joins;
-    for (std::uint32_t p = 0; p < pieces.count; ++p) {
-      if (main[p] != ~0u) continue;
-      // No node at all: one on the line from the middle of its largest face straight into it, half way to what comes
-      // next.
-      Side best;
-      double most = -1;
-      for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
-        for (int which = 0; which < 2; ++which)
-          if (pieces.of_side[f * 2 + static_cast<std::uint32_t>(which)] == static_cast<std::int32_t>(p)) {
-            const auto t = body.surface.corners(FaceId(f));
-            const double a = (t[1] - t[0]).cross(t[2] - t[0]).norm();
-            if (a > most) most = a, best = {FaceId(f), which};
-          }
-      const auto t = body.surface.corners(best.face);
-      const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-      const Vec3 inwards = (best.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-      const auto donor = body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; });
-      double step = body.nodes.spacing[donor[0]];
-      while (step > 1e-12 * body.surface.extent().diagonal() &&
-             !stands_before(body.surface, best, middle, middle + step * inwards))
-        step *= 0.6;
-      insert_node(body, middle + 0.5 * step * inwards, NodeId(donor[0]), body.nodes.spacing[donor[0]]);
-    }
     std::vector<FaceId> narrow;
-    for (std::uint32_t i = 0; i < component.size(); ++i) {
-      const auto c = component[i];
-      if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-      body.surface.near(Box3{body.nodes.position[i], body.nodes.position[i]}.grown(1.5 * body.nodes.spacing[i]),
-                        narrow);
+    std::set<std::uint32_t> done;  // parts, by their lowest nodes
+    for (const auto& [a, b] : found.apart) {
+      before.seed(a.value), before.seed(b.value);
+      if (before.joined(a.value, b.value)) continue;
+      const NodeId i = before.whole(a.value) ? a : b;  // in the smaller part
+      if (!done.insert(before.lowest(i.value)).second) continue;
+      auto part = before.inside(i.value);
+      std::sort(part.begin(), part.end());
+      if (join_by_sight(body, pieces, part, joins)) continue;
+      if (round == 0)
+        for (const auto n : part)
+          body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
+      else
+        for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
+          const auto near = pieces.nearest(from, 4, part);
+          if (std::any_of(near.begin(), near.end(), [&](auto to) { return insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins); })) break;
+        }
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
-    // Bounded, so that a passage that stays closed costs little; the spacing shrinks with the rounds alone.
-    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u + static_cast<std::uint64_t>(round), 100);
-    if (round >= 1)
-      for (std::uint32_t c = 0; c < count; ++c) {
-        if (piece[c] < 0 || main[static_cast<std::size_t>(piece[c])] == c) continue;
-        const auto target = main[static_cast<std::size_t>(piece[c])];
-        const auto near =
-            body.grid.nearest(body.nodes.position, body.nodes.position[first[c]], 1, first[c],
-                              [&](std::uint32_t i) { return i < component.size() && component[i] == target; });
-        if (!near.empty()) insert_along(body, NodeId(first[c]), NodeId(near[0]), scale * body.grid.cell(), joins);
-      }
+    // Bounded, so that a passage that stays closed costs little.
+    insert_near(body, narrow, scale * body.grid.cell(), 0x6b657266u, 100);
     if (first_new.index() < body.nodes.size() || !joins.empty())
       after(first_new, joins);
     else if (round >= 1)
       return;
+    Disagreement left;
+    left.known = std::move(found.known);
+    Regions now = components_of(body);
+    for (const auto& [a, b] : found.apart) {
+      now.seed(a.value), now.seed(b.value);
+      if (!now.joined(a.value, b.value)) left.apart.push_back({a, b});
+    }
+    pair_new_nodes(body, now, first_new, left);
+    found = std::move(left);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "surface/pieces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "geometry/bvh.h"
@@ -13,6 +14,7 @@ namespace {
 struct Shell {
   std::vector<Side> sides;
   double volume = 0;
+  double doubt = 0;  ///< rounding may have made this much of the volume
 };
 
 std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_side) {
@@ -33,6 +35,7 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
         stack.pop_back();
         shell.sides.push_back(s);
         const auto c = k.corners(s.face);
+        shell.doubt += 0x1p-50 * (c[0] - origin).norm() * (c[1] - origin).norm() * (c[2] - origin).norm();
         const double part = (c[0] - origin).dot((c[1] - origin).cross(c[2] - origin)) / 6;
         const double y = (s.which == 0 ? part : -part) - carry, t = shell.volume + y;
         carry = (t - shell.volume) - y;
@@ -50,11 +53,20 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
 }
 
 // True when the shell encloses something: a fold of a crack onto itself does not, whatever rounding makes of its volume.
-bool is_outer(const Complex& k, const Shell& shell, const std::vector<std::int32_t>& of_side) {
-  bool thick = false;
-  for (const Side s : shell.sides)
-    if (k.face(s.face).crack == 0 || of_side[s.face.index() * 2] != of_side[s.face.index() * 2 + 1]) thick = true;
-  return thick && shell.volume > 0;
+// Nor does rounding decide of a crumb: were it an inner shell, it would enclose the shells across its faces.
+bool is_outer(const Complex& k, std::uint32_t id, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
+  const Shell& shell = shells[id];
+  bool thick = false, beside_larger = false;
+  for (const Side s : shell.sides) {
+    const auto other = of_side[s.face.index() * 2 + 1 - static_cast<std::size_t>(s.which)];
+    if (other == static_cast<std::int32_t>(id)) continue;
+    thick = true;
+    if (other >= 0) {
+      const Shell& next = shells[static_cast<std::size_t>(other)];
+      beside_larger |= std::abs(next.volume) > 2 * std::abs(shell.volume) + shell.doubt + next.doubt;
+    }
+  }
+  return thick && (shell.volume > 0 || beside_larger);
 }
 
 }  // namespace
@@ -64,7 +76,7 @@ Pieces find_pieces(const Complex& k) {
   const auto shells = find_shells(k, shell_of);
   std::vector<std::uint32_t> outer;
   for (std::uint32_t s = 0; s < shells.size(); ++s)
-    if (is_outer(k, shells[s], shell_of)) outer.push_back(s);
+    if (is_outer(k, s, shells, shell_of)) outer.push_back(s);
 
   // Cavities and internal cracks belong to the smallest outer shell around them.
   std::vector<std::uint32_t> owner(shells.size());
@@ -92,6 +104,7 @@ Pieces find_pieces(const Complex& k) {
   }
 
   Pieces pieces;
+  pieces.shells = static_cast<std::uint32_t>(shells.size());
   std::vector<double> volume(shells.size(), 0);
   for (std::uint32_t s = 0; s < shells.size(); ++s) volume[owner[s]] += shells[s].volume;
   std::stable_sort(outer.begin(), outer.end(), [&](auto a, auto b) { return volume[a] > volume[b]; });

@@ -12,6 +12,7 @@ namespace geo {
 /// never reaches the skin, belongs to the piece around it.
 struct Pieces {
   std::uint32_t count = 0;
+  std::uint32_t shells = 0;           ///< closed surfaces that bound them, inner ones included: at least `count`
   std::vector<std::int32_t> of_side;  ///< piece of side (face, which) at [2·face + which], −1 where there is none
   std::vector<double> volume;         ///< per piece, model units³; they sum to the skin's volume
 };

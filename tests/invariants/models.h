@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
+#include "base/error.h"
 #include "io/surface_file.h"
 #include "surface/shapes.h"
 
@@ -12,8 +14,11 @@ namespace invariants {
 /// "pumpkin", or a mesh from the folder KERF_MODELS, else from where the build unpacked them. Throws when it is absent.
 inline geo::TriangleMesh model(const std::string& name) {
   if (name == "pumpkin") return geo::make_pumpkin(8);
-  const char* folder = std::getenv("KERF_MODELS");
-  return geo::read_surface(std::string(folder ? folder : KERF_MODEL_FOLDER) + "/" + name + ".off").mesh;
+  const char* named = std::getenv("KERF_MODELS");
+  const std::string folder = named ? named : KERF_MODEL_FOLDER, file = name + ".off";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.path().filename() == file) return geo::read_surface(entry.path().string()).mesh;
+  throw geo::InputError(folder + ": has no " + file);
 }
 
 }  // namespace invariants

@@ -1,0 +1,146 @@
+#include "body/connect.h"
+
+#include <algorithm>
+#include <set>
+
+namespace geo {
+namespace {
+
+// The nearest older node whose piece is accepted; invalid when there is none.
+template <class Accept>
+NodeId nearest_old(const Body& body, const Vec3& x, NodeId first_new, const Accept& accept) {
+  const auto near = body.grid.nearest(body.nodes.position, x, 1, ~0u, [&](std::uint32_t i) {
+    return i < first_new.value && accept(piece_of(body, NodeId(i)));
+  });
+  return near.empty() ? NodeId() : NodeId(near[0]);
+}
+
+// A node of a component; pairs it with the one that is known of its piece, where they are not connected.
+void look_at(Regions& components, std::int32_t piece, NodeId i, Disagreement& found) {
+  if (piece < 0) return;
+  const NodeId other = found.known.try_emplace(piece, i).first->second;
+  components.seed(i.value), components.seed(other.value);
+  if (components.joined(other.value, i.value)) return;
+  for (const auto& [a, b] : found.apart)
+    if ((a == other && components.joined(b.value, i.value)) || (b == other && components.joined(a.value, i.value))) return;
+  found.apart.push_back({std::min(i, other), std::max(i, other)});
+}
+
+}  // namespace
+
+Regions components_of(const Body& body) {
+  return Regions([&body](std::uint32_t i, std::vector<std::uint32_t>& out) {
+    for (const auto& arc : body.graph.arcs(NodeId(i))) out.push_back(arc.to.value);
+  });
+}
+
+Disagreement find_disagreement(const Body& body) {
+  std::vector<std::uint32_t> component;
+  const auto count = body.graph.components(component);
+  std::vector<std::uint32_t> size(count, 0), first(count, ~0u);
+  for (std::uint32_t i = 0; i < component.size(); ++i)
+    if (size[component[i]]++ == 0) first[component[i]] = i;
+  // The largest component of each piece stands for it.
+  Disagreement found;
+  std::vector<std::int32_t> piece(count);
+  for (std::uint32_t c = 0; c < count; ++c) {
+    piece[c] = piece_of(body, NodeId(first[c]));
+    if (piece[c] < 0) continue;
+    auto& known = found.known.try_emplace(piece[c], NodeId(first[c])).first->second;
+    if (size[c] > size[component[known.index()]]) known = NodeId(first[c]);
+  }
+  for (std::uint32_t c = 0; c < count; ++c)
+    if (piece[c] >= 0)
+      if (const NodeId known = found.known.at(piece[c]); known.value != first[c])
+        found.apart.push_back({std::min(known, NodeId(first[c])), std::max(known, NodeId(first[c]))});
+  std::set<std::int32_t> empty;
+  for (std::uint32_t v = 0; v < body.upkeep.piece.size(); ++v)
+    if (const auto p = body.upkeep.piece[v]; p >= 0 && !found.known.count(p) && empty.insert(p).second)
+      found.empty.push_back(SurfaceVertexId(v));
+  return found;
+}
+
+Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, std::span<const Offcut> offcuts,
+                               NodeId first_new) {
+  Disagreement found;
+  Regions components = components_of(body);
+  for (const auto& [a, b] : cut) components.seed(a.value), components.seed(b.value);
+  components.grow_seeds();
+  std::map<std::int32_t, std::int32_t> origin;  // pieces cut off: what they were a part of before the step
+  for (const Offcut& o : offcuts) origin[o.piece] = o.from;
+  const auto origin_of = [&](std::int32_t piece) {
+    const auto at = origin.find(piece);
+    return at == origin.end() ? piece : at->second;
+  };
+  // Every part into which cut edges divided a component has an end of one that leads to another part.
+  std::set<std::int32_t> divided;
+  for (const auto& [a, b] : cut) {
+    if (components.joined(a.value, b.value)) continue;
+    for (const NodeId i : {a, b})
+      if (const auto piece = piece_of(body, i); piece >= 0) divided.insert(origin_of(piece)), look_at(components, piece, i, found);
+  }
+  // Material came apart and the graph did not: its nodes are all in one of the parts.
+  for (const Offcut& o : offcuts)
+    if (divided.insert(o.from).second)
+      if (const NodeId i = nearest_old(body, body.surface.point(body.surface.site(o.at)), first_new,
+                                       [&](std::int32_t piece) { return piece >= 0 && origin_of(piece) == o.from; });
+          i.valid())
+        look_at(components, piece_of(body, i), i, found);
+  // Of these pieces all old components are known; new nodes there are partners only for each other.
+  for (std::uint32_t i = first_new.value; i < body.nodes.size(); ++i) components.seed(i);
+  for (std::uint32_t i = first_new.value; i < body.nodes.size() && !offcuts.empty(); ++i) {
+    while (components.lowest(i) >= first_new.value && !components.whole(i)) components.grow(i);
+    if (components.lowest(i) == i)
+      if (const auto piece = piece_of(body, NodeId(i)); divided.count(origin_of(piece))) found.known.try_emplace(piece, NodeId(i));
+  }
+  pair_new_nodes(body, components, first_new, found);
+  for (const Offcut& o : offcuts)
+    for (const SurfaceVertexId v : {o.at, o.rest})
+      if (const auto piece = body.upkeep.piece[v.index()]; !found.known.count(piece)) {
+        found.empty.push_back(v);
+        found.known.emplace(piece, NodeId());  // until it has one
+      }
+  return found;
+}
+
+void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Disagreement& found) {
+  for (std::uint32_t i = first_new.value; i < body.nodes.size(); ++i) components.seed(i);
+  for (std::uint32_t i = first_new.value; i < body.nodes.size(); ++i) {
+    while (components.lowest(i) >= first_new.value && !components.whole(i)) components.grow(i);
+    if (components.lowest(i) != i) continue;
+    const auto piece = piece_of(body, NodeId(i));
+    if (!found.known.count(piece))
+      if (const NodeId old = nearest_old(body, body.nodes.position[i], first_new, [&](std::int32_t p) { return p == piece; }); old.valid())
+        found.known.emplace(piece, old);
+    look_at(components, piece, NodeId(i), found);
+  }
+}
+
+std::vector<std::vector<NodeId>> parted_nodes(const Body& body, std::span<const Offcut> offcuts, const Disagreement& found) {
+  std::map<std::int32_t, std::set<std::int32_t>> families;
+  for (const Offcut& o : offcuts)
+    for (const SurfaceVertexId v : {o.at, o.rest}) families[o.from].insert(body.upkeep.piece[v.index()]);
+  Regions components = components_of(body);
+  std::vector<std::vector<NodeId>> parted;
+  for (const auto& [from, pieces] : families) {
+    NodeId largest;
+    for (const auto piece : pieces) {
+      const auto at = found.known.find(piece);
+      if (at == found.known.end() || !at->second.valid()) continue;
+      NodeId other = at->second;
+      components.seed(other.value);
+      if (!largest.valid()) largest = other;
+      if (components.joined(largest.value, other.value)) continue;
+      const bool smaller = components.whole(other.value) &&
+                           (!components.whole(largest.value) || components.inside(other.value).size() <= components.inside(largest.value).size());
+      if (!smaller) std::swap(largest, other);
+      std::vector<NodeId> nodes;
+      for (const auto i : components.inside(other.value)) nodes.push_back(NodeId(i));
+      std::sort(nodes.begin(), nodes.end());
+      parted.push_back(std::move(nodes));
+    }
+  }
+  return parted;
+}
+
+}  // namespace geo

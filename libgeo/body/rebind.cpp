@@ -1,0 +1,264 @@
+// § 6.5 after a step: closest vertices of nodes near the change, then the trees that lost or found a root.
+#include <algorithm>
+#include <queue>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "base/parallel.h"
+#include "body/binding.h"
+#include "body/upkeep.h"
+#include "geometry/distance.h"
+
+namespace geo {
+namespace {
+
+constexpr std::uint32_t no_depth = ~0u;
+
+class Rebinding {
+ public:
+  explicit Rebinding(Body& body)
+      : body_(body), k_(body.surface), b_(body.binding), depth_(body.upkeep.depth), strays_(body.upkeep.strays) {
+    const std::size_t n = k_.surface_vertex_count();
+    b_.master_node.resize(n), b_.master.resize(n), b_.parent.resize(n);
+    depth_.resize(n, no_depth);
+    b_.closest.resize(body.nodes.size());
+  }
+
+  void renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved);
+  void renew_strays(NodeId first_new, const std::vector<NodeId>& moved);
+  void renew_masters();
+  void renew_edges(const CrackDelta& delta);
+  void grow();
+  void adopt_strays();
+  std::vector<SurfaceVertexId> rebound();
+
+ private:
+  using Candidate = std::tuple<std::uint32_t, SurfaceVertexId, SurfaceVertexId>;  // depth, parent, vertex
+
+  std::vector<SurfaceVertexId> around(SurfaceVertexId v) const {
+    std::vector<SurfaceVertexId> out;
+    k_.surface_neighbors(v, out);
+    return out;
+  }
+  bool is_stray(SurfaceVertexId v) const { return std::binary_search(strays_.begin(), strays_.end(), v); }
+  // The node that carried a vertex before the step; asked before the vertex gets another master.
+  NodeId carrier_before(SurfaceVertexId v) const {
+    const SurfaceVertexId m = b_.master[v.index()];
+    if (!m.valid()) return {};
+    const auto at = node_before_.find(m);
+    return at == node_before_.end() ? b_.master_node[m.index()] : at->second;
+  }
+  void set_master(SurfaceVertexId v, SurfaceVertexId master) {
+    carrier_before_.try_emplace(v, carrier_before(v));
+    b_.master[v.index()] = master;
+  }
+  void set_node(SurfaceVertexId v, NodeId node) {
+    node_before_.try_emplace(v, b_.master_node[v.index()]);
+    b_.master_node[v.index()] = node;
+  }
+  void orphan(SurfaceVertexId root);
+  void dismiss_stray(SurfaceVertexId v);
+  void offer(SurfaceVertexId v, std::uint32_t depth, SurfaceVertexId parent) {
+    if (std::tie(depth, parent) < std::tie(depth_[v.index()], b_.parent[v.index()])) queue_.push({depth, parent, v});
+  }
+
+  Body& body_;
+  const Complex& k_;
+  Binding& b_;
+  std::vector<std::uint32_t>& depth_;
+  std::vector<SurfaceVertexId>& strays_;
+  std::set<SurfaceVertexId> looked_at_;  // vertices that nodes began or ceased to look at
+  std::vector<SurfaceVertexId> orphans_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
+};
+
+// A node's closest vertex depends on faces no farther than it, and a twentieth more; where there is none, on all within
+// the support radius.
+void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
+  const auto& x = body_.nodes.position;
+  const double reach = longest_reach(body_);
+  std::vector<std::uint32_t> near, stale;
+  for (const FaceId f : delta.new_faces) {
+    const auto t = k_.corners(f);
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const double size = std::sqrt(std::max({(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}));
+    near.clear();
+    body_.grid.within(x, middle, size + 1.06 * reach, near);
+    for (const auto i : near) {
+      const auto closest = b_.closest[i];
+      const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
+      if ((closest_point_on_triangle(x[i], t[0], t[1], t[2]) - x[i]).norm() <= 1.06 * far) stale.push_back(i);
+    }
+  }
+  for (std::uint32_t i = first_new.value; i < x.size(); ++i) stale.push_back(i);
+  for (const NodeId i : moved) stale.push_back(i.value);
+  std::sort(stale.begin(), stale.end());
+  stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
+  std::vector<SurfaceVertexId> now(stale.size());
+  parallel_for(stale.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) now[s] = closest_vertex(k_, x[stale[s]], body_.nodes.radius[stale[s]]);
+  });
+  for (std::size_t s = 0; s < stale.size(); ++s) {
+    auto& closest = b_.closest[stale[s]];
+    const bool elsewhere = stale[s] >= first_new.value || std::binary_search(moved.begin(), moved.end(), NodeId(stale[s]));
+    if (closest == now[s] && !elsewhere) continue;
+    for (const auto v : {closest, now[s]})
+      if (v.valid()) looked_at_.insert(v);
+    closest = now[s];
+  }
+  for (const auto v : delta.removed_surface_vertices) looked_at_.insert(v);
+}
+
+// A stray's node stays unless it moved or was cut off, or another one is nearer now.
+void Rebinding::renew_strays(NodeId first_new, const std::vector<NodeId>& moved) {
+  const auto before = strays_;
+  for (const auto v : before) {
+    bool stays = k_.alive(v);
+    if (stays) {
+      const NodeId node = b_.master_node[v.index()];
+      const Vec3& q = k_.point(k_.site(v));
+      const double d = (body_.nodes.position[node.index()] - q).squaredNorm();
+      const auto rivals = [&](NodeId i) { return (body_.nodes.position[i.index()] - q).squaredNorm() <= d; };
+      stays = !std::binary_search(moved.begin(), moved.end(), node) && std::none_of(moved.begin(), moved.end(), rivals) &&
+              piece_of(body_, node) == body_.upkeep.piece[v.index()];
+      for (std::uint32_t i = first_new.value; i < body_.nodes.size() && stays; ++i) stays = !rivals(NodeId(i));
+    }
+    if (!stays) dismiss_stray(v);
+  }
+}
+
+void Rebinding::dismiss_stray(SurfaceVertexId v) {
+  set_node(v, NodeId());
+  strays_.erase(std::lower_bound(strays_.begin(), strays_.end(), v));
+  orphan(v);
+}
+
+void Rebinding::renew_masters() {
+  for (const auto v : looked_at_) {
+    if (k_.alive(v) && b_.master[v.index()].valid() && is_stray(b_.master[v.index()])) dismiss_stray(b_.master[v.index()]);
+    const NodeId node = k_.alive(v) ? master_node_of(body_, b_, v) : NodeId(), before = b_.master_node[v.index()];
+    if (node != before) set_node(v, node);
+    if (!k_.alive(v) || (before.valid() && !node.valid()))
+      orphan(v);
+    else if (node.valid() && !before.valid())
+      offer(v, 0, v);
+  }
+}
+
+// The whole subtree loses its master. Vertices that are no longer beside their parents are found one by one.
+void Rebinding::orphan(SurfaceVertexId root) {
+  std::vector<SurfaceVertexId> tree{root};
+  while (!tree.empty()) {
+    const auto v = tree.back();
+    tree.pop_back();
+    if (k_.alive(v)) {
+      orphans_.push_back(v);
+      for (const auto w : around(v))
+        if (b_.parent[w.index()] == v && w != v) tree.push_back(w);
+    }
+    set_master(v, SurfaceVertexId());
+    b_.parent[v.index()] = SurfaceVertexId();
+    depth_[v.index()] = no_depth;
+  }
+}
+
+// Edges of the surface come and go only at vertices of the delta.
+void Rebinding::renew_edges(const CrackDelta& delta) {
+  auto at = delta.touched_surface_vertices;
+  at.insert(at.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
+  std::vector<SurfaceVertexId> seen = at;
+  for (const auto v : at)
+    for (const auto w : around(v)) seen.push_back(w);
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  for (const auto v : seen) {
+    const auto beside = around(v);
+    const auto parent = b_.parent[v.index()], master = b_.master[v.index()];
+    if (parent.valid() && parent != v && !std::binary_search(beside.begin(), beside.end(), parent)) orphan(v);
+    // A shell with a stray may have joined another one.
+    if (b_.master[v.index()].valid() && is_stray(master)) dismiss_stray(master);
+  }
+  orphans_.insert(orphans_.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
+  std::sort(orphans_.begin(), orphans_.end());
+  orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
+  at.insert(at.end(), orphans_.begin(), orphans_.end());
+  for (const auto v : at)
+    for (const auto w : around(v)) {
+      if (depth_[w.index()] != no_depth) offer(v, depth_[w.index()] + 1, w);
+      if (depth_[v.index()] != no_depth) offer(w, depth_[v.index()] + 1, v);
+    }
+}
+
+// From the rim inwards, nearest to a master first; then masters down the trees whose roots changed.
+void Rebinding::grow() {
+  std::priority_queue<std::pair<std::uint32_t, SurfaceVertexId>, std::vector<std::pair<std::uint32_t, SurfaceVertexId>>, std::greater<>> changed;
+  while (!queue_.empty()) {
+    const auto [depth, parent, v] = queue_.top();
+    queue_.pop();
+    if (std::tie(depth_[v.index()], b_.parent[v.index()]) <= std::tie(depth, parent)) continue;
+    depth_[v.index()] = depth, b_.parent[v.index()] = parent;
+    changed.push({depth, v});
+    for (const auto w : around(v)) offer(w, depth + 1, v);
+  }
+  while (!changed.empty()) {
+    const auto [depth, v] = changed.top();
+    changed.pop();
+    const auto master = depth == 0 ? v : b_.master[b_.parent[v.index()].index()];
+    if (depth != depth_[v.index()] || master == b_.master[v.index()]) continue;
+    set_master(v, master);
+    for (const auto w : around(v))
+      if (b_.parent[w.index()] == v && w != v) changed.push({depth + 1, w});
+  }
+}
+
+// Shells that no master reached, the lowest vertex of each first.
+void Rebinding::adopt_strays() {
+  for (const auto v : orphans_) {
+    if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
+    const NodeId node = stray_node_of(body_, v, [&](NodeId i) { return piece_of(body_, i) == body_.upkeep.piece[v.index()]; });
+    if (!node.valid()) continue;
+    set_node(v, node);
+    strays_.insert(std::lower_bound(strays_.begin(), strays_.end(), v), v);
+    offer(v, 0, v);
+    grow();
+  }
+}
+
+std::vector<SurfaceVertexId> Rebinding::rebound() {
+  // Whole trees whose root another node looks at.
+  for (const auto& [root, node] : node_before_) {
+    if (!k_.alive(root) || b_.master[root.index()] != root || b_.master_node[root.index()] == node) continue;
+    std::vector<SurfaceVertexId> tree{root};
+    while (!tree.empty()) {
+      const auto v = tree.back();
+      tree.pop_back();
+      carrier_before_.try_emplace(v, node);
+      for (const auto w : around(v))
+        if (b_.parent[w.index()] == v && w != v) tree.push_back(w);
+    }
+  }
+  std::vector<SurfaceVertexId> out;
+  for (const auto& [v, before] : carrier_before_) {
+    const auto master = b_.master[v.index()];
+    if (k_.alive(v) && (master.valid() ? b_.master_node[master.index()] : NodeId()) != before) out.push_back(v);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
+  Rebinding r(body);
+  r.renew_closest(delta, first_new, moved);
+  r.renew_strays(first_new, moved);
+  r.renew_masters();
+  r.renew_edges(delta);
+  r.grow();
+  r.adopt_strays();
+  return r.rebound();
+}
+
+}  // namespace geo

@@ -54,7 +54,7 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
 
 // True when the shell encloses something: a fold of a crack onto itself does not, whatever rounding makes of its volume.
 // Nor does rounding decide of a crumb: were it an inner shell, it would enclose the shells across its faces.
-bool is_outer(const Complex& k, std::uint32_t id, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
+bool is_outer(std::uint32_t id, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
   const Shell& shell = shells[id];
   bool thick = false, beside_larger = false;
   for (const Side s : shell.sides) {
@@ -76,7 +76,7 @@ Pieces find_pieces(const Complex& k) {
   const auto shells = find_shells(k, shell_of);
   std::vector<std::uint32_t> outer;
   for (std::uint32_t s = 0; s < shells.size(); ++s)
-    if (is_outer(k, s, shells, shell_of)) outer.push_back(s);
+    if (is_outer(s, shells, shell_of)) outer.push_back(s);
 
   // Cavities and internal cracks belong to the smallest outer shell around them.
   std::vector<std::uint32_t> owner(shells.size());

@@ -106,7 +106,10 @@ std::string body_report(const geo::Body& body, std::size_t bytes, bool check, Re
       result.orphans += body.surface.alive(geo::SurfaceVertexId(v)) && !body.binding.master[v].valid();
   }
   std::size_t least = ~std::size_t(0), most = 0, sum = 0, vertices = 0;
-  for (const auto& row : body.neighbors.rows) least = std::min(least, row.size()), most = std::max(most, row.size()), sum += row.size();
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    const std::size_t count = body.graph.neighbor_count(geo::NodeId(i));
+    least = std::min(least, count), most = std::max(most, count), sum += count;
+  }
   for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v) vertices += body.surface.alive(geo::SurfaceVertexId(v));
   report.add("kind", tool::quoted("body"));
   report.add("nodes", body.nodes.size());

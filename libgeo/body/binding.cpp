@@ -180,7 +180,7 @@ void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<Node
     if (d < body.nodes.radius[j.index()]) out.push_back({j, d});
   };
   add(m);
-  for (const auto& n : body.neighbors.of(m)) add(n.to);
+  for (const auto& n : body.graph.neighbors(body.nodes, m)) add(n.to);
   if (out.empty()) out.push_back({m, 0.0});
 }
 

@@ -42,8 +42,7 @@ struct Provenance {
 struct Body {
   Complex surface;
   NodeSet nodes;
-  VisibilityGraph graph;
-  Neighborhoods neighbors;
+  VisibilityGraph graph;  ///< and the neighbours of each node
   Binding binding;
   std::vector<NodeId> donors;    ///< of the nodes inserted last, in order; derived, never in a file
   NodeGrid grid;                     ///< over nodes.position; derived, never in a file

@@ -26,15 +26,14 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
       throw InputError("node " + std::to_string(i) +
                        " is not inside the surface; sample the same model that the body is made of");
   body.graph = build_visibility_graph(body.nodes, obstacles, body.k, progress);
-  body.neighbors.rows.resize(body.nodes.size());
   count_pieces(body);
   auto found = find_disagreement(body);
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     update_graph(
         body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
-        body.k, body.grid, body.graph, body.neighbors, joins);
+        body.k, body.grid, body.graph, joins);
   });
-  body.neighbors = build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);
+  build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);
   report(progress, "binding", 0, body.nodes.size());
   body.binding = build_binding(body);
   std::vector<NodeId> all;

@@ -29,10 +29,10 @@ BodyReport check_body(const Body& body) {
     auto& known = piece_of[component[i]];
     if (known >= 0 && known != piece) note("node " + std::to_string(i) + " is connected to another piece");
     known = piece;
-    for (const auto& arc : body.graph.arcs(NodeId(i)))
-      if (arc.to.value > i && is_blocked(k, body.nodes.position[i], body.nodes.position[arc.to.index()])) {
+    for (const NodeId j : body.graph.edges(NodeId(i)))
+      if (j.value > i && is_blocked(k, body.nodes.position[i], body.nodes.position[j.index()])) {
         ++report.edges_crossing;
-        note("edge " + std::to_string(i) + "-" + std::to_string(arc.to.value) + " crosses a face");
+        note("edge " + std::to_string(i) + "-" + std::to_string(j.value) + " crosses a face");
       }
   }
   if (report.graph_components != report.pieces)
@@ -41,9 +41,10 @@ BodyReport check_body(const Body& body) {
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     if (k.alive(FaceId(f))) soup.push_back(k.corners(FaceId(f)));
-  const auto scratch = build_neighborhoods(body.nodes, body.graph, TriangleBvh(soup));
+  VisibilityGraph scratch = body.graph;
+  build_neighborhoods(body.nodes, scratch, TriangleBvh(soup));
   for (std::size_t i = 0; i < n; ++i)
-    if (scratch.rows[i] != body.neighbors.rows[i]) {
+    if (!(scratch.rows().row(i) == body.graph.rows().row(i))) {
       note("the neighbours of node " + std::to_string(i) + " are not those that a build from scratch finds");
       break;
     }

@@ -30,7 +30,7 @@ void look_at(Regions& components, std::int32_t piece, NodeId i, Disagreement& fo
 
 Regions components_of(const Body& body) {
   return Regions([&body](std::uint32_t i, std::vector<std::uint32_t>& out) {
-    for (const auto& arc : body.graph.arcs(NodeId(i))) out.push_back(arc.to.value);
+    for (const NodeId j : body.graph.edges(NodeId(i))) out.push_back(j.value);
   });
 }
 

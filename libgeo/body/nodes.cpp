@@ -90,7 +90,7 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
 
 void mark_debris(Body& body, const std::vector<NodeId>& nodes) {
   // Four nodes in general position carry a linear field; fewer move as a rigid crumb.
-  for (const NodeId i : nodes) body.debris[i.index()] = body.neighbors.of(i).size() < 4;
+  for (const NodeId i : nodes) body.debris[i.index()] = body.graph.neighbor_count(i) < 4;
 }
 
 }  // namespace geo

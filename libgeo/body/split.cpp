@@ -36,7 +36,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 0, body.updates);
   const double resample = since(clock);
   auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid,
-                             body.graph, body.neighbors);
+                             body.graph);
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
   // Each piece that the crack cut off needs nodes, connected among themselves.
   bool recounted = false;
@@ -44,7 +44,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   auto found = recounted ? find_disagreement(body) : find_disagreement(body, update.cut_edges, offcuts, delta.first_new_node);
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     const auto more =
-        update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, body.neighbors, joins);
+        update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, joins);
     updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
   });
   delta.parted = parted_nodes(body, offcuts, found);

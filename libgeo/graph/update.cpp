@@ -3,101 +3,150 @@
 #include "graph/update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 
 #include "geometry/predicates.h"
+#include "graph/id_map.h"
+#include "graph/row_search.h"
+#include "graph/severed.h"
 
 namespace geo {
+namespace {
 
-GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
-                         std::span<const std::array<Vec3, 3>> new_faces,
-                         const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
-                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows,
+using Corners = std::array<Vec3, 3>;
+using ObstacleNear = std::function<void(const Box3&, std::vector<Corners>&)>;
+
+// Whether faces lie between two nodes, for pairs that mostly have one node in common.
+class PairSight {
+ public:
+  PairSight(std::span<const Vec3> positions, const ObstacleNear& near, double reach) : x_(positions), near_(near), reach_(reach) {}
+  bool blocked(std::uint32_t i, std::uint32_t j) {
+    const Vec3 &p = x_[std::min(i, j)], &q = x_[std::max(i, j)];
+    Box3 segment{p, p};
+    segment.add(q);
+    if (known_.empty() || (segment.lo.array() < known_.lo.array()).any() || (segment.hi.array() > known_.hi.array()).any()) {
+      known_ = {x_[i] - Vec3::Constant(reach_), x_[i] + Vec3::Constant(reach_)};
+      known_.add(segment);
+      triangles_.clear(), boxes_.clear();
+      near_(known_, triangles_);
+      for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
+    }
+    for (std::size_t k = 0; k < triangles_.size(); ++k)
+      if (boxes_[k].meets(segment) && segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2])) return true;
+    return false;
+  }
+
+ private:
+  std::span<const Vec3> x_;
+  const ObstacleNear& near_;
+  double reach_;
+  Box3 known_;  // all triangles that meet this are here
+  std::vector<Corners> triangles_;
+  std::vector<Box3> boxes_;
+};
+
+// Nodes whose shortest paths may have used a cut edge, by old distances: within a support radius of an end, less the
+// edge's length. Of several edges at an end the shortest decides.
+void add_users(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const NodePairKey> cut, IdMap& update) {
+  std::vector<std::uint64_t> ends;
+  for (const auto key : cut) {
+    const auto i = static_cast<std::uint32_t>(key >> 32), j = static_cast<std::uint32_t>(key);
+    const std::uint64_t length = warped_length(nodes, i, j);
+    ends.push_back(std::uint64_t(i) << 32 | length), ends.push_back(std::uint64_t(j) << 32 | length);
+  }
+  std::sort(ends.begin(), ends.end());
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const auto end = static_cast<std::uint32_t>(ends[e] >> 32), length = static_cast<std::uint32_t>(ends[e]);
+    if (e > 0 && ends[e - 1] >> 32 == end) continue;
+    update.add(end);
+    const auto row = graph.rows().entries(end);
+    for (std::size_t k = 0; k < row.to.size(); ++k)
+      if (VisibilityGraph::is_neighbor(row.bits[k]) && VisibilityGraph::bound(row.bits[k]) + std::uint64_t(length) < unit_radius) update.add(row.to[k]);
+  }
+}
+
+}  // namespace
+
+GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved, std::span<const Corners> new_faces,
+                         const ObstacleNear& obstacle_near, int k, const NodeGrid& grid, VisibilityGraph& graph,
                          std::span<const std::pair<NodeId, NodeId>> joins) {
   GraphUpdate result;
   const auto& x = nodes.position;
   graph.resize(nodes.size());
-  rows.rows.resize(nodes.size());
-  std::set<NodeId> update;
-  const std::function<bool(NodeId, NodeId)> blocked = [&](NodeId a, NodeId b) {
-    Box3 box{x[a.index()], x[a.index()]};
-    box.add(x[b.index()]);
-    std::vector<std::array<Vec3, 3>> near;
-    obstacle_near(box, near);
-    return std::any_of(near.begin(), near.end(), [&](const auto& t) { return segment_meets_triangle(x[a.index()], x[b.index()], t[0], t[1], t[2]); });
-  };
+  IdMap update;
+  update.clear(0);
 
-  // E_cut, and pairs of neighbours that see each other no longer. What a face cuts has one end within half its length.
-  // Support radii are at most 2²⁶ plain units when the graph is built, and new nodes take over those of old ones.
-  const double reach = std::max(graph.longest(), graph.plain_unit() * 0x1p26);
-  std::set<std::pair<NodeId, NodeId>> cut;
-  std::vector<std::uint32_t> near;
-  for (const auto& face : new_faces) {
-    const Vec3 &a = face[0], &b = face[1], &c = face[2];
-    const Vec3 middle = (a + b + c) / 3;
-    const double size = std::sqrt(std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
-    const Box3 box = box_of(a, b, c);
-    near.clear();
-    grid.within(x, middle, (size + 0.5 * reach) * (1 + 1e-12), near);
-    for (const auto i : near) {
-      if (i >= first_new.value) continue;
-      const auto crosses = [&](NodeId j) {
-        Box3 segment{x[i], x[i]};
-        segment.add(x[j.index()]);
-        return segment.meets(box) && segment_meets_triangle(x[std::min(i, j.value)], x[std::max(i, j.value)], a, b, c);
-      };
-      for (const auto& arc : graph.arcs(NodeId(i)))
-        if (crosses(arc.to)) cut.insert({NodeId(std::min(i, arc.to.value)), NodeId(std::max(i, arc.to.value))});
-      for (const auto& n : rows.rows[i])
-        if (crosses(n.to)) update.insert(NodeId(i)), update.insert(n.to);
-    }
-  }
+  // What the faces cut, and all that hangs on the moved nodes.
+  Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
+  for (const auto key : severed.neighbors) update.add(static_cast<std::uint32_t>(key >> 32)), update.add(static_cast<std::uint32_t>(key));
+  add_users(nodes, graph, severed.edges, update);
   for (const NodeId m : moved) {
-    update.insert(m);
-    for (const auto& n : rows.rows[m.index()]) update.insert(n.to);
-    for (const auto& arc : graph.arcs(m)) cut.insert({std::min(m, arc.to), std::max(m, arc.to)});
+    update.add(m.value);
+    for (const auto& n : graph.neighbors(nodes, m)) update.add(n.to.value);
+    for (const NodeId j : graph.edges(m)) update.add(j.value), severed.edges.push_back(pair_key(m.value, j.value));
   }
-  // P_update by old distances: whose shortest paths may have used a cut edge.
-  for (const auto& [a, b] : cut) {
-    std::uint32_t length = 0;
-    for (const auto& arc : graph.arcs(a))
-      if (arc.to == b) length = arc.length;
-    update.insert(a), update.insert(b);
-    if (length >= unit_radius) continue;
-    for (const NodeId end : {a, b})
-      for (const auto& n : rows.rows[end.index()])
-        if (n.warped < unit_radius - length) update.insert(n.to);
-  }
-  for (const auto& [a, b] : cut) {
-    graph.remove(a, b);
-    result.cut_edges.push_back({a, b});
-  }
+  std::sort(severed.edges.begin(), severed.edges.end());
+  for (const auto key : severed.edges)
+    if (const NodeId i(static_cast<std::uint32_t>(key >> 32)), j(static_cast<std::uint32_t>(key)); graph.remove(i, j)) result.cut_edges.push_back({i, j});
+
   // E_new: each new node's k nearest visible nodes. The nearest are asked in growing numbers, since many may be hidden.
-  std::vector<NodeId> fresh(moved.begin(), moved.end());
-  for (std::uint32_t i = first_new.value; i < nodes.size(); ++i) fresh.push_back(NodeId(i));
-  for (const NodeId i : fresh) {
-    std::size_t seen = 0;
-    const auto candidates = grid.nearest(x, x[i.index()], static_cast<std::size_t>(3 * k), i.value, [](auto) { return true; });
-    for (const auto j : candidates) {
-      if (seen == static_cast<std::size_t>(k)) break;
-      if (blocked(NodeId(std::min(i.value, j)), NodeId(std::max(i.value, j)))) continue;
+  PairSight sight(x, obstacle_near, graph.reach());
+  std::vector<std::uint32_t> fresh;
+  for (const NodeId m : moved) fresh.push_back(m.value);
+  for (std::uint32_t i = first_new.value; i < nodes.size(); ++i) fresh.push_back(i);
+  const auto join = [&](NodeId i, NodeId j) {
+    if (graph.add(nodes, i, j)) result.added_edges.push_back(std::minmax(i, j));
+  };
+  for (const auto i : fresh) {
+    int seen = 0;
+    for (const auto j : grid.nearest(x, x[i], static_cast<std::size_t>(3 * k), i, [](auto) { return true; })) {
+      if (seen == k) break;
+      if (sight.blocked(i, j)) continue;
       ++seen;
-      if (graph.add(nodes, i, NodeId(j))) result.added_edges.push_back({NodeId(std::min(i.value, j)), NodeId(std::max(i.value, j))});
+      join(NodeId(i), NodeId(j));
     }
   }
+  std::sort(fresh.begin(), fresh.end());
+  std::vector<std::uint32_t> beginnings = fresh;
   for (const auto& [a, b] : joins) {
-    if (graph.add(nodes, a, b)) result.added_edges.push_back({a, b});
-    for (const NodeId end : {a, b})
-      if (end < first_new) fresh.push_back(end);  // an old node that gains an edge is a new beginning, too
+    join(a, b);
+    beginnings.insert(beginnings.end(), {a.value, b.value});  // an old node that gains an edge is a new beginning, too
   }
+  std::sort(beginnings.begin(), beginnings.end());
+  beginnings.erase(std::unique(beginnings.begin(), beginnings.end()), beginnings.end());
   std::sort(result.added_edges.begin(), result.added_edges.end());
-  for (const NodeId i : fresh) {
-    update.insert(i);
-    for (const auto& n : neighborhood_of(i, nodes, graph, [](NodeId, NodeId) { return false; })) update.insert(n.to);
-  }
-  for (const NodeId i : update) rows.rows[i.index()] = neighborhood_of(i, nodes, graph, blocked);
-  result.updated_nodes.assign(update.begin(), update.end());
+
+  // P_update, complete with everyone to whom a new edge may be a short cut.
+  thread_local RowSearch search;
+  search.run(nodes, graph, beginnings, {}, [&](std::uint32_t i, const RowView& row) {
+    update.add(i);
+    for (const auto j : row.to) update.add(j);
+  });
+  std::vector<std::uint32_t> sources = update.ids();
+  std::sort(sources.begin(), sources.end());
+
+  // Who saw each other goes on doing so unless a new face came between them.
+  std::vector<NodePairKey> hidden = severed.neighbors;  // from both ends
+  for (const auto key : severed.neighbors) hidden.push_back(key << 32 | key >> 32);
+  std::sort(hidden.begin(), hidden.end());
+  std::size_t next_hidden = 0;
+  const auto is_fresh = [&](std::uint32_t i) { return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i)); };
+  const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
+    while (next_hidden < hidden.size() && hidden[next_hidden] >> 32 < i) ++next_hidden;
+    const auto old = graph.rows().entries(i);
+    const bool fresh_i = is_fresh(i);
+    for (std::size_t e = 0, o = 0; e < to.size(); ++e) {
+      if (VisibilityGraph::is_edge(bits[e])) continue;
+      const auto key = NodePairKey(i) << 32 | to[e];
+      while (o < old.to.size() && old.to[o] < to[e]) ++o;
+      while (next_hidden < hidden.size() && hidden[next_hidden] < key) ++next_hidden;
+      const bool known = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) && !is_fresh(to[e]);
+      const bool is_hidden = known ? RowStore::has_path(old.bits[o]) || (next_hidden < hidden.size() && hidden[next_hidden] == key)
+                                   : sight.blocked(i, to[e]);
+      if (is_hidden) bits[e] |= VisibilityGraph::path_bit;
+    }
+  };
+  search.run(nodes, graph, sources, mark_hidden, [&](std::uint32_t i, const RowView& row) { graph.set_neighbors(NodeId(i), row); });
+  for (const auto i : sources) result.updated_nodes.push_back(NodeId(i));
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Incremental update of graph and neighbourhoods (§ 6.3, 6.4): equal to a build from scratch, bit for bit.
+// Incremental update of graph and neighbours (§ 6.3, 6.4): equal to a build from scratch, bit for bit.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "graph/neighborhoods.h"
+#include "graph/visibility_graph.h"
 #include "sampling/node_grid.h"
 
 namespace geo {
@@ -19,14 +19,15 @@ struct GraphUpdate {
 
 /// `new_faces`: the triangles that the step added to the complex (crack faces and children of cut skin). `first_new`:
 /// nodes from this row on are new (P_new) and get edges to their k nearest visible nodes. `obstacle_near` must append
-/// the triangles of the whole complex whose boxes meet a box (used for edges of new nodes only and for visible pairs).
-/// `moved` lists old nodes whose position has changed: they lose their edges and are connected anew. `grid` holds all
-/// nodes where they are now. `joins`: pairs with a
-/// new node that see each other and get an edge however far apart they are. Precondition: `nodes` already holds the new nodes; `graph` and `rows` are as before the step.
+/// the triangles of the whole complex whose boxes meet a box (asked only for pairs that were no neighbours before, or of
+/// which one is new or moved). `moved` lists old nodes whose position or radius has changed: they lose their edges and are
+/// connected anew. `grid` holds all nodes where they are now. `joins`: pairs with a new node that see each other and get
+/// an edge however far apart they are. Precondition: `nodes` already holds the new nodes; `graph` is as before the step.
+/// The cost follows what changes, not what there is.
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
                          std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
-                         const NodeGrid& grid, VisibilityGraph& graph, Neighborhoods& rows,
+                         const NodeGrid& grid, VisibilityGraph& graph,
                          std::span<const std::pair<NodeId, NodeId>> joins = {});
 
 }  // namespace geo

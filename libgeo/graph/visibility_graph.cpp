@@ -2,46 +2,79 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "graph/nearest.h"
-#include "graph/spanning_tree.h"
-#include "graph/visibility.h"
+#include "base/error.h"
 
 namespace geo {
+namespace {
 
-std::uint32_t warped_length(const Vec3& xi, const Vec3& xj, double ri, double rj) {
-  const double d = (xi - xj).norm() / std::max(ri, rj) * double(unit_radius);
-  return static_cast<std::uint32_t>(std::clamp(std::ceil(d), 1.0, 1073741824.0));
+// Where j is or would be in a row.
+std::size_t place_of(const RowView& row, NodeId j) {
+  return static_cast<std::size_t>(std::lower_bound(row.to.begin(), row.to.end(), j.value) - row.to.begin());
 }
+
+}  // namespace
 
 double plain_unit_for(const NodeSet& nodes) {
   const double most = nodes.size() == 0 ? 1.0 : *std::max_element(nodes.radius.begin(), nodes.radius.end());
   return std::exp2(std::ceil(std::log2(most)) - 26);
 }
 
+std::size_t VisibilityGraph::neighbor_count(NodeId i) const {
+  const auto row = rows_.entries(i.index());
+  return static_cast<std::size_t>(std::count_if(row.bits.begin(), row.bits.end(), is_neighbor));
+}
+
 bool VisibilityGraph::has(NodeId i, NodeId j) const {
-  return std::any_of(rows_[i.index()].begin(), rows_[i.index()].end(), [&](const Arc& a) { return a.to == j; });
+  const auto row = rows_.entries(i.index());
+  const auto k = place_of(row, j);
+  return k < row.to.size() && row.to[k] == j.value && is_edge(row.bits[k]);
 }
 
 bool VisibilityGraph::add(const NodeSet& nodes, NodeId i, NodeId j) {
   if (has(i, j)) return false;
-  const auto length = warped_length(nodes.position[i.index()], nodes.position[j.index()], nodes.radius[i.index()], nodes.radius[j.index()]);
-  const double distance = (nodes.position[i.index()] - nodes.position[j.index()]).norm();
-  const auto plain = static_cast<std::uint32_t>(std::clamp(std::ceil(distance / plain_unit_), 1.0, 1073741824.0));
+  const std::uint16_t bound = bits_of_bound(warped_length(nodes, i.index(), j.index())), fresh = edge_bit | path_bit | bound;
   const auto put = [&](NodeId from, NodeId to) {
-    auto& row = rows_[from.index()];
-    const Arc arc{to, length, plain};
-    const auto less = [](const Arc& a, const Arc& b) { return a.length != b.length ? a.length < b.length : a.to < b.to; };
-    row.insert(std::upper_bound(row.begin(), row.end(), arc, less), arc);
+    const auto row = rows_.row(from.index());
+    const auto k = place_of(row, to);
+    std::vector<std::uint32_t> ids(row.to.begin(), row.to.end());
+    std::vector<std::uint16_t> bits(row.bits.begin(), row.bits.end());
+    std::vector<float> paths(row.paths.begin(), row.paths.end());
+    if (k < ids.size() && ids[k] == to.value) {
+      // Neighbours already: now they see each other.
+      if (RowStore::has_path(bits[k])) paths.erase(paths.begin() + std::count_if(bits.begin(), bits.begin() + static_cast<std::ptrdiff_t>(k), RowStore::has_path));
+      bits[k] = static_cast<std::uint16_t>(edge_bit | std::min<std::uint16_t>(bits[k] & bound_bits, bound));
+    } else {
+      ids.insert(ids.begin() + static_cast<std::ptrdiff_t>(k), to.value);
+      bits.insert(bits.begin() + static_cast<std::ptrdiff_t>(k), fresh);
+    }
+    rows_.set(from.index(), {ids, bits, paths});
   };
   put(i, j), put(j, i);
-  longest_ = std::max(longest_, distance);
+  reach_ = std::max({reach_, nodes.radius[i.index()], nodes.radius[j.index()],
+                     std::sqrt(squared_distance(nodes.position[i.index()], nodes.position[j.index()]))});
   ++edges_;
   return true;
 }
 
 bool VisibilityGraph::remove(NodeId i, NodeId j) {
-  const auto take = [&](NodeId from, NodeId to) { return std::erase_if(rows_[from.index()], [&](const Arc& a) { return a.to == to; }) > 0; };
+  const auto take = [&](NodeId from, NodeId to) {
+    const auto row = rows_.entries(from.index());
+    const auto k = place_of(row, to);
+    if (k == row.to.size() || row.to[k] != to.value || !is_edge(row.bits[k])) return false;
+    if (is_neighbor(row.bits[k])) {
+      rows_.bits(from.index())[k] &= static_cast<std::uint16_t>(~edge_bit);
+      return true;
+    }
+    const auto whole = rows_.row(from.index());
+    std::vector<std::uint32_t> ids(whole.to.begin(), whole.to.end());
+    std::vector<std::uint16_t> bits(whole.bits.begin(), whole.bits.end());
+    const std::vector<float> paths(whole.paths.begin(), whole.paths.end());
+    ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(k)), bits.erase(bits.begin() + static_cast<std::ptrdiff_t>(k));
+    rows_.set(from.index(), {ids, bits, paths});
+    return true;
+  };
   if (!take(i, j)) return false;
   take(j, i);
   --edges_;
@@ -49,47 +82,68 @@ bool VisibilityGraph::remove(NodeId i, NodeId j) {
 }
 
 std::uint32_t VisibilityGraph::components(std::vector<std::uint32_t>& of) const {
-  of.assign(rows_.size(), ~0u);
+  of.assign(node_count(), ~0u);
   std::uint32_t count = 0;
   std::vector<std::uint32_t> stack;
-  for (std::uint32_t i = 0; i < rows_.size(); ++i) {
+  for (std::uint32_t i = 0; i < of.size(); ++i) {
     if (of[i] != ~0u) continue;
     of[i] = count;
     stack.push_back(i);
     while (!stack.empty()) {
-      const auto at = stack.back();
+      const NodeId at(stack.back());
       stack.pop_back();
-      for (const Arc& a : rows_[at])
-        if (of[a.to.index()] == ~0u) of[a.to.index()] = count, stack.push_back(a.to.value);
+      for (const NodeId j : edges(at))
+        if (of[j.index()] == ~0u) of[j.index()] = count, stack.push_back(j.value);
     }
     ++count;
   }
   return count;
 }
 
-VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& obstacles, int k, const Progress& progress) {
+VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_unit, std::span<const std::uint32_t> count,
+                                           std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
+                                           std::span<const float> paths) {
   const std::size_t n = nodes.size();
+  const auto require = [](bool right, const char* what, std::size_t e) {
+    if (!right) throw InputError("entry " + std::to_string(e) + " of the graph " + what);
+  };
+  if (count.size() != n || bits.size() != to.size()) throw InputError("the graph's rows do not fit together");
   VisibilityGraph graph;
-  graph.resize(n);
-  graph.set_plain_unit(plain_unit_for(nodes));
-  report(progress, "nearest nodes", 0, n);
-  const NodeTree tree(nodes.position);
-  const auto near = nearest_nodes(tree, k);
-  std::vector<std::pair<NodeId, NodeId>> edges;
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (int q = 0; q < k; ++q)
-      if (const NodeId j = near[i * static_cast<std::size_t>(k) + static_cast<std::size_t>(q)]; j.valid()) edges.push_back(std::minmax(NodeId(i), j));
-  report(progress, "spanning tree", 0, n);
-  const auto beyond = spanning_tree_beyond(tree, nodes.position, near, k);
-  edges.insert(edges.end(), beyond.begin(), beyond.end());
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-
-  report(progress, "visibility", 0, edges.size());
-  const auto blocked = Visibility(nodes.position, obstacles).blocked(edges);
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    if (!blocked[e]) graph.add(nodes, edges[e].first, edges[e].second);
+  graph.plain_unit_ = plain_unit;
+  graph.rows_.resize(n);
+  std::vector<std::size_t> ends(n), next(n);  // next: what each row expects from the other ends, which come in order
+  for (std::size_t i = 0, sum = 0; i < n; ++i) next[i] = sum, ends[i] = sum += count[i];
+  if (n > 0 && ends.back() != to.size()) throw InputError("the graph's rows do not fit together");
+  RowStore::Writer rows(graph.rows_);
+  std::size_t path = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t begin = i ? ends[i - 1] : 0, end = ends[i], first_path = path;
+    for (std::size_t e = begin; e < end; ++e) {
+      require(to[e] < n && to[e] != i && (e == begin || to[e - 1] < to[e]), "is out of order or range", e);
+      if (RowStore::has_path(bits[e])) {
+        require(path < paths.size() && paths[path] >= 0 && std::isfinite(paths[path]), "has no path's length", e);
+        ++path;
+      }
+      if (to[e] < i) continue;
+      const auto back = next[to[e]]++;
+      require(back < ends[to[e]] && to[back] == i && bits[back] == bits[e], "is not the same from its other end", e);
+      if (!is_edge(bits[e])) continue;
+      ++graph.edges_;
+      graph.reach_ = std::max({graph.reach_, nodes.radius[i], std::sqrt(squared_distance(nodes.position[i], nodes.position[to[e]]))});
+    }
+    // All entries to lower nodes must have been met from there.
+    require(next[i] == end || to[next[i]] > i, "is not the same from its other end", next[i]);
+    rows.set(i, {to.subspan(begin, end - begin), bits.subspan(begin, end - begin), paths.subspan(first_path, path - first_path)});
+  }
+  if (path != paths.size()) throw InputError("the graph has more lengths of paths than it uses");
   return graph;
+}
+
+bool operator==(const VisibilityGraph& a, const VisibilityGraph& b) {
+  if (a.node_count() != b.node_count() || a.plain_unit_ != b.plain_unit_) return false;
+  for (std::size_t i = 0; i < a.node_count(); ++i)
+    if (!(a.rows_.row(i) == b.rows_.row(i))) return false;
+  return true;
 }
 
 }  // namespace geo

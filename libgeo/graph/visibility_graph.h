@@ -1,4 +1,4 @@
-// The visibility graph G (§ 6.1): which nodes see each other, and how far apart they are.
+// The visibility graph G (§ 6.1): which nodes see each other, and who is near whom along it (§ 6.2).
 #pragma once
 
 #include <cstdint>
@@ -8,52 +8,158 @@
 #include "base/ids.h"
 #include "base/progress.h"
 #include "geometry/bvh.h"
+#include "graph/lengths.h"
+#include "graph/row_store.h"
 #include "sampling/node_set.h"
 
 namespace geo {
 
-/// Warped length of an edge (§ 6.4), |x_i − x_j| / max(r_i, r_j), as an integer count of 2⁻²⁴ support radii, rounded
-/// up and at least 1: sums are exact, so a distance depends on no order of summation.
-constexpr std::uint32_t unit_radius = 1u << 24;
-std::uint32_t warped_length(const Vec3& xi, const Vec3& xj, double ri, double rj);
-
-/// An undirected graph over nodes; rows sorted by (length, node). Only edges shorter than the support matter to
-/// neighbourhoods, but all are kept: connectivity does not depend on radii.
-class VisibilityGraph {
- public:
-  struct Arc {
-    NodeId to;
-    std::uint32_t length;  ///< warped, see above
-    std::uint32_t plain;   ///< Euclidean, in plain_unit()
-    friend auto operator<=>(const Arc& a, const Arc& b) = default;
-  };
-  std::size_t node_count() const { return rows_.size(); }
-  std::size_t edge_count() const { return edges_; }
-  std::span<const Arc> arcs(NodeId i) const { return rows_[i.index()]; }
-  bool has(NodeId i, NodeId j) const;
-  void resize(std::size_t nodes) { rows_.resize(nodes); }
-  /// Adds (between these nodes, of this set) or removes the edge ij; both directions. False when it was (was not) there.
-  bool add(const NodeSet& nodes, NodeId i, NodeId j);
-  bool remove(NodeId i, NodeId j);
-  /// Plain lengths are integers too: a power of two that is set once, 2⁻²⁶ of about the largest support radius.
-  double plain_unit() const { return plain_unit_; }
-  void set_plain_unit(double unit) { plain_unit_ = unit; }
-  /// No edge is longer than this, in model units.
-  double longest() const { return longest_; }
-  /// Component of each node, numbered by lowest node; returns their count.
-  std::uint32_t components(std::vector<std::uint32_t>& of) const;
-
- private:
-  std::vector<std::vector<Arc>> rows_;
-  std::size_t edges_ = 0;
-  double plain_unit_ = 1, longest_ = 0;
+struct Neighbor {
+  NodeId to;
+  std::uint32_t warped = 0;  ///< graph distance in 2⁻²⁴ support radii, < unit_radius, rounded down to 2⁻¹⁴ of a radius (§ 6.4)
+  float distance = 0;        ///< what weights use, model units: Euclidean where the pair sees each other, else the path's
 };
 
-/// The unit of plain lengths for a node set.
-double plain_unit_for(const NodeSet& nodes);
+/// An undirected graph over nodes, and the neighbours of each: one row a node for both, ascending by node. Edges are kept
+/// however long they are (connectivity does not depend on radii); one as long as the support joins no neighbours. Lengths
+/// of edges and distances of pairs that see each other are not stored: they are functions of the nodes.
+/// Neighbours are symmetric: j is one of i's exactly when i is one of j's. They are there once build_neighborhoods() was
+/// called, and follow changes of the graph through update_graph() only.
+class VisibilityGraph {
+ public:
+  std::size_t node_count() const { return rows_.size(); }
+  std::size_t edge_count() const { return edges_; }
+  void resize(std::size_t nodes) { rows_.resize(nodes); }
 
-/// EMST ∪ k nearest, minus every edge that touches a triangle of `obstacles` (closed semantics, exact).
+  class Edges;
+  class Neighbors;
+  /// The nodes at the other ends of i's edges, ascending: a range of NodeId.
+  Edges edges(NodeId i) const;
+  /// i's neighbours, ascending, without i itself: a range of Neighbor. `nodes` must be the graph's and outlive the range.
+  Neighbors neighbors(const NodeSet& nodes, NodeId i) const;
+  std::size_t neighbor_count(NodeId i) const;
+
+  bool has(NodeId i, NodeId j) const;
+  /// Adds (between these nodes, of this set) or removes the edge ij; both directions. False when it was (was not) there.
+  /// Neighbours stay what they are.
+  bool add(const NodeSet& nodes, NodeId i, NodeId j);
+  bool remove(NodeId i, NodeId j);
+
+  /// The unit of plain lengths, set once: plain_unit_for() the nodes it is built for.
+  double plain_unit() const { return plain_unit_; }
+  void set_plain_unit(double unit) { plain_unit_ = unit; }
+  /// No edge is longer than this and no two neighbours are farther apart, in model units.
+  double reach() const { return reach_; }
+  /// Component of each node, numbered by lowest node; returns their count.
+  std::uint32_t components(std::vector<std::uint32_t>& of) const;
+  /// Bytes of all rows.
+  std::size_t bytes() const { return rows_.bytes(); }
+
+  /// Rows as they are stored, for files and searches: entries as the functions below read them.
+  const RowStore& rows() const { return rows_; }
+  static constexpr std::uint16_t edge_bit = 1u << 15, path_bit = 1u << 14, bound_bits = path_bit - 1;
+  static constexpr bool is_edge(std::uint16_t bits) { return bits & edge_bit; }
+  static constexpr bool is_neighbor(std::uint16_t bits) { return (bits & (edge_bit | path_bit)) != (edge_bit | path_bit); }
+  /// At most the warped distance of a pair; of an edge that joins no neighbours (yet), at most its length.
+  static constexpr std::uint32_t bound(std::uint16_t bits) { return std::uint32_t(bits & bound_bits) << 10; }
+  static constexpr std::uint16_t bits_of_bound(std::uint32_t warped) {
+    return static_cast<std::uint16_t>(warped >= unit_radius ? bound_bits : warped >> 10);
+  }
+
+  /// Puts a row in place of i's: its edges must be i's.
+  void set_neighbors(NodeId i, const RowView& row) { rows_.set(i.index(), row); }
+  /// All rows at once: their edges must be the graph's.
+  void replace_rows(RowStore rows) { rows_.swap(rows); }
+  /// From all rows as flat arrays, in node order, row i with count[i] entries. Throws InputError, which names the first
+  /// entry that cannot be: out of order or range, or not the same from both ends.
+  static VisibilityGraph from_rows(const NodeSet& nodes, double plain_unit, std::span<const std::uint32_t> count,
+                                   std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
+                                   std::span<const float> paths);
+
+  /// The same edges and neighbours, to the last bit.
+  friend bool operator==(const VisibilityGraph& a, const VisibilityGraph& b);
+
+ private:
+  friend VisibilityGraph build_visibility_graph(const NodeSet&, const TriangleBvh&, int, const Progress&);
+
+  RowStore rows_;
+  std::size_t edges_ = 0;
+  double plain_unit_ = 1, reach_ = 0;
+};
+
+/// EMST ∪ k nearest, minus every edge that touches a triangle of `obstacles` (closed semantics, exact). Without
+/// neighbours yet.
 VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& obstacles, int k,
                                        const Progress& progress = {});
+
+/// A range over the entries of a row that are edges.
+class VisibilityGraph::Edges {
+ public:
+  class Iterator {
+   public:
+    Iterator(const RowView& row, std::size_t at) : row_(row), at_(at) { skip(); }
+    NodeId operator*() const { return NodeId(row_.to[at_]); }
+    Iterator& operator++() {
+      ++at_, skip();
+      return *this;
+    }
+    bool operator!=(const Iterator& o) const { return at_ != o.at_; }
+
+   private:
+    void skip() {
+      while (at_ < row_.to.size() && !is_edge(row_.bits[at_])) ++at_;
+    }
+    RowView row_;
+    std::size_t at_;
+  };
+  explicit Edges(const RowView& row) : row_(row) {}
+  Iterator begin() const { return {row_, 0}; }
+  Iterator end() const { return {row_, row_.to.size()}; }
+
+ private:
+  RowView row_;
+};
+
+/// A range over the entries of a row that are neighbours.
+class VisibilityGraph::Neighbors {
+ public:
+  class Iterator {
+   public:
+    Iterator(const RowView& row, const NodeSet& nodes, std::size_t i, std::size_t at) : row_(row), nodes_(&nodes), i_(i), at_(at) { skip(); }
+    Neighbor operator*() const {
+      const auto to = row_.to[at_];
+      const float distance = RowStore::has_path(row_.bits[at_]) ? row_.paths[path_]
+                                                                : static_cast<float>(std::sqrt(squared_distance(nodes_->position[i_], nodes_->position[to])));
+      return {NodeId(to), bound(row_.bits[at_]), distance};
+    }
+    Iterator& operator++() {
+      path_ += RowStore::has_path(row_.bits[at_]);
+      ++at_, skip();
+      return *this;
+    }
+    bool operator!=(const Iterator& o) const { return at_ != o.at_; }
+
+   private:
+    void skip() {
+      while (at_ < row_.to.size() && !is_neighbor(row_.bits[at_])) ++at_;
+    }
+    RowView row_;
+    const NodeSet* nodes_;
+    std::size_t i_, at_, path_ = 0;
+  };
+  Neighbors(const RowView& row, const NodeSet& nodes, NodeId i) : row_(row), nodes_(&nodes), i_(i.index()) {}
+  Iterator begin() const { return {row_, *nodes_, i_, 0}; }
+  Iterator end() const { return {row_, *nodes_, i_, row_.to.size()}; }
+
+ private:
+  RowView row_;
+  const NodeSet* nodes_;
+  std::size_t i_;
+};
+
+inline VisibilityGraph::Edges VisibilityGraph::edges(NodeId i) const { return Edges(rows_.entries(i.index())); }
+inline VisibilityGraph::Neighbors VisibilityGraph::neighbors(const NodeSet& nodes, NodeId i) const {
+  return {rows_.row(i.index()), nodes, i};
+}
 
 }  // namespace geo

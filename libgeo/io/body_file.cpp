@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "io/json_internal.h"
@@ -51,39 +52,27 @@ void add_nodes(Arrays& a) {
   a.add("nodes/debris", a.body.debris);
 }
 
-// Graph and neighbourhoods. Rows are given by their lengths: what changes in one row changes no other.
+// Edges and neighbours. Rows are given by their lengths: what changes in one row changes no other.
 void add_rows(Arrays& a) {
-  const Body& body = a.body;
-  const auto n = static_cast<std::uint32_t>(body.nodes.size());
-  const auto upper = [&body](std::uint32_t i, std::vector<std::uint32_t>& row) {
-    row.clear();
-    for (const auto& arc : body.graph.arcs(NodeId(i)))
-      if (arc.to.value > i) row.push_back(arc.to.value);
-    std::sort(row.begin(), row.end());
-  };
-  a.add<double>("graph/plain_unit", 1, [&body](KerfSink& out) { out.put(body.graph.plain_unit()); });
-  a.add<std::uint32_t>("graph/count", n, [upper, n](KerfSink& out) {
-    std::vector<std::uint32_t> row;
-    for (std::uint32_t i = 0; i < n; ++i) upper(i, row), out.put(static_cast<std::uint32_t>(row.size()));
-  });
-  a.add<std::uint32_t>("graph/to", body.graph.edge_count(), [upper, n](KerfSink& out) {
-    std::vector<std::uint32_t> row;
-    for (std::uint32_t i = 0; i < n; ++i) upper(i, row), out.write(std::as_bytes(std::span(row)));
-  });
-  std::uint64_t pairs = 0;
-  for (std::uint32_t i = 0; i < n; ++i) pairs += body.neighbors.of(NodeId(i)).size();
-  a.add<std::uint32_t>("neighbors/count", n, [&body, n](KerfSink& out) {
-    for (std::uint32_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(body.neighbors.of(NodeId(i)).size()));
-  });
-  const auto each = [&body, n](const auto& put) {
-    return [&body, n, put](KerfSink& out) {
-      for (std::uint32_t i = 0; i < n; ++i)
-        for (const auto& neighbor : body.neighbors.of(NodeId(i))) put(out, neighbor);
+  const RowStore& rows = a.body.graph.rows();
+  const std::size_t n = rows.size();
+  std::uint64_t entries = 0, paths = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const RowView row = rows.row(i);
+    entries += row.to.size(), paths += row.paths.size();
+  }
+  const auto each = [&rows, n](const auto& part) {
+    return [&rows, n, part](KerfSink& out) {
+      for (std::size_t i = 0; i < n; ++i) out.write(std::as_bytes(part(rows.row(i))));
     };
   };
-  a.add<std::uint32_t>("neighbors/to", pairs, each([](KerfSink& out, const Neighbor& x) { out.put(x.to.value); }));
-  a.add<std::uint32_t>("neighbors/warped", pairs, each([](KerfSink& out, const Neighbor& x) { out.put(x.warped); }));
-  a.add<float>("neighbors/distance", pairs, each([](KerfSink& out, const Neighbor& x) { out.put(x.distance); }));
+  a.add<double>("graph/plain_unit", 1, [&body = a.body](KerfSink& out) { out.put(body.graph.plain_unit()); });
+  a.add<std::uint32_t>("graph/count", n, [&rows, n](KerfSink& out) {
+    for (std::size_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(rows.entries(i).to.size()));
+  });
+  a.add<std::uint32_t>("graph/to", entries, each([](const RowView& row) { return row.to; }));
+  a.add<std::uint16_t>("graph/bits", entries, each([](const RowView& row) { return row.bits; }));
+  a.add<float>("graph/paths", paths, each([](const RowView& row) { return row.paths; }));
 }
 
 void add_binding(Arrays& a) {
@@ -168,41 +157,65 @@ void read_nodes(const KerfFile& in, Body& body) {
       in.fail("node " + std::to_string(i) + " has a radius, spacing or volume that is not positive or of no sensible size");
 }
 
-// Where each row of a group ends, of which there are n with `size` entries in all. Version 1 had the ends themselves.
-std::vector<std::uint64_t> row_ends(const KerfFile& in, const std::string& group, std::size_t n, std::size_t size) {
-  const bool counted = in.sections().count(group + "/ends") == 0;
-  const std::string section = group + (counted ? "/count" : "/ends");
-  const auto values = in.read<std::uint32_t>(section);
-  std::vector<std::uint64_t> ends(values.begin(), values.end());
-  if (counted) std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  if (!std::is_sorted(ends.begin(), ends.end())) in.fail("section '" + section + "' is not ascending");
-  if (ends.size() != n || ends.back() != size) in.fail("section '" + section + "' does not fit");
-  return ends;
+// Version 1, and early files of version 2, had the edges i < j and the neighbours apart, with all distances.
+void read_old_rows(const KerfFile& in, Body& body, double unit) {
+  const NodeSet& nodes = body.nodes;
+  const std::size_t n = nodes.size();
+  const auto ends_of = [&](const std::string& group, std::size_t size) {
+    const bool counted = in.sections().count(group + "/ends") == 0;
+    const std::string section = group + (counted ? "/count" : "/ends");
+    const auto values = in.read<std::uint32_t>(section);
+    std::vector<std::uint64_t> ends(values.begin(), values.end());
+    if (counted) std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    if (!std::is_sorted(ends.begin(), ends.end())) in.fail("section '" + section + "' is not ascending");
+    if (ends.size() != n || ends.back() != size) in.fail("section '" + section + "' does not fit");
+    return ends;
+  };
+  VisibilityGraph edges;
+  edges.resize(n);
+  const auto edge = in.read<std::uint32_t>("graph/to");
+  const auto edge_ends = ends_of("graph", edge.size());
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (auto e = i ? edge_ends[i - 1] : 0; e < edge_ends[i]; ++e)
+      if (edge[e] >= n || edge[e] <= i || !edges.add(nodes, NodeId(i), NodeId(edge[e]))) in.fail("edge " + std::to_string(e) + " of the graph is out of range or there twice");
+  const auto neighbor = in.read<std::uint32_t>("neighbors/to"), warped = in.read<std::uint32_t>("neighbors/warped");
+  const auto distance = in.read<float>("neighbors/distance");
+  const auto ends = ends_of("neighbors", neighbor.size());
+  if (warped.size() != neighbor.size() || distance.size() != neighbor.size()) in.fail("the sections of neighbours have different lengths");
+  std::vector<std::uint32_t> count, to;
+  std::vector<std::uint16_t> bits;
+  std::vector<float> paths;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    std::map<std::uint32_t, std::pair<std::uint16_t, float>> row;
+    for (const NodeId j : edges.edges(NodeId(i))) row[j.value] = {VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(unit_radius), 0};
+    for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
+      if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e])) in.fail("neighbour " + std::to_string(e) + " is out of range");
+      // Who does not see the other has a longer path than the straight one.
+      const auto straight = static_cast<float>(std::sqrt(squared_distance(nodes.position[i], nodes.position[neighbor[e]])));
+      const bool hidden = distance[e] > std::nextafter(straight, 2 * straight);
+      const std::uint16_t kind = row.count(neighbor[e]) ? VisibilityGraph::edge_bit : hidden ? VisibilityGraph::path_bit : 0;
+      row[neighbor[e]] = {kind | VisibilityGraph::bits_of_bound(warped[e]), distance[e]};
+    }
+    count.push_back(static_cast<std::uint32_t>(row.size()));
+    for (const auto& [j, entry] : row) {
+      to.push_back(j), bits.push_back(entry.first);
+      if (RowStore::has_path(entry.first)) paths.push_back(entry.second);
+    }
+  }
+  body.graph = VisibilityGraph::from_rows(nodes, unit, count, to, bits, paths);
 }
 
 void read_rows(const KerfFile& in, Body& body) {
-  const auto n = static_cast<std::uint32_t>(body.nodes.size());
   const auto unit = in.read<double>("graph/plain_unit");
   if (unit.size() != 1 || !(unit[0] > 0) || !std::isfinite(unit[0])) in.fail("the unit of plain lengths is not positive");
-  body.graph.set_plain_unit(unit[0]);
-  body.graph.resize(n);
-  const auto to = in.read<std::uint32_t>("graph/to");
-  const auto graph_ends = row_ends(in, "graph", n, to.size());
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (auto e = i ? graph_ends[i - 1] : 0; e < graph_ends[i]; ++e)
-      if (to[e] >= n || to[e] <= i || !body.graph.add(body.nodes, NodeId(i), NodeId(to[e]))) in.fail("edge " + std::to_string(e) + " of the graph is out of range or there twice");
-  const auto neighbor = in.read<std::uint32_t>("neighbors/to"), warped = in.read<std::uint32_t>("neighbors/warped");
-  const auto distance = in.read<float>("neighbors/distance");
-  const auto ends = row_ends(in, "neighbors", n, neighbor.size());
-  if (warped.size() != neighbor.size() || distance.size() != neighbor.size()) in.fail("the sections of neighbours have different lengths");
-  body.neighbors.rows.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    auto& row = body.neighbors.rows[i];
-    row.reserve(ends[i] - (i ? ends[i - 1] : 0));
-    for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
-      if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e])) in.fail("neighbour " + std::to_string(e) + " is out of range");
-      row.push_back({NodeId(neighbor[e]), warped[e], distance[e]});
-    }
+  if (in.sections().count("neighbors/to")) return read_old_rows(in, body, unit[0]);
+  const auto count = in.read<std::uint32_t>("graph/count"), to = in.read<std::uint32_t>("graph/to");
+  const auto bits = in.read<std::uint16_t>("graph/bits");
+  const auto paths = in.read<float>("graph/paths");
+  try {
+    body.graph = VisibilityGraph::from_rows(body.nodes, unit[0], count, to, bits, paths);
+  } catch (const InputError& e) {
+    in.fail(e.what());
   }
 }
 

@@ -9,8 +9,8 @@ namespace geo {
 template <class Each>
 void each_edge(const Body& body, const Each& each) {
   for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
-    for (const auto& arc : body.graph.arcs(NodeId(i)))
-      if (arc.to.value > i) each(i, arc.to.value);
+    for (const NodeId j : body.graph.edges(NodeId(i)))
+      if (j.value > i) each(i, j.value);
 }
 
 }  // namespace geo

@@ -10,21 +10,21 @@
 
 namespace geo {
 
-Solid::Solid(const NodeSet& nodes, const Neighborhoods& neighbors, const Material& material) : material_(material) {
+Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, const Material& material) : material_(material) {
   require_material(material);
   State none;
   std::vector<NodeId> all(nodes.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = NodeId(i);
-  update(nodes, neighbors, NodeId(nodes.size()), {}, all, none);
+  update(nodes, graph, NodeId(nodes.size()), {}, all, none);
 }
 
-void Solid::build_row(std::uint32_t i, const NodeSet& nodes, const Neighborhoods& neighbors) {
+void Solid::build_row(std::uint32_t i, const NodeSet& nodes, const VisibilityGraph& graph) {
   Row& row = rows_[i];
   row = Row{};
   Mat3 moment = Mat3::Zero();
   std::vector<double> weights;
   const double scale = nodes.radius[i];
-  for (const auto& n : neighbors.of(NodeId(i))) {
+  for (const auto& n : graph.neighbors(nodes, NodeId(i))) {
     const double h = std::max(nodes.radius[i], nodes.radius[n.to.index()]);
     const double w = kernel(n.distance / h, 1.0);  // the moment matrix cancels the kernel's scale
     if (w <= 0) continue;
@@ -59,7 +59,7 @@ void Solid::transpose() {
     for (std::uint32_t q = 0; q < rows_[i].to.size(); ++q) incoming_[rows_[i].to[q]].push_back({i, q});
 }
 
-void Solid::update(const NodeSet& nodes, const Neighborhoods& neighbors, NodeId first_new, std::span<const NodeId> donors,
+void Solid::update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
                    std::span<const NodeId> updated, State& state) {
   const std::size_t n = nodes.size();
   if (first_new.index() < n) {
@@ -80,7 +80,7 @@ void Solid::update(const NodeSet& nodes, const Neighborhoods& neighbors, NodeId 
   volume_ = nodes.volume, spacing_ = nodes.spacing, material_position_ = nodes.position;
   for (std::size_t i = 0; i < n; ++i) mass_[i] = material_.density * volume_[i];
   parallel_for(updated.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) build_row(updated[k].value, nodes, neighbors);
+    for (std::size_t k = begin; k < end; ++k) build_row(updated[k].value, nodes, graph);
   });
   transpose();
 }

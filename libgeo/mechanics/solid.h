@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "graph/neighborhoods.h"
+#include "graph/visibility_graph.h"
 #include "mechanics/elasticity.h"
 #include "sampling/node_set.h"
 
@@ -40,12 +40,12 @@ struct StepReport {
 class Solid {
  public:
   /// Shape functions from scratch. Throws InputError for an impossible material.
-  Solid(const NodeSet& nodes, const Neighborhoods& neighbors, const Material& material);
+  Solid(const NodeSet& nodes, const VisibilityGraph& graph, const Material& material);
 
   /// After a split: new nodes take part, rows of `updated` (ascending) are recomputed; equal to a build from scratch, bit
   /// for bit. `donors` of the nodes from `first_new` on: a new node moves with its donor's affine map and velocity, so
   /// linear momentum is what it was.
-  void update(const NodeSet& nodes, const Neighborhoods& neighbors, NodeId first_new, std::span<const NodeId> donors,
+  void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);
 
   std::size_t size() const { return mass_.size(); }
@@ -74,7 +74,7 @@ class Solid {
     std::vector<double> penalty;      // weights of the mode penalty, 1/m²
     Vec3 g_self = Vec3::Zero();
   };
-  void build_row(std::uint32_t i, const NodeSet& nodes, const Neighborhoods& neighbors);
+  void build_row(std::uint32_t i, const NodeSet& nodes, const VisibilityGraph& graph);
   void transpose();
   double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force) const;
   void multiply(const std::vector<Mat9>& h, const std::vector<Vec3>& p, std::vector<Vec3>& out) const;

@@ -51,7 +51,7 @@ FrameWork& FrameWork::operator+=(const FrameWork& o) {
 }
 
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
-    : scene_(scene), body_(make_body(scene, solid, progress)), solid_(body_.nodes, body_.neighbors, scene.material) {
+    : scene_(scene), body_(make_body(scene, solid, progress)), solid_(body_.nodes, body_.graph, scene.material) {
   state_.motion.displacement.assign(body_.nodes.size(), Vec3::Zero());
   state_.motion.velocity.assign(body_.nodes.size(), scene.velocity);
   state_.fronts.resize(scene.blades.size());
@@ -59,7 +59,7 @@ Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Prog
 }
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene), body_(std::move(body)), state_(std::move(state)), solid_(body_.nodes, body_.neighbors, scene.material) {
+    : scene_(scene), body_(std::move(body)), state_(std::move(state)), solid_(body_.nodes, body_.graph, scene.material) {
   if (state_.motion.displacement.size() != body_.nodes.size() || state_.motion.velocity.size() != body_.nodes.size() || state_.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   prepare();
@@ -102,7 +102,7 @@ void Simulation::cut(FrameWork& work) {
     try {
       const BodyDelta delta = split(body_, *front, next, options, &work.split);
       if (delta.crack.empty()) continue;
-      solid_.update(body_.nodes, body_.neighbors, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
+      solid_.update(body_.nodes, body_.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
       prepare();
     } catch (const GeometryError&) {
       ++work.refused;

@@ -59,7 +59,7 @@ TEST_CASE("A plane through a block separates nodes, graph and binding", "[body]"
   CHECK(find_pieces(body.surface).count == 2);
   CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
   for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
-    for (const auto& n : body.neighbors.of(NodeId(i)))
+    for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i)))
       CHECK((body.nodes.position[i].x() < 0.47) == (body.nodes.position[n.to.index()].x() < 0.47));
   // A vertex of either side of the cut is carried by nodes of that side.
   std::vector<std::pair<NodeId, double>> nodes;

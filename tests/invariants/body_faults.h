@@ -39,8 +39,8 @@ inline std::string fault_of(const Body& body, double volume) {
     if (!outside.inside(x[i])) return "node " + name(i) + " is outside";
     if (faces.blocks(x[i], x[i])) return "node " + name(i) + " is on a face";
     if (!(body.nodes.volume[i] > 0)) return "node " + name(i) + " has no volume";
-    for (const auto& arc : body.graph.arcs(NodeId(i)))
-      if (arc.to.value > i && faces.blocks(x[i], x[arc.to.index()])) return "edge " + name(i) + "-" + name(arc.to.value) + " crosses a face";
+    for (const NodeId j : body.graph.edges(NodeId(i)))
+      if (j.value > i && faces.blocks(x[i], x[j.index()])) return "edge " + name(i) + "-" + name(j.value) + " crosses a face";
   }
   if (std::abs(total(body.nodes.volume) - volume) > 1e-12 * volume) return "the volumes of the nodes do not sum to what they did";
 
@@ -63,15 +63,14 @@ inline std::string fault_of(const Body& body, double volume) {
   for (std::int32_t p = 0; p < static_cast<std::int32_t>(pieces.count); ++p)
     if (!all.count(p) && !dust(p)) return "piece " + std::to_string(p) + " has no node";
 
-  const auto rows = build_neighborhoods(body.nodes, body.graph, faces);
+  VisibilityGraph scratch = body.graph;
+  build_neighborhoods(body.nodes, scratch, faces);
   for (std::uint32_t i = 0; i < x.size(); ++i) {
-    const auto a = rows.of(NodeId(i)), b = body.neighbors.of(NodeId(i));
-    const auto [at, other] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
-    const auto tell = [](std::span<const Neighbor> row, auto n) {
-      return n == row.end() ? "none" : std::to_string(n->to.value) + " at " + std::to_string(n->warped) + ", " + std::to_string(n->distance);
-    };
-    if (at != a.end() || other != b.end())
-      return "the row of node " + name(i) + " is not that of scratch: " + tell(b, other) + " for " + tell(a, at);
+    const RowView a = scratch.rows().row(i), b = body.graph.rows().row(i);
+    if (a == b) continue;
+    const auto [at, other] = std::mismatch(a.to.begin(), a.to.end(), b.to.begin(), b.to.end());
+    const auto tell = [](const RowView& row, auto n) { return n == row.to.end() ? "none" : std::to_string(*n); };
+    return "the row of node " + name(i) + " is not that of scratch: " + tell(b, other) + " for " + tell(a, at) + " is the first other node";
   }
   const Binding binding = build_binding(body);
   for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
@@ -111,12 +110,11 @@ inline std::string fault_of(const Body& before, const Body& body, const BodyDelt
   const auto stood = [&](NodeId i) { return !std::binary_search(delta.moved_nodes.begin(), delta.moved_nodes.end(), i); };
   for (std::uint32_t i = 0; i < before.nodes.size(); ++i) {
     if (stood(NodeId(i)) != (x[i] == before.nodes.position[i])) return "node " + std::to_string(i) + " moved unsaid";
-    for (const auto& arc : before.graph.arcs(NodeId(i)))
-      if (arc.to.value > i && stood(NodeId(i)) && stood(arc.to) && !body.graph.has(NodeId(i), arc.to) && !faces.blocks(x[i], x[arc.to.index()]))
-        return "edge " + std::to_string(i) + "-" + std::to_string(arc.to.value) + " was removed for nothing";
+    for (const NodeId j : before.graph.edges(NodeId(i)))
+      if (j.value > i && stood(NodeId(i)) && stood(j) && !body.graph.has(NodeId(i), j) && !faces.blocks(x[i], x[j.index()]))
+        return "edge " + std::to_string(i) + "-" + std::to_string(j.value) + " was removed for nothing";
     const bool updated = std::binary_search(delta.updated_nodes.begin(), delta.updated_nodes.end(), NodeId(i));
-    const auto a = before.neighbors.of(NodeId(i)), b = body.neighbors.of(NodeId(i));
-    if (!updated && !std::equal(a.begin(), a.end(), b.begin(), b.end())) return "row " + std::to_string(i) + " changed unsaid";
+    if (!updated && !(before.graph.rows().row(i) == body.graph.rows().row(i))) return "row " + std::to_string(i) + " changed unsaid";
   }
   std::vector<SurfaceVertexId> rebound;
   for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v)

@@ -54,7 +54,7 @@ Outcome cut(const Body& model, const std::vector<Crack>& cracks, bool check) {
         if (check && !delta.crack.empty()) fault = body_faults::fault_of(before, result.body, delta, volume);
       } catch (const GeometryError&) {
         ++result.refused;
-        if (check && (result.body.nodes.position != before.nodes.position || !(result.body.neighbors == before.neighbors) ||
+        if (check && (result.body.nodes.position != before.nodes.position || !(result.body.graph == before.graph) ||
                       !(result.body.binding == before.binding) || result.body.surface.face_count() != before.surface.face_count()))
           fault = "a refused step changed the body";
         else
@@ -69,9 +69,7 @@ Outcome cut(const Body& model, const std::vector<Crack>& cracks, bool check) {
 }
 
 bool same(const Body& a, const Body& b) {
-  if (a.nodes.position != b.nodes.position || a.nodes.volume != b.nodes.volume || !(a.neighbors == b.neighbors) || !(a.binding == b.binding)) return false;
-  for (std::uint32_t i = 0; i < a.nodes.size(); ++i)
-    if (!std::ranges::equal(a.graph.arcs(NodeId(i)), b.graph.arcs(NodeId(i)))) return false;
+  if (a.nodes.position != b.nodes.position || a.nodes.volume != b.nodes.volume || !(a.graph == b.graph) || !(a.binding == b.binding)) return false;
   return true;
 }
 

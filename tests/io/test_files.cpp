@@ -110,7 +110,7 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   CHECK(parse_nodes(bytes_of([&](auto& out) { write_nodes_ply(out, body.nodes); }), "n.ply").radius == body.nodes.radius);
   const std::string kerf = bytes_of([&](auto& out) { write_body(out, body); });
   const Body again = parse_body(kerf, "b.kerf");
-  CHECK(again.neighbors == body.neighbors);
+  CHECK(again.graph == body.graph);
   CHECK(again.surface.two_sided().source == body.surface.two_sided().source);
   CHECK(check_body(again).first_problem == "");
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
@@ -123,17 +123,24 @@ TEST_CASE("a body of version 1 is read, and written whole when it is updated") {
   old[12] = 1;
   old.resize(64);
   nlohmann::json table = nlohmann::json::array();
-  for (auto& [name, s] : parse_kerf(kerf, "b.kerf")) {
-    std::string key = name;
-    if (key.ends_with("/count")) {
-      key.replace(key.size() - 5, 5, "ends");
-      std::uint32_t count = 0, end = 0;
-      for (std::size_t at = 0; at < s.bytes.size(); at += 4) {
-        std::memcpy(&count, s.bytes.data() + at, 4);
-        end += count;
-        std::memcpy(s.bytes.data() + at, &end, 4);
-      }
-    }
+  auto sections = parse_kerf(kerf, "b.kerf");
+  for (const char* name : {"graph/count", "graph/to", "graph/bits", "graph/paths"}) sections.erase(name);
+  const auto put = [&](const std::string& name, const char* dtype, const auto& values) {
+    auto& s = sections[name];
+    s.dtype = dtype, s.shape = {values.size()};
+    s.bytes.assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+  };
+  std::vector<std::uint32_t> edge, edge_ends, to, warped, ends;
+  std::vector<float> distance;
+  for (std::uint32_t i = 0; i < body.nodes.size(); ++i) {
+    for (const NodeId j : body.graph.edges(NodeId(i)))
+      if (j.value > i) edge.push_back(j.value);
+    for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i))) to.push_back(n.to.value), warped.push_back(n.warped), distance.push_back(n.distance);
+    edge_ends.push_back(static_cast<std::uint32_t>(edge.size())), ends.push_back(static_cast<std::uint32_t>(to.size()));
+  }
+  put("graph/ends", "u4", edge_ends), put("graph/to", "u4", edge);
+  put("neighbors/ends", "u4", ends), put("neighbors/to", "u4", to), put("neighbors/warped", "u4", warped), put("neighbors/distance", "f4", distance);
+  for (auto& [key, s] : sections) {
     table.push_back({{"name", key}, {"dtype", s.dtype}, {"shape", s.shape}, {"offset", old.size()}, {"length", s.bytes.size()}, {"xxh3", kerf::hex(fingerprint(s.bytes))}});
     old += s.bytes;
     old.resize(kerf::aligned(old.size()));

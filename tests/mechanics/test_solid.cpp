@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "graph/neighborhoods.h"
 #include "mechanics/deformation.h"
 #include "mechanics/solid.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 struct Bar {
   NodeSet nodes;
-  Neighborhoods neighbors;
+  VisibilityGraph graph;
 };
 
 // A jittered grid of nodes; neighbours are all within the support.
@@ -25,12 +26,11 @@ Bar bar(int nx, int ny, int nz, double jitter, std::uint64_t seed = 1) {
     b.nodes.position.push_back(h * (p + Vec3::Constant(0.5) + jitter * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
     b.nodes.radius.push_back(1.9 * h), b.nodes.spacing.push_back(h), b.nodes.volume.push_back(h * h * h);
   }
-  b.neighbors.rows.resize(b.nodes.size());
+  b.graph.resize(b.nodes.size());
   for (std::uint32_t i = 0; i < b.nodes.size(); ++i)
-    for (std::uint32_t j = 0; j < b.nodes.size(); ++j) {
-      const double d = (b.nodes.position[i] - b.nodes.position[j]).norm();
-      if (i != j && d < b.nodes.radius[i]) b.neighbors.rows[i].push_back({NodeId(j), warped_length(b.nodes.position[i], b.nodes.position[j], b.nodes.radius[i], b.nodes.radius[j]), float(d)});
-    }
+    for (std::uint32_t j = 0; j < i; ++j)
+      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i]) b.graph.add(b.nodes, NodeId(i), NodeId(j));
+  build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   return b;
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("stress is the derivative of energy, and its derivative that of stress
 
 TEST_CASE("rigid motion costs nothing and linear fields are exact on jittered nodes") {
   const Bar b = bar(6, 4, 4, 0.25);
-  const Solid solid(b.nodes, b.neighbors, material(ElasticModel::neo_hookean));
+  const Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, -1, 2).normalized()).toRotationMatrix();
   Mat3 linear;
   linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
@@ -78,7 +78,7 @@ TEST_CASE("rigid motion costs nothing and linear fields are exact on jittered no
 TEST_CASE("forces are minus the derivative of the energy, and sum to zero") {
   const Bar b = bar(4, 3, 3, 0.2);
   for (const auto model : {ElasticModel::saint_venant_kirchhoff, ElasticModel::neo_hookean}) {
-    const Solid solid(b.nodes, b.neighbors, material(model));
+    const Solid solid(b.nodes, b.graph, material(model));
     Random random(5);
     std::vector<Vec3> u, d;
     for (std::size_t i = 0; i < b.nodes.size(); ++i) u.push_back(0.05 * random.direction()), d.push_back(random.direction());
@@ -96,7 +96,7 @@ TEST_CASE("forces are minus the derivative of the energy, and sum to zero") {
 TEST_CASE("free fall is exact, and the same for any number of threads") {
   const Bar b = bar(4, 4, 4, 0.2);
   Material m = material(ElasticModel::neo_hookean);
-  const Solid solid(b.nodes, b.neighbors, m);
+  const Solid solid(b.nodes, b.graph, m);
   Environment env;
   State state = at_rest(b);
   for (int i = 0; i < 10; ++i) solid.step_implicit(state, 0.01, env);
@@ -117,7 +117,7 @@ TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers with
   const Bar b = bar(12, 3, 3, 0.0);
   Material m = material(ElasticModel::neo_hookean);
   m.damping = 1.5;
-  const Solid solid(b.nodes, b.neighbors, m);
+  const Solid solid(b.nodes, b.graph, m);
   Environment env;
   env.gravity = {0, 0, -0.05};
   for (const auto& p : b.nodes.position) env.fixed.push_back(p.x() < 0.4);
@@ -139,8 +139,8 @@ TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers with
 TEST_CASE("few, coplanar and no neighbours give no NaN") {
   Bar b = bar(4, 4, 1, 0.0);
   b.nodes.position.push_back({50, 0, 0}), b.nodes.radius.push_back(0.5), b.nodes.spacing.push_back(0.25), b.nodes.volume.push_back(0.01);
-  b.neighbors.rows.emplace_back();
-  const Solid solid(b.nodes, b.neighbors, material(ElasticModel::neo_hookean));
+  b.graph.resize(b.nodes.size());
+  const Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   CHECK(solid.rung(NodeId(0u)) == Rung::regularised);
   CHECK(solid.rung(NodeId(16u)) == Rung::rigid);
   State state{std::vector<Vec3>(17, Vec3::Zero()), std::vector<Vec3>(17, Vec3::Zero())};
@@ -151,7 +151,7 @@ TEST_CASE("few, coplanar and no neighbours give no NaN") {
 
 TEST_CASE("momentum is conserved through insertion") {
   Bar b = bar(4, 4, 4, 0.1);
-  Solid solid(b.nodes, b.neighbors, material(ElasticModel::neo_hookean));
+  Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   State state = at_rest(b);
   Random random(8);
   for (auto& v : state.velocity) v = random.direction();
@@ -159,15 +159,17 @@ TEST_CASE("momentum is conserved through insertion") {
   b.nodes.volume[5] *= 0.5;
   b.nodes.position.push_back(b.nodes.position[5] + Vec3(0.05, 0.03, 0.02));
   b.nodes.radius.push_back(b.nodes.radius[5]), b.nodes.spacing.push_back(0.2), b.nodes.volume.push_back(b.nodes.volume[5]);
-  b.neighbors.rows.push_back({{NodeId(5u), 100, 0.06f}});
+  b.graph.resize(b.nodes.size());
+  b.graph.add(b.nodes, NodeId(5u), NodeId(64u));
+  build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   const std::vector<NodeId> donors{NodeId(5u)}, updated{NodeId(64u)};
-  solid.update(b.nodes, b.neighbors, NodeId(64u), donors, updated, state);
+  solid.update(b.nodes, b.graph, NodeId(64u), donors, updated, state);
   CHECK((solid.momentum(state) - before).norm() < 1e-12 * before.norm());
 }
 
 TEST_CASE("the inverse map undoes an affine deformation inside") {
   const Bar b = bar(5, 5, 5, 0.2);
-  const Solid solid(b.nodes, b.neighbors, material(ElasticModel::neo_hookean));
+  const Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   Mat3 f;
   f << 1.1, 0.1, 0, 0, 0.95, 0.05, 0.02, 0, 1.05;
   std::vector<Vec3> u;

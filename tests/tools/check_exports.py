@@ -35,10 +35,10 @@ for name, (dtype, shape, data) in body.items():
     assert header == {"descr": ("|" if dtype == "u1" else "<") + dtype, "fortran_order": False, "shape": tuple(shape)}
     assert npy[10 + size:] == data, name
 
-position, count, to = (numbers(body[name]) for name in ("nodes/position", "graph/count", "graph/to"))
+position, count, to, bits = (numbers(body[name]) for name in ("nodes/position", "graph/count", "graph/to", "graph/bits"))
 nodes, edges, at = len(count), [], 0
 for i, n in enumerate(count):
-    edges += [(i, j) for j in to[at:at + n]]
+    edges += [(i, j) for j, b in zip(to[at:at + n], bits[at:at + n]) if j > i and b & 0x8000]
     at += n
 fields = {name: numbers(body["nodes/" + name]) for name in ("radius", "spacing", "volume", "debris")}
 

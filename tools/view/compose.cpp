@@ -125,10 +125,10 @@ Stage stage_of(const geo::Body& body, const Look& look) {
   if (look.nodes) add_nodes(stage, body.nodes);
   if (look.edges)
     for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
-      for (const auto& arc : body.graph.arcs(geo::NodeId(i)))
-        if (arc.to.value > i) {
-          const double width = 0.016 * std::min(body.nodes.spacing[i], body.nodes.spacing[arc.to.index()]);
-          stage.sticks.push_back({body.nodes.position[i], body.nodes.position[arc.to.index()], width, {0.10f, 0.22f, 0.55f}});
+      for (const geo::NodeId j : body.graph.edges(geo::NodeId(i)))
+        if (j.value > i) {
+          const double width = 0.016 * std::min(body.nodes.spacing[i], body.nodes.spacing[j.index()]);
+          stage.sticks.push_back({body.nodes.position[i], body.nodes.position[j.index()], width, {0.10f, 0.22f, 0.55f}});
         }
   cut(stage, look);
   return stage;

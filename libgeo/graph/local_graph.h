@@ -1,0 +1,65 @@
+// The part of the visibility graph that some sources' neighbourhoods can depend on, dense and with lengths.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "graph/id_map.h"
+#include "graph/visibility_graph.h"
+
+namespace geo {
+
+class LocalGraph {
+ public:
+  struct Edge {
+    std::uint32_t to, length;  // warped, < unit_radius
+  };
+  /// Edges are in classes by length: those of 2⁻⁴ of a support radius, or of two, and so on.
+  static constexpr unsigned class_shift = 20;
+
+  /// Everything within a support radius of one of the sources (ascending; best near each other).
+  void gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources);
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(id_.size()); }
+  /// Nodes of the whole graph, ascending.
+  std::uint32_t id(std::uint32_t local) const { return id_[local]; }
+  /// Of the k-th source.
+  std::uint32_t source(std::size_t k) const { return place_[k]; }
+  /// Has the k-th source edges as long as the support, which are not here?
+  bool has_long_edges(std::size_t k) const { return long_edges_[k]; }
+  /// By class of length. A node has those edges only that lead to a neighbour of a source.
+  std::span<const Edge> edges(std::uint32_t local) const { return {edges_.data() + first_[local], edges_.data() + first_[local + 1]}; }
+  /// From this distance on, no edge of a node leads to a neighbour. By local node.
+  std::span<const std::uint32_t> limits() const { return limit_; }
+
+ private:
+  struct Place {
+    double x, y, z, radius;
+  };
+  struct Discovery {
+    std::uint32_t id, reach;   // at least as near to a source as this
+    std::uint32_t begin, end;  // of its targets
+  };
+  std::uint32_t discover(std::uint32_t id);
+  void explore(const VisibilityGraph& graph, std::span<const std::uint32_t> sources);
+  void measure(std::uint32_t number, bool source);
+
+  // By number, in the order of discovery; sources come first.
+  IdMap map_;  // of those that are not in the run of sources
+  std::uint32_t run_ = 0, discovered_ = 0;
+  std::vector<Discovery> discoveries_;
+  std::vector<std::uint8_t> queued_, long_edges_;
+  std::vector<std::uint32_t> queue_, targets_, next_, place_;
+  // By local node.
+  std::vector<std::uint32_t> id_, first_, limit_;
+  std::vector<Place> places_;
+  std::vector<Edge> edges_;
+  // Of one node's edges.
+  std::vector<double> squared_, radius_;
+  std::vector<std::uint32_t> length_;
+  std::vector<std::uint64_t> order_, merged_;
+};
+
+}  // namespace geo

@@ -1,0 +1,115 @@
+#include "graph/reference_rows.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/parallel.h"
+
+namespace geo {
+namespace {
+
+constexpr PathLength far = ~PathLength(0), radius = PathLength(unit_radius) << 32;
+
+// A row of the matrix: a hash table without deletion.
+class SparseRow {
+ public:
+  SparseRow() : slots_(64) {}
+  void shorten(std::uint32_t to, PathLength length) {
+    Slot& slot = find(to);
+    if (slot.to == none) {
+      if (2 * ++count_ > slots_.size()) {
+        grow();
+        find(to) = {to, length};
+      } else {
+        slot = {to, length};
+      }
+    } else if (length < slot.length) {
+      slot.length = length;
+    }
+  }
+  template <class F>
+  void each(const F& f) const {
+    for (const Slot& s : slots_)
+      if (s.to != none) f(s.to, s.length);
+  }
+
+ private:
+  static constexpr std::uint32_t none = ~0u;
+  struct Slot {
+    std::uint32_t to = none;
+    PathLength length = far;
+  };
+  Slot& find(std::uint32_t to) {
+    std::size_t at = (to * 2654435761u >> 7) & (slots_.size() - 1);
+    while (slots_[at].to != none && slots_[at].to != to) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at];
+  }
+  void grow() {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& s : old)
+      if (s.to != none) find(s.to) = s;
+  }
+  std::vector<Slot> slots_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::vector<PathRow> edge_lengths(const NodeSet& nodes, const VisibilityGraph& graph) {
+  std::vector<PathRow> rows(graph.node_count());
+  parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const NodeId j : graph.edges(NodeId(i)))
+        if (const auto length = warped_length(nodes, i, j.index()); length < unit_radius)
+          rows[i].push_back({j.value, PathLength(length) << 32 | plain_length(nodes.position[i], nodes.position[j.index()], graph.plain_unit())});
+  });
+  return rows;
+}
+
+void BoundedDijkstra::run(std::uint32_t source, PathRow& row) {
+  row.clear();
+  best_[source] = 0;
+  heap_.assign(1, {0, source});
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+    const auto [d, u] = heap_.back();
+    heap_.pop_back();
+    if (d != best_[u]) continue;
+    if (u != source) row.push_back({u, d});
+    for (const auto& [v, length] : edges_[u])
+      if (const PathLength next = d + length; next < radius && next < best_[v]) {
+        best_[v] = next;
+        heap_.push_back({next, v});
+        std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+      }
+  }
+  best_[source] = far;
+  for (const auto& [v, d] : row) best_[v] = far;
+  std::sort(row.begin(), row.end());
+}
+
+std::vector<PathRow> modified_floyd_warshall(const std::vector<PathRow>& edges) {
+  std::vector<SparseRow> matrix(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const auto& [j, length] : edges[i]) matrix[i].shorten(j, length);
+  std::vector<std::pair<PathLength, std::uint32_t>> through;
+  for (const SparseRow& row : matrix) {
+    through.clear();
+    row.each([&](std::uint32_t j, PathLength length) { through.push_back({length, j}); });
+    std::sort(through.begin(), through.end());
+    for (const auto& [di, i] : through)
+      for (const auto& [dj, j] : through) {
+        if (di + dj >= radius) break;
+        if (i != j) matrix[i].shorten(j, di + dj);
+      }
+  }
+  std::vector<PathRow> rows(edges.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    matrix[i].each([&](std::uint32_t j, PathLength length) { rows[i].push_back({j, length}); });
+    std::sort(rows[i].begin(), rows[i].end());
+  }
+  return rows;
+}
+
+}  // namespace geo

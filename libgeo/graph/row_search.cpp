@@ -1,0 +1,107 @@
+#include "graph/row_search.h"
+
+#include <algorithm>
+
+#include "graph/lane_search.h"
+#include "graph/local_graph.h"
+
+namespace geo {
+namespace {
+
+// Enough that most of what is near a source belongs to other sources too, and fits into a core's cache.
+constexpr std::size_t block = 1024;
+
+}  // namespace
+
+struct RowSearch::Work {
+  LocalGraph local;
+  LaneSearch search;
+  std::vector<std::uint16_t> mark;   // by local node: edge_bit for the other ends of a source's edges
+  std::vector<std::uint32_t> to;
+  std::vector<std::uint16_t> bits;
+  std::vector<float> paths;
+  std::vector<std::uint32_t> distance;  // by local node, of one source; 0 elsewhere
+  std::vector<std::uint64_t> plain;     // where distance is known
+  std::vector<LaneSearch::Found> order;
+
+  void plain_lengths(const NodeSet& nodes, double unit, std::uint32_t source, std::span<const LaneSearch::Found> found);
+};
+
+// Of all paths with the least warped length, the plainly shortest: nearer nodes first.
+void RowSearch::Work::plain_lengths(const NodeSet& nodes, double unit, std::uint32_t source, std::span<const LaneSearch::Found> found) {
+  distance.resize(std::max<std::size_t>(distance.size(), local.size()), 0);
+  plain.resize(distance.size());
+  order.assign(found.begin(), found.end());
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
+  for (const auto& f : order) distance[f.node] = f.distance, plain[f.node] = ~std::uint64_t(0);
+  plain[source] = 0;
+  order.insert(order.begin(), {source, 0});
+  for (const auto& f : order) {
+    const Vec3& from = nodes.position[local.id(f.node)];
+    for (const auto edge : local.edges(f.node))
+      if (f.distance + edge.length == distance[edge.to])
+        plain[edge.to] = std::min(plain[edge.to], plain[f.node] + plain_length(from, nodes.position[local.id(edge.to)], unit));
+  }
+  for (const auto& f : found) distance[f.node] = 0;
+}
+
+RowSearch::RowSearch() : work_(std::make_unique<Work>()) {}
+RowSearch::~RowSearch() = default;
+
+void insert_long_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i, std::vector<std::uint32_t>& to,
+                       std::vector<std::uint16_t>& bits) {
+  for (const NodeId j : graph.edges(NodeId(i))) {
+    if (warped_length(nodes, i, j.index()) < unit_radius) continue;
+    const auto k = std::lower_bound(to.begin(), to.end(), j.value) - to.begin();
+    if (static_cast<std::size_t>(k) < to.size() && to[static_cast<std::size_t>(k)] == j.value) {
+      bits[static_cast<std::size_t>(k)] |= VisibilityGraph::edge_bit;  // near by another way
+      continue;
+    }
+    to.insert(to.begin() + k, j.value);
+    bits.insert(bits.begin() + k, VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(unit_radius));
+  }
+}
+
+void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources, const Sight& sight,
+                    const Put& put) {
+  Work& w = *work_;
+  std::vector<std::uint32_t> lanes;
+  for (std::size_t first = 0; first < sources.size(); first += block) {
+    const std::size_t count = std::min(block, sources.size() - first);
+    w.local.gather(nodes, graph, sources.subspan(first, count));
+    w.mark.resize(std::max<std::size_t>(w.mark.size(), w.local.size()), 0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t lane = k % LaneSearch::lanes;
+      if (lane == 0) {
+        lanes.clear();
+        for (std::size_t l = k; l < std::min(count, k + LaneSearch::lanes); ++l) lanes.push_back(w.local.source(l));
+        w.search.run(w.local, lanes);
+      }
+      const auto i = sources[first + k], source = lanes[lane];
+      const auto found = w.search.row(lane);
+      const auto edges = w.local.edges(source);
+      for (const auto edge : edges) w.mark[edge.to] = VisibilityGraph::edge_bit;
+      w.to.resize(found.size()), w.bits.resize(found.size()), w.paths.clear();
+      for (std::size_t e = 0; e < found.size(); ++e) {
+        w.to[e] = w.local.id(found[e].node);
+        w.bits[e] = static_cast<std::uint16_t>(w.mark[found[e].node] | found[e].distance >> 10);
+      }
+      for (const auto edge : edges) w.mark[edge.to] = 0;
+      if (w.local.has_long_edges(k)) insert_long_edges(nodes, graph, i, w.to, w.bits);
+      if (sight) {
+        sight(i, w.to, w.bits);
+        if (std::any_of(w.bits.begin(), w.bits.end(), RowStore::has_path)) {
+          w.plain_lengths(nodes, graph.plain_unit(), source, found);
+          for (std::size_t e = 0, f = 0; e < w.to.size(); ++e) {
+            if (!VisibilityGraph::is_neighbor(w.bits[e])) continue;
+            if (RowStore::has_path(w.bits[e])) w.paths.push_back(static_cast<float>(double(w.plain[found[f].node]) * graph.plain_unit()));
+            ++f;
+          }
+        }
+      }
+      put(i, {w.to, w.bits, w.paths});
+    }
+  }
+}
+
+}  // namespace geo

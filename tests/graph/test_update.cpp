@@ -1,0 +1,132 @@
+// Updates of graph and rows equal a build from scratch.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "cases.h"
+#include "graph/neighborhoods.h"
+#include "graph/update.h"
+#include "node_cases.h"
+
+using namespace geo;
+
+namespace {
+
+struct Cut {
+  NodeSet nodes;
+  VisibilityGraph graph;
+  NodeGrid grid;
+  Soup all;
+  int k = 26;
+
+  Cut(NodeSet set, const Soup& walls, int nearest) : nodes(std::move(set)), grid(0.125, nodes.position), all(walls), k(nearest) {
+    const TriangleBvh tree(all);
+    graph = build_visibility_graph(nodes, tree, k);
+    build_neighborhoods(nodes, graph, tree);
+  }
+  NodeId insert(const Vec3& p, double radius) {
+    nodes.position.push_back(p), nodes.radius.push_back(radius), nodes.spacing.push_back(0.1), nodes.volume.push_back(1e-4);
+    grid.insert(nodes.position, static_cast<std::uint32_t>(nodes.size() - 1));
+    return NodeId(nodes.size() - 1);
+  }
+  GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh, const std::vector<std::pair<NodeId, NodeId>>& joins = {}) {
+    all.insert(all.end(), fresh.begin(), fresh.end());
+    const auto near = [&](const Box3& box, Soup& out) {
+      for (const auto& t : all)
+        if (box_of(t[0], t[1], t[2]).meets(box)) out.push_back(t);
+    };
+    return update_graph(nodes, first, moved, fresh, near, k, grid, graph, joins);
+  }
+};
+
+// Edges that are right, and rows that a build along them finds.
+void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const VisibilityGraph& before, std::size_t& rows_compared) {
+  const TriangleBvh tree(cut.all);
+  const auto& x = cut.nodes.position;
+  std::size_t edges = 0;
+  for (std::uint32_t i = 0; i < cut.nodes.size(); ++i)
+    for (const NodeId j : cut.graph.edges(NodeId(i))) {
+      ++edges;
+      REQUIRE_FALSE(tree.blocks(x[i], x[j.index()]));
+    }
+  REQUIRE(cut.graph.edge_count() == edges / 2);
+  REQUIRE(cut.graph.edge_count() == before.edge_count() - update.cut_edges.size() + update.added_edges.size());
+  VisibilityGraph scratch = cut.graph;
+  build_neighborhoods(cut.nodes, scratch, tree);
+  for (std::size_t i = 0; i < cut.nodes.size(); ++i, ++rows_compared) {
+    CAPTURE(i);
+    REQUIRE(cut.graph.rows().row(i) == scratch.rows().row(i));
+    const bool same = i < before.node_count() && before.rows().row(i) == cut.graph.rows().row(i);
+    const bool listed = std::binary_search(update.updated_nodes.begin(), update.updated_nodes.end(), NodeId(i));
+    REQUIRE((same || listed));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("incremental updates equal a build from scratch, bit for bit") {
+  std::size_t rows_compared = 0;
+  for (int seed = 1; seed <= cases(6); ++seed) {
+    CAPTURE(seed);
+    Random random(static_cast<std::uint64_t>(seed));
+    Cut cut(jittered(random, 8, 0.35, seed % 3 == 0 ? 2 : 1), {}, 26);
+    const Vec3 n = random.direction(), a = n.cross(random.direction()).normalized(), b = n.cross(a);
+    const auto at = [&](double u, double v) { return Vec3(Vec3::Constant(0.5) + (u - 0.6) * a * 1.6 + (v - 0.5) * b * 1.8 + 0.05 * std::sin(5 * u + 3 * v) * n + 0.003 * n); };
+    const int columns = seed % 2 ? 6 : 1;
+    for (int step = 0; step < 8; ++step) {
+      Soup fresh;
+      for (int j = 0; j < columns; ++j) {
+        const double u0 = step / 8.0, u1 = (step + 1) / 8.0, v0 = double(j) / columns, v1 = double(j + 1) / columns;
+        fresh.push_back({at(u0, v0), at(u1, v0), at(u1, v1)});
+        fresh.push_back({at(u0, v0), at(u1, v1), at(u0, v1)});
+      }
+      const NodeId first(cut.nodes.size());
+      const VisibilityGraph before = cut.graph;
+      if (seed % 2 == 0)
+        for (int i = 0; i < 3; ++i) cut.insert({random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9)}, 0.22);
+      require_as_from_scratch(cut, cut.step(first, {}, fresh), before, rows_compared);
+    }
+  }
+  CHECK(rows_compared > 20000);
+}
+
+TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
+  std::size_t rows_compared = 0, cut_edges = 0, added_edges = 0;
+  for (int seed = 1; seed <= cases(10); ++seed) {
+    CAPTURE(seed);
+    Random random(static_cast<std::uint64_t>(seed));
+    Cut cut(jittered(random, 5 + seed % 4, seed % 5 == 0 ? 0 : 0.4, 1 + 2 * random.uniform()), random_faces(random, seed % 4), 8 + static_cast<int>(random.below(25)));
+    for (int step = 0; step < 8; ++step) {
+      CAPTURE(step);
+      const NodeId first(cut.nodes.size());
+      const VisibilityGraph before = cut.graph;
+      Soup fresh = random_faces(random, static_cast<int>(random.below(4)));
+      if (step == 3) fresh.push_back({Vec3(0.2, 0.2, 0.2), Vec3(0.5, 0.5, 0.5), Vec3(0.8, 0.8, 0.8)});  // without area
+      std::vector<NodeId> moved;
+      for (std::uint32_t m = random.below(3); m > 0; --m) {
+        const auto i = random.below(first.value);
+        Vec3& p = cut.nodes.position[i];
+        cut.grid.erase(i, p);
+        p += random.uniform(0, 0.1) * random.direction();
+        cut.grid.insert(cut.nodes.position, i);
+        if (random.below(2)) cut.nodes.radius[i] *= random.uniform(0.8, 1.0);
+        if (std::find(moved.begin(), moved.end(), NodeId(i)) == moved.end()) moved.push_back(NodeId(i));
+      }
+      std::sort(moved.begin(), moved.end());
+      std::vector<std::pair<NodeId, NodeId>> joins;
+      for (std::uint32_t m = random.below(3); m > 0; --m) {
+        const NodeId i = cut.insert({random.uniform(), random.uniform(), random.uniform()}, random.uniform(0.1, 0.4));
+        const NodeId j(random.below(first.value));
+        Soup faces = cut.all;
+        faces.insert(faces.end(), fresh.begin(), fresh.end());
+        if (!TriangleBvh(faces).blocks(cut.nodes.position[j.index()], cut.nodes.position[i.index()])) joins.push_back({j, i});
+      }
+      const auto update = cut.step(first, moved, fresh, joins);
+      require_as_from_scratch(cut, update, before, rows_compared);
+      cut_edges += update.cut_edges.size(), added_edges += update.added_edges.size();
+    }
+  }
+  CHECK(rows_compared > 15000);
+  CHECK(cut_edges > 2000);
+  CHECK(added_edges > 1000);
+}

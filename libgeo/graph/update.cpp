@@ -124,7 +124,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   std::vector<std::uint32_t> sources = update.ids();
   std::sort(sources.begin(), sources.end());
 
-  // Who saw each other goes on doing so unless a new face came between them.
+  // Who saw each other goes on doing so unless a new face came between them. Who did not is asked again: faces that were
+  // divided have rounded corners, and a segment that only just touched one may pass now.
   std::vector<NodePairKey> hidden = severed.neighbors;  // from both ends
   for (const auto key : severed.neighbors) hidden.push_back(key << 32 | key >> 32);
   std::sort(hidden.begin(), hidden.end());
@@ -139,9 +140,9 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
       const auto key = NodePairKey(i) << 32 | to[e];
       while (o < old.to.size() && old.to[o] < to[e]) ++o;
       while (next_hidden < hidden.size() && hidden[next_hidden] < key) ++next_hidden;
-      const bool known = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) && !is_fresh(to[e]);
-      const bool is_hidden = known ? RowStore::has_path(old.bits[o]) || (next_hidden < hidden.size() && hidden[next_hidden] == key)
-                                   : sight.blocked(i, to[e]);
+      const bool saw = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) &&
+                       !RowStore::has_path(old.bits[o]) && !is_fresh(to[e]);
+      const bool is_hidden = saw ? next_hidden < hidden.size() && hidden[next_hidden] == key : sight.blocked(i, to[e]);
       if (is_hidden) bits[e] |= VisibilityGraph::path_bit;
     }
   };

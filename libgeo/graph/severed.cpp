@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "geometry/predicates.h"
 
@@ -26,9 +25,10 @@ class Plane {
     bool above() const { return value > error; }
     bool below() const { return value < -error; }
   };
-  Height height(const Vec3& x) const {
+  /// With an error that also serves for points as far from x as `beside`, by the sum of coordinates.
+  Height height(const Vec3& x, double beside = 0) const {
     const double a = x.x() - origin_.x(), b = x.y() - origin_.y(), c = x.z() - origin_.z();
-    return {(a * normal_.x() + b * normal_.y()) + c * normal_.z(), rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c))};
+    return {(a * normal_.x() + b * normal_.y()) + c * normal_.z(), rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c) + beside)};
   }
   /// False only when a point is farther from the plane than `distance`.
   bool within(const Height& h, double distance) const { return std::abs(h.value) <= h.error + (length_ + rounding_) * distance; }
@@ -46,52 +46,15 @@ struct Surroundings {
     return x.x() >= around.lo.x() && x.x() <= around.hi.x() && x.y() >= around.lo.y() && x.y() <= around.hi.y() && x.z() >= around.lo.z() &&
            x.z() <= around.hi.z() && plane.within(h, reach);
   }
+  /// True unless it holds nothing of the cube.
+  bool reaches(const Vec3& middle, double half) const {
+    const Box3 cube{middle - Vec3::Constant(half), middle + Vec3::Constant(half)};
+    return cube.meets(around) && plane.within(plane.height(middle, 3 * half), reach + std::sqrt(3.0) * half);
+  }
   Corners corners;
   Plane plane;
   Box3 box, around;
   double reach;
-};
-
-// The cubes of a lattice that faces pass through: one question to the grid for all faces in a cube.
-class Cubes {
- public:
-  explicit Cubes(double edge) : edge_(edge) { numbers_.reserve(64); }
-  void add(std::uint32_t face, const Corners& t) {
-    const Box3 box = box_of(t[0], t[1], t[2]);
-    if ((box.hi - box.lo).maxCoeff() > edge_) {
-      std::size_t a = 0;
-      for (std::size_t k = 1; k < 3; ++k)
-        if (squared_distance(t[k], t[(k + 1) % 3]) > squared_distance(t[a], t[(a + 1) % 3])) a = k;
-      const Vec3 &p = t[a], &q = t[(a + 1) % 3], &r = t[(a + 2) % 3], half = 0.5 * (p + q);
-      add(face, {p, half, r}), add(face, {half, q, r});
-      return;
-    }
-    const Eigen::Array3d lo = (box.lo / edge_).array().floor(), hi = (box.hi / edge_).array().floor();
-    for (double x = lo.x(); x <= hi.x(); ++x)
-      for (double y = lo.y(); y <= hi.y(); ++y)
-        for (double z = lo.z(); z <= hi.z(); ++z) {
-          const std::array<double, 3> place{x, y, z};
-          const auto number = numbers_.try_emplace(place, cubes_.size()).first->second;
-          if (number == cubes_.size()) cubes_.push_back({edge_ * (Vec3(x, y, z) + Vec3::Constant(0.5)), {}});
-          auto& faces = cubes_[number].faces;
-          if (faces.empty() || faces.back() != face) faces.push_back(face);
-        }
-  }
-  struct Cube {
-    Vec3 center;
-    std::vector<std::uint32_t> faces;
-  };
-  const std::vector<Cube>& all() const { return cubes_; }
-
- private:
-  struct Hash {
-    std::size_t operator()(const std::array<double, 3>& p) const {
-      return static_cast<std::size_t>(static_cast<std::int64_t>(p[0]) * 73856093 ^ static_cast<std::int64_t>(p[1]) * 19349663 ^ static_cast<std::int64_t>(p[2]) * 83492791);
-    }
-  };
-  double edge_;
-  std::unordered_map<std::array<double, 3>, std::size_t, Hash> numbers_;
-  std::vector<Cube> cubes_;
 };
 
 }  // namespace
@@ -104,24 +67,25 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   const double half = 0.5 * graph.reach() * (1 + 1e-6);
   if (!(half > 0)) return severed;  // no edge yet
   std::vector<Surroundings> around;
-  Cubes cubes(2 * half);
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    around.emplace_back(faces[f], half);
-    cubes.add(f, faces[f]);
-  }
+  std::vector<std::vector<std::uint32_t>> faces_at(1);  // by depth: those that reach into the cube
+  for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], half), faces_at[0].push_back(f);
   // Nodes with faces near them, in the lower half.
   std::vector<std::uint64_t> candidates;
-  std::vector<std::uint32_t> near;
-  for (const auto& cube : cubes.all()) {
-    near.clear();
-    grid.within(x, cube.center, (std::sqrt(3.0) + 1) * half * (1 + 1e-6), near);
-    for (const auto i : near)
-      if (i < first_new.value)
-        for (const auto f : cube.faces)
+  grid.walk(
+      [&](int depth, const Vec3& middle, double size) {
+        const auto to = static_cast<std::size_t>(depth) + 1;
+        if (faces_at.size() <= to) faces_at.resize(to + 1);
+        faces_at[to].clear();
+        for (const auto f : faces_at[to - 1])
+          if (around[f].reaches(middle, size * (1 + 1e-12))) faces_at[to].push_back(f);
+        return !faces_at[to].empty();
+      },
+      [&](int depth, std::uint32_t i) {
+        if (i >= first_new.value) return;
+        for (const auto f : faces_at[static_cast<std::size_t>(depth) + 1])
           if (around[f].holds(x[i], around[f].plane.height(x[i]))) candidates.push_back(std::uint64_t(i) << 32 | f);
-  }
+      });
   std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
 
   struct Side {
     const Surroundings* face;

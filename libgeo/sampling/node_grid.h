@@ -29,6 +29,13 @@ class NodeGrid {
   /// The k rows nearest to p by (distance, row), without `self`; fewer when there are fewer. `accept` may refuse rows.
   template <class Accept>
   std::vector<std::uint32_t> nearest(std::span<const Vec3> positions, const Vec3& p, std::size_t k, std::uint32_t self, const Accept& accept) const;
+  /// Walks down the tree: into(depth, middle, half) tells whether to enter a cube, middle ± half, which holds all rows that
+  /// are below it; see(depth, row) gets the rows of each leaf entered. On the way to a cube those around it were entered, at
+  /// depths 0, 1 and so on.
+  template <class Into, class See>
+  void walk(const Into& into, const See& see) const {
+    if (!cells_.empty()) walk(root(), into, see);
+  }
   std::size_t size() const { return size_; }
   double cell() const { return cell_; }
   /// What it takes in memory.
@@ -62,6 +69,9 @@ class NodeGrid {
   template <class See>
   void visit(const Place& at, const Vec3& p, const Vec3& gap, const double& reach, const See& see) const;
 
+  template <class Into, class See>
+  void walk(const Place& at, const Into& into, const See& see) const;
+
   double cell_;
   std::size_t size_ = 0;
   Vec3 middle_ = Vec3::Zero();
@@ -87,6 +97,18 @@ void NodeGrid::visit(const Place& at, const Vec3& p, const Vec3& gap, const doub
       if (turn >> axis & 1) to[axis] = std::max(gap[axis], across[axis]);
     if (to.squaredNorm() <= reach) visit(child(at, home ^ turn), p, to, reach, see);
   }
+}
+
+template <class Into, class See>
+void NodeGrid::walk(const Place& at, const Into& into, const See& see) const {
+  // Middles were rounded once a level: 40 roundings of numbers no larger than the farthest corner.
+  const double rounding = 0x1p-47 * (middle_.cwiseAbs().maxCoeff() + half_);
+  const Cell& cell = cells_[at.cell];
+  if (cell.count == 0 || !into(at.depth, at.middle, at.half + rounding)) return;
+  if (cell.count == inner)
+    for (int octant = 0; octant < 8; ++octant) walk(child(at, octant), into, see);
+  else
+    for (auto row = cell.first; row != none; row = next_[row]) see(at.depth, row);
 }
 
 template <class Accept>

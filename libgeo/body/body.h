@@ -50,7 +50,7 @@ struct Body {
   int k = 26;                        ///< nearest neighbours per node in the graph
   double resample_limit = 1;         ///< new nodes may be at most this many per crack face area over spacing²; 0: none
   std::uint32_t updates = 0;         ///< cracks steps applied since the build
-  std::vector<std::uint8_t> debris;  ///< per node: 1 where the piece has too few nodes for a shape function
+  std::vector<std::uint8_t> debris;  ///< per node: 1 where its neighbours do not span space (nodes.h): rigid debris
   std::vector<Provenance> history;
 };
 

@@ -1,13 +1,16 @@
 #include "body/nodes.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "sampling/resample.h"
 
 namespace geo {
+
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   const NodeId id(body.nodes.size());
   NodeSet& nodes = body.nodes;
@@ -89,8 +92,18 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
 }
 
 void mark_debris(Body& body, const std::vector<NodeId>& nodes) {
-  // Four nodes in general position carry a linear field; fewer move as a rigid crumb.
-  for (const NodeId i : nodes) body.debris[i.index()] = body.graph.neighbor_count(i) < 4;
+  parallel_for(nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t i = nodes[n].index();
+      Mat3 moment = Mat3::Zero();
+      for (const auto& neighbor : body.graph.neighbors(body.nodes, nodes[n])) {
+        const Vec3 x = (body.nodes.position[neighbor.to.index()] - body.nodes.position[i]) / body.nodes.radius[i];
+        moment += x * x.transpose();
+      }
+      const Vec3 spread = Eigen::SelfAdjointEigenSolver<Mat3>(moment, Eigen::EigenvaluesOnly).eigenvalues();
+      body.debris[i] = !(spread[0] > debris_below * spread[2]);
+    }
+  });
 }
 
 }  // namespace geo

@@ -20,7 +20,11 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
 /// Moves nodes that are on or very near one of the faces off it, each to the side it is on. Returns them, ascending.
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);
 
-/// Marks nodes with too few neighbours for a shape function.
+/// Neighbours spread less in one direction than this share of what they do in another: the smallest over the largest
+/// eigenvalue of their moment matrix, the bound below which mechanics leaves a direction out.
+constexpr double debris_below = 1e-4;
+
+/// Marks nodes whose neighbours do not span space: no linear field can be told from them (Müller et al. 2004, § 3.1).
 void mark_debris(Body& body, const std::vector<NodeId>& nodes);
 
 }  // namespace geo

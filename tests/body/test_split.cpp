@@ -6,6 +6,9 @@
 #include "base/error.h"
 #include "body/body.h"
 #include "body/locate.h"
+#include "body/nodes.h"
+#include "geometry/bvh.h"
+#include "graph/neighborhoods.h"
 #include "invariants/random_cuts.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
@@ -116,5 +119,26 @@ TEST_CASE("Random cuts keep a pumpkin's body in step", "[body]") {
         CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
       }
     }
+  }
+}
+
+TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {
+  // A flat sheet of nodes, then one of them lifted, more and more.
+  for (const double lift : {0.0, 1e-3, 0.4}) {
+    CAPTURE(lift);
+    Body body;
+    for (int i = 0; i < 25; ++i) {
+      const bool lifted = i % 5 == 2 && i / 5 == 2;
+      body.nodes.position.push_back({0.1 * (i % 5), 0.1 * (i / 5), lifted ? 0.1 * lift : 0.0});
+      body.nodes.radius.push_back(0.25), body.nodes.spacing.push_back(0.1), body.nodes.volume.push_back(1e-3);
+    }
+    body.debris.assign(25, 2);
+    const TriangleBvh nothing;
+    body.graph = build_visibility_graph(body.nodes, nothing, 8);
+    build_neighborhoods(body.nodes, body.graph, nothing);
+    std::vector<NodeId> all;
+    for (std::uint32_t i = 0; i < 25; ++i) all.push_back(NodeId(i));
+    mark_debris(body, all);
+    CHECK(std::count(body.debris.begin(), body.debris.end(), 1) == (lift < 0.1 ? 25 : 4));
   }
 }

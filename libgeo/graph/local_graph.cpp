@@ -29,17 +29,19 @@ void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint
   for (std::uint32_t number = 0; number < count; ++number) queue_[tail++] = number, discoveries_[number].reach = 0, queued_[number] = 1;
   const auto leads_on = [&](std::uint32_t number) {
     const Discovery& d = discoveries_[number];
-    return d.reach + VisibilityGraph::bound(graph.rows().least(d.id)) < unit_radius;
+    return d.reach + VisibilityGraph::bound(graph.store(d.id).least(VisibilityGraph::place(d.id))) < unit_radius;
   };
+  const auto prefetch_place = [&](std::uint32_t id) { graph.store(id).prefetch_place(VisibilityGraph::place(id)); };
+  const auto prefetch = [&](std::uint32_t id) { graph.store(id).prefetch(VisibilityGraph::place(id)); };
   for (std::size_t at = 0; at < tail; ++at) {
     const auto number = queue_[at];
     queued_[number] = 0;
     constexpr std::size_t ahead = 6;
-    if (at + 2 * ahead < tail) graph.rows().prefetch_place(discoveries_[queue_[at + 2 * ahead]].id);
-    if (at + ahead < tail && leads_on(queue_[at + ahead])) graph.rows().prefetch(discoveries_[queue_[at + ahead]].id);
+    if (at + 2 * ahead < tail) prefetch_place(discoveries_[queue_[at + 2 * ahead]].id);
+    if (at + ahead < tail && leads_on(queue_[at + ahead])) prefetch(discoveries_[queue_[at + ahead]].id);
     if (number >= count && !leads_on(number)) continue;
     const auto reach = discoveries_[number].reach;
-    const auto row = graph.rows().entries(discoveries_[number].id);
+    const auto row = graph.entries(discoveries_[number].id);
     const auto size = row.to.size();
     if (targets_.size() < used + size) targets_.resize(2 * used + size);
     if (next_.size() < size) next_.resize(2 * size);
@@ -85,10 +87,10 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   std::array<std::uint32_t, classes + 1> begin{};
   const auto most = unit_radius - from.reach;
   std::uint32_t shortest = unit_radius;
-  bool longer = false;
+  bool bare = false;
   for (std::size_t k = 0; k < count; ++k) {
     shortest = std::min(shortest, length_[k]);
-    longer = longer || length_[k] >= unit_radius;
+    bare |= length_[k] >= unit_radius || place_[targets[k]] >= nodes_;
     begin[length_[k] < most ? length_[k] >> class_shift : classes] += 1;
   }
   std::uint32_t sum = static_cast<std::uint32_t>(edges_.size());
@@ -101,7 +103,7 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   for (std::size_t k = 0; k < count; ++k)
     if (length_[k] < most) edges_[begin[length_[k] >> class_shift]++] = {place_[targets[k]], length_[k]};
   limit_.push_back(unit_radius - std::min(shortest, unit_radius));
-  if (source) long_edges_[number] = longer;
+  if (source) bare_edges_[number] = bare;
 }
 
 void LocalGraph::gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources) {
@@ -114,15 +116,17 @@ void LocalGraph::gather(const NodeSet& nodes, const VisibilityGraph& graph, std:
   merged_.resize(order_.size());
   std::merge(order_.begin(), others, others, order_.end(), merged_.begin());
   order_.swap(merged_);
+  nodes_ = 0;
   id_.resize(discovered_), place_.resize(discovered_), places_.resize(discovered_);
   for (std::uint32_t local = 0; local < discovered_; ++local) {
     const auto id = static_cast<std::uint32_t>(order_[local] >> 32);
     id_[local] = id, place_[static_cast<std::uint32_t>(order_[local])] = local;
-    const Vec3& p = nodes.position[id];
-    places_[local] = {p.x(), p.y(), p.z(), nodes.radius[id]};
+    const Vec3& p = graph.position(nodes, id);
+    places_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
+    nodes_ += !VisibilityGraph::is_guide(id);
   }
   first_.clear(), limit_.clear(), edges_.clear();
-  long_edges_.assign(sources.size(), 0);
+  bare_edges_.assign(sources.size(), 0);
   for (const auto entry : order_) {
     first_.push_back(static_cast<std::uint32_t>(edges_.size()));
     const auto number = static_cast<std::uint32_t>(entry);

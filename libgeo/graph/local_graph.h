@@ -23,12 +23,15 @@ class LocalGraph {
   void gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(id_.size()); }
-  /// Nodes of the whole graph, ascending.
+  /// Of them, the first so many are nodes; the rest, if any, are guides.
+  std::uint32_t node_count() const { return nodes_; }
+  /// Nodes and guides of the whole graph, ascending.
   std::uint32_t id(std::uint32_t local) const { return id_[local]; }
   /// Of the k-th source.
   std::uint32_t source(std::size_t k) const { return place_[k]; }
-  /// Has the k-th source edges as long as the support, which are not here?
-  bool has_long_edges(std::size_t k) const { return long_edges_[k]; }
+  Vec3 position(std::uint32_t local) const { return {places_[local].x, places_[local].y, places_[local].z}; }
+  /// Has the k-th source edges that join no neighbours: as long as the support, which are not here, or to guides?
+  bool has_bare_edges(std::size_t k) const { return bare_edges_[k]; }
   /// By class of length. A node has those edges only that lead to a neighbour of a source.
   std::span<const Edge> edges(std::uint32_t local) const { return {edges_.data() + first_[local], edges_.data() + first_[local + 1]}; }
   /// From this distance on, no edge of a node leads to a neighbour. By local node.
@@ -50,8 +53,9 @@ class LocalGraph {
   IdMap map_;  // of those that are not in the run of sources
   std::uint32_t run_ = 0, discovered_ = 0;
   std::vector<Discovery> discoveries_;
-  std::vector<std::uint8_t> queued_, long_edges_;
+  std::vector<std::uint8_t> queued_, bare_edges_;
   std::vector<std::uint32_t> queue_, targets_, next_, place_;
+  std::uint32_t nodes_ = 0;
   // By local node.
   std::vector<std::uint32_t> id_, first_, limit_;
   std::vector<Place> places_;

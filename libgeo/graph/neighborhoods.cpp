@@ -19,6 +19,7 @@ class RowMaker {
   RowView make(std::uint32_t i, const PathRow& found) {
     to_.clear(), bits_.clear(), paths_.clear();
     for (const auto& [j, length] : found) {
+      if (j >= graph_.node_count()) break;  // guides
       to_.push_back(j);
       const std::uint16_t edge = graph_.has(NodeId(i), NodeId(j)) ? VisibilityGraph::edge_bit : 0;
       bits_.push_back(edge | VisibilityGraph::bits_of_bound(static_cast<std::uint32_t>(length >> 32)));
@@ -26,7 +27,7 @@ class RowMaker {
     if (sight_) sight_(i, to_, bits_);
     for (std::size_t k = 0; k < to_.size(); ++k)
       if (RowStore::has_path(bits_[k])) paths_.push_back(static_cast<float>(double(static_cast<std::uint32_t>(found[k].second)) * graph_.plain_unit()));
-    insert_long_edges(nodes_, graph_, i, to_, bits_);
+    insert_bare_edges(nodes_, graph_, i, to_, bits_);
     return {to_, bits_, paths_};
   }
 

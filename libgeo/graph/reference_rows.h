@@ -14,7 +14,7 @@ namespace geo {
 using PathLength = std::uint64_t;
 using PathRow = std::vector<std::pair<std::uint32_t, PathLength>>;
 
-/// The graph's edges with their lengths, those shorter than the support.
+/// The graph's edges with their lengths, those shorter than the support. Guides follow the nodes.
 std::vector<PathRow> edge_lengths(const NodeSet& nodes, const VisibilityGraph& graph);
 
 /// Dijkstra from one node, bounded by the support; ascending by node, without the node itself.

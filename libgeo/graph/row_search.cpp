@@ -24,11 +24,11 @@ struct RowSearch::Work {
   std::vector<std::uint64_t> plain;     // where distance is known
   std::vector<LaneSearch::Found> order;
 
-  void plain_lengths(const NodeSet& nodes, double unit, std::uint32_t source, std::span<const LaneSearch::Found> found);
+  void plain_lengths(double unit, std::uint32_t source, std::span<const LaneSearch::Found> found);
 };
 
 // Of all paths with the least warped length, the plainly shortest: nearer nodes first.
-void RowSearch::Work::plain_lengths(const NodeSet& nodes, double unit, std::uint32_t source, std::span<const LaneSearch::Found> found) {
+void RowSearch::Work::plain_lengths(double unit, std::uint32_t source, std::span<const LaneSearch::Found> found) {
   distance.resize(std::max<std::size_t>(distance.size(), local.size()), 0);
   plain.resize(distance.size());
   order.assign(found.begin(), found.end());
@@ -37,10 +37,10 @@ void RowSearch::Work::plain_lengths(const NodeSet& nodes, double unit, std::uint
   plain[source] = 0;
   order.insert(order.begin(), {source, 0});
   for (const auto& f : order) {
-    const Vec3& from = nodes.position[local.id(f.node)];
+    const Vec3 from = local.position(f.node);
     for (const auto edge : local.edges(f.node))
       if (f.distance + edge.length == distance[edge.to])
-        plain[edge.to] = std::min(plain[edge.to], plain[f.node] + plain_length(from, nodes.position[local.id(edge.to)], unit));
+        plain[edge.to] = std::min(plain[edge.to], plain[f.node] + plain_length(from, local.position(edge.to), unit));
   }
   for (const auto& f : found) distance[f.node] = 0;
 }
@@ -48,17 +48,21 @@ void RowSearch::Work::plain_lengths(const NodeSet& nodes, double unit, std::uint
 RowSearch::RowSearch() : work_(std::make_unique<Work>()) {}
 RowSearch::~RowSearch() = default;
 
-void insert_long_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i, std::vector<std::uint32_t>& to,
+void insert_bare_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i, std::vector<std::uint32_t>& to,
                        std::vector<std::uint16_t>& bits) {
-  for (const NodeId j : graph.edges(NodeId(i))) {
-    if (warped_length(nodes, i, j.index()) < unit_radius) continue;
-    const auto k = std::lower_bound(to.begin(), to.end(), j.value) - to.begin();
-    if (static_cast<std::size_t>(k) < to.size() && to[static_cast<std::size_t>(k)] == j.value) {
+  const auto row = graph.entries(i);
+  for (std::size_t e = 0; e < row.to.size(); ++e) {
+    if (!VisibilityGraph::is_edge(row.bits[e])) continue;
+    const auto j = row.to[e];
+    const auto length = graph.warped(nodes, i, j);
+    if (length < unit_radius && !VisibilityGraph::is_guide(j)) continue;
+    const auto k = std::lower_bound(to.begin(), to.end(), j) - to.begin();
+    if (static_cast<std::size_t>(k) < to.size() && to[static_cast<std::size_t>(k)] == j) {
       bits[static_cast<std::size_t>(k)] |= VisibilityGraph::edge_bit;  // near by another way
       continue;
     }
-    to.insert(to.begin() + k, j.value);
-    bits.insert(bits.begin() + k, VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(unit_radius));
+    to.insert(to.begin() + k, j);
+    bits.insert(bits.begin() + k, VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(length));
   }
 }
 
@@ -78,7 +82,9 @@ void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::spa
         w.search.run(w.local, lanes);
       }
       const auto i = sources[first + k], source = lanes[lane];
-      const auto found = w.search.row(lane);
+      const auto all = w.search.row(lane);
+      const auto found = all.first(static_cast<std::size_t>(
+          std::partition_point(all.begin(), all.end(), [&](const auto& f) { return f.node < w.local.node_count(); }) - all.begin()));
       const auto edges = w.local.edges(source);
       for (const auto edge : edges) w.mark[edge.to] = VisibilityGraph::edge_bit;
       w.to.resize(found.size()), w.bits.resize(found.size()), w.paths.clear();
@@ -87,11 +93,11 @@ void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::spa
         w.bits[e] = static_cast<std::uint16_t>(w.mark[found[e].node] | found[e].distance >> 10);
       }
       for (const auto edge : edges) w.mark[edge.to] = 0;
-      if (w.local.has_long_edges(k)) insert_long_edges(nodes, graph, i, w.to, w.bits);
+      if (w.local.has_bare_edges(k)) insert_bare_edges(nodes, graph, i, w.to, w.bits);
       if (sight) {
         sight(i, w.to, w.bits);
         if (std::any_of(w.bits.begin(), w.bits.end(), RowStore::has_path)) {
-          w.plain_lengths(nodes, graph.plain_unit(), source, found);
+          w.plain_lengths(graph.plain_unit(), source, all);
           for (std::size_t e = 0, f = 0; e < w.to.size(); ++e) {
             if (!VisibilityGraph::is_neighbor(w.bits[e])) continue;
             if (RowStore::has_path(w.bits[e])) w.paths.push_back(static_cast<float>(double(w.plain[found[f].node]) * graph.plain_unit()));

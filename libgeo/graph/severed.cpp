@@ -62,7 +62,7 @@ struct Surroundings {
 Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
                      std::span<const Corners> faces) {
   Severed severed;
-  const auto& x = nodes.position;
+  const auto at = [&](std::uint32_t id) -> const Vec3& { return graph.position(nodes, id); };
   // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
   const double half = 0.5 * graph.reach() * (1 + 1e-6);
   if (!(half > 0)) return severed;  // no edge yet
@@ -71,20 +71,22 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], half), faces_at[0].push_back(f);
   // Nodes with faces near them, in the lower half.
   std::vector<std::uint64_t> candidates;
-  grid.walk(
-      [&](int depth, const Vec3& middle, double size) {
-        const auto to = static_cast<std::size_t>(depth) + 1;
-        if (faces_at.size() <= to) faces_at.resize(to + 1);
-        faces_at[to].clear();
-        for (const auto f : faces_at[to - 1])
-          if (around[f].reaches(middle, size * (1 + 1e-12))) faces_at[to].push_back(f);
-        return !faces_at[to].empty();
-      },
-      [&](int depth, std::uint32_t i) {
-        if (i >= first_new.value) return;
-        for (const auto f : faces_at[static_cast<std::size_t>(depth) + 1])
-          if (around[f].holds(x[i], around[f].plane.height(x[i]))) candidates.push_back(std::uint64_t(i) << 32 | f);
-      });
+  const auto into = [&](int depth, const Vec3& middle, double size) {
+    const auto to = static_cast<std::size_t>(depth) + 1;
+    if (faces_at.size() <= to) faces_at.resize(to + 1);
+    faces_at[to].clear();
+    for (const auto f : faces_at[to - 1])
+      if (around[f].reaches(middle, size * (1 + 1e-12))) faces_at[to].push_back(f);
+    return !faces_at[to].empty();
+  };
+  const auto see = [&](int depth, std::uint32_t id) {
+    for (const auto f : faces_at[static_cast<std::size_t>(depth) + 1])
+      if (around[f].holds(at(id), around[f].plane.height(at(id)))) candidates.push_back(std::uint64_t(id) << 32 | f);
+  };
+  grid.walk(into, [&](int depth, std::uint32_t i) {
+    if (i < first_new.value) see(depth, i);
+  });
+  graph.guides().grid().walk(into, [&](int depth, std::uint32_t g) { see(depth, VisibilityGraph::first_guide + g); });
   std::sort(candidates.begin(), candidates.end());
 
   struct Side {
@@ -97,20 +99,20 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
     sides.clear();
     for (; c < candidates.size() && candidates[c] >> 32 == i; ++c) {
       const Surroundings& face = around[static_cast<std::uint32_t>(candidates[c])];
-      const auto h = face.plane.height(x[i]);
+      const auto h = face.plane.height(at(i));
       sides.push_back({&face, h.above(), h.below()});
     }
-    const auto row = graph.rows().entries(i);
+    const auto row = graph.entries(i);
     for (std::size_t k = 0; k < row.to.size(); ++k) {
       const auto j = row.to[k];
       const bool cut = std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
         const Surroundings& face = *side.face;
-        const auto h = face.plane.height(x[j]);
+        const auto h = face.plane.height(at(j));
         if ((side.above && h.above()) || (side.below && h.below())) return false;
-        if (j < i && face.holds(x[j], h)) return false;  // j has asked
-        Box3 segment{x[i], x[i]};
-        segment.add(x[j]);
-        return segment.meets(face.box) && segment_meets_triangle(x[std::min(i, j)], x[std::max(i, j)], face.corners[0], face.corners[1], face.corners[2]);
+        if (j < i && face.holds(at(j), h)) return false;  // j has asked
+        Box3 segment{at(i), at(i)};
+        segment.add(at(j));
+        return segment.meets(face.box) && segment_meets_triangle(at(std::min(i, j)), at(std::max(i, j)), face.corners[0], face.corners[1], face.corners[2]);
       });
       if (!cut) continue;
       if (VisibilityGraph::is_edge(row.bits[k])) severed.edges.push_back(pair_key(i, j));

@@ -11,7 +11,7 @@
 
 namespace geo {
 
-/// Two nodes, the lower one in the upper half: sorts by nodes.
+/// Two nodes or guides, the lower one in the upper half: sorts by nodes.
 using NodePairKey = std::uint64_t;
 constexpr NodePairKey pair_key(std::uint32_t i, std::uint32_t j) { return NodePairKey(i < j ? i : j) << 32 | (i < j ? j : i); }
 
@@ -20,7 +20,7 @@ struct Severed {
   std::vector<NodePairKey> neighbors;  ///< pairs of neighbours, edges or not, between which a face came, ascending
 };
 
-/// Looks among nodes before `first_new`, at a cost that follows the faces' area. `grid` holds all nodes.
+/// Looks among guides and nodes before `first_new`, at a cost that follows the faces' area. `grid` holds all nodes.
 Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
                      std::span<const std::array<Vec3, 3>> faces);
 

@@ -12,8 +12,8 @@
 namespace geo {
 
 struct GraphUpdate {
-  std::vector<std::pair<NodeId, NodeId>> cut_edges;    ///< E_cut, i < j
-  std::vector<std::pair<NodeId, NodeId>> added_edges;  ///< E_new
+  std::vector<std::pair<NodeId, NodeId>> cut_edges;    ///< E_cut, i < j; of nodes
+  std::vector<std::pair<NodeId, NodeId>> added_edges;  ///< E_new; of nodes
   std::vector<NodeId> updated_nodes;                   ///< P_update: nodes whose rows were recomputed, ascending
 };
 
@@ -22,12 +22,12 @@ struct GraphUpdate {
 /// the triangles of the whole complex whose boxes meet a box (asked only for pairs that were no neighbours before, or of
 /// which one is new or moved). `moved` lists old nodes whose position or radius has changed: they lose their edges and are
 /// connected anew. `grid` holds all nodes where they are now. `joins`: pairs with a new node that see each other and get
-/// an edge however far apart they are. Precondition: `nodes` already holds the new nodes; `graph` is as before the step.
+/// an edge however far apart they are. `new_guides`: guides that the graph gets, after the faces (guides.h). Precondition: `nodes` already holds the new nodes; `graph` is as before the step.
 /// The cost follows what changes, not what there is.
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
                          std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
                          const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins = {});
+                         std::span<const std::pair<NodeId, NodeId>> joins = {}, std::span<const Guide> new_guides = {});
 
 }  // namespace geo

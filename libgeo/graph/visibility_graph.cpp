@@ -27,16 +27,16 @@ std::size_t VisibilityGraph::neighbor_count(NodeId i) const {
 }
 
 bool VisibilityGraph::has(NodeId i, NodeId j) const {
-  const auto row = rows_.entries(i.index());
+  const auto row = entries(i.value);
   const auto k = place_of(row, j);
   return k < row.to.size() && row.to[k] == j.value && is_edge(row.bits[k]);
 }
 
 bool VisibilityGraph::add(const NodeSet& nodes, NodeId i, NodeId j) {
   if (has(i, j)) return false;
-  const std::uint16_t bound = bits_of_bound(warped_length(nodes, i.index(), j.index())), fresh = edge_bit | path_bit | bound;
+  const std::uint16_t bound = bits_of_bound(warped(nodes, i.value, j.value)), fresh = edge_bit | path_bit | bound;
   const auto put = [&](NodeId from, NodeId to) {
-    const auto row = rows_.row(from.index());
+    const auto row = store(from.value).row(place(from.value));
     const auto k = place_of(row, to);
     std::vector<std::uint32_t> ids(row.to.begin(), row.to.end());
     std::vector<std::uint16_t> bits(row.bits.begin(), row.bits.end());
@@ -49,35 +49,59 @@ bool VisibilityGraph::add(const NodeSet& nodes, NodeId i, NodeId j) {
       ids.insert(ids.begin() + static_cast<std::ptrdiff_t>(k), to.value);
       bits.insert(bits.begin() + static_cast<std::ptrdiff_t>(k), fresh);
     }
-    rows_.set(from.index(), {ids, bits, paths});
+    store(from.value).set(place(from.value), {ids, bits, paths});
   };
   put(i, j), put(j, i);
-  reach_ = std::max({reach_, nodes.radius[i.index()], nodes.radius[j.index()],
-                     std::sqrt(squared_distance(nodes.position[i.index()], nodes.position[j.index()]))});
-  ++edges_;
+  reach_ = std::max({reach_, radius(nodes, i.value), radius(nodes, j.value),
+                     std::sqrt(squared_distance(position(nodes, i.value), position(nodes, j.value)))});
+  edges_ += !is_guide(i.value) && !is_guide(j.value);
   return true;
+}
+
+std::uint32_t VisibilityGraph::add_guide(const Guide& guide) {
+  const auto id = first_guide + guides_.size();
+  guides_.add(guide);
+  guide_rows_.resize(guides_.size());
+  reach_ = std::max(reach_, guide.radius);
+  return id;
+}
+
+void VisibilityGraph::append_guide_edges(const NodeSet& nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
+  for (std::size_t e = 0; e < edges.size();) {
+    const auto id = edges[e].first;
+    const auto row = store(id).row(place(id));
+    std::vector<std::uint32_t> to(row.to.begin(), row.to.end());
+    std::vector<std::uint16_t> bits(row.bits.begin(), row.bits.end());
+    const std::vector<float> paths(row.paths.begin(), row.paths.end());
+    for (; e < edges.size() && edges[e].first == id; ++e) {
+      to.push_back(edges[e].second);
+      bits.push_back(edge_bit | path_bit | bits_of_bound(warped(nodes, id, edges[e].second)));
+    }
+    store(id).set(place(id), {to, bits, paths});
+  }
 }
 
 bool VisibilityGraph::remove(NodeId i, NodeId j) {
   const auto take = [&](NodeId from, NodeId to) {
-    const auto row = rows_.entries(from.index());
+    auto& rows = store(from.value);
+    const auto row = rows.entries(place(from.value));
     const auto k = place_of(row, to);
     if (k == row.to.size() || row.to[k] != to.value || !is_edge(row.bits[k])) return false;
     if (is_neighbor(row.bits[k])) {
-      rows_.bits(from.index())[k] &= static_cast<std::uint16_t>(~edge_bit);
+      rows.bits(place(from.value))[k] &= static_cast<std::uint16_t>(~edge_bit);
       return true;
     }
-    const auto whole = rows_.row(from.index());
+    const auto whole = rows.row(place(from.value));
     std::vector<std::uint32_t> ids(whole.to.begin(), whole.to.end());
     std::vector<std::uint16_t> bits(whole.bits.begin(), whole.bits.end());
     const std::vector<float> paths(whole.paths.begin(), whole.paths.end());
     ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(k)), bits.erase(bits.begin() + static_cast<std::ptrdiff_t>(k));
-    rows_.set(from.index(), {ids, bits, paths});
+    rows.set(place(from.value), {ids, bits, paths});
     return true;
   };
   if (!take(i, j)) return false;
   take(j, i);
-  --edges_;
+  edges_ -= !is_guide(i.value) && !is_guide(j.value);
   return true;
 }
 
@@ -140,7 +164,9 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
 }
 
 bool operator==(const VisibilityGraph& a, const VisibilityGraph& b) {
-  if (a.node_count() != b.node_count() || a.plain_unit_ != b.plain_unit_) return false;
+  if (a.node_count() != b.node_count() || a.plain_unit_ != b.plain_unit_ || !(a.guides_ == b.guides_)) return false;
+  for (std::uint32_t g = 0; g < a.guides_.size(); ++g)
+    if (!(a.guide_rows_.row(g) == b.guide_rows_.row(g))) return false;
   for (std::size_t i = 0; i < a.node_count(); ++i)
     if (!(a.rows_.row(i) == b.rows_.row(i))) return false;
   return true;

@@ -8,6 +8,7 @@
 #include "base/ids.h"
 #include "base/progress.h"
 #include "geometry/bvh.h"
+#include "graph/guide_set.h"
 #include "graph/lengths.h"
 #include "graph/row_store.h"
 #include "sampling/node_set.h"
@@ -25,6 +26,8 @@ struct Neighbor {
 /// of edges and distances of pairs that see each other are not stored: they are functions of the nodes.
 /// Neighbours are symmetric: j is one of i's exactly when i is one of j's. They are there once build_neighborhoods() was
 /// called, and follow changes of the graph through update_graph() only.
+/// Besides nodes there may be guides (§ 8): paths lead through them, but they are nobody's neighbours. Their ids begin at
+/// first_guide, so they come last in rows, as ends of edges; what is said of nodes below leaves them out.
 class VisibilityGraph {
  public:
   std::size_t node_count() const { return rows_.size(); }
@@ -45,6 +48,25 @@ class VisibilityGraph {
   bool add(const NodeSet& nodes, NodeId i, NodeId j);
   bool remove(NodeId i, NodeId j);
 
+  static constexpr std::uint32_t first_guide = 1u << 31;
+  static constexpr bool is_guide(std::uint32_t id) { return id >= first_guide; }
+  const GuideSet& guides() const { return guides_; }
+  /// A new guide, without edges; returns its id. See add_guides() and update_graph().
+  std::uint32_t add_guide(const Guide& guide);
+  /// Edges between guides and others, given from both ends, ascending; each lies behind all that its row has.
+  void append_guide_edges(const NodeSet& nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges);
+  /// Of a node or guide.
+  const Vec3& position(const NodeSet& nodes, std::uint32_t id) const { return is_guide(id) ? guides_.position(place(id)) : nodes.position[id]; }
+  double radius(const NodeSet& nodes, std::uint32_t id) const { return is_guide(id) ? guides_.radius(place(id)) : nodes.radius[id]; }
+  std::uint32_t warped(const NodeSet& nodes, std::uint32_t i, std::uint32_t j) const {
+    return warped_length(position(nodes, i), position(nodes, j), radius(nodes, i), radius(nodes, j));
+  }
+  /// The row of a node or guide, without floats. A guide's has its edges only.
+  RowView entries(std::uint32_t id) const { return store(id).entries(place(id)); }
+  const RowStore& store(std::uint32_t id) const { return is_guide(id) ? guide_rows_ : rows_; }
+  /// Of an id in its store.
+  static constexpr std::uint32_t place(std::uint32_t id) { return id & ~first_guide; }
+
   /// The unit of plain lengths, set once: plain_unit_for() the nodes it is built for.
   double plain_unit() const { return plain_unit_; }
   void set_plain_unit(double unit) { plain_unit_ = unit; }
@@ -52,8 +74,8 @@ class VisibilityGraph {
   double reach() const { return reach_; }
   /// Component of each node, numbered by lowest node; returns their count.
   std::uint32_t components(std::vector<std::uint32_t>& of) const;
-  /// Bytes of all rows.
-  std::size_t bytes() const { return rows_.bytes(); }
+  /// Bytes of all rows and guides.
+  std::size_t bytes() const { return rows_.bytes() + guide_rows_.bytes() + guides_.bytes(); }
 
   /// Rows as they are stored, for files and searches: entries as the functions below read them.
   const RowStore& rows() const { return rows_; }
@@ -82,7 +104,10 @@ class VisibilityGraph {
  private:
   friend VisibilityGraph build_visibility_graph(const NodeSet&, const TriangleBvh&, int, const Progress&);
 
-  RowStore rows_;
+  RowStore& store(std::uint32_t id) { return is_guide(id) ? guide_rows_ : rows_; }
+
+  RowStore rows_, guide_rows_;
+  GuideSet guides_;
   std::size_t edges_ = 0;
   double plain_unit_ = 1, reach_ = 0;
 };
@@ -112,7 +137,9 @@ class VisibilityGraph::Edges {
     RowView row_;
     std::size_t at_;
   };
-  explicit Edges(const RowView& row) : row_(row) {}
+  explicit Edges(const RowView& row) : row_(row) {
+    while (!row_.to.empty() && is_guide(row_.to.back())) row_.to = row_.to.first(row_.to.size() - 1);
+  }
   Iterator begin() const { return {row_, 0}; }
   Iterator end() const { return {row_, row_.to.size()}; }
 

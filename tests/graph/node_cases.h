@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "graph/guide_set.h"
 #include "sampling/node_set.h"
 
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
@@ -22,6 +23,21 @@ inline geo::NodeSet jittered(geo::Random& random, int n, double jitter, double g
     nodes.volume.push_back(h * h * h);
   }
   return nodes;
+}
+
+/// Guides anywhere in the cube, some of them beside faces' edges.
+inline std::vector<geo::Guide> random_guides(geo::Random& random, int count, const Soup& faces) {
+  std::vector<geo::Guide> guides;
+  for (int g = 0; g < count; ++g) {
+    geo::Vec3 p(random.uniform(), random.uniform(), random.uniform());
+    if (!faces.empty() && g % 3 > 0) {
+      const auto& t = faces[random.below(static_cast<std::uint32_t>(faces.size()))];
+      const double share = random.uniform();
+      p = share * t[0] + (1 - share) * t[1] + 0.01 * (t[0] + t[1] - 2 * t[2]);
+    }
+    guides.push_back({p, random.uniform(0.1, 0.4)});
+  }
+  return guides;
 }
 
 /// Triangles anywhere in the cube, as large as a few spacings up to all of it.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cases.h"
+#include "graph/guides.h"
 #include "graph/neighborhoods.h"
 #include "graph/update.h"
 #include "node_cases.h"
@@ -19,9 +20,11 @@ struct Cut {
   Soup all;
   int k = 26;
 
-  Cut(NodeSet set, const Soup& walls, int nearest) : nodes(std::move(set)), grid(0.125, nodes.position), all(walls), k(nearest) {
+  Cut(NodeSet set, const Soup& walls, int nearest, const std::vector<Guide>& guides = {})
+      : nodes(std::move(set)), grid(0.125, nodes.position), all(walls), k(nearest) {
     const TriangleBvh tree(all);
     graph = build_visibility_graph(nodes, tree, k);
+    add_guides(nodes, grid, tree, guides, graph);
     build_neighborhoods(nodes, graph, tree);
   }
   NodeId insert(const Vec3& p, double radius) {
@@ -29,13 +32,14 @@ struct Cut {
     grid.insert(nodes.position, static_cast<std::uint32_t>(nodes.size() - 1));
     return NodeId(nodes.size() - 1);
   }
-  GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh, const std::vector<std::pair<NodeId, NodeId>>& joins = {}) {
+  GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh, const std::vector<std::pair<NodeId, NodeId>>& joins = {},
+                   const std::vector<Guide>& guides = {}) {
     all.insert(all.end(), fresh.begin(), fresh.end());
     const auto near = [&](const Box3& box, Soup& out) {
       for (const auto& t : all)
         if (box_of(t[0], t[1], t[2]).meets(box)) out.push_back(t);
     };
-    return update_graph(nodes, first, moved, fresh, near, k, grid, graph, joins);
+    return update_graph(nodes, first, moved, fresh, near, k, grid, graph, joins, guides);
   }
 };
 
@@ -50,6 +54,24 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
       REQUIRE_FALSE(tree.blocks(x[i], x[j.index()]));
     }
   REQUIRE(cut.graph.edge_count() == edges / 2);
+  // Guides see what they see within their reach, no more and no less.
+  for (std::uint32_t g = 0; g < cut.graph.guides().size(); ++g) {
+    const auto& guides = cut.graph.guides();
+    const Vec3& p = guides.position(g);
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < cut.nodes.size(); ++i)
+      if (squared_distance(p, x[i]) <= guides.radius(g) * guides.radius(g) && !tree.blocks(x[i], p)) expected.push_back(i);
+    for (std::uint32_t h = 0; h < guides.size(); ++h)
+      if (const double r = std::max(guides.radius(g), guides.radius(h)); h != g && squared_distance(p, guides.position(h)) <= r * r && !tree.blocks(guides.position(h), p))
+        expected.push_back(VisibilityGraph::first_guide + h);
+    const auto row = cut.graph.entries(VisibilityGraph::first_guide + g);
+    CAPTURE(g);
+    REQUIRE(std::vector<std::uint32_t>(row.to.begin(), row.to.end()) == expected);
+    for (std::size_t e = 0; e < row.to.size(); ++e) {
+      REQUIRE(cut.graph.has(NodeId(row.to[e]), NodeId(VisibilityGraph::first_guide + g)));
+      REQUIRE((VisibilityGraph::is_edge(row.bits[e]) && !VisibilityGraph::is_neighbor(row.bits[e])));
+    }
+  }
   REQUIRE(cut.graph.edge_count() == before.edge_count() - update.cut_edges.size() + update.added_edges.size());
   VisibilityGraph scratch = cut.graph;
   build_neighborhoods(cut.nodes, scratch, tree);
@@ -95,7 +117,10 @@ TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
   for (int seed = 1; seed <= cases(10); ++seed) {
     CAPTURE(seed);
     Random random(static_cast<std::uint64_t>(seed));
-    Cut cut(jittered(random, 5 + seed % 4, seed % 5 == 0 ? 0 : 0.4, 1 + 2 * random.uniform()), random_faces(random, seed % 4), 8 + static_cast<int>(random.below(25)));
+    const Soup walls = random_faces(random, seed % 4);
+    const bool guided = seed % 2 == 0;
+    Cut cut(jittered(random, 5 + seed % 4, seed % 5 == 0 ? 0 : 0.4, 1 + 2 * random.uniform()), walls, 8 + static_cast<int>(random.below(25)),
+            random_guides(random, guided ? 12 : 0, walls));
     for (int step = 0; step < 8; ++step) {
       CAPTURE(step);
       const NodeId first(cut.nodes.size());
@@ -121,7 +146,7 @@ TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
         faces.insert(faces.end(), fresh.begin(), fresh.end());
         if (!TriangleBvh(faces).blocks(cut.nodes.position[j.index()], cut.nodes.position[i.index()])) joins.push_back({j, i});
       }
-      const auto update = cut.step(first, moved, fresh, joins);
+      const auto update = cut.step(first, moved, fresh, joins, random_guides(random, guided ? static_cast<int>(random.below(6)) : 0, fresh));
       require_as_from_scratch(cut, update, before, rows_compared);
       cut_edges += update.cut_edges.size(), added_edges += update.added_edges.size();
     }

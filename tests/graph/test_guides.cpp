@@ -1,0 +1,146 @@
+// Guides: distances around concave edges (§ 8).
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "cases.h"
+#include "concave_shapes.h"
+#include "graph/guides.h"
+#include "graph/lane_search.h"
+#include "graph/neighborhoods.h"
+#include "graph/place_guides.h"
+#include "node_cases.h"
+
+using namespace geo;
+
+namespace {
+
+VisibilityGraph guided(const NodeSet& nodes, const TriangleBvh& tree, const std::vector<Guide>& guides, NeighborMethod method = NeighborMethod::automatic) {
+  VisibilityGraph graph = build_visibility_graph(nodes, tree, 26);
+  add_guides(nodes, NodeGrid(0.125, nodes.position), tree, guides, graph);
+  build_neighborhoods(nodes, graph, tree, method);
+  return graph;
+}
+
+TriangleBvh tree_of(const TriangleMesh& mesh) {
+  Soup soup;
+  for (const auto& [i, j, k] : mesh.triangles) soup.push_back({mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]});
+  return TriangleBvh(soup);
+}
+
+}  // namespace
+
+TEST_CASE("every method, vector width and number of threads gives the same rows with guides") {
+  std::size_t shortened = 0, gained = 0;
+  for (int seed = 1; seed <= cases(10); ++seed) {
+    CAPTURE(seed);
+    Random random(static_cast<std::uint64_t>(seed));
+    const NodeSet nodes = jittered(random, 6 + seed % 3, seed % 4 == 0 ? 0 : 0.4, seed % 3 == 0 ? 3 : 1);
+    const Soup faces = random_faces(random, 2 + static_cast<int>(random.below(12)));
+    const TriangleBvh tree(faces);
+    const auto guides = random_guides(random, 40, faces);
+    const auto rows = guided(nodes, tree, guides), bare = guided(nodes, tree, {});
+    REQUIRE(rows == guided(nodes, tree, guides, NeighborMethod::dijkstra));
+    REQUIRE(rows == guided(nodes, tree, guides, NeighborMethod::mfw));
+    VisibilityGraph again = rows;
+    build_neighborhoods(nodes, again, tree);
+    REQUIRE(rows == again);
+    for (const auto& target : vector_targets()) {
+      use_vector_target(target);
+      REQUIRE(rows == guided(nodes, tree, guides));
+    }
+    use_vector_target("");
+    set_threads(seed % 2 ? 1 : 4);
+    REQUIRE(rows == guided(nodes, tree, guides));
+    set_threads(0);
+
+    // Guides are nobody's neighbours, and take none away.
+    REQUIRE(rows.edge_count() == bare.edge_count());
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+      std::vector<std::uint32_t> edges, bare_edges;
+      for (const NodeId j : rows.edges(NodeId(i))) edges.push_back(j.value);
+      for (const NodeId j : bare.edges(NodeId(i))) bare_edges.push_back(j.value);
+      REQUIRE(edges == bare_edges);
+      std::vector<Neighbor> with, without;
+      for (const auto& n : rows.neighbors(nodes, NodeId(i))) with.push_back(n);
+      for (const auto& n : bare.neighbors(nodes, NodeId(i))) without.push_back(n);
+      REQUIRE(rows.neighbor_count(NodeId(i)) == with.size());
+      auto at = with.begin();
+      for (const auto& n : without) {
+        at = std::find_if(at, with.end(), [&](const Neighbor& m) { return m.to == n.to; });
+        REQUIRE(at != with.end());
+        REQUIRE(at->to.index() < nodes.size());
+        REQUIRE(at->warped <= n.warped);
+        shortened += at->distance < n.distance;
+      }
+      gained += with.size() - without.size();
+    }
+    std::vector<std::uint32_t> component, bare_component;
+    CHECK(rows.components(component) == bare.components(bare_component));
+    CHECK(component == bare_component);
+  }
+  CHECK(shortened > 500);
+  CHECK(gained > 500);
+}
+
+TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
+  for (const auto& prism : concave_prisms()) {
+    CAPTURE(prism.name);
+    const auto mesh = walls_of(prism);
+    const auto tree = tree_of(mesh);
+    const NodeSet nodes = nodes_in(prism, 8, 3);
+    const NodeGrid grid(0.125, nodes.position);
+    const auto guides = place_guides(mesh, nodes, grid, tree);
+    CHECK(guides.size() == 16 * prism.concave.size());
+    const PrismPaths paths(prism);
+    for (const auto& g : guides) {
+      CHECK(paths.inside({g.position.x(), g.position.y()}, 1e-6));
+      double nearest = 1;
+      for (const auto c : prism.concave) nearest = std::min(nearest, std::hypot(g.position.x() - prism.polygon[c][0], g.position.y() - prism.polygon[c][1]));
+      CHECK(nearest < 0.125 / 60);
+    }
+    CHECK(place_guides(mesh, nodes, grid, tree, {1.0, 20}).size() == 8 * prism.concave.size());
+    CHECK_THROWS_AS(place_guides(mesh, nodes, grid, tree, {0, 20}), InputError);
+    CHECK_THROWS_AS(place_guides(mesh, nodes, grid, tree, {0.5, 0.0 / 0.0}), InputError);
+  }
+  // An edge that turns by 90 degrees is left out when more is asked for; a crack's front never is.
+  const auto prisms = concave_prisms();
+  for (const std::size_t p : {0, 3}) {
+    const auto mesh = walls_of(prisms[p]);
+    const NodeSet nodes = nodes_in(prisms[p], 8, 3);
+    CHECK(place_guides(mesh, nodes, NodeGrid(0.125, nodes.position), tree_of(mesh), {0.5, 100}).empty() == (p == 0));
+  }
+}
+
+TEST_CASE("with guides, distances of nodes that do not see each other are near the shortest paths") {
+  for (const auto& prism : concave_prisms())
+    for (int seed = 1; seed <= cases(2); ++seed) {
+      CAPTURE(prism.name, seed);
+      const auto mesh = walls_of(prism);
+      const auto tree = tree_of(mesh);
+      const NodeSet nodes = nodes_in(prism, 10, static_cast<std::uint64_t>(seed));
+      // With supports of twice the size rows tell distances of those, too, that ought to be neighbours and are not.
+      NodeSet wide = nodes;
+      for (double& r : wide.radius) r *= 2;
+      const auto bare = guided(wide, tree, {}), with = guided(wide, tree, place_guides(mesh, nodes, NodeGrid(0.1, nodes.position), tree));
+      const PrismPaths paths(prism);
+      ConcaveErrors errors, errors_with;
+      for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        const auto add = [&](const VisibilityGraph& graph, ConcaveErrors& to) {
+          for (const auto& n : graph.neighbors(wide, NodeId(i))) {
+            const double exact = paths.length(nodes.position[i], nodes.position[n.to.index()]);
+            if (exact < nodes.radius[i] && tree.blocks(nodes.position[i], nodes.position[n.to.index()])) to.add(n.distance, exact, nodes.radius[i]);
+          }
+        };
+        add(bare, errors), add(with, errors_with);
+      }
+      CAPTURE(errors.count, errors_with.count, errors.mean(), errors_with.mean(), errors.worst, errors_with.worst, errors.missed, errors_with.missed);
+      CHECK(errors.count > 40);
+      CHECK(errors_with.count >= errors.count);
+      CHECK(errors_with.least > -1e-6);  // no path is shorter than the shortest
+      CHECK(errors_with.mean() < 0.5 * errors.mean());
+      CHECK(errors_with.worst < 0.5 * errors.worst);
+      CHECK(2 * errors_with.missed < errors.missed);
+    }
+}

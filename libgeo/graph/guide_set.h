@@ -27,14 +27,14 @@ class GuideSet {
     if (position_.empty()) grid_ = NodeGrid(0.5 * guide.radius);
     position_.push_back(guide.position), radius_.push_back(guide.radius);
     largest_ = std::max(largest_, guide.radius);
-    grid_.insert(size() - 1, guide.position);
+    grid_.insert(position_, size() - 1);
   }
   /// Appends the guides within `distance` of p, ascending.
   void within(const Vec3& p, double distance, std::vector<std::uint32_t>& out) const {
     if (!position_.empty()) grid_.within(position_, p, distance, out);
   }
-  /// What positions and radii take.
-  std::size_t bytes() const { return position_.capacity() * sizeof(Vec3) + radius_.capacity() * sizeof(double); }
+  /// What they take in memory.
+  std::size_t bytes() const { return position_.capacity() * sizeof(Vec3) + radius_.capacity() * sizeof(double) + grid_.bytes(); }
   friend bool operator==(const GuideSet& a, const GuideSet& b) { return a.position_ == b.position_ && a.radius_ == b.radius_; }
 
  private:

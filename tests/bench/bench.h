@@ -45,6 +45,7 @@ struct Options {
 int crack(const Options& options);
 int block(const Options& options);
 int graph(const Options& options);
+int concave(const Options& options);
 
 /// Figures by name: one JSON object on a line, or a table.
 using Figures = std::map<std::string, double>;

@@ -1,4 +1,6 @@
 // kerf-graph: visibility graph, neighbourhoods and binding over nodes and their surface.
+#include <sstream>
+
 #include "body/body.h"
 #include "io/body_file.h"
 #include "io/node_file.h"
@@ -12,17 +14,20 @@ int main(int argc, char** argv) {
                "  kerf-graph nodes.pcd --surface bear.off -o bear.kerf\n  kerf-sample bear.off | kerf-graph --surface bear.off -o bear.kerf");
   std::string nodes_path = "-", surface_path, method = "auto";
   int k = 26;
+  double guides = 0;
   t.argument("NODES", nodes_path, "Nodes from kerf-sample (PCD or PLY); default: standard input", false);
   t.option("--surface", surface_path, "The model that was sampled");
   t.option("-k", k, "Nearest neighbours per node");
+  t.option("--guides", guides, "Guides along concave edges, so many node spacings apart; 0: none");
   t.option("--method", method, "Neighbourhoods by: auto, mfw (the paper's), dijkstra; all give the same");
   t.output("The body (.kerf)");
   return t.run(argc, argv, [&] {
     if (surface_path.empty()) throw tool::UsageError("give the model with --surface");
     if (surface_path == "-" && nodes_path == "-") throw tool::UsageError("nodes and surface cannot both come from standard input");
     if (k < 3 || k > 1000) throw tool::UsageError("-k must be from 3 to 1000");
+    if (guides != 0 && !(guides >= 0.05 && guides <= 10)) throw tool::UsageError("--guides must be 0, or from 0.05 to 10");
     geo::BodyOptions options;
-    options.k = k;
+    options.k = k, options.guides = guides;
     if (method == "mfw") options.method = geo::NeighborMethod::mfw;
     else if (method == "dijkstra") options.method = geo::NeighborMethod::dijkstra;
     else if (method != "auto") throw tool::UsageError("--method must be auto, mfw or dijkstra");
@@ -37,7 +42,10 @@ int main(int argc, char** argv) {
     } catch (const geo::InputError& e) {
       throw geo::InputError(nodes_path + ": " + e.what());
     }
-    body.history.push_back({"kerf-graph", KERF_VERSION, "-k " + std::to_string(k),
+    std::ostringstream arguments;
+    arguments << "-k " << k;
+    if (guides > 0) arguments << " --guides " << guides;
+    body.history.push_back({"kerf-graph", KERF_VERSION, arguments.str(),
                             {tool::named_hash(nodes_path, geo::fingerprint(nodes_bytes)), tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
     geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
     if (t.verbose) t.say("kerf-graph: " + std::to_string(body.nodes.size()) + " nodes, " + std::to_string(body.graph.edge_count()) + " edges");

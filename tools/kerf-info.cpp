@@ -114,6 +114,7 @@ std::string body_report(const geo::Body& body, std::size_t bytes, bool check, Re
   report.add("kind", tool::quoted("body"));
   report.add("nodes", body.nodes.size());
   report.add("edges", body.graph.edge_count());
+  if (body.graph.guides().size() > 0) report.add("guides", std::size_t(body.graph.guides().size()));
   report.add("graph_components", result.graph_components);
   report.add("pieces", result.pieces);
   report.add("edges_crossing", check ? std::to_string(result.edges_crossing) : "null");

@@ -48,6 +48,7 @@ struct Body {
   NodeGrid grid;                     ///< over nodes.position; derived, never in a file
   Upkeep upkeep;                     ///< derived, never in a file
   int k = 26;                        ///< nearest neighbours per node in the graph
+  double guides = 0;                 ///< of guides along concave edges (§ 8), in spacings of the nodes; 0: none
   double resample_limit = 1;         ///< new nodes may be at most this many per crack face area over spacing²; 0: none
   std::uint32_t updates = 0;         ///< cracks steps applied since the build
   std::vector<std::uint8_t> debris;  ///< per node: 1 where its neighbours do not span space (nodes.h): rigid debris
@@ -57,6 +58,7 @@ struct Body {
 struct BodyOptions {
   int k = 26;
   NeighborMethod method = NeighborMethod::automatic;
+  double guides = 0;  ///< along concave edges and crack fronts: how far apart, in spacings of the nodes; 0: none (§ 8)
 };
 
 /// Builds graph, neighbourhoods and binding (§ 6.1, 6.2, 6.5). Passages too narrow for the sampling (more components

@@ -2,17 +2,20 @@
 
 #include "base/error.h"
 #include "body/connect.h"
+#include "body/front_guides.h"
 #include "body/locate.h"
+#include "graph/guides.h"
 
 namespace geo {
 
 Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, const Progress& progress) {
   if (nodes.size() == 0) throw InputError("there are no nodes; make some with kerf-sample");
   if (options.k < 3 || options.k > 1000) throw InputError("k must be from 3 to 1000");
+  if (options.guides != 0 && !(options.guides >= 0.05 && options.guides <= 10)) throw InputError("guides must be 0 or from 0.05 to 10");
   Body body;
   body.surface = std::move(surface);
   body.nodes = std::move(nodes);
-  body.k = options.k;
+  body.k = options.k, body.guides = options.guides;
   body.debris.assign(body.nodes.size(), 0);
   body.grid =
       NodeGrid(std::accumulate(body.nodes.spacing.begin(), body.nodes.spacing.end(), 0.0) / double(body.nodes.size()),
@@ -33,6 +36,7 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
         body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
         body.k, body.grid, body.graph, joins);
   });
+  if (body.guides > 0) add_guides(body.nodes, body.grid, obstacles, all_guides(body), body.graph);
   build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);
   report(progress, "binding", 0, body.nodes.size());
   body.binding = build_binding(body);

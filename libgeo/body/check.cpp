@@ -35,6 +35,14 @@ BodyReport check_body(const Body& body) {
         note("edge " + std::to_string(i) + "-" + std::to_string(j.value) + " crosses a face");
       }
   }
+  for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) {
+    const auto id = VisibilityGraph::first_guide + g;
+    for (const auto j : body.graph.entries(id).to)
+      if (is_blocked(k, body.graph.position(body.nodes, j), body.graph.position(body.nodes, id))) {
+        ++report.edges_crossing;
+        note("an edge of guide " + std::to_string(g) + " crosses a face");
+      }
+  }
   if (report.graph_components != report.pieces)
     note("the graph has " + std::to_string(report.graph_components) + " components and the material " +
          std::to_string(report.pieces) + " pieces");

@@ -5,6 +5,7 @@
 
 #include "body/binding.h"
 #include "body/connect.h"
+#include "body/front_guides.h"
 #include "body/locate.h"
 
 namespace geo {
@@ -36,7 +37,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 0, body.updates);
   const double resample = since(clock);
   auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid,
-                             body.graph);
+                             body.graph, {}, guides_after(body, delta.crack));
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
   // Each piece that the crack cut off needs nodes, connected among themselves.
   bool recounted = false;

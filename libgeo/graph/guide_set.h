@@ -14,7 +14,14 @@ namespace geo {
 /// is bound to it.
 struct Guide {
   Vec3 position;
-  double radius = 0;  ///< it has edges to what it sees within this distance; its support radius in warped lengths. Model units
+  double radius = 0;  ///< it has edges to what it sees within this distance; its support radius in warped lengths. Model units.
+                      ///< 0: retired, sees nothing
+};
+
+/// What a step does to the guides of a graph.
+struct GuideChange {
+  std::vector<Guide> added;
+  std::vector<std::uint32_t> retired;  ///< ids; they lose all edges, and keep their ids
 };
 
 class GuideSet {
@@ -24,12 +31,15 @@ class GuideSet {
   double radius(std::uint32_t g) const { return radius_[g]; }
   double largest_radius() const { return largest_; }
   void add(const Guide& guide) {
-    if (position_.empty()) grid_ = NodeGrid(0.5 * guide.radius);
+    if (position_.empty()) grid_ = NodeGrid(guide.radius > 0 ? 0.5 * guide.radius : 1.0);
     position_.push_back(guide.position), radius_.push_back(guide.radius);
     largest_ = std::max(largest_, guide.radius);
     grid_.insert(position_, size() - 1);
   }
-  /// Appends the guides within `distance` of p, ascending.
+  /// From now on it sees nothing; it keeps its place.
+  void retire(std::uint32_t g) { radius_[g] = 0; }
+  bool retired(std::uint32_t g) const { return radius_[g] == 0; }
+  /// Appends the guides, retired ones too, within `distance` of p, ascending.
   void within(const Vec3& p, double distance, std::vector<std::uint32_t>& out) const {
     if (!position_.empty()) grid_.within(position_, p, distance, out);
   }

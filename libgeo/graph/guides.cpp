@@ -24,7 +24,7 @@ void near_guide(const NodeSet& nodes, const NodeGrid& grid, const VisibilityGrap
   graph.guides().within(p, more * graph.guides().largest_radius(), found);
   for (const auto g : found) {
     const auto id = VisibilityGraph::first_guide + g;
-    if (id < guide && in_reach(p, graph.guides().position(g), std::max(radius, graph.guides().radius(g)))) ids.push_back(id);
+    if (id < guide && !graph.guides().retired(g) && in_reach(p, graph.guides().position(g), std::max(radius, graph.guides().radius(g)))) ids.push_back(id);
   }
 }
 
@@ -33,7 +33,7 @@ void guides_near(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32
   std::vector<std::uint32_t> found;
   graph.guides().within(p, more * graph.guides().largest_radius(), found);
   for (const auto g : found)
-    if (in_reach(p, graph.guides().position(g), graph.guides().radius(g))) ids.push_back(VisibilityGraph::first_guide + g);
+    if (!graph.guides().retired(g) && in_reach(p, graph.guides().position(g), graph.guides().radius(g))) ids.push_back(VisibilityGraph::first_guide + g);
 }
 
 void join_guides(const NodeSet& nodes, std::span<const std::vector<std::uint32_t>> seen, VisibilityGraph& graph) {

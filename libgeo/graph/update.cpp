@@ -81,7 +81,7 @@ void add_users(const NodeSet& nodes, const VisibilityGraph& graph, std::span<con
 
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved, std::span<const Corners> new_faces,
                          const ObstacleNear& obstacle_near, int k, const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins, std::span<const Guide> new_guides) {
+                         std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides) {
   GraphUpdate result;
   thread_local RowSearch search;
   const auto& x = nodes.position;
@@ -92,6 +92,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   // What the faces cut, and all that hangs on the moved nodes.
   Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
   for (const auto key : severed.neighbors) update.add(static_cast<std::uint32_t>(key >> 32)), update.add(static_cast<std::uint32_t>(key));
+  for (const auto g : guides.retired)
+    for (const auto j : graph.entries(g).to) severed.edges.push_back(pair_key(g, j));
   add_users(nodes, graph, severed.edges, search, update);
   for (const NodeId m : moved) {
     update.add(m.value);
@@ -109,7 +111,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
 
   // E_new: each new node's k nearest visible nodes. The nearest are asked in growing numbers, since many may be hidden.
   const auto old_guides = VisibilityGraph::first_guide + graph.guides().size();
-  for (const Guide& guide : new_guides) graph.add_guide(guide);
+  for (const auto g : guides.retired) graph.retire_guide(g);
+  for (const Guide& guide : guides.added) graph.add_guide(guide);
   PairSight sight(nodes, graph, obstacle_near);
   std::vector<std::uint32_t> fresh;
   for (const NodeId m : moved) fresh.push_back(m.value);
@@ -131,7 +134,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     for (const auto g : seen_guides)
       if (g < old_guides && !sight.blocked(i, g)) graph.add(nodes, NodeId(i), NodeId(g));
   }
-  std::vector<std::vector<std::uint32_t>> seen(new_guides.size());
+  std::vector<std::vector<std::uint32_t>> seen(guides.added.size());
   for (std::size_t g = 0; g < seen.size(); ++g) {
     const auto id = static_cast<std::uint32_t>(old_guides + g);
     near_guide(nodes, grid, graph, id, seen[g]);
@@ -144,7 +147,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     join(a, b);
     beginnings.insert(beginnings.end(), {a.value, b.value});  // an old node that gains an edge is a new beginning, too
   }
-  for (std::size_t g = 0; g < new_guides.size(); ++g) beginnings.push_back(static_cast<std::uint32_t>(old_guides + g));
+  for (std::size_t g = 0; g < guides.added.size(); ++g) beginnings.push_back(static_cast<std::uint32_t>(old_guides + g));
   std::sort(beginnings.begin(), beginnings.end());
   beginnings.erase(std::unique(beginnings.begin(), beginnings.end()), beginnings.end());
   std::sort(result.added_edges.begin(), result.added_edges.end());

@@ -22,12 +22,13 @@ struct GraphUpdate {
 /// the triangles of the whole complex whose boxes meet a box (asked only for pairs that were no neighbours before, or of
 /// which one is new or moved). `moved` lists old nodes whose position or radius has changed: they lose their edges and are
 /// connected anew. `grid` holds all nodes where they are now. `joins`: pairs with a new node that see each other and get
-/// an edge however far apart they are. `new_guides`: guides that the graph gets, after the faces (guides.h). Precondition: `nodes` already holds the new nodes; `graph` is as before the step.
-/// The cost follows what changes, not what there is.
+/// an edge however far apart they are. `guides`: those that the graph gets, which see past the new faces, and those that it
+/// needs no longer. Precondition: `nodes` already holds the new nodes; `graph` is as before the step. The cost follows what
+/// changes, not what there is.
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
                          std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
                          const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins = {}, std::span<const Guide> new_guides = {});
+                         std::span<const std::pair<NodeId, NodeId>> joins = {}, const GuideChange& guides = {});
 
 }  // namespace geo

@@ -126,7 +126,8 @@ std::uint32_t VisibilityGraph::components(std::vector<std::uint32_t>& of) const 
 
 VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_unit, std::span<const std::uint32_t> count,
                                            std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
-                                           std::span<const float> paths) {
+                                           std::span<const float> paths, std::span<const Guide> guides,
+                                           std::span<const std::array<std::uint32_t, 2>> guide_edges) {
   const std::size_t n = nodes.size();
   const auto require = [](bool right, const char* what, std::size_t e) {
     if (!right) throw InputError("entry " + std::to_string(e) + " of the graph " + what);
@@ -138,12 +139,28 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
   std::vector<std::size_t> ends(n), next(n);  // next: what each row expects from the other ends, which come in order
   for (std::size_t i = 0, sum = 0; i < n; ++i) next[i] = sum, ends[i] = sum += count[i];
   if (n > 0 && ends.back() != to.size()) throw InputError("the graph's rows do not fit together");
+  for (const Guide& guide : guides) graph.add_guide(guide);
+  const auto there = [&](std::uint32_t g) { return g < guides.size() && !graph.guides_.retired(g); };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_guides;  // edges, from their ends
+  for (std::size_t e = 0; e < guide_edges.size(); ++e) {
+    const auto [g, h] = guide_edges[e];
+    if (!(there(g) && h < g && there(h)) || (e > 0 && !(guide_edges[e - 1] < guide_edges[e]))) throw InputError("edge " + std::to_string(e) + " of the graph's guides is out of order or range");
+    of_guides.push_back({first_guide + g, first_guide + h}), of_guides.push_back({first_guide + h, first_guide + g});
+  }
   RowStore::Writer rows(graph.rows_);
   std::size_t path = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t begin = i ? ends[i - 1] : 0, end = ends[i], first_path = path;
     for (std::size_t e = begin; e < end; ++e) {
-      require(to[e] < n && to[e] != i && (e == begin || to[e - 1] < to[e]), "is out of order or range", e);
+      const bool to_guide = is_guide(to[e]);
+      require((to_guide ? there(place(to[e])) : to[e] < n && to[e] != i) && (e == begin || to[e - 1] < to[e]), "is out of order or range", e);
+      if (to_guide) {
+        const auto length = graph.warped(nodes, static_cast<std::uint32_t>(i), to[e]);
+        require(bits[e] == (edge_bit | path_bit | bits_of_bound(length)), "is not what an edge to a guide is", e);
+        graph.reach_ = std::max(graph.reach_, std::sqrt(squared_distance(nodes.position[i], graph.position(nodes, to[e]))));
+        of_guides.push_back({to[e], static_cast<std::uint32_t>(i)});
+        continue;
+      }
       if (RowStore::has_path(bits[e])) {
         require(path < paths.size() && paths[path] >= 0 && std::isfinite(paths[path]), "has no path's length", e);
         ++path;
@@ -160,7 +177,17 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
     rows.set(i, {to.subspan(begin, end - begin), bits.subspan(begin, end - begin), paths.subspan(first_path, path - first_path)});
   }
   if (path != paths.size()) throw InputError("the graph has more lengths of paths than it uses");
+  std::sort(of_guides.begin(), of_guides.end());
+  graph.append_guide_edges(nodes, of_guides);
   return graph;
+}
+
+std::vector<std::array<std::uint32_t, 2>> VisibilityGraph::guide_edges() const {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::uint32_t g = 0; g < guides_.size(); ++g)
+    for (const auto h : guide_rows_.entries(g).to)
+      if (is_guide(h) && place(h) < g) edges.push_back({g, place(h)});
+  return edges;
 }
 
 bool operator==(const VisibilityGraph& a, const VisibilityGraph& b) {

@@ -1,6 +1,7 @@
 // The visibility graph G (§ 6.1): which nodes see each other, and who is near whom along it (§ 6.2).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,6 +54,8 @@ class VisibilityGraph {
   const GuideSet& guides() const { return guides_; }
   /// A new guide, without edges; returns its id. See add_guides() and update_graph().
   std::uint32_t add_guide(const Guide& guide);
+  /// A guide without edges is not to have any: see update_graph().
+  void retire_guide(std::uint32_t id) { guides_.retire(place(id)); }
   /// Edges between guides and others, given from both ends, ascending; each lies behind all that its row has.
   void append_guide_edges(const NodeSet& nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges);
   /// Of a node or guide.
@@ -93,10 +96,14 @@ class VisibilityGraph {
   /// All rows at once: their edges must be the graph's.
   void replace_rows(RowStore rows) { rows_.swap(rows); }
   /// From all rows as flat arrays, in node order, row i with count[i] entries. Throws InputError, which names the first
-  /// entry that cannot be: out of order or range, or not the same from both ends.
+  /// entry that cannot be: out of order or range, or not the same from both ends. Edges between nodes and guides are in the
+  /// nodes' rows, those between guides in `guide_edges`.
   static VisibilityGraph from_rows(const NodeSet& nodes, double plain_unit, std::span<const std::uint32_t> count,
                                    std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
-                                   std::span<const float> paths);
+                                   std::span<const float> paths, std::span<const Guide> guides = {},
+                                   std::span<const std::array<std::uint32_t, 2>> guide_edges = {});
+  /// Pairs of guides with edges, numbered from 0, the greater first, ascending.
+  std::vector<std::array<std::uint32_t, 2>> guide_edges() const;
 
   /// The same edges and neighbours, to the last bit.
   friend bool operator==(const VisibilityGraph& a, const VisibilityGraph& b);

@@ -19,6 +19,7 @@ struct Arrays {
   TriangleMesh mesh;
   std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
   std::vector<std::uint32_t> master_node, master, parent, closest;
+  std::vector<std::array<std::uint32_t, 2>> guide_edges;
   std::vector<std::uint8_t> about;
   std::vector<KerfArray> all;
   template <class T>
@@ -30,8 +31,8 @@ struct Arrays {
     add(name, std::span<const T>(values));
   }
   template <class T>
-  void add(const std::string& name, std::uint64_t count, std::function<void(KerfSink&)> fill) {
-    all.push_back(kerf_array<T>(name, count, 1, std::move(fill)));
+  void add(const std::string& name, std::uint64_t count, std::uint64_t columns, std::function<void(KerfSink&)> fill) {
+    all.push_back(kerf_array<T>(name, count, columns, std::move(fill)));
   }
 };
 
@@ -52,6 +53,21 @@ void add_nodes(Arrays& a) {
   a.add("nodes/debris", a.body.debris);
 }
 
+// Only where there are some; their edges to nodes are in the nodes' rows.
+void add_guides(Arrays& a) {
+  const GuideSet& guides = a.body.graph.guides();
+  if (guides.size() == 0) return;
+  a.add<double>("guides/position", guides.size(), 3, [&guides](KerfSink& out) {
+    for (std::uint32_t g = 0; g < guides.size(); ++g)
+      for (const double x : guides.position(g)) out.put(x);
+  });
+  a.add<double>("guides/radius", guides.size(), 1, [&guides](KerfSink& out) {
+    for (std::uint32_t g = 0; g < guides.size(); ++g) out.put(guides.radius(g));
+  });
+  a.guide_edges = a.body.graph.guide_edges();
+  a.add("guides/edges", std::span<const std::uint32_t>(a.guide_edges.empty() ? nullptr : a.guide_edges[0].data(), 2 * a.guide_edges.size()), 2);
+}
+
 // Edges and neighbours. Rows are given by their lengths: what changes in one row changes no other.
 void add_rows(Arrays& a) {
   const RowStore& rows = a.body.graph.rows();
@@ -66,13 +82,13 @@ void add_rows(Arrays& a) {
       for (std::size_t i = 0; i < n; ++i) out.write(std::as_bytes(part(rows.row(i))));
     };
   };
-  a.add<double>("graph/plain_unit", 1, [&body = a.body](KerfSink& out) { out.put(body.graph.plain_unit()); });
-  a.add<std::uint32_t>("graph/count", n, [&rows, n](KerfSink& out) {
+  a.add<double>("graph/plain_unit", 1, 1, [&body = a.body](KerfSink& out) { out.put(body.graph.plain_unit()); });
+  a.add<std::uint32_t>("graph/count", n, 1, [&rows, n](KerfSink& out) {
     for (std::size_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(rows.entries(i).to.size()));
   });
-  a.add<std::uint32_t>("graph/to", entries, each([](const RowView& row) { return row.to; }));
-  a.add<std::uint16_t>("graph/bits", entries, each([](const RowView& row) { return row.bits; }));
-  a.add<float>("graph/paths", paths, each([](const RowView& row) { return row.paths; }));
+  a.add<std::uint32_t>("graph/to", entries, 1, each([](const RowView& row) { return row.to; }));
+  a.add<std::uint16_t>("graph/bits", entries, 1, each([](const RowView& row) { return row.bits; }));
+  a.add<float>("graph/paths", paths, 1, each([](const RowView& row) { return row.paths; }));
 }
 
 void add_binding(Arrays& a) {
@@ -94,6 +110,7 @@ void add_binding(Arrays& a) {
 void add_about(Arrays& a) {
   const Body& body = a.body;
   nlohmann::ordered_json about = {{"k", body.k}, {"updates", body.updates}, {"resample_limit", body.resample_limit}, {"cell", body.grid.cell()}, {"crack_count", body.surface.crack_count()}};
+  if (body.guides > 0) about["guides"] = body.guides;
   about["history"] = nlohmann::ordered_json::array();
   for (const auto& p : body.history) about["history"].push_back({{"tool", p.tool}, {"version", p.version}, {"arguments", p.arguments}, {"inputs", p.inputs}});
   const std::string text = about.dump();
@@ -105,6 +122,7 @@ void add_about(Arrays& a) {
 void add_all(Arrays& a) {
   add_surface(a);
   add_nodes(a);
+  add_guides(a);
   add_rows(a);
   add_binding(a);
   add_about(a);
@@ -205,6 +223,19 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
   body.graph = VisibilityGraph::from_rows(nodes, unit, count, to, bits, paths);
 }
 
+std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::uint32_t, 2>>& edges) {
+  std::vector<Guide> guides;
+  if (in.sections().count("guides/position") == 0) return guides;
+  const auto radius = in.read<double>("guides/radius");
+  for (const Vec3& p : points(in, "guides/position")) guides.push_back({p, guides.size() < radius.size() ? radius[guides.size()] : -1});
+  if (guides.size() != radius.size() || guides.size() >= VisibilityGraph::first_guide - 1) in.fail("the sections of guides have different lengths");
+  for (const Guide& g : guides)
+    if (!(g.radius >= 0 && g.radius <= largest_coordinate)) in.fail("section 'guides/radius' holds a value that is negative or of no sensible size");
+  const auto ends = in.read<std::uint32_t>("guides/edges", 2);
+  for (std::size_t e = 0; e + 1 < ends.size(); e += 2) edges.push_back({ends[e], ends[e + 1]});
+  return guides;
+}
+
 void read_rows(const KerfFile& in, Body& body) {
   const auto unit = in.read<double>("graph/plain_unit");
   if (unit.size() != 1 || !(unit[0] > 0) || !std::isfinite(unit[0])) in.fail("the unit of plain lengths is not positive");
@@ -212,8 +243,10 @@ void read_rows(const KerfFile& in, Body& body) {
   const auto count = in.read<std::uint32_t>("graph/count"), to = in.read<std::uint32_t>("graph/to");
   const auto bits = in.read<std::uint16_t>("graph/bits");
   const auto paths = in.read<float>("graph/paths");
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  const auto guides = read_guides(in, edges);
   try {
-    body.graph = VisibilityGraph::from_rows(body.nodes, unit[0], count, to, bits, paths);
+    body.graph = VisibilityGraph::from_rows(body.nodes, unit[0], count, to, bits, paths, guides, edges);
   } catch (const InputError& e) {
     in.fail(e.what());
   }
@@ -243,6 +276,7 @@ void read_about(const KerfFile& in, Body& body) {
   try {
     body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
+    body.guides = about.value("guides", 0.0);
     for (const auto& p : about.at("history"))
       body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(), p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
   } catch (const nlohmann::json::exception&) {
@@ -250,20 +284,22 @@ void read_about(const KerfFile& in, Body& body) {
   } catch (const std::out_of_range&) {
     in.fail("section 'about' holds an impossible value");
   }
-  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0)) in.fail("section 'about' holds an impossible value");
+  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) ||
+      (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
+    in.fail("section 'about' holds an impossible value");
   body.grid = NodeGrid(cell, body.nodes.position);
 }
 
 }  // namespace
 
 void write_body(std::ostream& out, const Body& body) {
-  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}};
+  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   add_all(a);
   write_kerf(out, a.all);
 }
 
 std::uint64_t write_body(KerfUpdate& file, const Body& body) {
-  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}};
+  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   add_all(a);
   return file.commit(a.all);
 }

@@ -52,6 +52,7 @@ void measure_errors(const Options& options, Figures& figures) {
     const auto mesh = walls_of(prism);
     const geo::NodeGrid grid(nodes.spacing[0], nodes.position);
     const geo::TriangleBvh tree(soup_of(mesh));
+    const auto blocked = [&](const geo::Vec3& p, const geo::Vec3& q) { return tree.blocks(p, q); };
     const auto show = [&](const char* what, const ConcaveErrors& e, std::size_t guides) {
       if (options.json) return;
       std::printf("  %-8s %-22s %7zu %7.2f%% %7.2f%% %7.2f%% %9zu\n", prism.name.c_str(), what, e.count, 100 * e.mean(), 100 * e.worst, 100.0 * double(e.missed) / double(e.count), guides);
@@ -60,7 +61,7 @@ void measure_errors(const Options& options, Figures& figures) {
     show("without", bare, 0);
     for (const double spacing : {2.0, 1.0, 0.5, 0.25}) {
       if (options.json && spacing != geo::GuideOptions().spacing) continue;
-      const auto guides = geo::place_guides(mesh, nodes, grid, tree, {.spacing = spacing});
+      const auto guides = geo::place_guides(edges_of(mesh), nodes, grid, blocked, {.spacing = spacing});
       const auto with = errors_of(prism, nodes, guides);
       char what[64];
       std::snprintf(what, sizeof what, "guides %g spacings apart", spacing);
@@ -84,6 +85,8 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
   const Soup surface = soup_of(c.surface);
   const geo::TriangleBvh tree(surface);
   const geo::NodeGrid grid(h, c.nodes.position);
+  const auto surface_edges = edges_of(c.surface);
+  const auto blocked = [&](const geo::Vec3& p, const geo::Vec3& q) { return tree.blocks(p, q); };
   const auto near = [&](const geo::Box3& box, Soup& out) {
     std::vector<std::uint32_t> rows;
     tree.near(box, rows);
@@ -111,7 +114,7 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
   std::size_t guides = 0, updated[2] = {};
   for (int with = 0; with < 2; ++with) {
     std::vector<geo::Guide> placed;
-    if (with) place = least([] {}, [&] { placed = geo::place_guides(c.surface, c.nodes, grid, tree); }, 3);
+    if (with) place = least([] {}, [&] { placed = geo::place_guides(surface_edges, c.nodes, grid, blocked); }, 3);
     guides = placed.size();
     edges[with] = least([] {}, [&] {
       whole = geo::build_visibility_graph(c.nodes, tree, 26);
@@ -121,7 +124,7 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
     bytes[with] = double(graph.bytes()) / n;
     whole = graph;
     update[with] = least([&] { graph = whole; }, [&] {
-      const auto result = geo::update_graph(c.nodes, NodeId(c.nodes.size()), {}, crack, near, 26, grid, graph, {}, with ? std::span<const geo::Guide>(front) : std::span<const geo::Guide>());
+      const auto result = geo::update_graph(c.nodes, NodeId(c.nodes.size()), {}, crack, near, 26, grid, graph, {}, {with ? front : std::vector<geo::Guide>(), {}});
       updated[with] = result.updated_nodes.size();
     }, 9);
   }

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "base/random.h"
+#include "graph/place_guides.h"
 #include "sampling/node_set.h"
 #include "surface/triangle_mesh.h"
 
@@ -39,6 +41,20 @@ inline geo::TriangleMesh walls_of(const Prism& prism) {
     mesh.triangles.push_back({k, next, n + next}), mesh.triangles.push_back({k, n + next, n + k});
   }
   return mesh;
+}
+
+/// The edges between two triangles of a mesh.
+inline std::vector<geo::SurfaceEdge> edges_of(const geo::TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::pair<std::uint32_t, std::size_t>>> halves;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) halves[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back({t, k});
+  std::vector<geo::SurfaceEdge> edges;
+  for (const auto& [ends, at] : halves) {
+    if (at.size() != 2) continue;
+    const auto corner = [&](std::size_t half, std::size_t k) { return mesh.vertices[mesh.triangles[at[half].first][(at[half].second + k) % 3]]; };
+    edges.push_back({corner(0, 0), corner(0, 1), corner(0, 2), corner(1, 2)});
+  }
+  return edges;
 }
 
 class PrismPaths {

@@ -1,6 +1,7 @@
 // Guides: distances around concave edges (§ 8).
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <functional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -27,6 +28,10 @@ TriangleBvh tree_of(const TriangleMesh& mesh) {
   Soup soup;
   for (const auto& [i, j, k] : mesh.triangles) soup.push_back({mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]});
   return TriangleBvh(soup);
+}
+
+std::function<bool(const Vec3&, const Vec3&)> sight_in(const TriangleBvh& tree) {
+  return [&tree](const Vec3& p, const Vec3& q) { return tree.blocks(p, q); };
 }
 
 }  // namespace
@@ -91,7 +96,8 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
     const auto tree = tree_of(mesh);
     const NodeSet nodes = nodes_in(prism, 8, 3);
     const NodeGrid grid(0.125, nodes.position);
-    const auto guides = place_guides(mesh, nodes, grid, tree);
+    const auto blocked = sight_in(tree);
+    const auto guides = place_guides(edges_of(mesh), nodes, grid, blocked);
     CHECK(guides.size() == 16 * prism.concave.size());
     const PrismPaths paths(prism);
     for (const auto& g : guides) {
@@ -100,16 +106,21 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
       for (const auto c : prism.concave) nearest = std::min(nearest, std::hypot(g.position.x() - prism.polygon[c][0], g.position.y() - prism.polygon[c][1]));
       CHECK(nearest < 0.125 / 60);
     }
-    CHECK(place_guides(mesh, nodes, grid, tree, {1.0, 20}).size() == 8 * prism.concave.size());
-    CHECK_THROWS_AS(place_guides(mesh, nodes, grid, tree, {0, 20}), InputError);
-    CHECK_THROWS_AS(place_guides(mesh, nodes, grid, tree, {0.5, 0.0 / 0.0}), InputError);
+    CHECK(place_guides(edges_of(mesh), nodes, grid, blocked, {1.0, 20}).size() == 8 * prism.concave.size());
+    // None where there are some already.
+    GuideSet taken;
+    for (const auto& g : guides) taken.add(g);
+    CHECK(place_guides(edges_of(mesh), nodes, grid, blocked, {}, taken).empty());
+    CHECK_THROWS_AS(place_guides(edges_of(mesh), nodes, grid, blocked, {0, 20}), InputError);
+    CHECK_THROWS_AS(place_guides(edges_of(mesh), nodes, grid, blocked, {0.5, 0.0 / 0.0}), InputError);
   }
   // An edge that turns by 90 degrees is left out when more is asked for; a crack's front never is.
   const auto prisms = concave_prisms();
   for (const std::size_t p : {0, 3}) {
     const auto mesh = walls_of(prisms[p]);
+    const auto tree = tree_of(mesh);
     const NodeSet nodes = nodes_in(prisms[p], 8, 3);
-    CHECK(place_guides(mesh, nodes, NodeGrid(0.125, nodes.position), tree_of(mesh), {0.5, 100}).empty() == (p == 0));
+    CHECK(place_guides(edges_of(mesh), nodes, NodeGrid(0.125, nodes.position), sight_in(tree), {0.5, 100}).empty() == (p == 0));
   }
 }
 
@@ -123,7 +134,7 @@ TEST_CASE("with guides, distances of nodes that do not see each other are near t
       // With supports of twice the size rows tell distances of those, too, that ought to be neighbours and are not.
       NodeSet wide = nodes;
       for (double& r : wide.radius) r *= 2;
-      const auto bare = guided(wide, tree, {}), with = guided(wide, tree, place_guides(mesh, nodes, NodeGrid(0.1, nodes.position), tree));
+      const auto bare = guided(wide, tree, {}), with = guided(wide, tree, place_guides(edges_of(mesh), nodes, NodeGrid(0.1, nodes.position), sight_in(tree)));
       const PrismPaths paths(prism);
       ConcaveErrors errors, errors_with;
       for (std::uint32_t i = 0; i < nodes.size(); ++i) {

@@ -33,7 +33,7 @@ struct Cut {
     return NodeId(nodes.size() - 1);
   }
   GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh, const std::vector<std::pair<NodeId, NodeId>>& joins = {},
-                   const std::vector<Guide>& guides = {}) {
+                   const GuideChange& guides = {}) {
     all.insert(all.end(), fresh.begin(), fresh.end());
     const auto near = [&](const Box3& box, Soup& out) {
       for (const auto& t : all)
@@ -60,9 +60,9 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
     const Vec3& p = guides.position(g);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < cut.nodes.size(); ++i)
-      if (squared_distance(p, x[i]) <= guides.radius(g) * guides.radius(g) && !tree.blocks(x[i], p)) expected.push_back(i);
+      if (!guides.retired(g) && squared_distance(p, x[i]) <= guides.radius(g) * guides.radius(g) && !tree.blocks(x[i], p)) expected.push_back(i);
     for (std::uint32_t h = 0; h < guides.size(); ++h)
-      if (const double r = std::max(guides.radius(g), guides.radius(h)); h != g && squared_distance(p, guides.position(h)) <= r * r && !tree.blocks(guides.position(h), p))
+      if (const double r = std::max(guides.radius(g), guides.radius(h)); h != g && !guides.retired(g) && !guides.retired(h) && squared_distance(p, guides.position(h)) <= r * r && !tree.blocks(guides.position(h), p))
         expected.push_back(VisibilityGraph::first_guide + h);
     const auto row = cut.graph.entries(VisibilityGraph::first_guide + g);
     CAPTURE(g);
@@ -146,7 +146,12 @@ TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
         faces.insert(faces.end(), fresh.begin(), fresh.end());
         if (!TriangleBvh(faces).blocks(cut.nodes.position[j.index()], cut.nodes.position[i.index()])) joins.push_back({j, i});
       }
-      const auto update = cut.step(first, moved, fresh, joins, random_guides(random, guided ? static_cast<int>(random.below(6)) : 0, fresh));
+      GuideChange guides{random_guides(random, guided ? static_cast<int>(random.below(6)) : 0, fresh), {}};
+      for (std::uint32_t m = guided ? random.below(3) : 0; m > 0; --m) {
+        const auto g = VisibilityGraph::first_guide + random.below(cut.graph.guides().size());
+        if (std::find(guides.retired.begin(), guides.retired.end(), g) == guides.retired.end()) guides.retired.push_back(g);
+      }
+      const auto update = cut.step(first, moved, fresh, joins, guides);
       require_as_from_scratch(cut, update, before, rows_compared);
       cut_edges += update.cut_edges.size(), added_edges += update.added_edges.size();
     }

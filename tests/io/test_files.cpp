@@ -32,11 +32,13 @@ std::string bytes_of(const Write& write) {
   return out.str();
 }
 
-Body small_body() {
+Body small_body(double guides = 0) {
   const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
   SampleOptions options;
   options.spacing = 0.15;
-  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, options));
+  BodyOptions guided;
+  guided.guides = guides;
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, options), guided);
   FrontState front = begin_front(std::vector<Vec3>{{-0.5, -0.5, 0.512}, {-0.5, 1.5, 0.52}}, false, 1);
   split(body, front, {{0.6, -0.5, 0.53}, {0.61, 1.5, 0.5}});
   return body;
@@ -103,7 +105,9 @@ TEST_CASE("fronts, with their contacts, travel in the surface file") {
 }
 
 TEST_CASE("nodes and bodies are read back to the bit") {
-  const Body body = small_body();
+  const double guides = GENERATE(0.0, 1.0);
+  const Body body = small_body(guides);
+  CHECK((body.graph.guides().size() > 0) == (guides > 0));
   const std::string pcd = bytes_of([&](auto& out) { write_pcd(out, body.nodes); });
   CHECK(parse_nodes(pcd, "n.pcd").position == body.nodes.position);
   CHECK(parse_nodes(pcd, "n.pcd").volume == body.nodes.volume);
@@ -111,6 +115,7 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   const std::string kerf = bytes_of([&](auto& out) { write_body(out, body); });
   const Body again = parse_body(kerf, "b.kerf");
   CHECK(again.graph == body.graph);
+  CHECK(again.guides == guides);
   CHECK(again.surface.two_sided().source == body.surface.two_sided().source);
   CHECK(check_body(again).first_problem == "");
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
@@ -174,7 +179,7 @@ TEST_CASE("a body of version 1 is read, and written whole when it is updated") {
 }
 
 TEST_CASE("a body is updated in its own file") {
-  Body body = small_body();
+  Body body = small_body(GENERATE(0.0, 1.0));
   const auto path = (std::filesystem::temp_directory_path() / ("kerf-own-" + std::to_string(std::random_device{}()) + ".kerf")).string();
   write_all(path, [&](std::ostream& out) { write_body(out, body); });
   FrontState front = begin_front(std::vector<Vec3>{{0.512, -0.5, -0.5}, {0.52, 1.5, -0.5}}, false, 2);

@@ -255,6 +255,13 @@ a, b, c = map(read_kerf, ("appended.kerf", "folded.kerf", "whole.kerf"))
 assert a == b
 del a["about"], c["about"]
 assert a == c' "$here" || fail "appended, folded and whole bodies differ"
+  # With guides: none in a block, along the front once it is cut.
+  kerf-sample block.ply --spacing 6% | kerf-graph --surface block.ply --guides 0.5 -o guided.kerf
+  kerf-info --json guided.kerf | grep -q '"guides"' && fail "a block has no concave edges"
+  quietly kerf-update guided.kerf --surface cut.ply -o guided.kerf
+  kerf-info --json guided.kerf | grep -q '"guides":[1-9]' || fail "the front has no guides"
+  quietly kerf-info --check -q guided.kerf
+  expect 2 guides kerf-graph /dev/null --surface block.ply --guides 20 -o x.kerf
   for format in json npz ply vtu hdf; do
     quietly kerf-info appended.kerf --export e.$format
     quietly kerf-info folded.kerf --export f.$format

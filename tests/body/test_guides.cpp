@@ -1,5 +1,6 @@
 // Bodies with guides (§ 8): along concave edges of the model and the fronts of its cracks.
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "base/error.h"
 #include "body/body.h"
@@ -35,16 +36,28 @@ std::size_t neighbors(const Body& body) {
 }  // namespace
 
 TEST_CASE("A letter's inner corners get guides, a block none", "[body]") {
-  const TriangleMesh letter = make_letter('L', 0.3, 12);
-  const Body bare = make_body(letter, 0.06, 0), guided = make_body(letter, 0.06, 0.5);
+  const TriangleMesh letter = make_letter('E', 0.3, 12);
+  const Body bare = make_body(letter, 0.05, 0), guided = make_body(letter, 0.05, 0.5);
   CHECK(bare.graph.guides().size() == 0);
-  CHECK(guides_in_use(guided) >= 5);
+  CHECK(guides_in_use(guided) >= 20);
   CHECK(check_body(guided).first_problem == "");
   CHECK(guided.graph.edge_count() == bare.graph.edge_count());
-  CHECK(neighbors(guided) > neighbors(bare));
+  // Who sees each other is as far as before; others are nearer, some of them neighbours now.
+  std::size_t nearer = neighbors(guided) - neighbors(bare);
+  for (std::uint32_t i = 0; i < bare.nodes.size(); ++i) {
+    std::map<NodeId, float> with;
+    for (const auto& n : guided.graph.neighbors(guided.nodes, NodeId(i))) with[n.to] = n.distance;
+    for (const auto& n : bare.graph.neighbors(bare.nodes, NodeId(i))) {
+      REQUIRE(with.count(n.to) == 1);
+      const bool sees = !is_blocked(bare.surface, bare.nodes.position[i], bare.nodes.position[n.to.index()]);
+      CHECK((sees ? with[n.to] == n.distance : with[n.to] <= n.distance));
+      nearer += with[n.to] < n.distance;
+    }
+  }
+  CHECK(nearer > 0);
   CHECK(make_body(make_block({1, 1, 1}, 0.5), 0.2, 0.5).graph.guides().size() == 0);
-  CHECK_THROWS_AS(make_body(letter, 0.06, 0.01), InputError);
-  CHECK_THROWS_AS(make_body(letter, 0.06, 0.0 / 0.0), InputError);
+  CHECK_THROWS_AS(make_body(letter, 0.05, 0.01), InputError);
+  CHECK_THROWS_AS(make_body(letter, 0.05, 0.0 / 0.0), InputError);
 }
 
 TEST_CASE("Guides follow the front of a crack", "[body]") {

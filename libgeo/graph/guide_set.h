@@ -43,6 +43,8 @@ class GuideSet {
   void within(const Vec3& p, double distance, std::vector<std::uint32_t>& out) const {
     if (!position_.empty()) grid_.within(position_, p, distance, out);
   }
+  /// Over the positions of all, retired ones too.
+  const NodeGrid& grid() const { return grid_; }
   /// What they take in memory.
   std::size_t bytes() const { return position_.capacity() * sizeof(Vec3) + radius_.capacity() * sizeof(double) + grid_.bytes(); }
   friend bool operator==(const GuideSet& a, const GuideSet& b) { return a.position_ == b.position_ && a.radius_ == b.radius_; }

@@ -69,7 +69,7 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   std::vector<Surroundings> around;
   std::vector<std::vector<std::uint32_t>> faces_at(1);  // by depth: those that reach into the cube
   for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], half), faces_at[0].push_back(f);
-  // Nodes with faces near them, in the lower half.
+  // Nodes and guides with faces near them, in the lower half.
   std::vector<std::uint64_t> candidates;
   const auto into = [&](int depth, const Vec3& middle, double size) {
     const auto to = static_cast<std::size_t>(depth) + 1;

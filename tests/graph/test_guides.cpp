@@ -125,6 +125,7 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
 }
 
 TEST_CASE("with guides, distances of nodes that do not see each other are near the shortest paths") {
+  std::size_t pairs = 0;
   for (const auto& prism : concave_prisms())
     for (int seed = 1; seed <= cases(2); ++seed) {
       CAPTURE(prism.name, seed);
@@ -147,11 +148,13 @@ TEST_CASE("with guides, distances of nodes that do not see each other are near t
         add(bare, errors), add(with, errors_with);
       }
       CAPTURE(errors.count, errors_with.count, errors.mean(), errors_with.mean(), errors.worst, errors_with.worst, errors.missed, errors_with.missed);
-      CHECK(errors.count > 30);
+      REQUIRE(errors.count > 0);
+      pairs += errors.count;
       CHECK(errors_with.count >= errors.count);
       CHECK(errors_with.least > -1e-6);  // no path is shorter than the shortest
       CHECK(errors_with.mean() < 0.5 * errors.mean());
       CHECK(errors_with.worst < 0.5 * errors.worst);
       CHECK(2 * errors_with.missed < errors.missed);
     }
+  CHECK(pairs > 1000);
 }

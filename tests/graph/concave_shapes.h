@@ -49,7 +49,8 @@ inline std::vector<geo::SurfaceEdge> edges_of(const geo::TriangleMesh& mesh) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) halves[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back({t, k});
   std::vector<geo::SurfaceEdge> edges;
-  for (const auto& [ends, at] : halves) {
+  for (const auto& entry : halves) {
+    const auto& at = entry.second;
     if (at.size() != 2) continue;
     const auto corner = [&](std::size_t half, std::size_t k) { return mesh.vertices[mesh.triangles[at[half].first][(at[half].second + k) % 3]]; };
     edges.push_back({corner(0, 0), corner(0, 1), corner(0, 2), corner(1, 2)});

@@ -160,3 +160,27 @@ TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
   CHECK(cut_edges > 2000);
   CHECK(added_edges > 1000);
 }
+
+TEST_CASE("updates where a face cuts hardly more than one edge of a guide") {
+  std::size_t rows_compared = 0, cut = 0;
+  for (int seed = 1; seed <= cases(6); ++seed) {
+    CAPTURE(seed);
+    Random random(static_cast<std::uint64_t>(seed));
+    const Soup walls = random_faces(random, 5);
+    Cut body(jittered(random, 6, 0.4, 1 + random.uniform()), walls, 4 + static_cast<int>(random.below(6)), random_guides(random, 60, walls));
+    for (int step = 0; step < 12; ++step) {
+      CAPTURE(step);
+      const auto g = VisibilityGraph::first_guide + random.below(body.graph.guides().size());
+      const auto row = body.graph.entries(g);
+      if (row.to.empty()) continue;
+      const Vec3 p = body.graph.position(body.nodes, g), q = body.graph.position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
+      const Vec3 at = p + random.uniform(0.2, 0.8) * (q - p), u = (q - p).unitOrthogonal(), v = u.cross((q - p).normalized());
+      const VisibilityGraph before = body.graph;
+      const auto update = body.step(NodeId(body.nodes.size()), {}, {{at + 0.002 * u, at + 0.002 * (v - u), at - 0.002 * (v + u)}});
+      cut += !(before.entries(g).to.size() == body.graph.entries(g).to.size());
+      require_as_from_scratch(body, update, before, rows_compared);
+    }
+  }
+  CHECK(rows_compared > 10000);
+  CHECK(cut > 50);
+}

@@ -69,8 +69,6 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   std::vector<Surroundings> around;
   std::vector<std::vector<std::uint32_t>> faces_at(1);  // by depth: those that reach into the cube
   for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], half), faces_at[0].push_back(f);
-  // Nodes and guides with faces near them, in the lower half.
-  std::vector<std::uint64_t> candidates;
   const auto into = [&](int depth, const Vec3& middle, double size) {
     const auto to = static_cast<std::size_t>(depth) + 1;
     if (faces_at.size() <= to) faces_at.resize(to + 1);
@@ -79,46 +77,41 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
       if (around[f].reaches(middle, size * (1 + 1e-12))) faces_at[to].push_back(f);
     return !faces_at[to].empty();
   };
-  const auto see = [&](int depth, std::uint32_t id) {
-    for (const auto f : faces_at[static_cast<std::size_t>(depth) + 1])
-      if (around[f].holds(at(id), around[f].plane.height(at(id)))) candidates.push_back(std::uint64_t(id) << 32 | f);
-  };
-  grid.walk(into, [&](int depth, std::uint32_t i) {
-    if (i < first_new.value) see(depth, i);
-  });
-  graph.guides().grid().walk(into, [&](int depth, std::uint32_t g) { see(depth, VisibilityGraph::first_guide + g); });
-  std::sort(candidates.begin(), candidates.end());
-
   struct Side {
     const Surroundings* face;
     bool above, below;
   };
-  std::vector<Side> sides;
-  for (std::size_t c = 0; c < candidates.size();) {
-    const auto i = static_cast<std::uint32_t>(candidates[c] >> 32);
+  std::vector<Side> sides;  // of the faces near a node or guide
+  const auto see = [&](int depth, std::uint32_t i) {
+    const Vec3& x = at(i);
     sides.clear();
-    for (; c < candidates.size() && candidates[c] >> 32 == i; ++c) {
-      const Surroundings& face = around[static_cast<std::uint32_t>(candidates[c])];
-      const auto h = face.plane.height(at(i));
-      sides.push_back({&face, h.above(), h.below()});
-    }
+    Box3 all;
+    for (const auto f : faces_at[static_cast<std::size_t>(depth) + 1])
+      if (const auto h = around[f].plane.height(x); around[f].holds(x, h)) sides.push_back({&around[f], h.above(), h.below()}), all.add(around[f].box);
+    if (sides.empty()) return;
     const auto row = graph.entries(i);
     for (std::size_t k = 0; k < row.to.size(); ++k) {
       const auto j = row.to[k];
+      const Vec3& y = at(j);
+      const Box3 segment{x.cwiseMin(y), x.cwiseMax(y)};
+      if (!segment.meets(all)) continue;
       const bool cut = std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
         const Surroundings& face = *side.face;
-        const auto h = face.plane.height(at(j));
+        if (!segment.meets(face.box)) return false;
+        const auto h = face.plane.height(y);
         if ((side.above && h.above()) || (side.below && h.below())) return false;
-        if (j < i && face.holds(at(j), h)) return false;  // j has asked
-        Box3 segment{at(i), at(i)};
-        segment.add(at(j));
-        return segment.meets(face.box) && segment_meets_triangle(at(std::min(i, j)), at(std::max(i, j)), face.corners[0], face.corners[1], face.corners[2]);
+        if (j < i && face.holds(y, h)) return false;  // j asks, too
+        return segment_meets_triangle(i < j ? x : y, i < j ? y : x, face.corners[0], face.corners[1], face.corners[2]);
       });
       if (!cut) continue;
       if (VisibilityGraph::is_edge(row.bits[k])) severed.edges.push_back(pair_key(i, j));
       if (VisibilityGraph::is_neighbor(row.bits[k])) severed.neighbors.push_back(pair_key(i, j));
     }
-  }
+  };
+  grid.walk(into, [&](int depth, std::uint32_t i) {
+    if (i < first_new.value) see(depth, i);
+  });
+  graph.guides().grid().walk(into, [&](int depth, std::uint32_t g) { see(depth, VisibilityGraph::first_guide + g); });
   for (auto* pairs : {&severed.edges, &severed.neighbors}) {
     std::sort(pairs->begin(), pairs->end());
     pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());

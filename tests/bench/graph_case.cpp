@@ -90,7 +90,7 @@ GraphCase make_graph_case(std::size_t count) {
   std::sort(order.begin(), order.end());
   for (const auto& [code, i] : order) c.nodes.position.push_back(points[i]);
   c.nodes.spacing.assign(points.size(), c.spacing);
-  c.nodes.radius.assign(points.size(), 2.4 * c.spacing);
+  c.nodes.radius.assign(points.size(), 2.53 * c.spacing);
   c.nodes.volume.assign(points.size(), c.spacing * c.spacing * c.spacing);
   return c;
 }

@@ -7,6 +7,19 @@
 #include "graph/guides.h"
 
 namespace geo {
+namespace {
+
+// No edge meets a face, so that all nodes of a component are inside when one of them is.
+void require_inside(const Body& body) {
+  std::vector<std::uint32_t> component;
+  body.graph.components(component);
+  std::uint32_t asked = 0;  // components are numbered by their lowest nodes
+  for (std::size_t i = 0; i < component.size(); ++i)
+    if (component[i] == asked && ++asked > 0 && !is_inside(body.surface, body.nodes.position[i], body.nodes.spacing[i]))
+      throw InputError("node " + std::to_string(i) + " is not inside the surface; sample the same model that the body is made of");
+}
+
+}  // namespace
 
 Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, const Progress& progress) {
   if (nodes.size() == 0) throw InputError("there are no nodes; make some with kerf-sample");
@@ -24,11 +37,8 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
   for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
     if (body.surface.alive(FaceId(f))) soup.push_back(body.surface.corners(FaceId(f)));
   const TriangleBvh obstacles(soup);
-  for (std::size_t i = 0; i < body.nodes.size(); ++i)
-    if (!is_inside(body.surface, body.nodes.position[i], body.nodes.spacing[i]))
-      throw InputError("node " + std::to_string(i) +
-                       " is not inside the surface; sample the same model that the body is made of");
   body.graph = build_visibility_graph(body.nodes, obstacles, body.k, progress);
+  require_inside(body);
   count_pieces(body);
   auto found = find_disagreement(body);
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {

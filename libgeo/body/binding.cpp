@@ -59,15 +59,7 @@ SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
     const int corner = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
     const Vec3 inwards = (t[0] + t[1] + t[2]) / 3 - k.point(v);
     const Vec3 q = k.point(v) + std::min(0.05, 0.05 * (p - k.point(v)).norm() / inwards.norm()) * inwards;
-    Box3 box{p, p};
-    box.add(q);
-    std::vector<FaceId> faces;
-    k.near(box, faces);
-    if (std::none_of(faces.begin(), faces.end(), [&](FaceId g) {
-          const auto u = k.corners(g);
-          return g != f && segment_meets_triangle(p, q, u[0], u[1], u[2]);
-        }))
-      return k.surface_vertex(s, corner);
+    if (!is_blocked(k, p, q, f)) return k.surface_vertex(s, corner);
   }
   return {};
 }

@@ -10,9 +10,7 @@ namespace geo {
 namespace {
 
 // No edge meets a face, so that all nodes of a component are inside when one of them is.
-void require_inside(const Body& body) {
-  std::vector<std::uint32_t> component;
-  body.graph.components(component);
+void require_inside(const Body& body, const std::vector<std::uint32_t>& component) {
   std::uint32_t asked = 0;  // components are numbered by their lowest nodes
   for (std::size_t i = 0; i < component.size(); ++i)
     if (component[i] == asked && ++asked > 0 && !is_inside(body.surface, body.nodes.position[i], body.nodes.spacing[i]))
@@ -38,9 +36,11 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
     if (body.surface.alive(FaceId(f))) soup.push_back(body.surface.corners(FaceId(f)));
   const TriangleBvh obstacles(soup);
   body.graph = build_visibility_graph(body.nodes, obstacles, body.k, progress);
-  require_inside(body);
+  std::vector<std::uint32_t> component;
+  body.graph.components(component);
+  require_inside(body, component);
   count_pieces(body);
-  auto found = find_disagreement(body);
+  auto found = find_disagreement(body, component);
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     update_graph(
         body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },

@@ -34,12 +34,13 @@ Regions components_of(const Body& body) {
   });
 }
 
-Disagreement find_disagreement(const Body& body) {
-  std::vector<std::uint32_t> component;
-  const auto count = body.graph.components(component);
-  std::vector<std::uint32_t> size(count, 0), first(count, ~0u);
-  for (std::uint32_t i = 0; i < component.size(); ++i)
-    if (size[component[i]]++ == 0) first[component[i]] = i;
+Disagreement find_disagreement(const Body& body, const std::vector<std::uint32_t>& component) {
+  std::vector<std::uint32_t> size, first;
+  for (std::uint32_t i = 0; i < component.size(); ++i) {
+    if (component[i] == first.size()) first.push_back(i), size.push_back(0);
+    ++size[component[i]];
+  }
+  const auto count = first.size();
   // The largest component of each piece stands for it.
   Disagreement found;
   std::vector<std::int32_t> piece(count);

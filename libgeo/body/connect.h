@@ -19,8 +19,8 @@ struct Disagreement {
   bool none() const { return empty.empty() && apart.empty(); }
 };
 
-/// The whole body: once over nodes and surface. Needs body.upkeep.
-Disagreement find_disagreement(const Body& body);
+/// The whole body: once over nodes and surface. `component`: of each node, as the graph numbers them. Needs body.upkeep.
+Disagreement find_disagreement(const Body& body, const std::vector<std::uint32_t>& component);
 
 /// After a step: only what cut edges, pieces cut off and nodes from `first_new` on can have changed. Of two parts the one
 /// with fewer nodes is walked through; where they are joined round the front of the crack, little more than the cut.

@@ -61,11 +61,10 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   for (const FaceId f : crack.new_faces) {
     if (!body.surface.alive(f)) continue;
     const auto t = body.surface.corners(f);
-    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-    const double size = std::max({(t[0] - middle).norm(), (t[1] - middle).norm(), (t[2] - middle).norm()});
+    const Ball ball = ball_around(t);
     const bool fresh = std::binary_search(crack.new_crack_faces.begin(), crack.new_crack_faces.end(), f);
     near.clear();
-    guides.within(middle, size + guides.largest_radius(), near);
+    guides.within(ball.center, ball.radius + guides.largest_radius(), near);
     for (const auto g : near) {
       const Vec3& p = guides.position(g);
       if (guides.retired(g)) continue;

@@ -14,32 +14,24 @@ void triangles_near(const Complex& complex, const Box3& box, std::vector<std::ar
   for (const FaceId f : faces) out.push_back(complex.corners(f));
 }
 
-bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q) {
+bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId except) {
   Box3 box{p, p};
   box.add(q);
   std::vector<FaceId> faces;
   complex.near(box, faces);
   return std::any_of(faces.begin(), faces.end(), [&](FaceId f) {
     const auto t = complex.corners(f);
-    return segment_meets_triangle(p, q, t[0], t[1], t[2]);
+    return f != except && segment_meets_triangle(p, q, t[0], t[1], t[2]);
   });
 }
 
 bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
   const auto own = k.corners(s.face);
-  if (!k.has(s) || orient3d(own[0], own[1], own[2], p) != (s.which ? 1 : -1)) return false;
-  Box3 box{base, base};
-  box.add(p);
-  std::vector<FaceId> faces;
-  k.near(box, faces);
-  return std::none_of(faces.begin(), faces.end(), [&](FaceId f) {
-    const auto t = k.corners(f);
-    return f != s.face && segment_meets_triangle(base, p, t[0], t[1], t[2]);
-  });
+  return k.has(s) && orient3d(own[0], own[1], own[2], p) == (s.which ? 1 : -1) && !is_blocked(k, base, p, s.face);
 }
 
 Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
-  std::vector<FaceId> faces, between;
+  std::vector<FaceId> faces;
   const double everything = 4 * (complex.extent().diagonal() + (p - complex.extent().center()).norm());
   for (double r = reach;; r *= 2) {
     faces.clear();
@@ -59,24 +51,14 @@ Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
     const FaceId f = targets[i].second;
     const auto t = complex.corners(f);
     const int above = orient3d(t[0], t[1], t[2], p);
-    if (above == 0) continue;
-    const Vec3 q = middle(f);
-    Box3 box{p, p};
-    box.add(q);
-    between.clear();
-    complex.near(box, between);
-    if (std::none_of(between.begin(), between.end(), [&](FaceId g) {
-          const auto u = complex.corners(g);
-          return g != f && segment_meets_triangle(p, q, u[0], u[1], u[2]);
-        }))
-      return {f, above > 0 ? 1 : 0};
+    if (above != 0 && !is_blocked(complex, p, middle(f), f)) return {f, above > 0 ? 1 : 0};
   }
   // Else what the line to the nearest middle meets first.
   const FaceId target = targets[0].second;
   const Vec3 q = middle(target);
   Box3 box{p, p};
   box.add(q);
-  between.clear();
+  std::vector<FaceId> between;
   complex.near(box, between);
   FaceId first = target;
   double best = 1;

@@ -8,8 +8,8 @@ namespace geo {
 /// The triangles of K whose boxes meet a box, as update_graph asks for them.
 void triangles_near(const Complex& complex, const Box3& box, std::vector<std::array<Vec3, 3>>& out);
 
-/// True when a face touches the closed segment pq: exact, through the complex's index.
-bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q);
+/// True when a face, other than `except`, touches the closed segment pq: exact, through the complex's index.
+bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId except = {});
 
 /// True when p is on the given side of the face and nothing else touches the segment from there to `base` on the face:
 /// then p is in the material before that side. The face itself is left out because its own point is rounded.

@@ -62,10 +62,9 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
   std::vector<std::uint32_t> near;
   for (const FaceId f : faces) {
     const auto t = body.surface.corners(f);
-    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-    const double size = std::max({(t[0] - middle).norm(), (t[1] - middle).norm(), (t[2] - middle).norm()});
+    const Ball ball = ball_around(t);
     near.clear();
-    body.grid.within(body.nodes.position, middle, size + 0.1 * body.grid.cell(), near);
+    body.grid.within(body.nodes.position, ball.center, ball.radius + 0.1 * body.grid.cell(), near);
     for (const auto i : near) {
       const Vec3 x = body.nodes.position[i];
       const double spacing = body.nodes.spacing[i];

@@ -82,10 +82,9 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
   std::vector<std::uint32_t> near, stale;
   for (const FaceId f : delta.new_faces) {
     const auto t = k_.corners(f);
-    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-    const double size = std::sqrt(std::max({(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}));
+    const Ball ball = ball_around(t);
     near.clear();
-    body_.grid.within(x, middle, size + 1.06 * reach, near);
+    body_.grid.within(x, ball.center, ball.radius + 1.06 * reach, near);
     for (const auto i : near) {
       const auto closest = b_.closest[i];
       const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];

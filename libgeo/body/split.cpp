@@ -42,7 +42,9 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   // Each piece that the crack cut off needs nodes, connected among themselves.
   bool recounted = false;
   const auto offcuts = part_pieces(body, delta.crack, recounted);
-  auto found = recounted ? find_disagreement(body) : find_disagreement(body, update.cut_edges, offcuts, delta.first_new_node);
+  std::vector<std::uint32_t> component;
+  if (recounted) body.graph.components(component);
+  auto found = recounted ? find_disagreement(body, component) : find_disagreement(body, update.cut_edges, offcuts, delta.first_new_node);
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     const auto more =
         update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, joins);

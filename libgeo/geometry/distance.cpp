@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace geo {
 
@@ -25,6 +26,11 @@ Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (e > 0 ? (d4 - d3) / e : 0.0) * (c - b);
   const double sum = va + vb + vc;
   return sum > 0 ? Vec3(a + ab * (vb / sum) + ac * (vc / sum)) : a;
+}
+
+Ball ball_around(const std::array<Vec3, 3>& t) {
+  const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+  return {middle, std::sqrt(std::max({(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}))};
 }
 
 double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {

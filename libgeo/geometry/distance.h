@@ -8,6 +8,13 @@ namespace geo {
 /// The point of triangle abc that is closest to p (Ericson, Real-Time Collision Detection, § 5.1.5).
 Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// A ball about the middle of a triangle that holds it.
+struct Ball {
+  Vec3 center;
+  double radius;
+};
+Ball ball_around(const std::array<Vec3, 3>& triangle);
+
 /// The distance between segments pq and rs, either of which may be a point (Ericson, § 5.1.9).
 double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 

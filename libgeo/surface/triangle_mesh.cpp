@@ -21,6 +21,13 @@ class Sum {
 
 }  // namespace
 
+std::vector<std::array<Vec3, 3>> corners_of(const TriangleMesh& mesh) {
+  std::vector<std::array<Vec3, 3>> corners;
+  corners.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+  return corners;
+}
+
 Box3 bounding_box(const TriangleMesh& mesh) {
   Box3 box;
   for (const auto& t : mesh.triangles)

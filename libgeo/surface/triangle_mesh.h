@@ -1,6 +1,7 @@
 // A plain indexed triangle mesh: what files hold and what the derived surface is exported as.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct TriangleMesh {
   bool two_sided() const { return !site.empty(); }
 };
 
+/// The corners of each triangle, in order of rows.
+std::vector<std::array<Vec3, 3>> corners_of(const TriangleMesh& mesh);
 Box3 bounding_box(const TriangleMesh& mesh);
 /// Signed volume (divergence theorem), in model units³; positive when the normals point outwards.
 double signed_volume(const TriangleMesh& mesh);

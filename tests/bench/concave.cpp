@@ -15,15 +15,9 @@ namespace {
 using geo::NodeId;
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
 
-Soup soup_of(const geo::TriangleMesh& mesh) {
-  Soup soup;
-  for (const auto& [i, j, k] : mesh.triangles) soup.push_back({mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]});
-  return soup;
-}
-
 // Pairs that do not see each other and whose shortest path is shorter than the support.
 ConcaveErrors errors_of(const Prism& prism, const geo::NodeSet& nodes, const std::vector<geo::Guide>& guides) {
-  const geo::TriangleBvh tree(soup_of(walls_of(prism)));
+  const geo::TriangleBvh tree(geo::corners_of(walls_of(prism)));
   const PrismPaths paths(prism);
   // Supports of twice the size: rows tell distances of those, too, that ought to be neighbours and are not.
   geo::NodeSet wide = nodes;
@@ -51,7 +45,7 @@ void measure_errors(const Options& options, Figures& figures) {
     const auto nodes = nodes_in(prism, across, 11);
     const auto mesh = walls_of(prism);
     const geo::NodeGrid grid(nodes.spacing[0], nodes.position);
-    const geo::TriangleBvh tree(soup_of(mesh));
+    const geo::TriangleBvh tree(geo::corners_of(mesh));
     const auto blocked = [&](const geo::Vec3& p, const geo::Vec3& q) { return tree.blocks(p, q); };
     const auto show = [&](const char* what, const ConcaveErrors& e, std::size_t guides) {
       if (options.json) return;
@@ -82,7 +76,7 @@ void measure_errors(const Options& options, Figures& figures) {
 void measure_cost(std::size_t count, const Options& options, Figures& figures) {
   const GraphCase c = make_graph_case(count);
   const double n = double(c.nodes.size()), h = c.spacing;
-  const Soup surface = soup_of(c.surface);
+  const Soup surface = geo::corners_of(c.surface);
   const geo::TriangleBvh tree(surface);
   const geo::NodeGrid grid(h, c.nodes.position);
   const auto surface_edges = edges_of(c.surface);

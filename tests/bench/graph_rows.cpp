@@ -79,9 +79,7 @@ double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady
 void measure_rows(const GraphCase& c, const Options& options, Figures& figures) {
   const int before = geo::threads();
   geo::set_threads(1);
-  std::vector<std::array<geo::Vec3, 3>> soup;
-  for (const auto& [i, j, k] : c.surface.triangles) soup.push_back({c.surface.vertices[i], c.surface.vertices[j], c.surface.vertices[k]});
-  const geo::TriangleBvh surface(soup), nothing;
+  const geo::TriangleBvh surface(geo::corners_of(c.surface)), nothing;
   const std::size_t n = c.nodes.size();
   const geo::VisibilityGraph edges = geo::build_visibility_graph(c.nodes, surface, 26);
   geo::VisibilityGraph graph;

@@ -30,8 +30,7 @@ Soup strip(const geo::Vec3& at, double width, double from, double to, int column
 void measure_update(const GraphCase& c, const Options& options, Figures& figures) {
   const int before = geo::threads();
   geo::set_threads(1);
-  Soup surface;
-  for (const auto& [i, j, k] : c.surface.triangles) surface.push_back({c.surface.vertices[i], c.surface.vertices[j], c.surface.vertices[k]});
+  const Soup surface = geo::corners_of(c.surface);
   const geo::TriangleBvh tree(surface);
   const geo::NodeGrid grid(c.spacing, c.nodes.position);
   const auto near = [&](const geo::Box3& box, Soup& out) {

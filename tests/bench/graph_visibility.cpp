@@ -21,12 +21,6 @@ using Soup = std::vector<std::array<geo::Vec3, 3>>;
 using Pairs = std::vector<std::pair<geo::NodeId, geo::NodeId>>;
 using Answers = std::vector<std::uint8_t>;
 
-Soup soup_of(const geo::TriangleMesh& mesh) {
-  Soup soup;
-  for (const auto& [a, b, c] : mesh.triangles) soup.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  return soup;
-}
-
 Pairs edges_of(const std::vector<geo::Vec3>& x) {
   constexpr int k = 26;
   const auto near = geo::nearest_nodes(x, k);
@@ -153,7 +147,7 @@ std::size_t differences(const Answers& a, const Answers& b, std::size_t stride) 
 }  // namespace
 
 void measure_visibility(const GraphCase& c, const Options& options, Figures& figures) {
-  const auto soup = soup_of(c.surface);
+  const auto soup = geo::corners_of(c.surface);
   const auto& x = c.nodes.position;
   const auto pairs = edges_of(x);
   const double n = double(pairs.size());

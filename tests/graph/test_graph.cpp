@@ -42,9 +42,7 @@ TEST_CASE("samples are inside, graded, and own the whole volume") {
   SampleOptions options;
   options.spacing = 0.12;
   const NodeSet nodes = sample_nodes(mesh, options);
-  Soup soup;
-  for (const auto& [a, b, c] : mesh.triangles) soup.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  const TriangleBvh tree(soup);
+  const TriangleBvh tree(corners_of(mesh));
   for (const auto& p : nodes.position) REQUIRE(tree.inside(p));
   CHECK(std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0) == Approx(signed_volume(mesh)).epsilon(1e-12));
   CHECK(*std::max_element(nodes.spacing.begin(), nodes.spacing.end()) == Approx(2 * *std::min_element(nodes.spacing.begin(), nodes.spacing.end())));

@@ -24,12 +24,6 @@ VisibilityGraph guided(const NodeSet& nodes, const TriangleBvh& tree, const std:
   return graph;
 }
 
-TriangleBvh tree_of(const TriangleMesh& mesh) {
-  Soup soup;
-  for (const auto& [i, j, k] : mesh.triangles) soup.push_back({mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]});
-  return TriangleBvh(soup);
-}
-
 std::function<bool(const Vec3&, const Vec3&)> sight_in(const TriangleBvh& tree) {
   return [&tree](const Vec3& p, const Vec3& q) { return tree.blocks(p, q); };
 }
@@ -93,7 +87,7 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
   for (const auto& prism : concave_prisms()) {
     CAPTURE(prism.name);
     const auto mesh = walls_of(prism);
-    const auto tree = tree_of(mesh);
+    const TriangleBvh tree(corners_of(mesh));
     const NodeSet nodes = nodes_in(prism, 8, 3);
     const NodeGrid grid(0.125, nodes.position);
     const auto blocked = sight_in(tree);
@@ -118,7 +112,7 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
   const auto prisms = concave_prisms();
   for (const std::size_t p : {0, 3}) {
     const auto mesh = walls_of(prisms[p]);
-    const auto tree = tree_of(mesh);
+    const TriangleBvh tree(corners_of(mesh));
     const NodeSet nodes = nodes_in(prisms[p], 8, 3);
     CHECK(place_guides(edges_of(mesh), nodes, NodeGrid(0.125, nodes.position), sight_in(tree), {0.5, 100}).empty() == (p == 0));
   }
@@ -130,7 +124,7 @@ TEST_CASE("with guides, distances of nodes that do not see each other are near t
     for (int seed = 1; seed <= cases(2); ++seed) {
       CAPTURE(prism.name, seed);
       const auto mesh = walls_of(prism);
-      const auto tree = tree_of(mesh);
+      const TriangleBvh tree(corners_of(mesh));
       const NodeSet nodes = nodes_in(prism, 10, static_cast<std::uint64_t>(seed));
       // With supports of twice the size rows tell distances of those, too, that ought to be neighbours and are not.
       NodeSet wide = nodes;

@@ -60,9 +60,7 @@ TEST_CASE("a level set and a fog volume come back as the solid that was written,
       options.count = 800, options.across = 3;
       const NodeSet nodes = sample_nodes(surface, options);
       CHECK(nodes.size() == 800);
-      std::vector<std::array<Vec3, 3>> soup;
-      for (const auto& [a, b, c] : surface.triangles) soup.push_back({surface.vertices[a], surface.vertices[b], surface.vertices[c]});
-      const TriangleBvh tree(soup);
+      const TriangleBvh tree(corners_of(surface));
       for (const Vec3& p : nodes.position) REQUIRE(tree.inside(p));
     }
 }

@@ -12,9 +12,7 @@ using namespace geo;
 namespace {
 
 void require_sound(const TriangleMesh& mesh, const NodeSet& nodes) {
-  std::vector<std::array<Vec3, 3>> soup;
-  for (const auto& [a, b, c] : mesh.triangles) soup.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  const TriangleBvh tree(soup);
+  const TriangleBvh tree(corners_of(mesh));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     REQUIRE(tree.inside(nodes.position[i]));
     REQUIRE(nodes.volume[i] > 0);

@@ -93,6 +93,12 @@ Mat3 Solid::gradient(std::uint32_t i, const std::vector<Vec3>& u) const {
   return g;
 }
 
+void Solid::gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) const {
+  const Row& row = rows_[i.index()];
+  for (std::size_t q = 0; q < row.to.size(); ++q) out.push_back({NodeId(row.to[q]), row.g[q]});
+  out.push_back({i, row.g_self});
+}
+
 std::vector<Mat3> Solid::gradients(const std::vector<Vec3>& u) const {
   std::vector<Mat3> g(size());
   parallel_for(size(), 128, [&](std::size_t begin, std::size_t end) {
@@ -207,7 +213,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env)
       if (depth(env, i, material_position_[i] + state.displacement[i]) > 0) drag[i] = mass_[i] * env.friction / (0.01 * dt);
   const auto tangential = [&](const Vec3& d) { return Vec3(d - env.ground_normal.dot(d) * env.ground_normal); };
   const auto potential = [&](const std::vector<Vec3>& at) {
-    double sum = elastic_force(at, nullptr);
+    double sum = elastic_force(at, nullptr) + (env.contact ? env.contact->energy(at) : 0.0);
     for (std::size_t i = 0; i < n; ++i) {
       sum += 0.5 * mass_[i] / (dt * dt) * (at[i] - target[i]).squaredNorm();
       if (!env.ground) continue;
@@ -221,7 +227,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env)
   const double size = std::cbrt(*std::max_element(volume_.begin(), volume_.end()));
   std::vector<Vec3> force, r(n), p(n), z(n), hp, x(n);
   std::vector<Mat9> h(n);
-  std::vector<Mat3> local(n), inverse(n);
+  std::vector<Mat3> local(n), touching(n), inverse(n);
   for (; report.newton < 12; ++report.newton) {
     elastic_force(u, &force);
     parallel_for(n, 32, [&](std::size_t begin, std::size_t end) {
@@ -232,6 +238,8 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env)
           h[i] = volume_[i] * projected_derivative(material_, Mat3::Identity() + gradient(static_cast<std::uint32_t>(i), u));
       }
     });
+    std::fill(touching.begin(), touching.end(), Mat3::Zero());
+    if (env.contact) env.contact->force(u, force), env.contact->blocks(touching);
     for (std::size_t i = 0; i < n; ++i) {
       r[i] = force[i] - mass_[i] / (dt * dt) * (u[i] - target[i]);
       local[i] = mass_[i] / (dt * dt) * Mat3::Identity();
@@ -246,7 +254,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env)
     // Block Jacobi: the local part and the diagonal blocks of the elastic one.
     parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j) {
-        Mat3 block = local[j];
+        Mat3 block = local[j] + touching[j];
         const auto add = [&](std::size_t i, const Vec3& g) {
           for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b)
@@ -272,6 +280,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env)
     if (!(rz > 0)) break;
     for (int k = 0; k < 400 && rz > enough; ++k, ++report.cg) {
       multiply(h, p, hp);
+      if (env.contact) env.contact->multiply(p, hp);
       for (std::size_t i = 0; i < n; ++i) {
         hp[i] += local[i] * p[i];
         if (is_fixed(env, i)) hp[i].setZero();

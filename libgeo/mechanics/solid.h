@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "graph/visibility_graph.h"
 #include "mechanics/elasticity.h"
+#include "mechanics/potential.h"
 #include "sampling/node_set.h"
 
 namespace geo {
@@ -30,6 +32,7 @@ struct Environment {
   double friction = 0.5;          ///< share of the tangential velocity that a touching node loses per 0.01 s
   std::vector<double> clearance;  ///< per node: distance to the skin below it; empty: none
   std::vector<std::uint8_t> fixed;  ///< per node: 1 keeps it where it is; empty: none
+  Potential* contact = nullptr;     ///< of the implicit step; none: nothing touches
 };
 
 struct StepReport {
@@ -55,6 +58,8 @@ class Solid {
 
   /// ∇u at every node, by moving least squares: exact for linear fields where the rung is full.
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
+  /// ∇u at node i is Σ u_j g_jᵀ: appends j and g_j (1/m), the node itself included; the g_j sum to zero.
+  void gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) const;
   /// Elastic energy, J, and forces −∂U/∂u, N; forces sum to zero.
   double energy(const std::vector<Vec3>& u) const;
   std::vector<Vec3> forces(const std::vector<Vec3>& u) const;

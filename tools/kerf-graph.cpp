@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   t.option("--surface", surface_path, "The model that was sampled");
   t.option("-k", k, "Nearest neighbours per node");
   t.option("--guides", guides, "Guides along concave edges, so many node spacings apart; 0: none");
-  t.option("--method", method, "Neighbourhoods by: auto, mfw (the paper's), dijkstra; all give the same");
+  t.choice("--method", method, {"auto", "mfw", "dijkstra"}, "Neighbourhoods by the fastest way, the paper's, or Dijkstra's; all give the same");
   t.output("The body (.kerf)");
   return t.run(argc, argv, [&] {
     if (surface_path.empty()) throw tool::UsageError("give the model with --surface");
@@ -30,7 +30,6 @@ int main(int argc, char** argv) {
     options.k = k, options.guides = guides;
     if (method == "mfw") options.method = geo::NeighborMethod::mfw;
     else if (method == "dijkstra") options.method = geo::NeighborMethod::dijkstra;
-    else if (method != "auto") throw tool::UsageError("--method must be auto, mfw or dijkstra");
     const std::string target = t.target(true);
     const std::string surface_bytes = geo::read_all(surface_path);
     const auto file = tool::parse_solid(surface_bytes, surface_path);

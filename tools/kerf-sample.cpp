@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   t.option("--levels", levels, "Resolution levels, each twice as coarse as the one before");
   t.option("-n,--count", count, "Wanted number of nodes instead of a spacing");
   t.option("--min-across", across, "Nodes across thin material, which is sampled up to 32 times finer; 0: as the rest");
-  t.option("--pattern", pattern, "jitter, blue (pushed apart), or grid");
+  t.choice("--pattern", pattern, {"jitter", "blue", "grid"}, "Nodes displaced at random, pushed apart, or in the middle");
   t.option("--jitter", jitter, "Random displacement, as a fraction of a node's cell");
   t.option("--grid", grid, "Of a volume: the grid's name");
   t.option("--iso", iso, "Of a volume: the surface's level (0 of a level set, 0.5 of a fog volume)");
@@ -71,7 +71,6 @@ int main(int argc, char** argv) {
     if (across < 0 || across > 100) throw tool::UsageError("--min-across must be from 0 to 100");
     if (pattern == "blue") options.pattern = geo::Pattern::blue;
     else if (pattern == "grid") options.pattern = geo::Pattern::grid;
-    else if (pattern != "jitter") throw tool::UsageError("--pattern must be jitter, blue or grid");
     double percent = 0;
     const auto parse = [](const std::string& name, const std::string& text, std::size_t& used) {
       double value = 0;

@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "describe.h"
 #include "io/stream.h"
 #include "version.h"
 
@@ -85,12 +86,22 @@ void Tool::option(const std::string& names, double& value, const std::string& he
   });
 }
 void Tool::option(const std::string& names, int& value, const std::string& help) { parser_->app.add_option(names, value, help)->capture_default_str(); }
+void Tool::choice(const std::string& names, std::string& value, const std::vector<std::string>& choices, const std::string& help) {
+  parser_->app.add_option(names, value, help)->capture_default_str()->check(CLI::IsMember(choices));
+}
 void Tool::flag(const std::string& names, bool& value, const std::string& help) { parser_->app.add_flag(names, value, help); }
 void Tool::output(const std::string& help) { parser_->app.add_option("-o,--output", output_path, help); }
 
 int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   try {
+    if (argc == 3 && std::string_view(argv[1]) == "--describe") {
+      std::cout << describe(parser_->app, argv[2]);
+      return flush_output() ? 0 : 73;
+    }
     parser_->app.parse(argc, argv);
+  } catch (const UsageError& e) {
+    std::cerr << name_ << ": " << e.what() << '\n';
+    return 2;
   } catch (const CLI::FileError& e) {
     std::cerr << name_ << ": " << e.what() << "; check the name\n";
     return 66;

@@ -35,11 +35,13 @@ class Tool {
   void option(const std::string& names, std::vector<std::string>& values, const std::string& help);
   void option(const std::string& names, double& value, const std::string& help);
   void option(const std::string& names, int& value, const std::string& help);
+  /// An option that takes one of `choices`; `value` holds the default.
+  void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices, const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
   /// -o/--output; where it is not given, standard output if that is no terminal (`binary`) or in any case (text).
   void output(const std::string& help);
 
-  /// Parses, sets threads and signals, calls `work`, turns every outcome into the contract's exit code.
+  /// Parses (or, for `--describe bash|zsh|man`, prints what describe() makes of the tool), sets threads and signals, calls `work`, turns every outcome into the contract's exit code.
   int run(int argc, char** argv, const std::function<void()>& work);
 
   bool quiet = false, verbose = false, json = false;

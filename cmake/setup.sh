@@ -2,7 +2,7 @@
 packages="build-essential cmake ninja-build ccache pkg-config git ca-certificates
   libcgal-dev libgmp-dev libeigen3-dev libpcl-dev libopenvdb-dev libimath-dev libblosc-dev libtbb-dev libboost-iostreams-dev libboost-graph-dev
   libcli11-dev catch2 libembree-dev libpng-dev zlib1g-dev libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libhdf5-dev
-  libhwy-dev libnanoflann-dev libcgal-demo python3"
+  libhwy-dev libnanoflann-dev libcgal-demo python3 lowdown doxygen"
 
 say() { printf '%s\n' "== $*"; }
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the build in $1 to a folder aside, builds the consumer against it with find_package(kerf), and runs it.
+# Installs the build in $1 to a folder aside, builds the project in $2 against it with find_package(kerf), runs its programs.
 set -eu
 build=$1 source=$2 generator=$3
 stage=$(mktemp -d)
@@ -8,4 +8,7 @@ cmake --install "$build" --prefix "$stage/prefix" >"$stage/log" 2>&1 || { cat "$
 cmake -S "$source" -B "$stage/build" -G "$generator" -DCMAKE_PREFIX_PATH="$stage/prefix" "-DCMAKE_CXX_FLAGS=${4:-}" >"$stage/log" 2>&1 ||
   { cat "$stage/log"; exit 1; }
 cmake --build "$stage/build" >"$stage/log" 2>&1 || { cat "$stage/log"; exit 1; }
-"$stage/build/consumer"
+cd "$stage"
+for example in build/example-*; do
+  test -f "$example" && echo "== $example" && "$example"
+done

@@ -17,14 +17,14 @@ namespace {
 std::string phases(const geo::FrameWork& w) {
   const auto& c = w.split.crack;
   return "{\"front\":" + tool::number(w.front_seconds) + ",\"crack\":" + tool::number(c.seconds()) + ",\"resample\":" + tool::number(w.split.resample_seconds) +
-         ",\"graph\":" + tool::number(w.split.graph_seconds) + ",\"binding\":" + tool::number(w.split.binding_seconds) + ",\"mechanics\":" + tool::number(w.mechanics_seconds) +
+         ",\"graph\":" + tool::number(w.split.graph_seconds) + ",\"binding\":" + tool::number(w.split.binding_seconds) + ",\"fracture\":" + tool::number(w.fracture_seconds) + ",\"mechanics\":" + tool::number(w.mechanics_seconds) +
          ",\"surface\":" + tool::number(w.surface_seconds) + "}";
 }
 
 std::string counts(const geo::FrameWork& w) {
   return "\"triangles_cut\":" + std::to_string(w.split.crack.triangles_cut) + ",\"edges_cut\":" + std::to_string(w.split.edges_cut) +
          ",\"nodes_updated\":" + std::to_string(w.split.nodes_updated) + ",\"nodes_added\":" + std::to_string(w.split.nodes_added) +
-         ",\"refused\":" + std::to_string(w.refused) + ",\"newton\":" + std::to_string(w.newton) + ",\"cg\":" + std::to_string(w.cg);
+         ",\"cracks_begun\":" + std::to_string(w.fracture.begun + w.fracture.divided) + ",\"refused\":" + std::to_string(w.refused) + ",\"newton\":" + std::to_string(w.newton) + ",\"cg\":" + std::to_string(w.cg);
 }
 
 }  // namespace

@@ -30,13 +30,9 @@ void write_run_state(std::ostream& out, const RunState& state) {
   s["motion/velocity"] = rows_of(flat(state.motion.velocity), 3);
   nlohmann::ordered_json about = {{"frame", state.frame}, {"fronts", nlohmann::ordered_json::array()}};
   std::vector<double> points;
-  for (const auto& front : state.fronts) {
-    if (!front) {
-      about["fronts"].push_back(nullptr);
-      continue;
-    }
+  const auto written = [&](const FrontState& front) {
     nlohmann::ordered_json segments = nlohmann::ordered_json::array();
-    for (const auto& segment : front->segments) {
+    for (const auto& segment : front.segments) {
       nlohmann::ordered_json ids = nlohmann::ordered_json::array();
       for (const auto& p : segment) {
         ids.push_back(p.id.valid() ? static_cast<std::int64_t>(p.id.value) : -1);
@@ -44,8 +40,21 @@ void write_run_state(std::ostream& out, const RunState& state) {
       }
       segments.push_back(ids);
     }
-    about["fronts"].push_back({{"name", front->name}, {"closed", front->closed}, {"crack", front->crack}, {"step", front->step}, {"segments", segments}});
+    return nlohmann::ordered_json{{"name", front.name}, {"closed", front.closed}, {"crack", front.crack}, {"step", front.step}, {"segments", segments}};
+  };
+  for (const auto& front : state.fronts) about["fronts"].push_back(front ? written(*front) : nlohmann::ordered_json(nullptr));
+  about["cracks"] = state.fracture.cracks;
+  about["growing"] = nlohmann::ordered_json::array();
+  std::vector<double> normals, owed;  // rows of normals; rows (owed, ended, the front's length)
+  for (const auto& g : state.fracture.fronts) {
+    about["growing"].push_back(written(g.front));
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      normals.insert(normals.end(), {g.normal[i].x(), g.normal[i].y(), g.normal[i].z()});
+      owed.insert(owed.end(), {g.owed[i], double(g.ended[i]), g.length});
+    }
   }
+  s["fronts/normals"] = rows_of(normals, 3);
+  s["fronts/owed"] = rows_of(owed, 3);
   s["fronts/points"] = rows_of(points, 3);
   const auto time = std::vector<double>{state.time, 0, 0};
   s["time"] = rows_of(time, 3);
@@ -72,7 +81,7 @@ RunState parse_run_state(const std::string& bytes, const std::string& name) {
   state.motion.displacement = points("motion/displacement");
   state.motion.velocity = points("motion/velocity");
   const auto time = points("time");
-  const auto places = points("fronts/points");
+  const auto places = points("fronts/points"), normals = points("fronts/normals"), owed = points("fronts/owed");
   if (time.size() != 1) fail();
   state.time = time[0].x();
   const auto about_section = sections.find("about");
@@ -81,9 +90,7 @@ RunState parse_run_state(const std::string& bytes, const std::string& name) {
   std::size_t at = 0;
   try {
     state.frame = whole<int>(about.at("frame"));
-    for (const auto& f : about.at("fronts")) {
-      state.fronts.emplace_back();
-      if (f.is_null()) continue;
+    const auto read = [&](const nlohmann::json& f) {
       FrontState front;
       front.name = f.at("name").get<std::string>(), front.closed = f.at("closed").get<bool>();
       front.crack = whole<std::int32_t>(f.at("crack")), front.step = whole<std::uint32_t>(f.at("step"));
@@ -99,7 +106,22 @@ RunState parse_run_state(const std::string& bytes, const std::string& name) {
       }
       if (front.segments.empty()) fail();
       if (!front.closed) front.points.push_back(front.segments.back().back());
-      state.fronts.back() = std::move(front);
+      return front;
+    };
+    for (const auto& f : about.at("fronts")) {
+      state.fronts.emplace_back();
+      if (!f.is_null()) state.fronts.back() = read(f);
+    }
+    state.fracture.cracks = whole<std::int32_t>(about.at("cracks"));
+    std::size_t row = 0;
+    for (const auto& f : about.at("growing")) {
+      FrontState front = read(f);
+      const std::size_t n = front.points.size();
+      if (row + n > normals.size() || row + n > owed.size()) fail();
+      GrowingFront g = growing(std::move(front), {normals.begin() + std::ptrdiff_t(row), normals.begin() + std::ptrdiff_t(row + n)});
+      for (std::size_t i = 0; i < n; ++i) g.owed[i] = owed[row + i].x(), g.ended[i] = owed[row + i].y() != 0, g.length = owed[row + i].z();
+      state.fracture.fronts.push_back(std::move(g));
+      row += n;
     }
   } catch (const nlohmann::json::exception&) {
     fail();

@@ -71,6 +71,15 @@ class Table {
     const auto v = row(*node, 3, "'" + path_ + key + "'");
     value = {v[0], v[1], v[2]};
   }
+  void get(const std::string& key, std::vector<std::array<Vec3, 2>>& boxes) {
+    const auto* node = find(key);
+    if (!node) return;
+    if (!node->is_array()) fail(*node, "'" + path_ + key + "' must be a list of boxes [x0, y0, z0, x1, y1, z1]");
+    for (const auto& box : *node->as_array()) {
+      const auto v = row(box, 6, "a box of '" + path_ + key + "'");
+      boxes.push_back({Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])});
+    }
+  }
   /// After all keys were asked for.
   void done() const {
     for (const auto& [key, node] : table_)
@@ -137,13 +146,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
     t.get("levels", s.sampling.levels, 1, 10);
     t.get("k", s.k, 3, 1000);
     t.get("velocity", s.velocity);
-    if (const auto* fixed = t.find("fixed")) {
-      if (!fixed->is_array()) t.fail(*fixed, "'body.fixed' must be a list of boxes [x0, y0, z0, x1, y1, z1]");
-      for (const auto& box : *fixed->as_array()) {
-        const auto v = t.row(box, 6, "a box of 'body.fixed'");
-        s.fixed.push_back({Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])});
-      }
-    }
+    t.get("fixed", s.fixed);
   });
   section("material", [&](Table& t) {
     std::string model = "neo-hookean";
@@ -178,6 +181,21 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
     t.get("seed", seed, 0, 2147483647);
     s.seed = static_cast<std::uint64_t>(seed);
   });
+  section("fracture", [&](Table& t) {
+    s.fracture.on = true;
+    t.get("strength", s.fracture.strength, 1e-9, 1e15);
+    t.get("toughness", s.fracture.toughness, 0, 1e15);
+    t.get("variation", s.fracture.variation, 0, 1);
+    t.get("grain", s.fracture.grain, 0, 1e12);
+    t.get("speed", s.fracture.speed, 0, 1);
+    t.get("branching", s.fracture.branching, 0, 1e6);
+    t.get("apart", s.fracture.apart, 0.5, 1000);
+    t.get("cracks", s.fracture.cracks, 0, 1000000);
+    t.get("cracks_per_step", s.fracture.cracks_per_step, 0, 1000000);
+    t.get("start", s.fracture.start, 0, 1e9);
+    t.get("off", s.fracture.off);
+  });
+  s.fracture.seed = s.seed;
   top.get("gravity", s.gravity);
   if (const auto* blades = top.find("blade")) {
     if (!blades->is_array_of_tables()) top.fail(*blades, "write each blade as [[blade]]");

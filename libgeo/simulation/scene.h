@@ -6,6 +6,7 @@
 
 #include "mechanics/solid.h"
 #include "sampling/sample.h"
+#include "simulation/fracture.h"
 
 namespace geo {
 
@@ -44,6 +45,7 @@ struct Scene {
   bool implicit = true;
   std::uint64_t seed = 1;
   std::vector<Blade> blades;
+  Fracture fracture;
 };
 
 }  // namespace geo

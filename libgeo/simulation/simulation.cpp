@@ -46,7 +46,8 @@ FrameWork& FrameWork::operator+=(const FrameWork& o) {
   split.nodes_added += o.split.nodes_added, split.nodes_moved += o.split.nodes_moved, split.orphans += o.split.orphans;
   split.resample_seconds += o.split.resample_seconds, split.graph_seconds += o.split.graph_seconds, split.binding_seconds += o.split.binding_seconds;
   refused += o.refused, newton += o.newton, cg += o.cg, steps += o.steps;
-  front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds, surface_seconds += o.surface_seconds;
+  front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds, surface_seconds += o.surface_seconds, fracture_seconds += o.fracture_seconds;
+  fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided, fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
   return *this;
 }
 
@@ -97,17 +98,36 @@ void Simulation::cut(FrameWork& work) {
       front->name = blade.name;
       continue;
     }
-    CrackOptions options;
-    options.seed = scene_.seed;
-    try {
-      const BodyDelta delta = split(body_, *front, next, options, &work.split);
-      if (delta.crack.empty()) continue;
-      solid_.update(body_.nodes, body_.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
-      prepare();
-    } catch (const GeometryError&) {
-      ++work.refused;
-    }
+    split_step(*front, next, work);
   }
+}
+
+bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work) {
+  CrackOptions options;
+  options.seed = scene_.seed;
+  try {
+    const BodyDelta delta = split(body_, front, next, options, &work.split);
+    if (delta.crack.empty()) return true;
+    solid_.update(body_.nodes, body_.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
+    prepare();
+    return true;
+  } catch (const GeometryError&) {
+    ++work.refused;
+    return false;
+  }
+}
+
+void Simulation::fracture(FrameWork& work, double dt) {
+  if (!scene_.fracture.on || state_.time < scene_.fracture.start) return;
+  auto clock = std::chrono::steady_clock::now();
+  double splitting = 0;
+  step_fracture(scene_.fracture, body_, solid_, state_.motion, dt, state_.fracture, [&](FrontState& front, const std::vector<Vec3>& next) {
+    auto inner = std::chrono::steady_clock::now();
+    const bool made = split_step(front, next, work);
+    splitting += since(inner);
+    return made;
+  }, &work.fracture);
+  work.fracture_seconds += since(clock) - splitting;
 }
 
 FrameWork Simulation::advance_frame() {
@@ -122,6 +142,7 @@ FrameWork Simulation::advance_frame() {
     work.newton += static_cast<std::size_t>(report.newton), work.cg += static_cast<std::size_t>(report.cg), ++work.steps;
     work.mechanics_seconds += since(clock);
     state_.time = (state_.frame + (s + 1.0) / steps) * frame_time;
+    fracture(work, dt);
     for (std::size_t i = 0; i < state_.motion.displacement.size(); ++i)
       if (!state_.motion.displacement[i].allFinite())
         throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " + std::to_string(state_.time) + "; reduce the time step");

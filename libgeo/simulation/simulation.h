@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "body/body.h"
+#include "simulation/fracture_step.h"
 #include "simulation/scene.h"
 
 namespace geo {
@@ -13,8 +14,9 @@ namespace geo {
 /// Counts and seconds, by phase, of one frame or of many.
 struct FrameWork {
   SplitWork split;
+  FractureWork fracture;
   std::size_t refused = 0, newton = 0, cg = 0, steps = 0;
-  double front_seconds = 0, mechanics_seconds = 0, surface_seconds = 0;
+  double front_seconds = 0, mechanics_seconds = 0, surface_seconds = 0, fracture_seconds = 0;  ///< fracture's: stresses and plans, its splits apart
   FrameWork& operator+=(const FrameWork& o);
 };
 
@@ -22,6 +24,7 @@ struct FrameWork {
 struct RunState {
   State motion;
   std::vector<std::optional<FrontState>> fronts;  ///< per blade
+  FractureState fracture;
   double time = 0;
   int frame = 0;
 };
@@ -47,6 +50,9 @@ class Simulation {
  private:
   void prepare();
   void cut(FrameWork& work);
+  void fracture(FrameWork& work, double dt);
+  /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
+  bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work);
 
   Scene scene_;
   Body body_;

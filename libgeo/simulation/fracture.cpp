@@ -1,0 +1,26 @@
+#include "simulation/fracture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "crack/roughen.h"
+
+namespace geo {
+
+double strength_factor(const Fracture& f, double diagonal, const Vec3& x) {
+  if (f.variation == 0) return 1;
+  return std::max(0.05, 1 + f.variation * noise(x / (f.grain > 0 ? f.grain : 0.1 * diagonal), f.seed));
+}
+
+bool may_break(const Fracture& f, const Vec3& x) {
+  return std::none_of(f.off.begin(), f.off.end(), [&](const auto& b) { return (x.array() >= b[0].array()).all() && (x.array() <= b[1].array()).all(); });
+}
+
+double rayleigh_speed(const Material& m) {
+  return std::sqrt(m.mu() / m.density) * (0.862 + 1.14 * m.poisson) / (1 + m.poisson);
+}
+
+double stress_of_toughness(double toughness, double h) { return toughness * std::sqrt(2 / (std::numbers::pi * h)); }
+
+}  // namespace geo

@@ -1,0 +1,174 @@
+#include "simulation/fracture_step.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "simulation/fracture_start.h"
+#include "simulation/fracture_tip.h"
+
+namespace geo {
+namespace {
+
+// What drives each point of a front.
+struct Drive {
+  std::vector<Vec3> direction;  // unit, across the front
+  std::vector<double> excess;   // stress over what the toughness asks for; ≤ 1: none
+};
+
+double spacing_at(const Body& body, const Vec3& p) {
+  const auto nearest = body.grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; });
+  return body.nodes.spacing[nearest.at(0)];
+}
+
+double needed_stress(const Fracture& fracture, const Body& body, const Vec3& x, double h) {
+  const double stress = fracture.toughness > 0 ? stress_of_toughness(fracture.toughness, h) : fracture.strength;
+  return stress * strength_factor(fracture, body.surface.extent().diagonal(), x);
+}
+
+Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, const State& motion, const GrowingFront& g) {
+  const std::size_t n = g.size();
+  std::vector<Mat3> separation(n, Mat3::Zero());
+  std::vector<TipFrame> frame(n);
+  parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      frame[i] = g.frame(i);
+      if (!g.live(i) || !may_break(fracture, frame[i].at)) continue;
+      const TipField field = tip_field(body, motion.displacement, solid.material(), frame[i]);
+      if (field.nodes < 4) continue;
+      const auto [angle, stress] = field.strongest();
+      if (!(stress > 0)) continue;
+      const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
+      separation[i] = stress / needed_stress(fracture, body, frame[i].at, field.support) * across * across.transpose();
+    }
+  });
+  // Twice with the weights 1, 2, 1 of neighbours on the same part of the front.
+  for (int pass = 0; pass < 2; ++pass) {
+    const auto old = separation;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!g.live(i)) continue;
+      double total = 2;
+      separation[i] = 2 * old[i];
+      for (const bool after : {false, true}) {
+        if (!g.front.closed && (after ? i + 1 == n : i == 0)) continue;
+        const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
+        if (g.live(j)) separation[i] += old[j], total += 1;
+      }
+      separation[i] /= total;
+    }
+  }
+  Drive d{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    d.direction[i] = frame[i].ahead;
+    if (!g.live(i) || separation[i].isZero() || !may_break(fracture, frame[i].at)) continue;
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(separation[i]);
+    d.excess[i] = eigen.eigenvalues()[2];
+    // In the new plane, across the front, away from the crack behind.
+    const Vec3 tangent = frame[i].normal.cross(frame[i].ahead);
+    Vec3 way = tangent.cross(eigen.eigenvectors().col(2));
+    if (way.dot(frame[i].ahead) < 0) way = -way;
+    if (way.norm() > 0.1) d.direction[i] = way.normalized();
+  }
+  return d;
+}
+
+std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts, std::span<const GrowingFront> more) {
+  std::int32_t last = body.surface.crack_count();
+  for (const auto& some : {fronts, more})
+    for (const auto& g : some) last = std::max(last, g.front.crack);
+  return last + 1;
+}
+
+// A front whose stress is far more than it needs divides: the two parts leave at 30° to either side.
+bool divides(const Fracture& fracture, const GrowingFront& g, const Drive& d, double spacing, const FractureState& state) {
+  if (fracture.branching <= 0 || state.cracks >= fracture.cracks || g.length < fracture.apart * spacing) return false;
+  double sum = 0;
+  std::size_t live = 0;
+  for (std::size_t i = 0; i < g.size(); ++i)
+    if (g.live(i)) sum += d.excess[i], ++live;
+  return live > 0 && sum > fracture.branching * double(live);
+}
+
+void turn(Drive& d, const GrowingFront& g, double angle) {
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const TipFrame f = g.frame(i);
+    d.direction[i] = Eigen::AngleAxisd(angle, f.along()) * d.direction[i];
+  }
+}
+
+}  // namespace
+
+void step_fracture(const Fracture& fracture, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
+                   const SplitStep& split, FractureWork* work) {
+  FractureWork done;
+  const double fastest = fracture.speed * rayleigh_speed(solid.material());
+  std::vector<GrowingFront> fronts;
+  fronts.swap(state.fronts);
+  const auto keep = [&](std::vector<GrowingFront> parts) { state.fronts.insert(state.fronts.end(), parts.begin(), parts.end()); };
+  const auto make = [&](GrowingFront& g, const Drive& d, std::vector<double>& step, double spacing) {
+    const FrontPlan plan = plan_front(body.surface, g, step, d.direction, spacing);
+    FrontState moved = depart(g, plan);
+    if (split(moved, plan.next)) {
+      ++done.advanced;
+      keep(arrive(g, plan, std::move(moved), d.direction));
+    } else {
+      ++done.refused;
+      keep({g});
+    }
+  };
+  for (std::size_t f = 0; f < fronts.size(); ++f) {
+    GrowingFront& g = fronts[f];
+    Drive d = drive(fracture, body, solid, motion, g);
+    std::vector<double> step(g.size(), 0);
+    double spacing = std::numeric_limits<double>::infinity(), most = 0;
+    bool air = true;  // only parts between points in air are left
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      if (!g.live(i)) continue;
+      air = false;
+      const double here = spacing_at(body, g.front.points[i].position);
+      spacing = std::min(spacing, here);
+      g.owed[i] = d.excess[i] > 1 ? std::min(here, g.owed[i] + dt * fastest * (1 - 1 / (d.excess[i] * d.excess[i]))) : 0;
+      most = std::max(most, g.owed[i]);
+    }
+    if (air) spacing = spacing_at(body, g.front.points[0].position);
+    if (!air && most < 0.25 * spacing) {
+      keep({g});
+      continue;
+    }
+    for (std::size_t i = 0; i < g.size(); ++i)
+      if (g.live(i) && g.owed[i] > 0.05 * spacing) step[i] = g.owed[i];
+    if (!air && divides(fracture, g, d, spacing, state)) {
+      GrowingFront branch = g;
+      branch.front.crack = unused_crack(body, state.fronts, fronts);
+      branch.length = g.length = 0;
+      Drive other = d;
+      turn(d, g, std::numbers::pi / 6), turn(other, g, -std::numbers::pi / 6);
+      ++state.cracks, ++done.divided;
+      make(g, d, step, spacing);
+      make(branch, other, step, spacing);
+    } else {
+      make(g, d, step, spacing);
+    }
+  }
+  const int most = std::min(fracture.cracks_per_step, fracture.cracks - state.cracks);
+  if (most > 0) {
+    const auto stress = averaged_stress(body, solid.gradients(motion.displacement), solid.material());
+    for (const CrackStart& s : find_starts(body, stress, fracture, static_cast<std::size_t>(most))) {
+      const double spacing = body.nodes.spacing[s.node.index()];
+      // Off the node, which would lie in the flaw else.
+      auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal, s.normal, spacing, unused_crack(body, state.fronts, {}));
+      FrontState moved = depart(g, plan);
+      if (!split(moved, plan.next)) {
+        ++done.refused;
+        continue;
+      }
+      ++state.cracks, ++done.begun;
+      keep(arrive(g, plan, std::move(moved), {}));
+    }
+  }
+  if (work) work->begun += done.begun, work->divided += done.divided, work->advanced += done.advanced, work->refused += done.refused;
+}
+
+}  // namespace geo

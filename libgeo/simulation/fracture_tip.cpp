@@ -1,0 +1,137 @@
+#include "simulation/fracture_tip.h"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <cmath>
+#include <numbers>
+
+#include "body/locate.h"
+#include "mechanics/kernel.h"
+
+namespace geo {
+
+Mat3 mode_displacement(const Material& m, double r, double angle) {
+  const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson, scale = std::sqrt(r / (2 * std::numbers::pi)) / (2 * m.mu());
+  Mat3 u;
+  u.col(0) = scale * Vec3(c * (kappa - 1 + 2 * s * s), s * (kappa + 1 - 2 * c * c), 0);
+  u.col(1) = scale * Vec3(s * (kappa + 1 + 2 * c * c), -c * (kappa - 1 - 2 * s * s), 0);
+  u.col(2) = scale * Vec3(0, 0, 4 * s);
+  return u;
+}
+
+Mat3 mode_stress(double poisson, int mode, double r, double angle) {
+  const double c = std::cos(angle / 2), s = std::sin(angle / 2), c3 = std::cos(1.5 * angle), s3 = std::sin(1.5 * angle);
+  double xx = 0, yy = 0, xy = 0, xz = 0, yz = 0;
+  if (mode == 0) xx = c * (1 - s * s3), yy = c * (1 + s * s3), xy = s * c * c3;
+  if (mode == 1) xx = -s * (2 + c * c3), yy = s * c * c3, xy = c * (1 - s * s3);
+  if (mode == 2) xz = -s, yz = c;
+  Mat3 stress;
+  stress << xx, xy, xz, xy, yy, yz, xz, yz, poisson * (xx + yy);
+  return stress / std::sqrt(2 * std::numbers::pi * r);
+}
+
+double TipField::hoop(double angle) const {
+  const Vec3 across(-std::sin(angle), std::cos(angle), 0);
+  double sum = across.dot(uniform * across);
+  for (int mode = 0; mode < 2; ++mode) sum += k[mode] * across.dot(mode_stress(0, mode, support / 4, angle) * across);
+  return sum;
+}
+
+TipField::Strongest TipField::strongest() const {
+  // The hoop stress has one maximum between the flanks or two; a scan by degrees finds the larger, bisection its place.
+  constexpr double degree = std::numbers::pi / 180;
+  double best = 0;
+  for (int a = -85; a <= 85; ++a)
+    if (hoop(a * degree) > hoop(best)) best = a * degree;
+  for (double step = 0.5 * degree; step > 1e-9; step *= 0.5)
+    for (const double a : {best - step, best + step})
+      if (hoop(a) > hoop(best)) best = a;
+  return {best, hoop(best)};
+}
+
+namespace {
+
+struct Nearby {
+  std::vector<std::uint32_t> nodes;
+  std::vector<double> weight;
+  double support = 0;
+};
+
+// The nodes that a point a little ahead of the tip sees, within one and a half support radii of the tip.
+Nearby nodes_about(const Body& body, const TipFrame& tip) {
+  Nearby found;
+  const auto nearest = body.grid.nearest(body.nodes.position, tip.at, 1, ~0u, [](auto) { return true; });
+  if (nearest.empty()) return found;
+  found.support = body.nodes.radius[nearest[0]];
+  const double reach = 1.5 * found.support;
+  Vec3 eye = tip.at;
+  for (double step = 0.25 * found.support; step > 0.01 * found.support && eye == tip.at; step *= 0.5) {
+    const Vec3 ahead = tip.at + step * tip.ahead;
+    if (!is_blocked(body.surface, tip.at + 0.02 * step * tip.ahead, ahead)) eye = ahead;
+  }
+  if (eye == tip.at) return found;
+  std::vector<std::uint32_t> near;
+  body.grid.within(body.nodes.position, tip.at, reach, near);
+  for (const auto i : near) {
+    const Vec3& x = body.nodes.position[i];
+    if (is_blocked(body.surface, eye, x)) continue;
+    found.nodes.push_back(i);
+    found.weight.push_back(std::sqrt(kernel((x - tip.at).norm() / reach, 1.0)));
+  }
+  return found;
+}
+
+// Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of them, in units of `scale`),
+// by weighted least squares with as small a norm as there is.
+Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material& material, const TipFrame& tip, const Nearby& near, int modes, double scale) {
+  const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
+  const auto n = static_cast<Eigen::Index>(near.nodes.size());
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 12 + modes);
+  Eigen::VectorXd b(3 * n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto i = near.nodes[static_cast<std::size_t>(j)];
+    const double w = near.weight[static_cast<std::size_t>(j)];
+    const Vec3 x = frame.transpose() * (body.nodes.position[i] - tip.at);
+    for (int c = 0; c < 3; ++c) a.block<3, 3>(3 * j, 3 * c) = w * x[c] / near.support * Mat3::Identity();
+    a.block<3, 3>(3 * j, 9) = w * Mat3::Identity();
+    if (modes > 0) a.block<3, 3>(3 * j, 12) = w * scale * mode_displacement(material, std::hypot(x.x(), x.y()), std::atan2(x.y(), x.x()));
+    b.segment<3>(3 * j) = w * (frame.transpose() * v[static_cast<std::size_t>(j)]);
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-4);  // directions in which the nodes hardly spread: as for moment matrices
+  solver.compute(a);
+  return solver.solve(b);
+}
+
+}  // namespace
+
+TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Material& material, const TipFrame& tip) {
+  const Nearby near = nodes_about(body, tip);
+  TipField field;
+  field.nodes = near.nodes.size();
+  field.support = near.support;
+  if (field.nodes < 4) return field;
+  const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
+  std::vector<Vec3> v;
+  for (const auto i : near.nodes) v.push_back(u[i]);
+  const auto gradient = [&](const Eigen::VectorXd& c) { return Mat3(Eigen::Map<const Mat3>(c.data()) / near.support); };
+  // First as one affine map, whose rotation is taken out; then with the modes, where there are nodes enough for them.
+  const Mat3 f = Mat3::Identity() + frame * gradient(fit(body, v, material, tip, near, 0, 1)) * frame.transpose();
+  const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+  if (rotation.determinant() < 0) rotation = svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
+  for (std::size_t j = 0; j < v.size(); ++j) {
+    const Vec3 x = body.nodes.position[near.nodes[j]] - tip.at;
+    v[j] = rotation.transpose() * (x + v[j]) - x;
+  }
+  const int modes = field.nodes >= 8 ? 3 : 0;
+  const double scale = 2 * material.mu() * std::sqrt(2 * std::numbers::pi / near.support);
+  const Eigen::VectorXd c = fit(body, v, material, tip, near, modes, scale);
+  const Mat3 g = gradient(c), stretch = Mat3::Identity() + 0.5 * (g + g.transpose());
+  if (!(stretch.determinant() > 0.01)) return {};
+  field.uniform = stress(material, stretch) * stretch / stretch.determinant();
+  if (modes > 0) field.k = scale * c.tail<3>();
+  return field;
+}
+
+}  // namespace geo

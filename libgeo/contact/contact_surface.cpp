@@ -1,0 +1,36 @@
+#include "contact/contact_surface.h"
+
+namespace geo {
+
+ContactSurface contact_surface(const Complex& complex) {
+  ContactSurface s;
+  double length = 0;
+  for (std::uint32_t f = 0; f < complex.face_count(); ++f)
+    for (int which = 0; which < 2; ++which) {
+      const Side side{FaceId(f), which};
+      if (!complex.has(side)) continue;
+      const auto v = [&](int k) { return complex.surface_vertex(side, k).value; };
+      s.triangles.push_back(which == 0 ? Triangle{v(0), v(1), v(2)} : Triangle{v(0), v(2), v(1)});
+      s.side.push_back(2 * f + static_cast<std::uint32_t>(which));
+      const auto corners = complex.corners(side.face);
+      for (int k = 0; k < 3; ++k) length += (corners[(k + 1) % 3] - corners[k]).norm();
+    }
+  s.edge = s.triangles.empty() ? 0 : length / (3 * double(s.triangles.size()));
+  s.site.resize(complex.surface_vertex_count());
+  for (std::uint32_t v = 0; v < s.site.size(); ++v) {
+    const SurfaceVertexId id(v);
+    s.site[v] = complex.alive(id) ? complex.site(id).value : complex.vertex_count() + v;
+  }
+  return s;
+}
+
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const std::vector<Vec3>& p) {
+  std::vector<Vec3> normals(p.size(), Vec3::Zero());
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3 n = (p[b] - p[a]).cross(p[c] - p[a]);
+    normals[a] += n, normals[b] += n, normals[c] += n;
+  }
+  return normals;
+}
+
+}  // namespace geo

@@ -1,0 +1,24 @@
+// The derived two-sided surface as contact looks at it: rows of triangles, and what belongs to which site.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "surface/complex.h"
+
+namespace geo {
+
+struct ContactSurface {
+  std::vector<Triangle> triangles;   ///< of surface vertex ids
+  std::vector<std::uint32_t> side;   ///< per triangle: 2 · face + which of its two sides
+  std::vector<std::uint32_t> site;   ///< per surface vertex; of dead ones a number that no other has
+  double edge = 0;                   ///< mean length of edges, model units, at rest
+};
+
+/// Cost follows the whole surface.
+ContactSurface contact_surface(const Complex& complex);
+
+/// Per vertex the sum of the normals of its triangles, twice their areas long, at the given positions.
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const std::vector<Vec3>& positions);
+
+}  // namespace geo

@@ -1,0 +1,29 @@
+// When two triangles of a deformed two-sided surface cross.
+//
+// Copies of one site (a vertex of the crack complex) that stand at the same coordinates, to the bit, count as one vertex. Two
+// triangles cross when they have a point in common besides the corners and edges that they share. Two sides of one face with
+// all three corners at the same coordinates touch, as every fresh crack does; they do not cross. Exact.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "surface/triangle_mesh.h"
+
+namespace geo {
+
+/// For each vertex the lowest row with the same site and the same coordinates. `site` empty: each for itself.
+std::vector<std::uint32_t> vertices_together(std::span<const std::uint32_t> site, const std::vector<Vec3>& positions);
+
+/// Pairs of triangles that cross, ascending. `together` from vertices_together(); `two_sided`: two triangles with the same three
+/// corners are two sides of a face, and touch. Only pairs with a triangle marked in `only`, where given.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
+                                                                    std::span<const std::uint32_t> together, bool two_sided,
+                                                                    const std::vector<std::uint8_t>* only = nullptr);
+
+/// How many pairs of triangles of a surface cross: of a frame, or of a plain mesh.
+std::size_t count_crossings(const TriangleMesh& surface);
+
+}  // namespace geo

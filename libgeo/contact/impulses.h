@@ -1,0 +1,44 @@
+// Velocity constraints between places of surfaces, and the impulses on nodes that keep them (§ 3.3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "contact/surface_weights.h"
+
+namespace geo {
+
+/// Two places that may not come closer along a normal. A place is up to three surface vertices with weights that sum to 1.
+struct TouchingPlaces {
+  struct Place {
+    std::uint32_t vertex[3];
+    double weight[3];
+    int size;
+  };
+  Place a, b;
+  Vec3 normal;          ///< unit; from b to a
+  double approach = 0;  ///< relative velocity along −normal that is still allowed, model units per second; negative: they must part
+};
+
+struct ImpulseReport {
+  std::size_t touching = 0;  ///< constraints with an impulse
+  int sweeps = 0;
+};
+
+/// Changes the velocities of nodes as little as possible (in the kinetic energy's norm) so that no two places approach each
+/// other, by impulses along the normals that are spread over the nodes by the weights, and by friction at most `friction` times
+/// as large. Pairs of equal and opposite impulses: momentum is what it was, but for nodes of infinite mass (inverse mass 0).
+/// Kinetic energy does not grow unless they must part. `stands_for`: which surface vertices carry one vertex of the constraints (together, they move
+/// as their average). Projected Gauss-Seidel, in the order given.
+struct ImpulseOptions {
+  double friction = 0;
+  int sweeps = 20;
+  double softness = 0.02;  ///< share of the places' own mobility that is added to the pair's: for places that share their nodes
+};
+ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
+                             const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass,
+                             const ImpulseOptions& options, std::vector<Vec3>& velocity);
+
+}  // namespace geo

@@ -1,0 +1,61 @@
+// Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and never crosses itself.
+//
+// The surface has positions of its own. At each step the nodes move as if nothing touched; places that would pass through each
+// other are found, and impulses on the nodes take away their approach; then the surface goes where Eq. 1 wants it, but for
+// what would still cross (bounded_motion.h). How far it stays behind is reported, and made good as soon as there is room.
+//
+// Sheets are born together: copies of a site at the same coordinates, to the bit, that move as one (their average) and part
+// along their own normals once Eq. 1 pulls them apart or along each other.
+#pragma once
+
+#include "contact/bounded_motion.h"
+#include "contact/contact_surface.h"
+#include "contact/surface_weights.h"
+
+namespace geo {
+
+struct ContactOptions {
+  double friction = 0.3;  ///< Coulomb's coefficient between surfaces of the body
+  double gap = 1e-4;      ///< that open sheets keep, in mean edges of the surface
+  double recovery = 0.3;  ///< share of the way back, in a step, for nodes whose surfaces have passed through each other
+  int rounds = 3;         ///< of finding what touches and applying impulses
+};
+
+struct ContactWork {
+  std::size_t watched = 0, touching = 0, in_zones = 0, opened = 0, held = 0;
+  std::size_t crossings = 0;  ///< that a crack was born with and that stay until they come apart; of all else there are none
+  double lag = 0;             ///< largest distance of a vertex from where Eq. 1 has it, model units
+  double seconds = 0;
+  ContactWork& operator+=(const ContactWork& o);
+};
+
+class SelfContact {
+ public:
+  /// The surface of a body at rest (no displacement), or at the positions of an earlier one (per surface vertex).
+  SelfContact(const Body& body, const Solid& solid, const ContactOptions& options = {}, std::vector<Vec3> positions = {});
+
+  /// After a split: new vertices on old faces take their place in these, copies that of what they copy; those inside the
+  /// material that of Eq. 1, averaged over their copies.
+  void follow(const Body& body, const Solid& solid, const BodyDelta& delta, const State& state, ContactWork* work = nullptr);
+
+  /// After a step of nodes that began at displacements `before` and took dt: corrects displacements and velocities by
+  /// impulses and moves the surface. `fixed` (per node, or empty) as in Environment.
+  void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
+               State& state, ContactWork* work = nullptr);
+
+  /// World positions, per surface vertex; of dead ones nothing is said.
+  const std::vector<Vec3>& positions() const { return positions_; }
+  const SurfaceWeights& weights() const { return weights_; }
+  const ContactSurface& surface() const { return surface_; }
+
+ private:
+  std::vector<Vec3> targets(const Body& body, const std::vector<Vec3>& u) const;
+  std::size_t open(const std::vector<Vec3>& targets, const std::vector<std::vector<std::uint32_t>>& copies);
+
+  ContactOptions options_;
+  ContactSurface surface_;
+  SurfaceWeights weights_;
+  std::vector<Vec3> positions_;
+};
+
+}  // namespace geo

@@ -1,0 +1,58 @@
+#include "contact/surface_weights.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "mechanics/kernel.h"
+
+namespace geo {
+
+void SurfaceWeights::update(const Body& body, const Solid& solid, std::span<const NodeId> updated, std::span<const SurfaceVertexId> rebound) {
+  const std::size_t before = rows_.size(), n = body.surface.surface_vertex_count();
+  rows_.resize(n);
+  std::vector<std::uint8_t> changed(solid.size(), 0), again(n, 0);
+  for (const NodeId i : updated) changed[i.index()] = 1;
+  for (const SurfaceVertexId v : rebound) again[v.index()] = 1;
+  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::pair<NodeId, double>> bound;
+    std::vector<std::pair<NodeId, Vec3>> gradient;
+    std::vector<double> weight(solid.size(), 0);
+    std::vector<std::uint32_t> used;
+    for (std::size_t v = begin; v < end; ++v) {
+      const SurfaceVertexId id(v);
+      if (!body.surface.alive(id)) {
+        rows_[v].clear();
+        continue;
+      }
+      bound_nodes(body, id, bound);
+      const SurfaceVertexId master = body.binding.master[v];
+      const bool stale = v >= before || again[v] || rows_[v].empty() || (master.valid() && changed[body.binding.master_node[master.index()].index()]) ||
+                         std::any_of(bound.begin(), bound.end(), [&](const auto& b) { return changed[b.first.index()]; });
+      if (!stale) continue;
+      rows_[v].clear();
+      if (bound.empty()) continue;
+      const Vec3& x = body.surface.point(body.surface.site(id));
+      double total = 0;
+      for (auto& [i, d] : bound) total += d = kernel(d / body.nodes.radius[i.index()], 1.0);
+      if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
+      const auto add = [&](NodeId j, double w) {
+        if (weight[j.index()] == 0) used.push_back(j.value);
+        weight[j.index()] += w;
+      };
+      used.clear();
+      for (const auto& [i, w] : bound) {
+        add(i, w / total);
+        gradient.clear();
+        solid.gradient_row(i, gradient);
+        for (const auto& [j, g] : gradient) add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
+      }
+      std::sort(used.begin(), used.end());
+      for (const auto j : used) {
+        if (weight[j] != 0) rows_[v].push_back({j, weight[j]});
+        weight[j] = 0;
+      }
+    }
+  });
+}
+
+}  // namespace geo

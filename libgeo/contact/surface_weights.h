@@ -1,0 +1,38 @@
+// Eq. 1 as one linear map: how the displacement of each surface vertex follows from those of nodes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "body/body.h"
+#include "mechanics/solid.h"
+
+namespace geo {
+
+/// A row per surface vertex: nodes, and weights that sum to 1. A vertex's velocity follows from the nodes' by the same weights,
+/// and an impulse on it is spread over the nodes by them (§ 3.3).
+class SurfaceWeights {
+ public:
+  struct Entry {
+    std::uint32_t node;
+    double weight;
+  };
+  /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's gradient, those of its
+  /// neighbours. `updated`: only rows that these nodes (ascending) take part in, and of vertices without a row, are made anew.
+  void update(const Body& body, const Solid& solid, std::span<const NodeId> updated, std::span<const SurfaceVertexId> rebound);
+
+  std::size_t size() const { return rows_.size(); }
+  std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
+  /// Σ weight × value: what the nodes' values are at surface vertex v; zero for a vertex that no node carries.
+  Vec3 at(std::size_t v, const std::vector<Vec3>& values) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Entry& e : rows_[v]) sum += e.weight * values[e.node];
+    return sum;
+  }
+
+ private:
+  std::vector<std::vector<Entry>> rows_;
+};
+
+}  // namespace geo

@@ -1,0 +1,67 @@
+#include "contact/touching.h"
+
+#include <algorithm>
+#include <map>
+
+namespace geo {
+
+std::vector<std::vector<std::uint32_t>> copies_together(std::span<const std::uint32_t> together) {
+  std::vector<std::vector<std::uint32_t>> copies(together.size());
+  for (std::uint32_t v = 0; v < together.size(); ++v) copies[together[v]].push_back(v);
+  return copies;
+}
+
+std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const Motion& m, const Constraint& how) {
+  std::vector<TouchingPlaces> result;
+  std::vector<std::array<std::uint32_t, 6>> keys;
+  for (const Watched& w : watched) {
+    if (parted(w.normal, w.a, w.b, m.to) >= w.gap) continue;
+    Vec3 a[3], b[3];
+    for (int k = 0; k < w.a.size; ++k) a[k] = m.from[w.a.v[k]];
+    for (int k = 0; k < w.b.size; ++k) b[k] = m.from[w.b.v[k]];
+    const ClosestPlaces c = closest_places(a, w.a.size, b, w.b.size);
+    TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.first, 0};
+    const auto take = [](TouchingPlaces::Place& place, const Simplex& s, const Vec3& weights) {
+      for (int k = 0; k < s.size; ++k)
+        if (weights[k] > 0) place.vertex[place.size] = s.v[k], place.weight[place.size++] = weights[k];
+    };
+    take(t.a, w.a, c.from), take(t.b, w.b, c.to);
+    t.approach = std::max(0.0, w.first.dot(c.apart) - w.gap) / how.dt;
+    if (how.share > 0) {
+      Vec3 apart = Vec3::Zero();
+      for (int k = 0; k < t.a.size; ++k) apart += t.a.weight[k] * m.to[t.a.vertex[k]];
+      for (int k = 0; k < t.b.size; ++k) apart -= t.b.weight[k] * m.to[t.b.vertex[k]];
+      t.approach = -how.share * std::max(0.0, w.gap - t.normal.dot(apart)) / how.dt;
+    }
+    // Neighbouring triangles have places in common: they are named by the vertices that carry them.
+    std::array<std::uint32_t, 6> key;
+    key.fill(~0u);
+    std::copy(t.a.vertex, t.a.vertex + t.a.size, key.begin()), std::copy(t.b.vertex, t.b.vertex + t.b.size, key.begin() + 3);
+    std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
+    if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3)) std::rotate(key.begin(), key.begin() + 3, key.end());
+    keys.push_back(key), result.push_back(t);
+  }
+  std::vector<std::uint32_t> order(result.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(keys[i], i) < std::tie(keys[j], j); });
+  std::vector<TouchingPlaces> once;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (i == 0 || keys[order[i]] != keys[order[i - 1]]) once.push_back(result[order[i]]);
+  return once;
+}
+
+void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
+                     double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out) {
+  for (const auto& together : copies)
+    for (std::size_t i = 0; i < together.size(); ++i)
+      for (std::size_t j = i + 1; j < together.size(); ++j) {
+        const auto a = together[i], b = together[j];
+        const Vec3 across = normals[b].normalized() - normals[a].normalized();  // b's material looks at a along its normal
+        if (!(across.norm() > 0.5)) continue;
+        const Vec3 n = across.normalized();
+        const double apart = n.dot(targets[a] - targets[b]);
+        if (apart < -tolerance) out.push_back({{{a}, {1}, 1}, {{b}, {1}, 1}, n, how.share * apart / how.dt});
+      }
+}
+
+}  // namespace geo

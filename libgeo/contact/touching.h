@@ -1,0 +1,28 @@
+// From pairs that might meet to constraints on what touches.
+#pragma once
+
+#include "contact/contact_surface.h"
+#include "contact/impulses.h"
+#include "contact/watch.h"
+
+namespace geo {
+
+/// Per vertex the copies that move as one with it, itself included; empty where another stands for it.
+std::vector<std::vector<std::uint32_t>> copies_together(std::span<const std::uint32_t> together);
+
+/// How constraints come out: on velocities, as the speed at which the two may still approach; on displacements, as the share of
+/// what they lack at the end of the motion that they must part by in a time step.
+struct Constraint {
+  double dt;
+  double share = 0;  ///< 0: on velocities
+};
+
+/// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once.
+std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const Motion& motion, const Constraint& how);
+
+/// Copies that are together and that their own targets would push through each other: the two sides of a sheet, parted by
+/// the difference of their normals.
+void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
+                     double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out);
+
+}  // namespace geo

@@ -292,9 +292,10 @@ void read_about(const KerfFile& in, Body& body) {
 
 }  // namespace
 
-void write_body(std::ostream& out, const Body& body) {
+void write_body(std::ostream& out, const Body& body, const std::vector<KerfArray>& more) {
   Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   add_all(a);
+  a.all.insert(a.all.end(), more.begin(), more.end());
   write_kerf(out, a.all);
 }
 

@@ -16,8 +16,9 @@ Body read_body(const KerfFile& file);
 Body read_body(const std::string& path);
 Body parse_body(const std::string& bytes, const std::string& name);
 
-/// Writes a body whole. Deterministic: the same body gives the same bytes.
-void write_body(std::ostream& out, const Body& body);
+/// Writes a body whole, and behind it `more`, which readers of bodies pass over. Deterministic: the same body gives the same
+/// bytes.
+void write_body(std::ostream& out, const Body& body, const std::vector<KerfArray>& more = {});
 
 /// Brings a file up to a body, which has grown from the file's, by appending what changed. Returns how many bytes were
 /// written.

@@ -1,41 +1,59 @@
-// A scene: one body, blades that cut it, the ground, and how time goes.
+// A scene: bodies, blades that cut them, what holds them, the ground, and how time goes.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "mechanics/solid.h"
+#include "crack/front.h"
+#include "mechanics/elasticity.h"
 #include "sampling/sample.h"
 #include "simulation/fracture.h"
+#include "simulation/motion.h"
 
 namespace geo {
 
-/// A rigid curve that cuts where it moves: a polyline in its own coordinates, placed by keyframes.
-struct Blade {
-  struct Key {
-    double time = 0;
-    Vec3 position = Vec3::Zero();
-    Vec3 axis = Vec3::UnitZ();
-    double angle = 0;  ///< degrees about axis
-  };
+/// One solid of a scene. All of them become components of one Body, whose material coordinates are those of the placed
+/// models.
+struct SceneBody {
   std::string name;
-  std::vector<Vec3> points;
-  std::vector<Key> keys;  ///< ascending in time, at least two
-  bool closed = false;
+  std::string mesh;  ///< path, relative to the scene file unless absolute
+  SampleOptions sampling;
+  double spacing_percent = 5;  ///< of the diagonal, when sampling.spacing and count are 0
+  double scale = 1;            ///< of the model, before it is placed
+  Pose place;
+  Vec3 velocity = Vec3::Zero();  ///< at the start
+  Vec3 spin = Vec3::Zero();      ///< angular velocity at the start about the middle of its box, rad/s
+  Material material;
+};
 
-  bool active(double time) const { return time >= keys.front().time && time <= keys.back().time; }
-  /// World positions of the points: position interpolated linearly, rotation spherically.
+/// Nodes in a box that are held, and moved.
+struct Grip {
+  Vec3 lo, hi;    ///< material coordinates
+  Motion motion;  ///< of the box's middle, relative to where it was; none: stays
+  bool release = false;  ///< lets go after the last key
+};
+
+/// A rigid edge that cuts where it moves, with what is behind it.
+struct Blade {
+  std::string name;
+  std::vector<Vec3> points;  ///< the edge, in its own coordinates
+  bool closed = false;
+  Motion motion;             ///< at least two keys; the blade is there from the first to the last
+  Vec3 back = Vec3::Zero();  ///< from the edge to the back of the blade, in its own coordinates; its length is the blade's width
+  double thickness = 0;      ///< of the wedge at its back, model units; 0: parts nothing
+  double limit = 1;          ///< longest way of an edge point within one cut, in node spacings (§ 5.1)
+
+  bool active(double time) const { return motion.active(time); }
+  /// World positions of the edge's points.
   std::vector<Vec3> at(double time) const;
 };
 
 struct Scene {
-  std::string mesh;  ///< path, relative to the scene file unless absolute
-  SampleOptions sampling;
-  double spacing_percent = 5;  ///< of the diagonal, when sampling.spacing and count are 0
+  std::vector<SceneBody> bodies;  ///< one at least
   int k = 26;
-  Material material;
-  std::vector<std::array<Vec3, 2>> fixed;  ///< boxes, material coordinates: nodes inside stay where they are
-  Vec3 velocity = Vec3::Zero();            ///< at the start
+  std::vector<Front> scores;  ///< cracks made before time 0, in material coordinates
+  std::vector<Grip> grips;
   bool ground = false;
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
   double ground_stiffness = 1e5, friction = 0.5;
@@ -46,6 +64,7 @@ struct Scene {
   std::uint64_t seed = 1;
   std::vector<Blade> blades;
   Fracture fracture;
+  std::uint64_t fingerprint = 0;  ///< of all that decides what the run computes; 0: not from a file
 };
 
 }  // namespace geo

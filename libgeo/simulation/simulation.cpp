@@ -1,104 +1,79 @@
 #include "simulation/simulation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "mechanics/deformation.h"
 
 namespace geo {
-namespace {
 
-double since(std::chrono::steady_clock::time_point& last) {
-  const auto now = std::chrono::steady_clock::now();
-  const double seconds = std::chrono::duration<double>(now - last).count();
-  last = now;
-  return seconds;
-}
+Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress) : Simulation(scene, Model{solid, {solid}}, progress) {}
 
-Body make_body(const Scene& scene, const TriangleMesh& solid, const Progress& progress) {
-  SampleOptions sampling = scene.sampling;
-  sampling.seed = scene.seed;
-  if (sampling.spacing <= 0 && sampling.count == 0) sampling.spacing = scene.spacing_percent / 100 * bounding_box(solid).diagonal();
-  return build_body(Complex::from_skin(solid), sample_nodes(solid, sampling, progress), {scene.k, NeighborMethod::automatic}, progress);
-}
-
-}  // namespace
-
-std::vector<Vec3> Blade::at(double time) const {
-  std::size_t i = 0;
-  while (i + 2 < keys.size() && keys[i + 1].time <= time) ++i;
-  const Key &a = keys[i], &b = keys[i + 1];
-  const double t = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
-  const auto rotation = [](const Key& k) { return Eigen::Quaterniond(Eigen::AngleAxisd(k.angle * 3.14159265358979323846 / 180, k.axis.normalized())); };
-  const Eigen::Quaterniond q = rotation(a).slerp(t, rotation(b));
-  const Vec3 position = a.position + t * (b.position - a.position);
-  std::vector<Vec3> world;
-  for (const Vec3& p : points) world.push_back(position + q * p);
-  return world;
-}
-
-FrameWork& FrameWork::operator+=(const FrameWork& o) {
-  split.crack += o.split.crack;
-  split.edges_cut += o.split.edges_cut, split.edges_added += o.split.edges_added, split.nodes_updated += o.split.nodes_updated;
-  split.nodes_added += o.split.nodes_added, split.nodes_moved += o.split.nodes_moved, split.orphans += o.split.orphans;
-  split.resample_seconds += o.split.resample_seconds, split.graph_seconds += o.split.graph_seconds, split.binding_seconds += o.split.binding_seconds;
-  refused += o.refused, newton += o.newton, cg += o.cg, steps += o.steps;
-  front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds, surface_seconds += o.surface_seconds, fracture_seconds += o.fracture_seconds;
-  fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided, fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
-  return *this;
-}
-
-Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
-    : scene_(scene), body_(make_body(scene, solid, progress)), solid_(body_.nodes, body_.graph, scene.material) {
-  state_.motion.displacement.assign(body_.nodes.size(), Vec3::Zero());
-  state_.motion.velocity.assign(body_.nodes.size(), scene.velocity);
+Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
+    : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_.nodes, body_.graph, scene.bodies[0].material) {
+  begin_motion();
   state_.fronts.resize(scene.blades.size());
+  score(progress);
   prepare();
 }
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene), body_(std::move(body)), state_(std::move(state)), solid_(body_.nodes, body_.graph, scene.material) {
-  if (state_.motion.displacement.size() != body_.nodes.size() || state_.motion.velocity.size() != body_.nodes.size() || state_.fronts.size() != scene.blades.size())
+    : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_.nodes, body_.graph, scene.bodies[0].material) {
+  const std::size_t n = body_.nodes.size();
+  if (state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   prepare();
 }
 
+void Simulation::begin_motion() {
+  const std::size_t n = body_.nodes.size();
+  std::vector<Box3> box(scene_.bodies.size());
+  for (std::size_t i = 0; i < n; ++i) box[state_.part[i]].add(body_.nodes.position[i]);
+  state_.motion.displacement.assign(n, Vec3::Zero());
+  for (std::size_t i = 0; i < n; ++i) {
+    const SceneBody& of = scene_.bodies[state_.part[i]];
+    state_.motion.velocity.push_back(of.velocity + of.spin.cross(body_.nodes.position[i] - box[state_.part[i]].center()));
+  }
+}
+
+// Cracks that are there before time begins.
+void Simulation::score(const Progress& progress) {
+  FrameWork work;
+  for (std::size_t s = 0; s < scene_.scores.size(); ++s) {
+    const Front& front = scene_.scores[s];
+    FrontState state = begin_front(front.steps.at(0), front.closed, body_.surface.crack_count() + 1);
+    for (std::size_t k = 1; k < front.steps.size(); ++k) {
+      report(progress, "prescoring", s, scene_.scores.size());
+      if (!split_step(state, correspond(front.steps[0], front.steps[k], front.closed), work))
+        throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name + "' cannot be made");
+    }
+  }
+}
+
+// What acts on nodes, as they are now.
 void Simulation::prepare() {
+  const std::size_t n = body_.nodes.size();
   environment_.gravity = scene_.gravity;
   environment_.ground = scene_.ground;
   environment_.ground_point = scene_.ground_point;
   environment_.ground_normal = scene_.ground_normal.normalized();
   environment_.ground_stiffness = scene_.ground_stiffness;
   environment_.friction = scene_.friction;
-  environment_.fixed.assign(body_.nodes.size(), 0);
-  environment_.clearance.assign(body_.nodes.size(), 0);
-  for (std::size_t i = 0; i < body_.nodes.size(); ++i) {
+  environment_.fixed.assign(n, 0);
+  environment_.clearance.assign(n, 0);
+  gripped_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
     const Vec3& x = body_.nodes.position[i];
-    for (const auto& [lo, hi] : scene_.fixed) environment_.fixed[i] |= (x.array() >= lo.array()).all() && (x.array() <= hi.array()).all();
-    if (const auto v = body_.binding.closest[i]; v.valid() && body_.surface.alive(v)) environment_.clearance[i] = (body_.surface.point(body_.surface.site(v)) - x).norm();
-  }
-}
-
-void Simulation::cut(FrameWork& work) {
-  for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
-    const Blade& blade = scene_.blades[b];
-    if (!blade.active(state_.time)) continue;
-    auto clock = std::chrono::steady_clock::now();
-    const auto gradient = solid_.gradients(state_.motion.displacement);
-    const InverseMap inverse(body_.nodes, state_.motion.displacement, gradient);
-    std::vector<Vec3> next;
-    for (const Vec3& p : blade.at(state_.time)) next.push_back(inverse.material(p));
-    work.front_seconds += since(clock);
-    auto& front = state_.fronts[b];
-    if (!front) {
-      front = begin_front(next, blade.closed, body_.surface.crack_count() + 1 + static_cast<std::int32_t>(b));
-      front->name = blade.name;
-      continue;
+    for (std::size_t g = 0; g < scene_.grips.size(); ++g) {
+      const Grip& grip = scene_.grips[g];
+      if ((x.array() < grip.lo.array()).any() || (x.array() > grip.hi.array()).any()) continue;
+      gripped_.push_back({NodeId(i), g});
+      break;
     }
-    split_step(*front, next, work);
+    if (const auto v = body_.binding.closest[i]; v.valid() && body_.surface.alive(v)) environment_.clearance[i] = (body_.surface.point(body_.surface.site(v)) - x).norm();
   }
 }
 
@@ -108,8 +83,11 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
   try {
     const BodyDelta delta = split(body_, front, next, options, &work.split);
     if (delta.crack.empty()) return true;
+    Stopwatch watch;
     solid_.update(body_.nodes, body_.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
+    for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
     prepare();
+    work.mechanics_seconds += watch.lap();
     return true;
   } catch (const GeometryError&) {
     ++work.refused;
@@ -117,37 +95,87 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
   }
 }
 
-void Simulation::fracture(FrameWork& work, double dt) {
-  if (!scene_.fracture.on || state_.time < scene_.fracture.start) return;
-  auto clock = std::chrono::steady_clock::now();
-  double splitting = 0;
-  step_fracture(scene_.fracture, body_, solid_, state_.motion, dt, state_.fracture, [&](FrontState& front, const std::vector<Vec3>& next) {
-    auto inner = std::chrono::steady_clock::now();
-    const bool made = split_step(front, next, work);
-    splitting += since(inner);
-    return made;
-  }, &work.fracture);
-  work.fracture_seconds += since(clock) - splitting;
+void Simulation::cut(FrameWork& work) {
+  for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
+    const Blade& blade = scene_.blades[b];
+    if (!blade.active(state_.time)) continue;
+    Stopwatch watch;
+    const auto gradient = solid_.gradients(state_.motion.displacement);
+    const InverseMap inverse(body_.nodes, state_.motion.displacement, gradient);
+    std::vector<Vec3> next;
+    for (const Vec3& p : blade.at(state_.time)) next.push_back(inverse.material(p));
+    work.front_seconds += watch.lap();
+    auto& fronts = state_.fronts[b];
+    if (fronts.empty()) {
+      fronts.push_back({begin_front(next, blade.closed, body_.surface.crack_count() + 1 + static_cast<std::int32_t>(b)), {}});
+      fronts[0].front.name = blade.name;
+      for (std::size_t i = 0; i < next.size(); ++i) fronts[0].at.push_back(double(i));
+      continue;
+    }
+    split_step(fronts[0].front, next, work);
+  }
 }
 
-FrameWork Simulation::advance_frame() {
+// Held nodes are put where their grip will be at the end of the step; what they do to the others is the step's business.
+void Simulation::move_grips(double dt) {
+  std::fill(environment_.fixed.begin(), environment_.fixed.end(), 0);
+  const double end = state_.time + dt;
+  for (const auto& [i, g] : gripped_) {
+    const Grip& grip = scene_.grips[g];
+    if (grip.release && !grip.motion.keys.empty() && end > grip.motion.keys.back().time) continue;
+    environment_.fixed[i.index()] = 1;
+    const Vec3 &x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
+    Vec3& u = state_.motion.displacement[i.index()];
+    u = middle + grip.motion.at(end) * Vec3(x - middle) - x;
+  }
+}
+
+void Simulation::integrate(double dt, FrameWork& work) {
+  Stopwatch watch;
+  const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
+  for (const auto& [i, g] : gripped_) {
+    if (!environment_.fixed[i.index()]) continue;
+    const Grip& grip = scene_.grips[g];
+    const Vec3 x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
+    state_.motion.velocity[i.index()] = (grip.motion.at(state_.time + dt) * Vec3(x - middle) - grip.motion.at(state_.time) * Vec3(x - middle)) / dt;
+  }
+  work.newton += static_cast<std::size_t>(report.newton), work.cg += static_cast<std::size_t>(report.cg), ++work.steps;
+  work.energy = report.energy;
+  work.mechanics_seconds += watch.lap();
+}
+
+void Simulation::fracture(double dt, FrameWork& work) {
+  if (!scene_.fracture.on || state_.time < scene_.fracture.start) return;
+  Stopwatch watch;
+  const double splitting = work.split_seconds() + work.mechanics_seconds;
+  step_fracture(scene_.fracture, body_, solid_, state_.motion, dt, state_.fracture,
+                [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, work); }, &work.fracture);
+  work.fracture_seconds += watch.lap() - (work.split_seconds() + work.mechanics_seconds - splitting);
+}
+
+// One time step, a phase a line.
+void Simulation::step(double dt, FrameWork& work) {
+  cut(work);
+  move_grips(dt);
+  integrate(dt, work);
+  state_.time += dt;
+  fracture(dt, work);
+}
+
+FrameWork Simulation::advance_frame(const Progress& progress) {
   FrameWork work;
   const double frame_time = 1 / scene_.frame_rate;
   const int steps = std::max(1, static_cast<int>(std::ceil(frame_time / scene_.dt - 1e-9)));
-  const double dt = frame_time / steps;
   for (int s = 0; s < steps; ++s) {
-    cut(work);
-    auto clock = std::chrono::steady_clock::now();
-    const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
-    work.newton += static_cast<std::size_t>(report.newton), work.cg += static_cast<std::size_t>(report.cg), ++work.steps;
-    work.mechanics_seconds += since(clock);
-    state_.time = (state_.frame + (s + 1.0) / steps) * frame_time;
-    fracture(work, dt);
+    report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));
+    state_.time = (state_.frame + double(s) / steps) * frame_time;
+    step(frame_time / steps, work);
     for (std::size_t i = 0; i < state_.motion.displacement.size(); ++i)
       if (!state_.motion.displacement[i].allFinite())
         throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " + std::to_string(state_.time) + "; reduce the time step");
   }
   ++state_.frame;
+  state_.total += work;
   return work;
 }
 

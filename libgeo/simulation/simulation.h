@@ -1,44 +1,42 @@
 // The loop of § 3.3 and § 4: blades move, fronts follow into the material, the body is split, nodes move, surface follows.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "body/body.h"
+#include "mechanics/solid.h"
+#include "simulation/edge_front.h"
 #include "simulation/fracture_step.h"
+#include "simulation/model.h"
 #include "simulation/scene.h"
+#include "simulation/work.h"
 
 namespace geo {
-
-/// Counts and seconds, by phase, of one frame or of many.
-struct FrameWork {
-  SplitWork split;
-  FractureWork fracture;
-  std::size_t refused = 0, newton = 0, cg = 0, steps = 0;
-  double front_seconds = 0, mechanics_seconds = 0, surface_seconds = 0, fracture_seconds = 0;  ///< fracture's: stresses and plans, its splits apart
-  FrameWork& operator+=(const FrameWork& o);
-};
 
 /// What a run needs to go on besides its body.
 struct RunState {
   State motion;
-  std::vector<std::optional<FrontState>> fronts;  ///< per blade
+  std::vector<std::vector<EdgeFront>> fronts;  ///< per blade: a front for each part of the edge that cuts
   FractureState fracture;
+  std::vector<std::uint32_t> part;                ///< per node: the body of the scene that it belongs to
   double time = 0;
   int frame = 0;
+  FrameWork total;  ///< counts since the run began; its seconds since the program did
 };
 
 class Simulation {
  public:
-  /// A fresh run: samples and builds the body of `solid`.
+  /// A fresh run: samples and builds the body, makes the prescored cracks. Throws InputError when bodies do not fit the
+  /// scene, GeometryError when a prescored crack cannot be made.
+  Simulation(const Scene& scene, const Model& model, const Progress& progress = {});
+  /// The same for a scene of one body that stands where it was modelled.
   Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress = {});
-  /// A run taken up again.
+  /// A run taken up again. Throws InputError when the state is not of this scene.
   Simulation(const Scene& scene, Body body, RunState state);
 
-  /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite. A crack step that is
-  /// refused is counted, and its front tried again in the next step.
-  FrameWork advance_frame();
+  /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when `progress`
+  /// says so. A crack step that is refused is counted, and its front tried again in the next step.
+  FrameWork advance_frame(const Progress& progress = {});
 
   /// The deformed two-sided surface (Eq. 1), patch, site and source included. With the model of the run it also has the
   /// model's attributes, except normals: these change with the shape.
@@ -48,17 +46,23 @@ class Simulation {
   const Solid& solid() const { return solid_; }
 
  private:
-  void prepare();
+  void step(double dt, FrameWork& work);
   void cut(FrameWork& work);
-  void fracture(FrameWork& work, double dt);
+  void move_grips(double dt);
+  void integrate(double dt, FrameWork& work);
+  void fracture(double dt, FrameWork& work);
   /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
   bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work);
+  void begin_motion();
+  void score(const Progress& progress);
+  void prepare();
 
   Scene scene_;
-  Body body_;
   RunState state_;
+  Body body_;
   Solid solid_;
   Environment environment_;
+  std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
 };
 
 }  // namespace geo

@@ -13,7 +13,7 @@
 #include "io/body_file.h"
 #include "io/front_file.h"
 #include "io/node_file.h"
-#include "io/run_files.h"
+#include "io/checkpoint_file.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
 #include "sampling/sample.h"
@@ -195,7 +195,9 @@ inline std::string sample_checkpoint(const geo::Body& body) {
   geo::RunState state;
   state.motion.displacement.assign(body.nodes.size(), {0.1, 0, 0});
   state.motion.velocity.assign(body.nodes.size(), {0, 0, 1});
-  state.fronts = {std::nullopt, cut_block().fronts[1]};
+  state.part.assign(body.nodes.size(), 0);
+  const geo::FrontState front = cut_block().fronts[1];
+  state.fronts = {{}, {{front, std::vector<double>(front.points.size(), 0.5)}}};
   state.time = 0.5, state.frame = 12;
-  return bytes_of([&](auto& out) { geo::write_run_state(out, state); });
+  return bytes_of([&](auto& out) { geo::write_checkpoint(out, body, state, 7); });
 }

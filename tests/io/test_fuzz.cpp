@@ -102,7 +102,7 @@ TEST_CASE("damaged scenes are read or refused", "[fuzz]") {
   fuzz::campaign("scene", 3000, [](const auto& bytes, const auto& name) -> Use {
     return [scene = parse_scene(bytes, name)] {
       for (const auto& blade : scene.blades)
-        for (const auto& key : blade.keys) blade.at(key.time);
+        for (const auto& key : blade.motion.keys) blade.at(key.time);
     };
   }, damage_to(sample_scenes()));
 }
@@ -131,6 +131,6 @@ TEST_CASE("damaged bodies are read or refused", "[fuzz]") {
 TEST_CASE("damaged checkpoints are read or refused", "[fuzz]") {
   const std::string good = sample_checkpoint(cut_body());
   fuzz::campaign("run", 3000, [](const auto& bytes, const auto& name) -> Use {
-    return [state = parse_run_state(bytes, name)] { bytes_of([&](auto& out) { write_run_state(out, state); }); };
+    return [c = read_checkpoint(KerfFile(Input(bytes, name)))] { bytes_of([&](auto& out) { write_checkpoint(out, c.body, c.state, c.scene); }); };
   }, [&](Random& random) { return sealed(random, good); });
 }

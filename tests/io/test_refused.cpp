@@ -33,9 +33,9 @@ std::string with_section(const std::string& good, const std::string& section, co
   return bytes_of([&](auto& out) { write_kerf(out, sections); });
 }
 
-std::string with_about(const std::string& good, const std::string& from, const std::string& to) {
+std::string with_about(const std::string& good, const std::string& from, const std::string& to, const std::string& section = "about") {
   KerfSections sections = parse_kerf(good, "good");
-  KerfSection& s = sections.at("about");
+  KerfSection& s = sections.at(section);
   const auto at = s.bytes.find(from);
   REQUIRE(at != std::string::npos);
   s.bytes.replace(at, from.size(), to);
@@ -102,7 +102,10 @@ TEST_CASE("bodies and checkpoints with impossible numbers are refused") {
   CHECK_THAT(refused(with_section(good, "nodes/radius", std::vector<double>(body.nodes.size(), 1e300))), Catch::Contains("sensible size"));
   CHECK_THAT(refused(with_about(good, "\"k\":26", "\"k\":1e300")), Catch::Contains("impossible"));
   const std::string run = sample_checkpoint(body);
-  CHECK(refusal([&] { parse_run_state(run, "r"); }) == "read");
-  CHECK_THAT(refusal([&] { parse_run_state(with_about(run, "\"frame\":12", "\"frame\":1e300"), "r"); }), Catch::Contains("checkpoint"));
-  CHECK_THAT(refusal([&] { parse_run_state(with_about(run, "\"crack\":2", "\"crack\":99999999999"), "r"); }), Catch::Contains("checkpoint"));
+  const auto run_refused = [](const std::string& bytes) { return refusal([&] { read_checkpoint(KerfFile(Input(bytes, "r"))); }); };
+  CHECK(run_refused(run) == "read");
+  CHECK_THAT(run_refused(good), Catch::Contains("no checkpoint"));
+  CHECK_THAT(run_refused(with_about(run, "\"frame\":12", "\"frame\":1e300", "run/about")), Catch::Contains("run/about"));
+  CHECK_THAT(run_refused(with_about(run, "\"crack\":2", "\"crack\":99999999999", "run/about")), Catch::Contains("run/about"));
+  CHECK_THAT(run_refused(with_section(run, "run/front_at", std::vector<double>(1, 0.0))), Catch::Contains("fewer points"));
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | killed
 set -u
 script=$(realpath "$0")
 PATH=$1:$2:$PATH models=$3 what=$4
@@ -324,13 +324,44 @@ stops)
 simulation)
   kerf-model block --edge 0.2 -o cube.ply
   printf '[body]\nmesh = "cube.ply"\nspacing = 0.25\n[time]\nframes = 6\nframe_rate = 20\nstep = 0.05\ncheckpoint_every = 2\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.2,1.013,0.011,-0.7,0,0,1,3]]\n' >s.toml
-  kerf-sim -q s.toml -o whole || fail "kerf-sim"
+  kerf-sim -q --json s.toml -o whole >frames.json || fail "kerf-sim"
+  [ "$(wc -l <frames.json)" = 6 ] || fail "not a line a frame: $(cat frames.json)"
+  for phase in front mesh graph resample binding mechanics contact write; do grep -q "\"$phase\":[0-9.e-]*" frames.json || fail "no seconds of $phase"; done
   kerf-sim -q s.toml -o parts --frames 2 && kerf-sim -q s.toml -o parts --frames 4 --resume && kerf-sim -q s.toml -o parts --resume || fail "kerf-sim --resume"
-  for i in 0 1 2 3 4 5 6; do cmp whole/frames/frame_000$i.ply parts/frames/frame_000$i.ply || fail "frame $i differs after --resume"; done
-  cmp whole/checkpoint.kerf parts/checkpoint.kerf || fail "the body differs after --resume"
+  diff -r whole parts || fail "a run made in three parts differs"
   grep -q '"pieces":2' whole/summary.json || fail "not two pieces: $(cat whole/summary.json)"
   kerf-info --check -q whole/checkpoint.kerf || fail "the body is not sound"
   kerf-view whole --size 80x60 --samples 1 -o sheet.png || fail "contact sheet"
+  # A row of a list, told by its number; what is not there.
+  kerf-sim -q s.toml -o cut --set blade.0.keys.1.3=0.4 --set blade.0.divide=5 || fail "--set of a row"
+  grep -q '"pieces":1' cut/summary.json || fail "the blade stops half way, but: $(cat cut/summary.json)"
+  expect 65 "no row 3" kerf-sim s.toml -o x --set blade.3.thickness=1
+  expect 65 "names no row" kerf-sim s.toml -o x --set blade.first.thickness=1
+  expect 65 "another scene" kerf-sim s.toml -o whole --resume --set material.young=2e5
+  expect 73 "holds a run already" kerf-sim s.toml -o whole
+  # What would be noticed too late otherwise.
+  expect 73 "are free" kerf-sim s.toml -o x --frames 100000000
+  expect 73 "cannot be made" kerf-sim s.toml -o /proc/x
+  ;;
+killed)
+  # Ten kills at random moments, and a few polite ones: the same bytes as a run that nobody disturbed.
+  kerf-model block --edge 0.15 -o cube.ply
+  printf '[body]\nmesh = "cube.ply"\nspacing = 0.13\n[time]\nframes = 20\nframe_rate = 40\nstep = 0.0125\ncheckpoint_every = 1\n[ground]\npoint = [0,0,-0.01]\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.45,1.013,0.011,-0.7,0,0,1,3]]\n' >s.toml
+  kerf-sim -q -j1 s.toml -o whole || fail "kerf-sim"
+  RANDOM=${KERF_SEED:-$$}
+  echo "KERF_SEED=${KERF_SEED:-$$}"
+  for signal in KILL KILL INT KILL KILL KILL TERM KILL KILL KILL KILL KILL; do
+    setsid kerf-sim -q -j1 s.toml -o killed --resume >/dev/null 2>&1 </dev/null &
+    pid=$!
+    sleep "0.$(printf %03d $((RANDOM % 700)))"
+    kill -$signal $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    status=$?
+    case $signal in KILL) ;; *) [ $status = 130 ] || [ $status = 0 ] || fail "a run told to stop exits with $status" ;; esac
+  done
+  kerf-sim -q s.toml -o killed --resume || fail "kerf-sim --resume after twelve stops"
+  find killed -name '*.tmp' -delete  # a killed program leaves what it was writing aside
+  diff -r whole killed || fail "a run that was killed differs"
   ;;
 *) fail "unknown test $what" ;;
 esac

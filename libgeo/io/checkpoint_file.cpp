@@ -1,0 +1,156 @@
+#include "io/checkpoint_file.h"
+
+#include "io/body_file.h"
+#include "io/json_internal.h"
+#include "io/surface_file.h"
+
+namespace geo {
+namespace {
+
+std::span<const double> flat(const std::vector<Vec3>& points) { return {points.empty() ? nullptr : points[0].data(), 3 * points.size()}; }
+
+std::vector<Vec3> points(const KerfFile& file, const std::string& section) {
+  const auto values = file.read<double>(section, 3);
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    result.push_back({values[i], values[i + 1], values[i + 2]});
+    if (!in_range(result.back())) file.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
+  }
+  return result;
+}
+
+// The counts of a run so far, by name.
+template <class Work, class Each>
+void counts(Work& w, const Each& each) {
+  each("steps", w.steps), each("newton", w.newton), each("cg", w.cg), each("fronts", w.fronts), each("refused", w.refused);
+  each("cracks_begun", w.fracture.begun), each("cracks_divided", w.fracture.divided);
+  each("triangles_cut", w.split.crack.triangles_cut), each("edges_cut", w.split.edges_cut);
+  each("nodes_updated", w.split.nodes_updated), each("nodes_added", w.split.nodes_added);
+}
+
+nlohmann::ordered_json about_front(const FrontState& f, std::vector<Vec3>& places) {
+  nlohmann::ordered_json segments = nlohmann::ordered_json::array();
+  for (const auto& segment : f.segments) {
+    nlohmann::ordered_json ids = nlohmann::ordered_json::array();
+    for (const auto& p : segment) {
+      ids.push_back(p.id.valid() ? static_cast<std::int64_t>(p.id.value) : -1);
+      places.push_back(p.position);
+    }
+    segments.push_back(ids);
+  }
+  return {{"name", f.name}, {"closed", f.closed}, {"crack", f.crack}, {"step", f.step}, {"segments", segments}};
+}
+
+// Takes numbers one after another; a file that has too few is refused.
+template <class T>
+class Supply {
+ public:
+  Supply(std::vector<T> values, const KerfFile& file) : values_(std::move(values)), file_(file) {}
+  T next() {
+    if (at_ >= values_.size()) file_.fail("a front of the run has fewer points than it says");
+    return values_[at_++];
+  }
+
+ private:
+  std::vector<T> values_;
+  const KerfFile& file_;
+  std::size_t at_ = 0;
+};
+
+FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const KerfFile& file) {
+  FrontState front;
+  front.name = about.at("name").get<std::string>(), front.closed = about.at("closed").get<bool>();
+  front.crack = whole<std::int32_t>(about.at("crack")), front.step = whole<std::uint32_t>(about.at("step"));
+  for (const auto& segment : about.at("segments")) {
+    front.segments.emplace_back();
+    for (const auto& id : segment) {
+      const auto v = whole<std::int64_t>(id);
+      front.segments.back().push_back({places.next(), v < 0 || v > ~0u ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
+    }
+    if (front.segments.back().size() < 2) file.fail("a front of the run has a segment without ends");
+    front.points.push_back(front.segments.back().front());
+  }
+  if (front.segments.empty()) file.fail("a front of the run is empty");
+  if (!front.closed) front.points.push_back(front.segments.back().back());
+  return front;
+}
+
+}  // namespace
+
+void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene) {
+  std::vector<Vec3> places;
+  std::vector<double> at;
+  nlohmann::ordered_json about = {{"frame", state.frame}, {"scene", scene}, {"fronts", nlohmann::ordered_json::array()}, {"counts", nlohmann::ordered_json::object()}};
+  for (const auto& blade : state.fronts) {
+    about["fronts"].push_back(nlohmann::ordered_json::array());
+    for (const EdgeFront& edge : blade) {
+      about["fronts"].back().push_back(about_front(edge.front, places));
+      at.insert(at.end(), edge.at.begin(), edge.at.end());
+    }
+  }
+  // Of fracture's fronts: a normal a point, and (owed, ended, the front's length).
+  about["cracks"] = state.fracture.cracks;
+  about["growing"] = nlohmann::ordered_json::array();
+  std::vector<Vec3> normals, owed;
+  for (const GrowingFront& g : state.fracture.fronts) {
+    about["growing"].push_back(about_front(g.front, places));
+    for (std::size_t i = 0; i < g.size(); ++i) normals.push_back(g.normal[i]), owed.push_back({g.owed[i], double(g.ended[i]), g.length});
+  }
+  counts(state.total, [&](const char* name, std::size_t n) { about["counts"][name] = n; });
+  const std::string text = about.dump();
+  std::vector<KerfArray> more{kerf_array("run/displacement", flat(state.motion.displacement), 3), kerf_array("run/velocity", flat(state.motion.velocity), 3),
+                              kerf_array("run/part", std::span(state.part)), kerf_array("run/front_points", flat(places), 3),
+                              kerf_array("run/front_at", std::span<const double>(at)), kerf_array("run/front_normals", flat(normals), 3),
+                              kerf_array("run/front_owed", flat(owed), 3), kerf_array("run/time", std::span(&state.time, 1))};
+  more.push_back({"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
+  write_body(out, body, more);
+}
+
+Checkpoint read_checkpoint(const KerfFile& file) {
+  if (file.sections().count("run/about") == 0) file.fail("is no checkpoint of a run");
+  Checkpoint c{read_body(file), {}, 0};
+  RunState& state = c.state;
+  state.motion.displacement = points(file, "run/displacement");
+  state.motion.velocity = points(file, "run/velocity");
+  state.part = file.read<std::uint32_t>("run/part");
+  const auto time = file.read<double>("run/time");
+  const std::size_t n = c.body.nodes.size();
+  if (time.size() != 1 || !std::isfinite(time[0]) || state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.part.size() != n)
+    file.fail("the sections of the run have different lengths");
+  state.time = time[0];
+  Supply<Vec3> places(points(file, "run/front_points"), file), normals(points(file, "run/front_normals"), file), owed(points(file, "run/front_owed"), file);
+  Supply<double> at(file.read<double>("run/front_at"), file);
+  const auto about = nlohmann::json::parse(file.text("run/about"), nullptr, false);
+  try {
+    state.frame = whole<int>(about.at("frame"));
+    c.scene = whole<std::uint64_t>(about.at("scene"));
+    for (const auto& blade : about.at("fronts")) {
+      state.fronts.emplace_back();
+      for (const auto& front : blade) {
+        EdgeFront edge{front_from(front, places, file), {}};
+        for (std::size_t i = 0; i < edge.front.points.size(); ++i) edge.at.push_back(at.next());
+        state.fronts.back().push_back(std::move(edge));
+      }
+    }
+    state.fracture.cracks = whole<std::int32_t>(about.at("cracks"));
+    for (const auto& f : about.at("growing")) {
+      FrontState front = front_from(f, places, file);
+      std::vector<Vec3> normal;
+      for (std::size_t i = 0; i < front.points.size(); ++i) normal.push_back(normals.next());
+      GrowingFront g = growing(std::move(front), std::move(normal));
+      for (std::size_t i = 0; i < g.size(); ++i) {
+        const Vec3 row = owed.next();
+        g.owed[i] = row.x(), g.ended[i] = row.y() != 0, g.length = row.z();
+      }
+      state.fracture.fronts.push_back(std::move(g));
+    }
+    counts(state.total, [&](const char* name, std::size_t& count) { count = whole<std::size_t>(about.at("counts").at(name)); });
+  } catch (const nlohmann::json::exception&) {
+    file.fail("section 'run/about' is malformed");
+  } catch (const std::out_of_range&) {
+    file.fail("section 'run/about' holds an impossible value");
+  }
+  return c;
+}
+
+}  // namespace geo

@@ -1,0 +1,57 @@
+#include "simulation/model.h"
+
+#include <iterator>
+
+#include "base/error.h"
+
+namespace geo {
+namespace {
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes) {
+  if (meshes.size() != scene.bodies.size()) throw InputError("the scene has " + std::to_string(scene.bodies.size()) + " bodies, but " + std::to_string(meshes.size()) + " models were given");
+  Model model{{}, std::move(meshes)};
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SceneBody& body = scene.bodies[b];
+    TriangleMesh& mesh = model.parts[b];
+    if (body.scale != 1 || body.place.position != Vec3::Zero() || !body.place.rotation.isApprox(Eigen::Quaterniond::Identity(), 0))
+      for (Vec3& p : mesh.vertices) p = body.place * (body.scale * p);
+  }
+  if (model.parts.size() == 1) {
+    model.mesh = model.parts[0];
+    return model;
+  }
+  for (const TriangleMesh& part : model.parts) {
+    const auto first = static_cast<std::uint32_t>(model.mesh.vertices.size());
+    append(model.mesh.vertices, part.vertices);
+    for (const Triangle& t : part.triangles) model.mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return model;
+}
+
+Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32_t>& part, const Progress& progress) {
+  NodeSet nodes;
+  part.clear();
+  for (std::size_t b = 0; b < model.parts.size(); ++b) {
+    SampleOptions sampling = scene.bodies[b].sampling;
+    sampling.seed = scene.seed;
+    if (sampling.spacing <= 0 && sampling.count == 0) sampling.spacing = scene.bodies[b].spacing_percent / 100 * bounding_box(model.parts[b]).diagonal();
+    const NodeSet own = sample_nodes(model.parts[b], sampling, progress);
+    append(nodes.position, own.position), append(nodes.radius, own.radius);
+    append(nodes.spacing, own.spacing), append(nodes.volume, own.volume);
+    part.resize(nodes.size(), static_cast<std::uint32_t>(b));
+  }
+  Body body = build_body(Complex::from_skin(model.mesh), std::move(nodes), {scene.k, NeighborMethod::automatic}, progress);
+  // Nodes put into narrow passages belong to what their donors do.
+  for (const NodeId d : body.donors) part.push_back(std::uint32_t(part[d.index()]));
+  part.resize(body.nodes.size(), 0);
+  return body;
+}
+
+}  // namespace geo

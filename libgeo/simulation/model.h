@@ -1,0 +1,24 @@
+// The bodies of a scene as one: placed models and their nodes.
+#pragma once
+
+#include <span>
+
+#include "base/progress.h"
+#include "body/body.h"
+#include "simulation/scene.h"
+
+namespace geo {
+
+/// All solids of a scene, placed. A component never sees another one, so that one Body holds them all.
+struct Model {
+  TriangleMesh mesh;                ///< of all parts, in their order; attributes of a single part only
+  std::vector<TriangleMesh> parts;  ///< one a body of the scene
+};
+
+/// Places the meshes of scene.bodies. Throws InputError when their number differs.
+Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes);
+
+/// Samples each part and builds the body; `part` receives the row of each node's part. Throws InputError as sampling does.
+Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32_t>& part, const Progress& progress = {});
+
+}  // namespace geo

@@ -1,0 +1,21 @@
+#include "simulation/motion.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace geo {
+
+Pose Motion::at(double time) const {
+  if (keys.empty()) return {};
+  const auto rotation = [](const Key& k, double degrees) { return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, k.axis.normalized())); };
+  std::size_t i = 0;
+  while (i + 2 < keys.size() && keys[i + 1].time <= time) ++i;
+  if (keys.size() == 1) return {keys[0].position, rotation(keys[0], keys[0].angle)};
+  const Key &a = keys[i], &b = keys[i + 1];
+  const double t = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
+  const Vec3 position = a.position + t * (b.position - a.position);
+  if (a.axis == b.axis) return {position, rotation(a, a.angle + t * (b.angle - a.angle))};
+  return {position, rotation(a, a.angle).slerp(t, rotation(b, b.angle))};
+}
+
+}  // namespace geo

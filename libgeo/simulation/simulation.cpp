@@ -23,6 +23,7 @@ Simulation::Simulation(const Scene& scene, const Model& model, const Progress& p
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
     : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_.nodes, body_.graph, scene.bodies[0].material) {
   const std::size_t n = body_.nodes.size();
+  if (state_.part.empty()) state_.part.assign(n, 0);
   if (state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   prepare();
@@ -125,8 +126,7 @@ void Simulation::move_grips(double dt) {
     if (grip.release && !grip.motion.keys.empty() && end > grip.motion.keys.back().time) continue;
     environment_.fixed[i.index()] = 1;
     const Vec3 &x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
-    Vec3& u = state_.motion.displacement[i.index()];
-    u = middle + grip.motion.at(end) * Vec3(x - middle) - x;
+    if (!grip.motion.keys.empty()) state_.motion.displacement[i.index()] = middle + grip.motion.at(end) * Vec3(x - middle) - x;
   }
 }
 
@@ -134,8 +134,8 @@ void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
   const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
   for (const auto& [i, g] : gripped_) {
-    if (!environment_.fixed[i.index()]) continue;
     const Grip& grip = scene_.grips[g];
+    if (!environment_.fixed[i.index()] || grip.motion.keys.empty()) continue;
     const Vec3 x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
     state_.motion.velocity[i.index()] = (grip.motion.at(state_.time + dt) * Vec3(x - middle) - grip.motion.at(state_.time) * Vec3(x - middle)) / dt;
   }

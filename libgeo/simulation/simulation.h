@@ -31,7 +31,7 @@ class Simulation {
   Simulation(const Scene& scene, const Model& model, const Progress& progress = {});
   /// The same for a scene of one body that stands where it was modelled.
   Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress = {});
-  /// A run taken up again. Throws InputError when the state is not of this scene.
+  /// A run taken up again; without parts all nodes are of the first body. Throws InputError when the state is not of this scene.
   Simulation(const Scene& scene, Body body, RunState state);
 
   /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when `progress`

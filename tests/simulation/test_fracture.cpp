@@ -14,7 +14,9 @@ namespace {
 Scene brittle() {
   Scene s;
   s.gravity.setZero();
-  s.material.young = 1e6, s.material.poisson = 0.25, s.material.density = 1000, s.material.damping = 20;
+  s.bodies.resize(1);
+  Material& m = s.bodies[0].material;
+  m.young = 1e6, m.poisson = 0.25, m.density = 1000, m.damping = 20;
   s.fracture.on = true;
   s.fracture.strength = 1e4, s.fracture.variation = 0;
   s.frame_rate = 200, s.dt = 1.0 / 200;
@@ -36,7 +38,7 @@ Simulation gripped(const Scene& scene, Notched n, const Mat3& gradient) {
 TEST_CASE("mode I: a notch in tension runs straight through and parts the plate", "[fracture]") {
   const auto seed = GENERATE(1, 2);
   Scene scene = brittle();
-  scene.fixed = {{Vec3(-1, -1, -1), Vec3(2, 0.08, 1)}, {Vec3(-1, 0.92, -1), Vec3(2, 2, 1)}};
+  scene.grips = {{Vec3(-1, -1, -1), Vec3(2, 0.08, 1), {}, false}, {Vec3(-1, 0.92, -1), Vec3(2, 2, 1), {}, false}};
   scene.fracture.cracks = 0;
   Simulation sim = gripped(scene, notched_block({1, 1, 0.16}, 0.06, 0.31, 0.507, static_cast<std::uint64_t>(seed)), 0.02 * Vec3::UnitY() * Vec3::UnitY().transpose());
   FrameWork work;

@@ -1,15 +1,16 @@
 # Sourced by samples/run and tests/run: the packages, and the build.
 packages="build-essential cmake ninja-build ccache pkg-config git ca-certificates
   libcgal-dev libgmp-dev libeigen3-dev libpcl-dev libopenvdb-dev libimath-dev libblosc-dev libtbb-dev libboost-iostreams-dev libboost-graph-dev
-  libcli11-dev catch2 libembree-dev libpng-dev zlib1g-dev libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libhdf5-dev
+  libcli11-dev catch2 libembree-dev libpng-dev zlib1g-dev libwebp-dev libjs-three libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libhdf5-dev
   libhwy-dev libnanoflann-dev libcgal-demo python3 lowdown doxygen"
+test_packages="chromium ffmpeg python3-numpy python3-vtk9"
 
 say() { printf '%s\n' "== $*"; }
 
-# Installs with apt what dpkg does not have; needs no network when nothing is missing.
+# Installs with apt what dpkg does not have, more packages as arguments; needs no network when nothing is missing.
 install_packages() {
   missing=
-  for package in $packages; do
+  for package in $packages "$@"; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
   done
   if [ -z "$missing" ]; then

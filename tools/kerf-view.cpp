@@ -1,29 +1,19 @@
-// kerf-view: pictures of surfaces, bodies, nodes, fronts and simulation runs, without a display.
+// kerf-view: pictures, animations and an interactive page of surfaces, bodies, nodes, fronts and simulation runs.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "io/body_file.h"
-#include "io/front_file.h"
-#include "io/node_file.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
-#include "kind.h"
 #include "tool.h"
+#include "view/animation.h"
 #include "view/compose.h"
+#include "view/page.h"
 
 namespace {
 
-view::Stage load(const std::string& path, const view::Look& look) {
-  const std::string bytes = geo::read_all(path);
-  switch (tool::kind_of(bytes, path)) {
-    case tool::Kind::body: return view::stage_of(geo::parse_body(bytes, path), look);
-    case tool::Kind::nodes: return view::stage_of(geo::parse_nodes(bytes, path), look);
-    case tool::Kind::fronts: return view::stage_of(geo::parse_fronts(bytes, path), look);
-    case tool::Kind::surface: break;
-  }
-  return view::stage_of(geo::parse_surface(bytes, path).mesh, look);
-}
+namespace fs = std::filesystem;
 
 std::vector<double> numbers(const std::string& text, std::size_t least, std::size_t most, const std::string& what) {
   std::vector<double> values;
@@ -39,96 +29,185 @@ std::vector<double> numbers(const std::string& text, std::size_t least, std::siz
   return values;
 }
 
+enum class Kind { png, webp, mp4, html };
+Kind kind_of_output(const std::string& path) {
+  if (path.ends_with(".html")) return Kind::html;
+  if (path.ends_with(".webp")) return Kind::webp;
+  return path.ends_with(".mp4") ? Kind::mp4 : Kind::png;
+}
+
+struct Wishes {
+  std::vector<std::string> paths;
+  std::string size, camera = "30,22", cutaway, color = "patch", skin = "#e0803a", before;
+  bool no_ground = false, hollow = false;
+  int columns = 4, frames = 0, samples = 3, node = -1;
+  double zoom = 1, rate = 24, megabytes = 20;
+};
+
+view::Look checked(const Wishes& w, view::Look look) {
+  if (w.samples < 1 || w.samples > 16 || w.frames < 0 || w.columns < 1) throw tool::UsageError("--samples and --columns must be positive, --frames not negative");
+  if (!(look.opacity >= 0 && look.opacity <= 1) || !(look.explode >= 0) || !(w.zoom > 0)) throw tool::UsageError("--opacity is from 0 to 1, --explode not negative, --zoom positive");
+  if (!(w.rate > 0 && w.rate <= 1000)) throw tool::UsageError("--rate must be positive and at most 1000");
+  if (!(w.megabytes >= 1 && w.megabytes <= 500)) throw tool::UsageError("--megabytes is from 1 to 500");
+  if (w.node < -1) throw tool::UsageError("--node must not be negative");
+  if (w.color == "piece") look.coloring = view::Coloring::piece;
+  else if (w.color == "plain") look.coloring = view::Coloring::plain;
+  else if (w.color != "patch") throw tool::UsageError("--color must be patch, piece or plain");
+  try {
+    look.skin = view::parse_color(w.skin);
+  } catch (const geo::InputError& e) {
+    throw tool::UsageError(e.what());
+  }
+  if (w.node >= 0) look.node = static_cast<std::uint32_t>(w.node);
+  look.section = !w.hollow && !look.inside();
+  if (!w.cutaway.empty()) {
+    const auto plane = numbers(w.cutaway, 3, 4, "--cut-away '" + w.cutaway + "' is not NX,NY,NZ or NX,NY,NZ,OFFSET");
+    look.cutaway = view::RelativePlane{{plane[0], plane[1], plane[2]}, plane.size() == 4 ? plane[3] : 0.0};
+    if (!(look.cutaway->normal.norm() > 0)) throw tool::UsageError("--cut-away needs a direction");
+  }
+  return look;
+}
+
+// `shown` of the frames, the first and the last among them.
+std::vector<std::string> spread(const std::vector<std::string>& files, int shown) {
+  const int n = static_cast<int>(files.size());
+  std::vector<std::string> some;
+  shown = shown > 0 ? std::min(shown, n) : n;
+  for (int i = 0; i < shown; ++i) some.push_back(files[static_cast<std::size_t>(shown > 1 ? i * (n - 1) / (shown - 1) : 0)]);
+  return some;
+}
+
+class Drawing {
+ public:
+  Drawing(const Wishes& w, const view::Look& look, view::Camera eye, view::RenderOptions options, geo::Progress progress)
+      : w_(w), look_(look), eye_(std::move(eye)), options_(options), progress_(std::move(progress)) {}
+
+  view::Picture still() {
+    const view::Stage stage = staged(w_.paths);
+    eye_.box = view::box_of(stage);
+    geo::report(progress_, "render", 0, 1);
+    return view::render(stage, eye_, options_);
+  }
+  view::Picture sheet(const std::vector<std::string>& files) {
+    std::vector<view::Picture> pictures;
+    std::vector<std::string> labels;
+    look_around(files);
+    for (const auto& file : files) {
+      pictures.push_back(frame(file, pictures.size(), files.size()));
+      labels.push_back(fs::path(file).stem().string());
+    }
+    return view::contact_sheet(pictures, labels, w_.columns);
+  }
+  // The frames of a run, or once around what stands still.
+  void animate(const std::string& target, const std::vector<std::string>& files) {
+    const bool run = !files.empty();
+    const int count = run ? static_cast<int>(files.size()) : w_.frames > 0 ? w_.frames : 72;
+    view::Stage stage;
+    if (run) look_around(files);
+    else stage = staged(w_.paths), eye_.box = view::box_of(stage);
+    const view::Sequence picture = [&](int i) {
+      if (run) return frame(files[static_cast<std::size_t>(i)], static_cast<std::size_t>(i), files.size());
+      geo::report(progress_, "render", static_cast<std::size_t>(i), static_cast<std::size_t>(count));
+      view::Camera eye = eye_;
+      eye.azimuth += 360.0 * i / count;
+      return view::render(stage, eye, options_);
+    };
+    if (kind_of_output(target) == Kind::mp4) return view::write_mp4(target, count, w_.rate, picture);
+    geo::write_all(target, [&](std::ostream& out) { view::write_webp(out, count, w_.rate, picture); });
+  }
+
+ private:
+  view::Stage staged(const std::vector<std::string>& paths) const {
+    view::Stage stage = view::stage_of(view::read_subject(paths), look_);
+    stage.ground = !w_.no_ground;
+    return stage;
+  }
+  // One eye for all frames.
+  void look_around(const std::vector<std::string>& files) {
+    for (const auto& file : files) eye_.box.add(view::box_of(staged({file})));
+  }
+  view::Picture frame(const std::string& file, std::size_t i, std::size_t count) const {
+    geo::report(progress_, "render", i, count);
+    view::Stage stage = staged({file});
+    stage.ground_level = eye_.box.lo.z() - 1e-4 * eye_.box.diagonal();
+    return view::render(stage, eye_, options_);
+  }
+
+  const Wishes& w_;
+  const view::Look& look_;
+  view::Camera eye_;
+  view::RenderOptions options_;
+  geo::Progress progress_;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-view", "Draws a file, or a run's frames on one sheet, as PNG by ray tracing.",
-               "  kerf-view cut.ply --explode 0.4 -o cut.png\n  kerf-view cut.kerf --nodes --opacity 0.25 -o nodes.png\n  kerf-view bear.kerf --nodes --edges --cut-away 0,-1,0 -o inside.png\n  kerf-view out/halve -o sheet.png");
-  std::string path, size, camera = "30,22", cutaway, color = "patch", skin = "#e0803a";
+  tool::Tool t("kerf-view", "Draws files, or a run's frames: a picture (.png), an animation (.webp, .mp4) or a page for the browser (.html).",
+               "  kerf-view cut.kerf -o cut.html\n  kerf-view out/halve -o halve.html\n  kerf-view cut.ply --explode 0.4 -o cut.png\n  kerf-view cut.kerf --nodes --opacity 0.25 -o nodes.png\n"
+               "  kerf-view bear.kerf --nodes --edges --cut-away 0,-1,0 -o inside.png\n  kerf-view cut.kerf --node 100 --before bear.kerf --cut-edges --opacity 0.2 -o near.png\n"
+               "  kerf-view cut.ply halve.front -o both.png\n  kerf-view out/halve -o sheet.png\n  kerf-view out/halve -o halve.webp");
+  Wishes w;
   view::Look look;
-  bool no_ground = false, hollow = false;
-  double zoom = 1;
-  int columns = 4, frames = 12, samples = 3;
-  t.argument("FILE", path, "Surface, body, nodes or front file, or the folder of a kerf-sim run");
-  t.option("--size", size, "Width x height in pixels (960x720; 480x360 on a sheet)");
-  t.option("--camera", camera, "Azimuth, elevation in degrees");
-  t.option("--zoom", zoom, "1 shows everything");
-  t.option("--cut-away", cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
-  t.flag("--hollow", hollow, "Look into the cut-away body instead of at a filled section");
-  t.option("--color", color, "patch (skin and the two sheets of cracks), piece, or plain");
-  t.option("--skin", skin, "Colour of the skin, #rrggbb");
-  t.flag("--nodes", look.nodes, "Draw a body's nodes, coloured by support radius");
+  t.argument("FILE", w.paths, "Surface, body, node and front files, together in one picture; or the folder of a kerf-sim run");
+  t.option("--size", w.size, "Width x height in pixels (960x720; 480x360 on a sheet and animated)");
+  t.option("--camera", w.camera, "Azimuth, elevation in degrees");
+  t.option("--zoom", w.zoom, "1 shows everything");
+  t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
+  t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
+  t.option("--color", w.color, "patch (skin and the two sheets of cracks), piece, or plain");
+  t.option("--skin", w.skin, "Colour of the skin, #rrggbb");
+  t.flag("--nodes", look.nodes, "Draw a body's nodes, coloured by --field");
+  t.option("--field", look.field, "radius, spacing, volume, neighbors, component or debris; of a run strain, displacement, speed");
   t.flag("--edges", look.edges, "Draw a body's visibility edges");
+  t.flag("--cut-edges", look.cut_edges, "Draw the edges that cracks have cut, in red");
+  t.option("--before", w.before, "The body before it was cut: cut edges are those it had, nodes whose neighbours changed are red");
+  t.option("--node", w.node, "Draw the neighbourhood of this node: blue sees it, orange is behind a face");
+  t.flag("--trees", look.trees, "Draw masters (their nodes' links red) and trees of slaves; with --node those of one node");
+  t.flag("--seams", look.seams, "Draw where cracks meet the skin, green, and where they end, red");
   t.flag("--wire", look.wire, "Draw the triangles' edges");
   t.option("--opacity", look.opacity, "Of the surface, 0 to 1");
   t.flag("--sheets", look.sheets, "With --opacity: the skin is see-through, cracks are not");
   t.option("--explode", look.explode, "Move pieces apart by this fraction");
-  t.flag("--no-ground", no_ground, "No floor");
-  t.option("--frames", frames, "Frames on a sheet");
-  t.option("--columns", columns, "Columns of a sheet");
-  t.option("--samples", samples, "Rays a pixel and direction");
-  t.output("PNG file");
+  t.flag("--no-ground", w.no_ground, "No floor");
+  t.option("--frames", w.frames, "Frames on a sheet (12), in an animation (a run: all, else 72 once around)");
+  t.option("--columns", w.columns, "Columns of a sheet");
+  t.option("--rate", w.rate, "Frames a second, of animations and pages");
+  t.option("--samples", w.samples, "Rays a pixel and direction");
+  t.option("--megabytes", w.megabytes, "A page stays below; what is too large for it is made coarser");
+  t.output("PNG, WebP, MP4 or HTML file, told by the name's end");
   return t.run(argc, argv, [&] {
-    namespace fs = std::filesystem;
-    const bool sheet = fs::is_directory(path);
-    int width = sheet ? 480 : 960, height = sheet ? 360 : 720;
-    char rest = 0;
-    if (!size.empty() && (std::sscanf(size.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 8 || height < 8 || width > 16384 || height > 16384)) throw tool::UsageError("--size '" + size + "' is not WIDTHxHEIGHT");
-    if (samples < 1 || samples > 16 || frames < 1 || columns < 1) throw tool::UsageError("--samples, --frames and --columns must be positive");
-    if (!(look.opacity >= 0 && look.opacity <= 1) || !(look.explode >= 0) || !(zoom > 0)) throw tool::UsageError("--opacity is from 0 to 1, --explode not negative, --zoom positive");
-    if (color == "piece") look.coloring = view::Coloring::piece;
-    else if (color == "plain") look.coloring = view::Coloring::plain;
-    else if (color != "patch") throw tool::UsageError("--color must be patch, piece or plain");
-    try {
-      look.skin = view::parse_color(skin);
-    } catch (const geo::InputError& e) {
-      throw tool::UsageError(e.what());
-    }
-    look.section = !hollow && !look.nodes && !look.edges;
-    view::Camera eye;
-    const auto angles = numbers(camera, 2, 2, "--camera '" + camera + "' is not AZIMUTH,ELEVATION");
-    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = zoom;
-    if (!cutaway.empty()) {
-      const auto plane = numbers(cutaway, 3, 4, "--cut-away '" + cutaway + "' is not NX,NY,NZ or NX,NY,NZ,OFFSET");
-      look.cutaway = view::RelativePlane{{plane[0], plane[1], plane[2]}, plane.size() == 4 ? plane[3] : 0.0};
-      if (!(look.cutaway->normal.norm() > 0)) throw tool::UsageError("--cut-away needs a direction");
-    }
+    look = checked(w, look);
+    const bool folder = fs::is_directory(w.paths[0]);
+    if (folder && w.paths.size() > 1) throw tool::UsageError("give one folder, or files");
+    const Kind kind = kind_of_output(t.output_path);
     view::RenderOptions options;
-    options.width = width, options.height = height, options.samples = samples;
+    const bool small = folder || kind == Kind::webp || kind == Kind::mp4;
+    options.width = small ? 480 : 960, options.height = small ? 360 : 720, options.samples = w.samples;
+    char rest = 0;
+    if (!w.size.empty() && (std::sscanf(w.size.c_str(), "%dx%d%c", &options.width, &options.height, &rest) != 2 || std::min(options.width, options.height) < 8 || std::max(options.width, options.height) > 16384))
+      throw tool::UsageError("--size '" + w.size + "' is not WIDTHxHEIGHT");
+    view::Camera eye;
+    const auto angles = numbers(w.camera, 2, 2, "--camera '" + w.camera + "' is not AZIMUTH,ELEVATION");
+    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = w.zoom;
     const std::string target = t.target(true);
     const auto progress = t.progress();
-    view::Picture picture;
-    if (!sheet) {
-      view::Stage stage = load(path, look);
-      stage.ground = !no_ground;
-      eye.box = view::box_of(stage);
-      geo::report(progress, "render", 0, 1);
-      picture = view::render(stage, eye, options);
-    } else {
-      std::vector<std::string> files;
-      const fs::path folder = fs::is_directory(fs::path(path) / "frames") ? fs::path(path) / "frames" : fs::path(path);
-      for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".ply") files.push_back(entry.path().string());
-      std::sort(files.begin(), files.end());
-      if (files.empty()) throw geo::InputError(path + ": holds no frames");
-      std::vector<view::Stage> stages;
-      std::vector<std::string> labels;
-      const int n = static_cast<int>(files.size()), shown = std::min(frames, n);
-      for (int i = 0; i < shown; ++i) {
-        const auto& file = files[static_cast<std::size_t>(shown > 1 ? i * (n - 1) / (shown - 1) : 0)];
-        stages.push_back(load(file, look));
-        stages.back().ground = !no_ground;
-        labels.push_back(fs::path(file).stem().string());
-        eye.box.add(view::box_of(stages.back()));
-      }
-      std::vector<view::Picture> pictures;
-      for (int i = 0; i < shown; ++i) {
-        geo::report(progress, "render", static_cast<std::size_t>(i), static_cast<std::size_t>(shown));
-        stages[static_cast<std::size_t>(i)].ground_level = eye.box.lo.z() - 1e-4 * eye.box.diagonal();
-        pictures.push_back(view::render(stages[static_cast<std::size_t>(i)], eye, options));
-      }
-      picture = view::contact_sheet(pictures, labels, columns);
+    std::optional<geo::Body> before;
+    if (!w.before.empty()) before = geo::read_body(w.before), look.before = &*before;
+
+    if (kind == Kind::html) {
+      const view::PageOptions page_options{w.megabytes, look.before, w.rate};
+      const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress) : view::page_of(view::read_subject(w.paths), page_options, progress);
+      geo::report(progress, "done", 1, 1);
+      geo::write_all(target, [&](std::ostream& out) { out << page.html; });
+      for (const auto& notice : page.notices) t.say("kerf-view: " + notice);
+      return;
     }
+    Drawing drawing(w, look, eye, options, progress);
+    std::vector<std::string> files;
+    if (folder) files = spread(view::find_run(w.paths[0]).frames, w.frames > 0 || kind != Kind::png ? w.frames : 12);
+    if (kind != Kind::png) return drawing.animate(target, files);
+    const view::Picture picture = folder ? drawing.sheet(files) : drawing.still();
     geo::report(progress, "done", 1, 1);
     geo::write_all(target, [&](std::ostream& out) { view::write_png(out, picture); });
   });

@@ -3,32 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "base/error.h"
+#include "view/compose_parts.h"
+#include "view/pieces.h"
 
 namespace view {
 namespace {
 
 using geo::Vec3;
-
-// The shells of a surface: rows that triangles connect. Returns the shell of each row and how many there are.
-std::uint32_t shells_of(const geo::TriangleMesh& mesh, std::vector<std::uint32_t>& shell) {
-  std::vector<std::uint32_t> root(mesh.vertices.size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    root[std::max(find(a), find(b))] = std::min(find(a), find(b));
-    root[std::max(find(b), find(c))] = std::min(find(b), find(c));
-  }
-  std::uint32_t count = 0;
-  shell.assign(root.size(), 0);
-  for (std::uint32_t v = 0; v < root.size(); ++v) shell[v] = find(v) == v ? count++ : shell[find(v)];
-  return count;
-}
 
 Color piece_color(std::uint32_t piece) {
   // Hues a golden angle apart.
@@ -42,14 +25,6 @@ Color piece_color(std::uint32_t piece) {
 
 constexpr Color sheet_plus{0.16f, 0.40f, 0.72f};   // side +c
 constexpr Color sheet_minus{0.86f, 0.66f, 0.20f};  // side -c
-
-void add_nodes(Stage& stage, const geo::NodeSet& nodes) {
-  if (nodes.size() == 0) return;
-  const auto [lo, hi] = std::minmax_element(nodes.radius.begin(), nodes.radius.end());
-  const double low = *lo, range = std::max(*hi - *lo, 1e-300);
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    stage.spheres.push_back({nodes.position[i], 0.14 * nodes.spacing[i], viridis((nodes.radius[i] - low) / range)});
-}
 
 void cut(Stage& stage, const Look& look) {
   if (!look.cutaway) return;
@@ -82,74 +57,36 @@ Color viridis(double t) {
   return c;
 }
 
-Stage stage_of(const geo::TriangleMesh& surface, const Look& look) {
+Stage stage_of(const Subject& subject, const Look& look) {
   Stage stage;
+  const geo::TriangleMesh& surface = subject.surface;
   stage.surface = surface;
   stage.wire = look.wire;
   stage.section = look.section;
   stage.surface_opacity = look.opacity;
   stage.sheets_opaque = look.sheets && surface.patch.size() == surface.triangles.size() && look.opacity < 1;
-  std::vector<std::uint32_t> shell;
-  const std::uint32_t shells = shells_of(surface, shell);
-  if (look.explode > 0) {
-    const Vec3 middle = geo::bounding_box(surface).center();
-    std::vector<geo::Box3> boxes(shells);
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v) boxes[shell[v]].add(surface.vertices[v]);
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-      stage.surface.vertices[v] += look.explode * (boxes[shell[v]].center() - middle);
-  }
+  const PieceMap pieces = pieces_of(surface);
+  const Vec3 middle = geo::bounding_box(surface).center();
+  const auto shift = [&](std::uint32_t piece) -> Vec3 { return look.explode * (pieces.center[piece] - middle); };
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) stage.surface.vertices[v] += shift(pieces.of_row[v]);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const int patch = surface.patch.empty() ? 0 : surface.patch[t];
     Color color = look.skin;
-    if (look.coloring == Coloring::piece) color = piece_color(shell[surface.triangles[t][0]]);
+    if (look.coloring == Coloring::piece) color = piece_color(pieces.of_row[surface.triangles[t][0]]);
     if (look.coloring == Coloring::patch && patch != 0) color = patch > 0 ? sheet_plus : sheet_minus;
     stage.triangle_colors.push_back(color);
     if (look.coloring == Coloring::patch && patch != 0) color = patch > 0 ? sheet_minus : sheet_plus;
     stage.back_colors.push_back(color);
   }
-  cut(stage, look);
-  return stage;
-}
-
-Stage stage_of(const geo::NodeSet& nodes, const Look& look) {
-  Stage stage;
-  add_nodes(stage, nodes);
-  cut(stage, look);
-  return stage;
-}
-
-Stage stage_of(const geo::Body& body, const Look& look) {
-  Look surface_look = look;
-  surface_look.cutaway.reset();
-  Stage stage = stage_of(body.surface.two_sided(), surface_look);
-  if (look.nodes) add_nodes(stage, body.nodes);
-  if (look.edges)
-    for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
-      for (const geo::NodeId j : body.graph.edges(geo::NodeId(i)))
-        if (j.value > i) {
-          const double width = 0.016 * std::min(body.nodes.spacing[i], body.nodes.spacing[j.index()]);
-          stage.sticks.push_back({body.nodes.position[i], body.nodes.position[j.index()], width, {0.10f, 0.22f, 0.55f}});
-        }
-  cut(stage, look);
-  return stage;
-}
-
-Stage stage_of(const std::vector<geo::Front>& fronts, const Look& look) {
-  Stage stage;
-  geo::Box3 box;
-  for (const auto& front : fronts)
-    for (const auto& step : front.steps)
-      for (const auto& p : step) box.add(p);
-  const double width = 0.002 * box.diagonal();
-  for (const auto& front : fronts)
-    for (std::size_t s = 0; s < front.steps.size(); ++s) {
-      const auto& points = front.steps[s];
-      const Color color = viridis(front.steps.size() > 1 ? double(s) / double(front.steps.size() - 1) : 0);
-      const std::size_t n = points.size();
-      for (std::size_t i = 0; i + (front.closed ? 0 : 1) < n; ++i) stage.sticks.push_back({points[i], points[(i + 1) % n], width, color});
-      if (s + 1 < front.steps.size() && front.steps[s + 1].size() == n)
-        for (std::size_t i = 0; i < n; ++i) stage.sticks.push_back({points[i], front.steps[s + 1][i], 0.4 * width, Color{0.4f, 0.4f, 0.42f}});
-    }
+  std::vector<Vec3> position = subject.nodes.position;
+  if (subject.body && look.explode > 0) {
+    const auto piece = pieces_of_nodes(subject, pieces);
+    for (std::size_t i = 0; i < position.size(); ++i) position[i] += shift(piece[i]);
+  }
+  add_nodes(stage, subject, position, look);
+  add_trees(stage, subject, position, look);
+  if (look.seams) add_seams(stage);
+  add_fronts(stage, subject.fronts);
   cut(stage, look);
   return stage;
 }

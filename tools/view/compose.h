@@ -4,10 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "body/body.h"
-#include "crack/front.h"
-#include "sampling/node_set.h"
 #include "view/raytrace.h"
+#include "view/subject.h"
 
 namespace view {
 
@@ -23,10 +21,17 @@ struct Look {
   Coloring coloring = Coloring::patch;
   Color skin{0.80f, 0.36f, 0.10f};
   bool nodes = false, edges = false, wire = false, section = true;
+  std::string field = "radius";  ///< that nodes are coloured by, see fields.h
+  bool cut_edges = false;        ///< edges that cracks cut, in red
+  bool seams = false;            ///< where cracks meet the skin (green) and where they end (red)
+  bool trees = false;            ///< masters and their trees of slaves
+  std::optional<std::uint32_t> node;    ///< this node's neighbourhood
+  const geo::Body* before = nullptr;    ///< an earlier state of the body: cut edges are those it had, updated nodes are red
   double opacity = 1;
   bool sheets = false;  ///< sheets of cracks stay opaque in a skin that is not
-  double explode = 0;  ///< pieces move apart by this fraction of their distance from the middle
+  double explode = 0;   ///< pieces move apart by this fraction of their distance from the middle
   std::optional<RelativePlane> cutaway;
+  bool inside() const { return nodes || edges || cut_edges || trees || node; }  ///< something within the surface is drawn
 };
 
 /// "#rrggbb" as linear light. Throws geo::InputError.
@@ -35,10 +40,8 @@ Color parse_color(const std::string& text);
 /// A perceptual scale from dark blue (0) over green to yellow (1).
 Color viridis(double t);
 
-Stage stage_of(const geo::TriangleMesh& surface, const Look& look);
-Stage stage_of(const geo::NodeSet& nodes, const Look& look);
-Stage stage_of(const geo::Body& body, const Look& look);
-Stage stage_of(const std::vector<geo::Front>& fronts, const Look& look);
+/// Throws InputError for a node or field that the subject does not have.
+Stage stage_of(const Subject& subject, const Look& look);
 
 /// The box of everything on a stage, spheres and sticks included.
 geo::Box3 box_of(const Stage& stage);

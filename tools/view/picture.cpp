@@ -48,6 +48,14 @@ constexpr Glyph glyphs[] = {
 
 }  // namespace
 
+std::vector<std::uint8_t> rgb_bytes(const Picture& picture) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(3 * picture.pixels.size());
+  for (const Color& pixel : picture.pixels)
+    for (const float channel : pixel) bytes.push_back(srgb(channel));
+  return bytes;
+}
+
 void write_png(std::ostream& out, const Picture& picture) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned);
   if (!png) throw geo::OutputError("PNG cannot be written: out of memory");
@@ -59,12 +67,8 @@ void write_png(std::ostream& out, const Picture& picture) {
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
-    std::vector<std::uint8_t> row(static_cast<std::size_t>(picture.width) * 3);
-    for (int y = 0; y < picture.height; ++y) {
-      for (int x = 0; x < picture.width; ++x)
-        for (int c = 0; c < 3; ++c) row[static_cast<std::size_t>(x) * 3 + c] = srgb(picture.at(x, y)[c]);
-      png_write_row(png, row.data());
-    }
+    const auto bytes = rgb_bytes(picture);
+    for (int y = 0; y < picture.height; ++y) png_write_row(png, bytes.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) * 3);
     png_write_end(png, info);
   } catch (...) {
     png_destroy_write_struct(&png, &info);

@@ -1,0 +1,180 @@
+"""check_page.py FOLDER: the pages in it, in a browser, as somebody would use them: run.html (a run), body.html (a body, its
+state before and a front), pieces.html (a surface in two pieces), nodes.html (nodes alone), coarse.html (made small). Prints what fails; exit code 1."""
+import os, sys
+from browser import Browser
+
+failures = []
+
+
+def check(what, good):
+    if not good:
+        failures.append(what)
+        print("FAILED:", what)
+
+
+class Page:
+    def __init__(self, browser, path):
+        self.b, self.name = browser, os.path.basename(path)
+        browser.errors.clear(), browser.requests.clear()
+        browser.open(path)
+        browser.run("""new Promise((done, failed) => { const wait = (tries) => document.getElementById("wait").hidden ? done(1)
+          : tries ? setTimeout(wait, 50, tries - 1) : failed(document.getElementById("wait").textContent); wait(1200); })""")
+        lit = self.lit()
+        check(f"{self.name}: {lit} of the canvas is drawn on", 0.02 < lit < 0.98)
+
+    # A number for what is drawn now, and the share of pixels that are not background.
+    def picture(self):
+        return self.b.run("""(() => { draw(); const gl = renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, p = new Uint8Array(4 * w * h);
+          gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p); let sum = 2166136261; for (const x of p) sum = Math.imul(sum ^ x, 16777619); return sum; })()""")
+
+    def lit(self):
+        return self.b.run("""(() => { draw(); const gl = renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, p = new Uint8Array(4 * w * h);
+          gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p); let n = 0; for (let i = 0; i < p.length; i += 4) n += p[i] !== 0xe4 || p[i + 1] !== 0xe9 || p[i + 2] !== 0xef; return n / (w * h); })()""")
+
+    def place(self, id, along=0.5):
+        x, y, w, h = self.b.run(f"""(() => {{ const e = document.getElementById("{id}"); e.scrollIntoView({{ block: "center" }}); const r = e.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }})()""")
+        check(f"{self.name}: {id} is not shown", w > 0 and h > 0)
+        return x + along * w, y + h / 2
+
+    def click(self, id, along=0.5):
+        self.b.click(*self.place(id, along))
+
+    def state(self, key):
+        return self.b.run("state." + key)
+
+    # What changes the picture, and changes it back where `back` is given.
+    def changes(self, what, act, back=None):
+        before = self.picture()
+        act()
+        check(f"{self.name}: {what} changes nothing", self.picture() != before)
+        if back:
+            back()
+            check(f"{self.name}: {what} is not undone", self.picture() == before)
+
+    def toggles(self, id):
+        self.changes(id, lambda: self.click(id), lambda: self.click(id))
+
+    def key(self, key, **more):
+        self.b.run("document.activeElement.blur()")
+        self.b.key(key, **more)
+
+    def done(self):
+        check(f"{self.name}: {self.b.errors}", not self.b.errors)
+        # Its own file, and pictures within it.
+        others = [url for url in self.b.requests[1:] if not url.startswith(("data:", "blob:"))]
+        check(f"{self.name}: it asks for {others}", not others)
+
+
+def choose(page, id, value):
+    page.b.run(f'document.getElementById("{id}").focus()')
+    page.b.key("Home")
+    for _ in range(12):
+        if page.b.run(f'document.getElementById("{id}").value') == value:
+            return
+        page.b.key("ArrowDown")
+    check(f"{page.name}: {id} cannot be set to {value}", False)
+
+
+def body(page):
+    b = page.b
+    for id in ("wire", "nodes", "tree", "fronts"):
+        page.toggles(id)
+    page.changes("skin", lambda: page.click("skin", 0.3))
+    page.toggles("cracks"), page.toggles("edges"), page.toggles("cut")
+    page.key("s"), page.key("s")
+    check(f"{page.name}: skin is {page.state('skin')}", page.state("skin") == 1)
+    page.changes("pieces' colours", lambda: choose(page, "color", "piece"))
+    for axis in ("0", "3", "6"):
+        choose(page, "axis", axis)
+        page.changes(f"cutting away along {axis}", lambda: page.click("clip"))
+        if axis == "3":
+            page.changes("depth", lambda: page.click("offset", 0.6))
+            page.toggles("fill")
+        page.click("clip")
+    # A click on a node: selects it, its neighbours and its tree are drawn, and it is described.
+    page.click("nodes"), page.click("skin", 0.3)
+    x, y, picked = b.run("""(() => { draw(); const p = nodePositions(), c = $("canvas");
+      for (let i = 0; i < about.nodes.count; i++) { const v = new THREE.Vector3().fromArray(p, 3 * i).project(camera), x = (v.x + 1) / 2 * c.clientWidth, y = (1 - v.y) / 2 * c.clientHeight;
+        if (nodeAt(x, y) === i && arrays["tree/node"].includes(i + 1)) return [x, y, i]; } })()""")
+    page.changes("a click on a node", lambda: b.click(x, y))
+    check(f"{page.name}: node {page.state('selected')} is selected, not {picked}", page.state("selected") == picked)
+    facts = b.run('document.getElementById("facts").textContent')
+    check(f"{page.name}: {facts}", "radius" in facts and "edges cut" in facts and "masters" in facts)
+    page.toggles("near"), page.toggles("own"), page.toggles("updated")
+    page.changes("size", lambda: page.click("size", 0.9))
+    page.changes("field", lambda: choose(page, "field", "neighbors"))
+    legend = b.run('document.getElementById("legend").textContent')
+    check(f"{page.name}: the legend says {legend}", "neighbors" in legend)
+    page.changes("typing a node's number", lambda: (page.click("pick"), b.run('document.getElementById("pick").select()'), b.key("7")))
+    check(f"{page.name}: the typed node is not selected", page.state("selected") == 7)
+    page.changes("Escape", lambda: page.key("Escape"))
+    check(f"{page.name}: Escape selects nothing", page.state("selected") == -1)
+    # Neighbours over paths are those that the library says: behind a face, farther than as the crow flies.
+    check(f"{page.name}: paths shorter than straight lines", b.run("""(() => { const r = arrays["nodes/rest"]; let bad = 0, behind = 0;
+      rows.forEach((row, i) => row.forEach((e) => { const d = Math.hypot(r[3*i]-r[3*e.to], r[3*i+1]-r[3*e.to+1], r[3*i+2]-r[3*e.to+2]);
+        if (isBehind(e.bits)) behind++, bad += e.distance < d - 1e-3; else bad += isNeighbor(e.bits) && Math.abs(e.distance - d) > 1e-3; })); return bad === 0 && behind > 0; })()"""))
+    # Pointer and keys turn, zoom and move.
+    canvas = page.place("canvas")
+    page.changes("dragging", lambda: (b.mouse("mousePressed", *canvas), b.mouse("mouseMoved", canvas[0] + 80, canvas[1] + 20), b.mouse("mouseReleased", canvas[0] + 80, canvas[1] + 20)))
+    page.changes("the wheel", lambda: b.mouse("mouseWheel", *canvas, deltaX=0, deltaY=-120))
+    for key in ("ArrowLeft", "ArrowUp", "+", "-"):
+        page.changes("key " + key, lambda: page.key(key))
+    page.changes("shift and arrow", lambda: page.key("ArrowLeft", modifiers=8))
+    page.changes("Reset view", lambda: page.click("home"))
+    for key in "uswcnedtp":
+        page.changes("key " + key, lambda: page.key(key))
+    page.click("keys")
+    check(f"{page.name}: no help", b.run('document.getElementById("help").open'))
+    page.b.key("Escape")
+    check(f"{page.name}: the help stays", not b.run('document.getElementById("help").open'))
+    width = b.run("$('canvas').clientWidth")
+    page.click("menu")
+    check(f"{page.name}: the controls stay", b.run("new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(() => r($('canvas').clientWidth))))") > width)
+    page.click("menu")
+    # Every control can be come to by Tab, and has a name.
+    names = b.run("""[...document.querySelectorAll("input, select, button")].filter((e) => e.offsetParent && !(e.labels?.[0]?.textContent || e.textContent || e.getAttribute("aria-label")).trim()).map((e) => e.id)""")
+    check(f"{page.name}: controls without a name: {names}", not names)
+
+
+def run(page):
+    b = page.b
+    last = b.run("frameCount() - 1")
+    check(f"{page.name}: {last} frames", last >= 3)
+    page.changes("the last frame", lambda: page.click("frame", 0.995))
+    check(f"{page.name}: frame {page.state('frame')} of {last}", page.state("frame") == last)
+    page.changes("the frame before", lambda: page.key(","), lambda: page.key("."))
+    page.changes("nodes at the last frame", lambda: page.click("nodes"))
+    page.changes("strain", lambda: choose(page, "field", "strain"))
+    page.click("frame", 0.005)
+    check(f"{page.name}: nodes are said to be known at the first frame", not b.run('document.getElementById("elsewhere").hidden'))
+    page.click("go")
+    check(f"{page.name}: not gone to the frame with nodes", page.state("frame") == b.run("about.nodes.frame"))
+    page.changes("at rest", lambda: page.click("rest"), lambda: page.click("rest"))
+    page.click("frame", 0.005)
+    page.key(" ")
+    b.run("new Promise((done) => { const wait = (tries) => state.playing && tries ? setTimeout(wait, 50, tries - 1) : done(1); wait(400); })")
+    check(f"{page.name}: playing ends at {page.state('frame')}", page.state("frame") == last and not page.state("playing"))
+    check(f"{page.name}: the button still says pause", b.run('$("play").textContent') == "▶")
+
+
+browser = Browser(900, 620)
+try:
+    folder = sys.argv[1]
+    page = Page(browser, os.path.join(folder, "body.html"))
+    body(page), page.done()
+    page = Page(browser, os.path.join(folder, "run.html"))
+    run(page), page.done()
+    page = Page(browser, os.path.join(folder, "pieces.html"))
+    page.changes("explode", lambda: page.click("explode", 0.6), lambda: page.click("explode", 0.005))
+    page.changes("key x", lambda: page.key("x"))
+    page.done()
+    page = Page(browser, os.path.join(folder, "nodes.html"))
+    check("nodes.html: a surface's controls are shown", browser.run('document.getElementById("surface-controls").hidden'))
+    page.done()
+    page = Page(browser, os.path.join(folder, "coarse.html"))
+    notices = browser.run('document.getElementById("notices").innerText')
+    check(f"coarse.html says {notices!r}", "decimated" in notices)
+    page.done()
+finally:
+    browser.close()
+sys.exit(bool(failures))

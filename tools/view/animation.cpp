@@ -1,0 +1,123 @@
+#include "view/animation.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <webp/encode.h>
+#include <webp/mux.h>
+
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <memory>
+
+#include "base/error.h"
+#include "io/stream.h"
+
+extern char** environ;
+
+namespace view {
+namespace {
+
+[[noreturn]] void failed(const std::string& what) { throw geo::OutputError("the animation cannot be made: " + what); }
+
+// One picture of a WebP, freed in the end.
+struct WebpPicture : WebPPicture {
+  explicit WebpPicture(const Picture& from) {
+    if (!WebPPictureInit(this)) failed("libwebp is of another version");
+    width = from.width, height = from.height, use_argb = 1;
+    if (!WebPPictureImportRGB(this, rgb_bytes(from).data(), 3 * from.width)) failed("out of memory");
+  }
+  ~WebpPicture() { WebPPictureFree(this); }
+  WebpPicture(const WebpPicture&) = delete;
+};
+
+// A program that is fed through its standard input.
+class Fed {
+ public:
+  explicit Fed(const std::vector<std::string>& words) : program_(words[0]) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) failed("no pipe");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[0], 0);
+    std::vector<char*> argv;
+    for (const auto& w : words) argv.push_back(const_cast<char*>(w.c_str()));
+    argv.push_back(nullptr);
+    const int error = ::posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(ends[0]);
+    in_ = ends[1];
+    if (error != 0) {
+      ::close(in_);
+      failed(program_ + " is not installed; install it, or write .webp");
+    }
+    before_ = std::signal(SIGPIPE, SIG_IGN);
+  }
+  ~Fed() { end(); }
+  Fed(const Fed&) = delete;
+  void put(const std::vector<std::uint8_t>& bytes) {
+    for (std::size_t at = 0; at < bytes.size();) {
+      const auto n = ::write(in_, bytes.data() + at, bytes.size() - at);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) failed(program_ + " stopped early");
+      at += static_cast<std::size_t>(n);
+    }
+  }
+  // Its exit code, once it has read everything.
+  int end() {
+    if (in_ < 0) return status_;
+    ::close(in_);
+    in_ = -1;
+    while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    std::signal(SIGPIPE, before_);
+    return status_;
+  }
+
+ private:
+  std::string program_;
+  pid_t pid_ = 0;
+  int in_ = -1, status_ = 0;
+  void (*before_)(int) = SIG_DFL;
+};
+
+}  // namespace
+
+void write_webp(std::ostream& out, int count, double frame_rate, const Sequence& picture) {
+  std::unique_ptr<WebPAnimEncoder, void (*)(WebPAnimEncoder*)> encoder(nullptr, WebPAnimEncoderDelete);
+  WebPConfig config;
+  if (!WebPConfigInit(&config)) failed("libwebp is of another version");
+  config.quality = 82;
+  const auto milliseconds = [&](int frame) { return static_cast<int>(std::lround(1000 * frame / frame_rate)); };
+  for (int i = 0; i < count; ++i) {
+    const Picture shown = picture(i);
+    if (!encoder) encoder.reset(WebPAnimEncoderNew(shown.width, shown.height, nullptr));
+    WebpPicture frame(shown);
+    if (!encoder || !WebPAnimEncoderAdd(encoder.get(), &frame, milliseconds(i), &config)) failed(encoder ? WebPAnimEncoderGetError(encoder.get()) : "out of memory");
+  }
+  WebPData data;
+  WebPDataInit(&data);
+  if (!encoder || !WebPAnimEncoderAdd(encoder.get(), nullptr, milliseconds(count), nullptr) || !WebPAnimEncoderAssemble(encoder.get(), &data)) failed("libwebp has no memory for it");
+  out.write(reinterpret_cast<const char*>(data.bytes), static_cast<std::streamsize>(data.size));
+  WebPDataClear(&data);
+}
+
+void write_mp4(const std::string& path, int count, double frame_rate, const Sequence& picture) {
+  const std::string aside = path + "." + std::to_string(::getpid()) + ".tmp";
+  geo::Unfinished unfinished(aside);
+  std::unique_ptr<Fed> ffmpeg;
+  for (int i = 0; i < count; ++i) {
+    const Picture shown = picture(i);
+    if (!ffmpeg)
+      ffmpeg = std::make_unique<Fed>(std::vector<std::string>{"ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", std::to_string(shown.width) + "x" + std::to_string(shown.height), "-r",
+                                                              std::to_string(frame_rate), "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-threads", "1", "-crf", "20", "-pix_fmt", "yuv420p",
+                                                              "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4", aside});
+    ffmpeg->put(rgb_bytes(shown));
+  }
+  if (!ffmpeg || ffmpeg->end() != 0) failed("ffmpeg failed");
+  unfinished.commit(path);
+}
+
+}  // namespace view

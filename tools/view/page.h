@@ -1,0 +1,27 @@
+// The interactive page: one HTML file with everything in it (page/), three.js included.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "view/subject.h"
+
+namespace view {
+
+struct PageOptions {
+  double megabytes = 20;                ///< the page stays below; what is too large for it is made coarser
+  const geo::Body* before = nullptr;    ///< an earlier state of the body, for the edges that were cut; see cut_edges()
+  double frame_rate = 24;
+};
+
+/// A page for one subject, or for a run with what its checkpoint holds.
+struct Page {
+  std::string html;
+  std::vector<std::string> notices;  ///< what was left out or made coarser, a line each; also shown on the page
+};
+Page page_of(const Subject& subject, const PageOptions& options = {}, const geo::Progress& progress = {});
+Page page_of(const Run& run, const PageOptions& options = {}, const geo::Progress& progress = {});
+
+}  // namespace view

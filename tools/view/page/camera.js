@@ -1,0 +1,85 @@
+// The eye goes round a target, z up. Angles in radians.
+const home = { azimuth: 0.52, elevation: 0.38, distance: 3.25 };
+const view = { ...home, target: new THREE.Vector3() };
+
+function eyePosition() {
+  const c = Math.cos(view.elevation);
+  return new THREE.Vector3(-Math.sin(view.azimuth) * c, -Math.cos(view.azimuth) * c, Math.sin(view.elevation)).multiplyScalar(view.distance).add(view.target);
+}
+function placeCamera() {
+  camera.position.copy(eyePosition());
+  camera.near = view.distance / 200, camera.far = view.distance * 20 + 20;
+  camera.updateProjectionMatrix();
+  camera.lookAt(view.target);
+  camera.updateMatrixWorld();
+  // Light comes from over the left shoulder.
+  const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0), up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+  lamp.position.copy(camera.position).addScaledVector(right, -0.5 * view.distance).addScaledVector(up, 0.6 * view.distance);
+  lamp.target.position.copy(view.target);
+  lamp.target.updateMatrixWorld();
+}
+function turn(azimuth, elevation) {
+  view.azimuth += azimuth;
+  view.elevation = Math.min(Math.max(view.elevation + elevation, -1.55), 1.55);
+  eyeMoved();
+}
+function zoom(factor) {
+  view.distance = Math.min(Math.max(view.distance * factor, 0.05), 60);
+  eyeMoved();
+}
+// Moves the target in the plane of the screen, by pixels.
+function pan(x, y) {
+  const step = 2 * view.distance * Math.tan(camera.fov * Math.PI / 360) / $("canvas").clientHeight;
+  const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0), up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+  view.target.addScaledVector(right, -x * step).addScaledVector(up, y * step);
+  eyeMoved();
+}
+function eyeMoved() {
+  if (state.clip && Number(state.axis) === 6) changed();
+  else redraw();
+}
+
+function resize() {
+  const stage = $("stage"), ratio = window.devicePixelRatio || 1;
+  renderer.setPixelRatio(ratio);
+  renderer.setSize(stage.clientWidth, stage.clientHeight, false);
+  camera.aspect = stage.clientWidth / Math.max(1, stage.clientHeight);
+  redraw();
+}
+
+function listenToPointer() {
+  const canvas = $("canvas");
+  const pointers = new Map();
+  let moved = 0, spread = 0;
+  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+  canvas.addEventListener("pointerdown", (e) => {
+    canvas.setPointerCapture(e.pointerId);
+    pointers.set(e.pointerId, e);
+    if (pointers.size === 1) moved = 0;
+    spread = 0;
+  });
+  canvas.addEventListener("pointermove", (e) => {
+    const before = pointers.get(e.pointerId);
+    if (!before) return;
+    const dx = e.clientX - before.clientX, dy = e.clientY - before.clientY;
+    moved += Math.abs(dx) + Math.abs(dy);
+    pointers.set(e.pointerId, e);
+    if (pointers.size === 2) {
+      const [a, b] = [...pointers.values()], now = Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
+      if (spread > 0) zoom(spread / Math.max(now, 1));
+      spread = now;
+      pan(dx / 2, dy / 2);
+    } else if (before.buttons === 2 || e.shiftKey) pan(dx, dy);
+    else turn(0.006 * dx, 0.006 * dy);
+  });
+  canvas.addEventListener("pointerup", (e) => {
+    const only = pointers.size === 1;
+    pointers.delete(e.pointerId);
+    if (only && moved < 5 && e.button === 0) selectAt(e.offsetX, e.offsetY);
+  });
+  canvas.addEventListener("pointercancel", (e) => pointers.delete(e.pointerId));
+  canvas.addEventListener("wheel", (e) => {
+    e.preventDefault();
+    zoom(Math.exp(0.0011 * Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 240)));
+  }, { passive: false });
+}

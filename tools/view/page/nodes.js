@@ -1,0 +1,97 @@
+// Nodes as shaded discs, coloured by a field.
+const spotShader = {
+  vertex: `
+    attribute vec3 color; attribute float size; varying vec3 tint; uniform float scale; uniform vec4 cut;
+    void main() {
+      tint = color;
+      vec4 eye = modelViewMatrix * vec4(position, 1.0);
+      gl_Position = projectionMatrix * eye;
+      gl_PointSize = max(2.0, size * scale / -eye.z);
+      if (dot(position, cut.xyz) + cut.w < 0.0) gl_Position = vec4(0.0, 0.0, 3.0, 1.0);
+    }`,
+  fragment: `
+    precision mediump float; varying vec3 tint;
+    void main() {
+      vec2 at = 2.0 * gl_PointCoord - 1.0;
+      float r = dot(at, at);
+      if (r > 1.0) discard;
+      vec3 n = vec3(at.x, -at.y, sqrt(1.0 - r));
+      gl_FragColor = vec4(tint * (0.45 + 0.6 * max(0.0, dot(n, vec3(-0.4, 0.5, 0.77)))), 1.0);
+    }`,
+};
+
+// Discs at points: positions, colours and diameters of as many rows as there are.
+class Spots {
+  constructor(order) {
+    this.material = new THREE.ShaderMaterial({ vertexShader: spotShader.vertex, fragmentShader: spotShader.fragment, uniforms: { scale: { value: 1 }, cut: { value: new THREE.Vector4(0, 0, 0, 1) } } });
+    this.points = new THREE.Points(new THREE.BufferGeometry(), this.material);
+    this.points.frustumCulled = false, this.points.renderOrder = order, this.points.visible = false;
+    scene.add(this.points);
+  }
+  set(position, color, size) {
+    this.points.geometry.dispose();
+    this.points.geometry = new THREE.BufferGeometry()
+      .setAttribute("position", new THREE.BufferAttribute(Float32Array.from(position), 3))
+      .setAttribute("color", new THREE.BufferAttribute(Float32Array.from(color), 3))
+      .setAttribute("size", new THREE.BufferAttribute(Float32Array.from(size), 1));
+    this.points.visible = size.length > 0;
+  }
+  hide() { this.points.visible = false; }
+  beforeDraw() {
+    const u = this.material.uniforms;
+    u.scale.value = renderer.domElement.height / (2 * Math.tan(camera.fov * Math.PI / 360));
+    if (state.clip) u.cut.value.set(clipPlane.normal.x, clipPlane.normal.y, clipPlane.normal.z, clipPlane.constant);
+    else u.cut.value.set(0, 0, 0, 1);
+  }
+}
+
+const nodeDiameter = (i) => 0.28 * arrays["nodes/size"][i] * state.size;
+function fieldRange(name) {
+  const e = about.arrays.find((a) => a.name === "field/" + name);
+  return [e.lo[0], e.lo[0] + 65535 * e.step[0]];
+}
+const short = (x) => Number.isInteger(x) ? String(x) : Number(x.toPrecision(4)).toString();
+
+class NodeLayer {
+  constructor() { this.spots = new Spots(2); }
+  update() {
+    if (!hasNodes()) return;
+    const position = state.nodes ? nodePositions() : null;
+    $("elsewhere").hidden = !(state.nodes || state.edges || state.cut) || nodePositions() !== null;
+    $("legend").hidden = position === null;
+    if (!position) return this.spots.hide();
+    const values = arrays["field/" + state.field], [lo, hi] = fieldRange(state.field), color = new Float32Array(position.length), size = new Float32Array(values.length);
+    const around = state.selected >= 0 && state.near && rows ? new Set(rows[state.selected].filter((e) => isNeighbor(e.bits)).map((e) => e.to)) : null;
+    for (let i = 0; i < values.length; i++) {
+      const red = state.updated && arrays["nodes/updated"][i];
+      color.set(red ? [0.86, 0.12, 0.10] : scaleColor(hi > lo ? (values[i] - lo) / (hi - lo) : 0), 3 * i);
+      size[i] = nodeDiameter(i) * (around && !around.has(i) ? 0.4 : 1);
+    }
+    this.spots.set(position, color, size);
+    $("legend-name").textContent = state.field === "strain" ? "strain (von Mises stress / 3G)" : state.field;
+    $("legend-lo").textContent = short(lo), $("legend-hi").textContent = short(hi);
+    $("legend-bar").style.background = `linear-gradient(to right, ${[0, 1, 2, 3, 4].map((i) => `rgb(${scaleColor(i / 4).map((c) => Math.round(255 * c))})`)})`;
+  }
+  beforeDraw() { this.spots.beforeDraw(); }
+}
+
+// The node nearest to the eye under a place on the canvas, or close to it; −1: none.
+function nodeAt(x, y) {
+  const position = nodePositions(), canvas = $("canvas"), p = new THREE.Vector3();
+  if (!position) return -1;
+  const focal = canvas.clientHeight / (2 * Math.tan(camera.fov * Math.PI / 360));
+  let best = -1, least = Infinity;
+  for (let i = 0; 3 * i < position.length; i++) {
+    p.fromArray(position, 3 * i);
+    if (state.clip && clipPlane.distanceToPoint(p) < 0) continue;
+    const depth = p.distanceTo(camera.position);
+    p.project(camera);
+    if (p.z > 1) continue;
+    const away = Math.hypot((p.x + 1) / 2 * canvas.clientWidth - x, (1 - p.y) / 2 * canvas.clientHeight - y);
+    const reach = Math.max(0.5 * nodeDiameter(i) * focal / depth, 5);
+    // Within its disc the nearest one counts; around it, farther ones lose to closer ones.
+    const cost = depth + (away > reach ? 3 * (away - reach) * depth / focal + 0.1 : 0);
+    if (away < reach + 12 && cost < least) least = cost, best = i;
+  }
+  return best;
+}

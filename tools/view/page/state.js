@@ -1,0 +1,86 @@
+// What is shown, and how it follows the controls: layers are told after each change, and draw once a display frame.
+const state = {
+  frame: 0, rest: false, skin: 1, cracks: true, wire: false, color: "patch", explode: 0,
+  nodes: false, field: "radius", size: 1, edges: false, cut: false, updated: false, near: true, tree: false, own: true, fronts: true,
+  clip: false, axis: 3, offset: 0, fill: true, selected: -1, playing: false,
+};
+let about = null, arrays = null;
+const layers = [];
+const $ = (id) => document.getElementById(id);
+
+const renderer = new THREE.WebGLRenderer({ canvas: $("canvas"), antialias: true, preserveDrawingBuffer: true });
+renderer.setClearColor(0xe4e9ef);
+renderer.localClippingEnabled = true;
+const scene = new THREE.Scene();
+const camera = new THREE.PerspectiveCamera(34, 1, 0.01, 100);
+camera.up.set(0, 0, 1);
+const clipPlane = new THREE.Plane(new THREE.Vector3(0, -1, 0), 0);  // what is on its negative side is cut away
+const sky = new THREE.HemisphereLight(0xffffff, 0x8f98a3, 0.6);
+sky.position.set(0, 0, 1);
+scene.add(sky);
+const lamp = new THREE.DirectionalLight(0xffffff, 0.62);
+scene.add(lamp, lamp.target);
+
+const clipping = () => (state.clip ? [clipPlane] : []);
+const hasNodes = () => about.nodes !== null;
+// The surface that is shown: a frame of the run, or the body at rest.
+const shownSurface = () => (about.surfaces.length === 0 ? -1 : state.rest && hasNodes() && about.nodes.rest >= 0 ? about.nodes.rest : state.frame);
+const isRun = () => hasNodes() ? about.nodes.rest > 0 || about.surfaces.length > 1 : about.surfaces.length > 1;
+const frameCount = () => (isRun() && hasNodes() && about.nodes.rest > 0 ? about.surfaces.length - 1 : about.surfaces.length);
+
+// Node positions as they are shown, pieces pulled apart; null where they are not known.
+function nodePositions() {
+  if (!hasNodes()) return null;
+  const n = about.nodes, at = shownSurface();
+  let base = null;
+  if (at === n.rest || at === -1) base = arrays["nodes/rest"];
+  else if (n.moved && at === n.frame) base = arrays["nodes/moved"];
+  if (!base || state.explode === 0 || !arrays["nodes/piece"] || at < 0) return base;
+  const shift = pieceShifts(at), piece = arrays["nodes/piece"], moved = new Float32Array(base);
+  for (let i = 0; i < piece.length; i++) for (let k = 0; k < 3; k++) moved[3 * i + k] += shift[3 * piece[i] + k];
+  return moved;
+}
+
+// How far each piece of a surface is pulled from the middle.
+function pieceShifts(at) {
+  const s = surfaceData(at), shift = new Float32Array(s.centers.length);
+  for (let i = 0; i < shift.length; i++) shift[i] = state.explode * (s.centers[i] - s.middle[i % 3]);
+  return shift;
+}
+
+const stops = [[0.267, 0.005, 0.329], [0.230, 0.322, 0.546], [0.128, 0.567, 0.551], [0.369, 0.789, 0.383], [0.993, 0.906, 0.144]];  // viridis
+function scaleColor(t) {
+  const s = Math.min(Math.max(t, 0), 1) * 4, i = Math.min(3, Math.floor(s));
+  return stops[i].map((c, k) => c + (s - i) * (stops[i + 1][k] - c));
+}
+// Hues a golden angle apart.
+function pieceColor(piece) {
+  const c = new THREE.Color().setHSL((0.07 + piece * 0.61803398875) % 1, 0.5, 0.58);
+  return [c.r, c.g, c.b];
+}
+
+let drawing = false;
+function draw() {
+  drawing = false;
+  placeCamera();
+  for (const layer of layers) if (layer.beforeDraw) layer.beforeDraw();
+  renderer.render(scene, camera);
+}
+function redraw() {
+  if (!drawing) drawing = true, requestAnimationFrame(() => drawing && draw());
+}
+// After any change of the state.
+function changed() {
+  placeClipPlane();
+  for (const layer of layers) layer.update();
+  redraw();
+}
+
+// What lies beyond the plane, along the axis that is chosen, is cut away.
+function placeClipPlane() {
+  const axis = Number(state.axis), beyond = new THREE.Vector3(), from = new THREE.Vector3();
+  if (axis === 6) beyond.copy(eyePosition()).sub(view.target).normalize(), from.copy(view.target);
+  else beyond.setComponent(axis >> 1, axis & 1 ? -1 : 1);
+  clipPlane.normal.copy(beyond).negate();
+  clipPlane.constant = beyond.dot(from) + Number(state.offset);
+}

@@ -1,0 +1,11 @@
+// The page before it is filled in: page/ and three.js as one text, put together by page/assemble.cmake.
+#pragma once
+
+#include <string>
+
+namespace view {
+
+/// HTML with one @ABOUT@ (JSON) and, behind it, one @DATA@ (base64).
+std::string page_template();
+
+}  // namespace view

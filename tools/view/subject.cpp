@@ -1,0 +1,89 @@
+#include "view/subject.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "io/body_file.h"
+#include "io/front_file.h"
+#include "io/node_file.h"
+#include "io/run_files.h"
+#include "io/stream.h"
+#include "io/surface_file.h"
+#include "kind.h"
+
+namespace view {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_body(Subject& subject, geo::Body body) {
+  subject.surface = body.surface.two_sided(&subject.row_of);
+  subject.nodes = body.nodes;
+  subject.body = std::move(body);
+}
+
+void add(Subject& subject, const std::string& path) {
+  const std::string bytes = geo::read_all(path);
+  const auto refuse = [&](const char* what) { throw geo::InputError(path + ": is a second file with " + what + "; give one of them"); };
+  switch (tool::kind_of(bytes, path)) {
+    case tool::Kind::body:
+      if (subject.nodes.size() > 0) refuse("nodes");
+      if (!subject.surface.triangles.empty()) refuse("a surface");
+      add_body(subject, geo::parse_body(bytes, path));
+      break;
+    case tool::Kind::nodes:
+      if (subject.nodes.size() > 0) refuse("nodes");
+      subject.nodes = geo::parse_nodes(bytes, path);
+      break;
+    case tool::Kind::fronts: {
+      auto fronts = geo::parse_fronts(bytes, path);
+      subject.fronts.insert(subject.fronts.end(), std::make_move_iterator(fronts.begin()), std::make_move_iterator(fronts.end()));
+      break;
+    }
+    case tool::Kind::surface:
+      if (!subject.surface.triangles.empty()) refuse("a surface");
+      subject.surface = geo::parse_surface(bytes, path).mesh;
+      break;
+  }
+}
+
+}  // namespace
+
+Subject read_subject(const std::vector<std::string>& paths) {
+  Subject subject;
+  for (const auto& path : paths) {
+    add(subject, path);
+    subject.title += (subject.title.empty() ? "" : ", ") + fs::path(path).filename().string();
+  }
+  return subject;
+}
+
+Run find_run(const std::string& folder) {
+  Run run;
+  const fs::path top(folder), frames = fs::is_directory(top / "frames") ? top / "frames" : top;
+  for (const auto& entry : fs::directory_iterator(frames))
+    if (entry.path().extension() == ".ply") run.frames.push_back(entry.path().string());
+  std::sort(run.frames.begin(), run.frames.end());
+  if (run.frames.empty()) throw geo::InputError(folder + ": holds no frames; give the folder that kerf-sim wrote");
+  if (fs::exists(top / "checkpoint.kerf")) run.body = (top / "checkpoint.kerf").string();
+  if (fs::exists(top / "checkpoint.state")) run.state = (top / "checkpoint.state").string();
+  run.title = fs::absolute(top).lexically_normal().filename().string();
+  if (run.title.empty()) run.title = fs::absolute(top).lexically_normal().parent_path().filename().string();
+  return run;
+}
+
+Subject read_checkpoint(const Run& run) {
+  Subject subject;
+  if (run.body.empty()) return subject;
+  add_body(subject, geo::read_body(run.body));
+  if (run.state.empty()) return subject;
+  auto state = geo::read_run_state(run.state);
+  if (state.motion.displacement.size() != subject.nodes.size() || state.motion.velocity.size() != subject.nodes.size())
+    throw geo::InputError(run.state + ": is of another body than " + run.body);
+  subject.motion = std::move(state.motion);
+  subject.frame = state.frame;
+  return subject;
+}
+
+}  // namespace view

@@ -1,0 +1,40 @@
+// What there is to look at: what one or several files, or the folder of a run, hold together.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "body/body.h"
+#include "crack/front.h"
+#include "mechanics/solid.h"
+#include "sampling/node_set.h"
+
+namespace view {
+
+struct Subject {
+  std::string title;
+  geo::TriangleMesh surface;              ///< a surface's own, or a body's two-sided one; may be empty
+  std::optional<geo::Body> body;
+  std::vector<std::uint32_t> row_of;      ///< of a body: the row in `surface` of each surface vertex id
+  geo::NodeSet nodes;                     ///< a node file's, or a body's
+  std::vector<geo::Front> fronts;
+  std::optional<geo::State> motion;       ///< of a run's body, where its checkpoint says
+  int frame = 0;                          ///< of the run, at which `motion` holds
+};
+
+/// Reads files of any kind into one subject: at most one with a surface and one with nodes. Throws InputError.
+Subject read_subject(const std::vector<std::string>& paths);
+
+/// The folder of a run, or one of numbered surfaces.
+struct Run {
+  std::string title;
+  std::vector<std::string> frames;  ///< paths, in order
+  std::string body, state;          ///< the checkpoint's, or empty
+};
+/// Throws InputError when the folder holds no frames.
+Run find_run(const std::string& folder);
+/// The checkpoint's body with its motion; empty where the run has none.
+Subject read_checkpoint(const Run& run);
+
+}  // namespace view

@@ -177,6 +177,7 @@ int main(int argc, char** argv) {
   t.option("--megabytes", w.megabytes, "A page stays below; what is too large for it is made coarser");
   t.output("PNG, WebP, MP4 or HTML file, told by the name's end");
   return t.run(argc, argv, [&] {
+    if (w.paths.empty()) throw tool::UsageError("give a file, or the folder of a run");
     look = checked(w, look);
     const bool folder = fs::is_directory(w.paths[0]);
     if (folder && w.paths.size() > 1) throw tool::UsageError("give one folder, or files");

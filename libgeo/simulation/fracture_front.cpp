@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "body/locate.h"
 #include "geometry/predicates.h"
 
 namespace geo {
@@ -53,7 +54,7 @@ GrowingFront growing(FrontState front, std::vector<Vec3> normals) {
   if (normals.size() != front.points.size()) throw InputError("a growing front needs one normal a point");
   GrowingFront g;
   g.owed.assign(front.points.size(), 0);
-  g.ended.assign(front.points.size(), 0);
+  for (const auto& p : front.points) g.ended.push_back(front.step > 0 && !p.id.valid());
   g.normal = std::move(normals);
   g.front = std::move(front);
   return g;
@@ -110,8 +111,29 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     for (int k = 1; k * wanted < to - 0.4 * wanted; ++k) beyond.push_back({next[base] + k * wanted * along, false});
     beyond.push_back({next[base] + to * along, surface <= reach});
   };
+  // The way of an end in air is a border of the crack that no front follows: it must stay in air. Where it would not (round an
+  // edge of the body), the end goes ahead to where it sees its new place, and both belong to the front.
+  const auto round_edge = [&](std::size_t end, std::vector<std::pair<Vec3, bool>>& beyond) {
+    const Vec3 &from = g.front.points[end].position, to = beyond.empty() ? next[end] : beyond.back().first;
+    if (g.live(end) || from == to || !is_blocked(complex, from, to)) return;
+    if (beyond.empty()) beyond.push_back({to, ended[end]});
+    const Vec3 ahead = g.frame(end).ahead, away = unit_or(from - g.front.points[end == 0 ? 1 : end - 1].position, ahead);
+    Vec3 corner = from + wanted * away;
+    bool seen = false;
+    for (int k = 1; k <= 3 && !seen; ++k)
+      for (int turn = 0; turn < 4 && !seen; ++turn) {
+        const double angle = turn * std::numbers::pi / 8;
+        const Vec3 trial = from + k * wanted * (std::cos(angle) * ahead + std::sin(angle) * away);
+        seen = !is_blocked(complex, from, trial) && !is_blocked(complex, trial, to);
+        if (seen) corner = trial;
+      }
+    beyond.push_back({corner, true});
+  };
   std::vector<std::pair<Vec3, bool>> head, tail;
-  if (!g.front.closed) widen(0, 1, head), widen(n - 1, n - 2, tail);
+  if (!g.front.closed) {
+    widen(0, 1, head), widen(n - 1, n - 2, tail);
+    round_edge(0, head), round_edge(n - 1, tail);
+  }
   for (std::size_t k = head.size(); k-- > 0;) add(0, head[k].first, head[k].second);
   for (std::size_t i = 0; i < n; ++i) {
     // A dead end whose place was taken by what widening found is only where new points start.
@@ -120,7 +142,19 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     if (!g.front.closed && i + 1 == n) break;
     const std::size_t j = (i + 1) % n;
     const double gap = (next[i] - next[j]).norm();
-    if ((i == 0 && replaced) || (j + 1 == n && !tail.empty() && !g.live(j)) || !goes(i) || !goes(j)) continue;
+    if ((i == 0 && replaced) || (j + 1 == n && !tail.empty() && !g.live(j))) continue;
+    // Two that have come out on different sides of an edge of the body: a third goes out between them.
+    if (ended[i] && ended[j] && (goes(i) || goes(j)) && is_blocked(complex, next[i], next[j])) {
+      const Vec3 ahead = unit_or(direction[i] + direction[j], direction[i]);
+      for (int k = 1; k <= 4; ++k) {
+        const Vec3 trial = 0.5 * (next[i] + next[j]) + k * 0.5 * wanted * ahead;
+        if (is_blocked(complex, next[i], trial) || is_blocked(complex, trial, next[j])) continue;
+        add(goes(i) ? i : j, trial, true);
+        break;
+      }
+      continue;
+    }
+    if (!goes(i) || !goes(j)) continue;
     if (gap > 1.6 * wanted) {
       const int parts = static_cast<int>(std::ceil(gap / (1.6 * wanted)));
       const std::size_t from = (next[i] - g.front.points[i].position).norm() >= (next[j] - g.front.points[j].position).norm() ? i : j;

@@ -57,13 +57,13 @@ struct Nearby {
   double support = 0;
 };
 
-// The nodes that a point a little ahead of the tip sees, within one and a half support radii of the tip.
+// The nodes that a point a little ahead of the tip sees, within two support radii of the tip.
 Nearby nodes_about(const Body& body, const TipFrame& tip) {
   Nearby found;
   const auto nearest = body.grid.nearest(body.nodes.position, tip.at, 1, ~0u, [](auto) { return true; });
   if (nearest.empty()) return found;
   found.support = body.nodes.radius[nearest[0]];
-  const double reach = 1.5 * found.support;
+  const double reach = 2 * found.support;
   Vec3 eye = tip.at;
   for (double step = 0.25 * found.support; step > 0.01 * found.support && eye == tip.at; step *= 0.5) {
     const Vec3 ahead = tip.at + step * tip.ahead;
@@ -79,6 +79,16 @@ Nearby nodes_about(const Body& body, const TipFrame& tip) {
     found.weight.push_back(std::sqrt(kernel((x - tip.at).norm() / reach, 1.0)));
   }
   return found;
+}
+
+// How much of the way straight back from the tip, between one support radius and three, there is crack.
+double share_behind(const Complex& complex, const TipFrame& tip, double h) {
+  int crack = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 back = tip.at - (1.25 + 0.5 * k) * h * tip.ahead;
+    crack += is_blocked(complex, back + 0.25 * h * tip.normal, back - 0.25 * h * tip.normal);
+  }
+  return 0.25 * crack;
 }
 
 // Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of them, in units of `scale`),
@@ -130,7 +140,12 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Material&
   const Mat3 g = gradient(c), stretch = Mat3::Identity() + 0.5 * (g + g.transpose());
   if (!(stretch.determinant() > 0.01)) return {};
   field.uniform = stress(material, stretch) * stretch / stretch.determinant();
-  if (modes > 0) field.k = scale * c.tail<3>();
+  if (modes == 0) return field;
+  field.k = scale * c.tail<3>();
+  // What the nodes' field has of tractions on the crack itself is an error of theirs, as far as there is a crack behind.
+  const double open = 1 - share_behind(body.surface, tip, near.support);
+  const Vec3 traction = open * field.uniform.col(1);
+  field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();
   return field;
 }
 

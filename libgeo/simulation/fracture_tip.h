@@ -33,8 +33,10 @@ struct TipField {
 };
 
 /// The displacements of a uniform gradient and of unit stress intensities are fitted to those of the nodes that a point
-/// a little ahead of the tip sees, by weighted least squares (moving least squares with the modes in its basis: Fleming,
+/// a little ahead of the tip sees, within two support radii, by weighted least squares (moving least squares with the modes in its basis: Fleming,
 /// Chu, Moran and Belytschko 1997). `u`: per node. Where the nodes move as linear elasticity says, the answer is exact.
+/// A crack that nodes see carries no traction: as far as there is crack straight behind the tip, the uniform stress keeps only
+/// what does not pull at its faces (Williams' second term).
 TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Material& material, const TipFrame& tip);
 
 /// Displacement that a stress intensity of 1 in each mode gives a point at (r, angle) from the tip, plane strain, in the

@@ -55,12 +55,12 @@ TEST_CASE("stress intensities imposed on nodes are told exactly, and where the c
 }
 
 TEST_CASE("a flaw that the nodes do not see is pulled apart across the largest principal stress", "[fracture]") {
-  const Notched n = notched_block({1, 1, 0.4}, 0.08, 0.493, 0.507);
+  const Notched n = notched_block({1, 1, 0.4}, 0.08, 0.1, 0.507);
   Material material;
   material.young = 1e6, material.poisson = 0;
   for (const double angle : {0.0, 25.0, -60.0}) {
     const Vec3 pull(-std::sin(angle * degree), std::cos(angle * degree), 0);
-    const auto u = moved(n.body, material, Vec3::Zero(), 1e-4 * pull * pull.transpose(), 0.493, 0.507, Mat3::Identity());
+    const auto u = moved(n.body, material, Vec3::Zero(), 1e-4 * pull * pull.transpose(), 0.1, 0.507, Mat3::Identity());
     const TipField field = tip_field(n.body, u, material, n.front.frame(3));
     CHECK(field.strongest().angle / degree == Approx(angle).margin(0.1));
     CHECK(field.strongest().stress == Approx(100).epsilon(1e-3));

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "io/body_file.h"
+#include "io/checkpoint_file.h"
 #include "io/front_file.h"
 #include "io/node_file.h"
-#include "io/run_files.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
 #include "kind.h"
@@ -17,10 +17,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void add_body(Subject& subject, geo::Body body) {
-  subject.surface = body.surface.two_sided(&subject.row_of);
-  subject.nodes = body.nodes;
-  subject.body = std::move(body);
+// A body, or the checkpoint of a run, which is one with its motion.
+void add_body(Subject& subject, geo::Input input) {
+  const geo::KerfFile file(std::move(input));
+  if (file.sections().count("run/displacement") > 0) {
+    auto checkpoint = geo::read_checkpoint(file);
+    subject.body = std::move(checkpoint.body);
+    subject.motion = std::move(checkpoint.state.motion);
+    subject.frame = checkpoint.state.frame;
+  } else {
+    subject.body = geo::read_body(file);
+  }
+  subject.surface = subject.body->surface.two_sided(&subject.row_of);
+  subject.nodes = subject.body->nodes;
 }
 
 void add(Subject& subject, const std::string& path) {
@@ -30,7 +39,7 @@ void add(Subject& subject, const std::string& path) {
     case tool::Kind::body:
       if (subject.nodes.size() > 0) refuse("nodes");
       if (!subject.surface.triangles.empty()) refuse("a surface");
-      add_body(subject, geo::parse_body(bytes, path));
+      add_body(subject, geo::Input(bytes, path));
       break;
     case tool::Kind::nodes:
       if (subject.nodes.size() > 0) refuse("nodes");
@@ -67,7 +76,6 @@ Run find_run(const std::string& folder) {
   std::sort(run.frames.begin(), run.frames.end());
   if (run.frames.empty()) throw geo::InputError(folder + ": holds no frames; give the folder that kerf-sim wrote");
   if (fs::exists(top / "checkpoint.kerf")) run.body = (top / "checkpoint.kerf").string();
-  if (fs::exists(top / "checkpoint.state")) run.state = (top / "checkpoint.state").string();
   run.title = fs::absolute(top).lexically_normal().filename().string();
   if (run.title.empty()) run.title = fs::absolute(top).lexically_normal().parent_path().filename().string();
   return run;
@@ -75,14 +83,7 @@ Run find_run(const std::string& folder) {
 
 Subject read_checkpoint(const Run& run) {
   Subject subject;
-  if (run.body.empty()) return subject;
-  add_body(subject, geo::read_body(run.body));
-  if (run.state.empty()) return subject;
-  auto state = geo::read_run_state(run.state);
-  if (state.motion.displacement.size() != subject.nodes.size() || state.motion.velocity.size() != subject.nodes.size())
-    throw geo::InputError(run.state + ": is of another body than " + run.body);
-  subject.motion = std::move(state.motion);
-  subject.frame = state.frame;
+  if (!run.body.empty()) add_body(subject, geo::Input(run.body));
   return subject;
 }
 

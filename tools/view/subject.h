@@ -19,7 +19,7 @@ struct Subject {
   std::vector<std::uint32_t> row_of;      ///< of a body: the row in `surface` of each surface vertex id
   geo::NodeSet nodes;                     ///< a node file's, or a body's
   std::vector<geo::Front> fronts;
-  std::optional<geo::State> motion;       ///< of a run's body, where its checkpoint says
+  std::optional<geo::State> motion;       ///< of a run's body: a checkpoint
   int frame = 0;                          ///< of the run, at which `motion` holds
 };
 
@@ -30,7 +30,7 @@ Subject read_subject(const std::vector<std::string>& paths);
 struct Run {
   std::string title;
   std::vector<std::string> frames;  ///< paths, in order
-  std::string body, state;          ///< the checkpoint's, or empty
+  std::string body;                 ///< the checkpoint's path, or empty
 };
 /// Throws InputError when the folder holds no frames.
 Run find_run(const std::string& folder);

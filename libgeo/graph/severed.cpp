@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "geometry/predicates.h"
+#include "geometry/bvh.h"
+#include "graph/id_map.h"
 
 namespace geo {
 namespace {
@@ -20,52 +22,42 @@ class Plane {
     // A height takes a dozen operations on products of these sizes, each with an error of 2⁻⁵³: 2⁻⁴⁸ is more than enough.
     rounding_ = 0x1p-48 * u.lpNorm<1>() * v.lpNorm<1>();
   }
-  struct Height {
-    double value, error;  // times the normal's length
-    bool above() const { return value > error; }
-    bool below() const { return value < -error; }
-  };
-  /// With an error that also serves for points as far from x as `beside`, by the sum of coordinates.
-  Height height(const Vec3& x, double beside = 0) const {
+  /// False only when x is farther from the plane than `distance`.
+  bool within(const Vec3& x, double distance) const {
     const double a = x.x() - origin_.x(), b = x.y() - origin_.y(), c = x.z() - origin_.z();
-    return {(a * normal_.x() + b * normal_.y()) + c * normal_.z(), rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c) + beside)};
+    const double height = (a * normal_.x() + b * normal_.y()) + c * normal_.z(), error = rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c));
+    return std::abs(height) <= error + (length_ + rounding_) * distance;
   }
-  /// False only when a point is farther from the plane than `distance`.
-  bool within(const Height& h, double distance) const { return std::abs(h.value) <= h.error + (length_ + rounding_) * distance; }
 
  private:
   Vec3 origin_, normal_;
   double length_, rounding_;
 };
 
-// Which nodes a face may cut something of: those within `reach` of it, and some more. A function of position alone, so
-// that both ends of an edge agree about each other.
+// Which nodes a face may cut something of: those within `reach` of it, and some more.
 struct Surroundings {
-  Surroundings(const Corners& t, double reach) : corners(t), plane(t), box(box_of(t[0], t[1], t[2])), around(box.grown(reach)), reach(reach) {}
-  bool holds(const Vec3& x, const Plane::Height& h) const {
+  Surroundings(const Corners& t, double reach) : plane(t), around(box_of(t[0], t[1], t[2]).grown(reach)), reach(reach) {}
+  bool holds(const Vec3& x) const {
     return x.x() >= around.lo.x() && x.x() <= around.hi.x() && x.y() >= around.lo.y() && x.y() <= around.hi.y() && x.z() >= around.lo.z() &&
-           x.z() <= around.hi.z() && plane.within(h, reach);
+           x.z() <= around.hi.z() && plane.within(x, reach);
   }
   /// True unless it holds nothing of the cube.
   bool reaches(const Vec3& middle, double half) const {
     const Box3 cube{middle - Vec3::Constant(half), middle + Vec3::Constant(half)};
-    return cube.meets(around) && plane.within(plane.height(middle, 3 * half), reach + std::sqrt(3.0) * half);
+    return cube.meets(around) && plane.within(middle, reach + std::sqrt(3.0) * half);
   }
-  Corners corners;
   Plane plane;
-  Box3 box, around;
+  Box3 around;
   double reach;
 };
 
-}  // namespace
-
-Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
-                     std::span<const Corners> faces) {
-  Severed severed;
-  const auto at = [&](std::uint32_t id) -> const Vec3& { return graph.position(nodes, id); };
+// Nodes and guides, ascending, which have one end at least of everything that the faces cut.
+std::vector<std::uint32_t> near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+                                      std::span<const Corners> faces) {
   // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
   const double half = 0.5 * graph.reach() * (1 + 1e-6);
-  if (!(half > 0)) return severed;  // no edge yet
+  std::vector<std::uint32_t> near;
+  if (!(half > 0)) return near;  // no edge yet
   std::vector<Surroundings> around;
   std::vector<std::vector<std::uint32_t>> faces_at(1);  // by depth: those that reach into the cube
   for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], half), faces_at[0].push_back(f);
@@ -77,46 +69,73 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
       if (around[f].reaches(middle, size * (1 + 1e-12))) faces_at[to].push_back(f);
     return !faces_at[to].empty();
   };
-  struct Side {
-    const Surroundings* face;
-    bool above, below;
-  };
-  std::vector<Side> sides;  // of the faces near a node or guide
-  const auto see = [&](int depth, std::uint32_t i) {
-    const Vec3& x = at(i);
-    sides.clear();
-    Box3 all;
-    for (const auto f : faces_at[static_cast<std::size_t>(depth) + 1])
-      if (const auto h = around[f].plane.height(x); around[f].holds(x, h)) sides.push_back({&around[f], h.above(), h.below()}), all.add(around[f].box);
-    if (sides.empty()) return;
-    const auto row = graph.entries(i);
-    for (std::size_t k = 0; k < row.to.size(); ++k) {
-      const auto j = row.to[k];
-      const Vec3& y = at(j);
-      const Box3 segment{x.cwiseMin(y), x.cwiseMax(y)};
-      if (!segment.meets(all)) continue;
-      const bool cut = std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
-        const Surroundings& face = *side.face;
-        if (!segment.meets(face.box)) return false;
-        const auto h = face.plane.height(y);
-        if ((side.above && h.above()) || (side.below && h.below())) return false;
-        if (j < i && face.holds(y, h)) return false;  // j asks, too
-        return segment_meets_triangle(i < j ? x : y, i < j ? y : x, face.corners[0], face.corners[1], face.corners[2]);
-      });
-      if (!cut) continue;
-      if (VisibilityGraph::is_edge(row.bits[k])) severed.edges.push_back(pair_key(i, j));
-      if (VisibilityGraph::is_neighbor(row.bits[k])) severed.neighbors.push_back(pair_key(i, j));
-    }
+  const auto see = [&](int depth, std::uint32_t id) {
+    const Vec3& x = graph.position(nodes, id);
+    const auto& here = faces_at[static_cast<std::size_t>(depth) + 1];
+    if (std::any_of(here.begin(), here.end(), [&](std::uint32_t f) { return around[f].holds(x); })) near.push_back(id);
   };
   grid.walk(into, [&](int depth, std::uint32_t i) {
     if (i < first_new.value) see(depth, i);
   });
   graph.guides().grid().walk(into, [&](int depth, std::uint32_t g) { see(depth, VisibilityGraph::first_guide + g); });
-  for (auto* pairs : {&severed.edges, &severed.neighbors}) {
-    std::sort(pairs->begin(), pairs->end());
-    pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
+  std::sort(near.begin(), near.end());
+  return near;
+}
+
+struct Pair {
+  std::uint32_t a, b;  // numbers of ids
+  std::uint16_t bits;
+};
+
+Severed rows_of(std::span<const Pair> pairs, std::span<const std::uint32_t> ids) {
+  Severed severed;
+  std::vector<std::uint64_t> order;
+  for (std::uint32_t k = 0; k < ids.size(); ++k) order.push_back(std::uint64_t(ids[k]) << 32 | k);
+  std::sort(order.begin(), order.end());
+  std::vector<std::uint32_t> next(ids.size(), 0);  // how many entries, then where the next one goes
+  for (const Pair& p : pairs) ++next[p.a], ++next[p.b];
+  std::uint32_t sum = 0;
+  for (const auto entry : order) {
+    const auto k = static_cast<std::uint32_t>(entry), count = std::exchange(next[k], sum);
+    if (count > 0) severed.rows.push_back({ids[k], sum, sum + count});
+    sum += count;
   }
+  severed.entries.resize(sum);
+  for (const Pair& p : pairs) severed.entries[next[p.a]++] = {ids[p.b], p.bits}, severed.entries[next[p.b]++] = {ids[p.a], p.bits};
+  for (const auto& row : severed.rows)
+    std::sort(severed.entries.begin() + row.begin, severed.entries.begin() + row.end, [](const auto& x, const auto& y) { return x.to < y.to; });
   return severed;
+}
+
+}  // namespace
+
+Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+                     std::span<const Corners> faces) {
+  const auto near = near_faces(nodes, graph, grid, first_new, faces);
+  if (near.empty()) return {};
+  const TriangleBvh tree(faces);
+  IdMap number;
+  number.clear(near.size());
+  for (const auto i : near) number.add(i);
+  std::vector<Pair> pairs;
+  std::vector<std::size_t> asked;
+  std::vector<Vec3> ends;
+  std::vector<std::uint8_t> blocked;
+  for (std::uint32_t at = 0; at < near.size(); ++at) {
+    constexpr std::size_t ahead = 4;
+    if (at + 2 * ahead < near.size()) graph.store(near[at + 2 * ahead]).prefetch_place(VisibilityGraph::place(near[at + 2 * ahead]));
+    if (at + ahead < near.size()) graph.store(near[at + ahead]).prefetch(VisibilityGraph::place(near[at + ahead]));
+    const auto i = near[at];
+    const auto row = graph.entries(i);
+    asked.clear(), ends.clear();
+    for (std::size_t k = 0; k < row.to.size(); ++k)
+      if (row.to[k] > i || number.find(row.to[k]) >= near.size()) asked.push_back(k), ends.push_back(graph.position(nodes, row.to[k]));  // else j has asked
+    blocked.assign(asked.size(), 0);
+    tree.blocks(graph.position(nodes, i), ends, blocked.data());
+    for (std::size_t a = 0; a < asked.size(); ++a)
+      if (blocked[a]) pairs.push_back({at, number.add(row.to[asked[a]]), row.bits[asked[a]]});
+  }
+  return rows_of(pairs, number.ids());
 }
 
 }  // namespace geo

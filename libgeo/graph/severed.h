@@ -11,13 +11,18 @@
 
 namespace geo {
 
-/// Two nodes or guides, the lower one in the upper half: sorts by nodes.
-using NodePairKey = std::uint64_t;
-constexpr NodePairKey pair_key(std::uint32_t i, std::uint32_t j) { return NodePairKey(i < j ? i : j) << 32 | (i < j ? j : i); }
-
+/// Those entries of rows between whose ends a face came: each pair from both ends, as long as the graph is what it was.
 struct Severed {
-  std::vector<NodePairKey> edges;      ///< that a face touches, ascending
-  std::vector<NodePairKey> neighbors;  ///< pairs of neighbours, edges or not, between which a face came, ascending
+  struct Entry {
+    std::uint32_t to;    ///< node or guide
+    std::uint16_t bits;  ///< as in the graph's row
+  };
+  struct Row {
+    std::uint32_t id, begin, end;  ///< whose, and which of `entries`
+  };
+  std::vector<Row> rows;       ///< ascending; none is empty
+  std::vector<Entry> entries;  ///< ascending in each row
+  std::span<const Entry> of(const Row& row) const { return {entries.data() + row.begin, entries.data() + row.end}; }
 };
 
 /// Looks among guides and nodes before `first_new`, at a cost that follows the faces' area. `grid` holds all nodes.

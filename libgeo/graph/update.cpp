@@ -47,35 +47,40 @@ class PairSight {
   std::vector<Box3> boxes_;
 };
 
-// Nodes whose shortest paths may have used a cut edge, by old distances: within a support radius of an end, less the
+// Adds the nodes whose shortest paths may have used a cut edge, by old distances: within a support radius of an end, less the
 // edge's length. Of several edges at an end the shortest decides.
-// Guides have no rows of neighbours: theirs are looked for.
-void add_users(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const NodePairKey> cut, RowSearch& search, IdMap& update) {
-  std::vector<std::uint64_t> ends;
-  for (const auto key : cut) {
-    const auto i = static_cast<std::uint32_t>(key >> 32), j = static_cast<std::uint32_t>(key);
-    const std::uint64_t length = graph.warped(nodes, i, j);
-    ends.push_back(std::uint64_t(i) << 32 | length), ends.push_back(std::uint64_t(j) << 32 | length);
-  }
-  std::sort(ends.begin(), ends.end());
-  const auto add_near = [&](const RowView& row, std::uint64_t length) {
-    for (std::size_t k = 0; k < row.to.size(); ++k)
-      if (VisibilityGraph::is_neighbor(row.bits[k]) && VisibilityGraph::bound(row.bits[k]) + length < unit_radius) update.add(row.to[k]);
-  };
-  std::vector<std::uint32_t> guides, lengths;
-  for (std::size_t e = 0; e < ends.size(); ++e) {
-    const auto end = static_cast<std::uint32_t>(ends[e] >> 32), length = static_cast<std::uint32_t>(ends[e]);
-    if (e > 0 && ends[e - 1] >> 32 == end) continue;
+class Users {
+ public:
+  Users(const NodeSet& nodes, const VisibilityGraph& graph, IdMap& update) : nodes_(nodes), graph_(graph), update_(update) {}
+  /// An end, and at most the length of its shortest edge that is cut.
+  void add(std::uint32_t end, std::uint32_t length) {
     if (VisibilityGraph::is_guide(end)) {
-      guides.push_back(end), lengths.push_back(length);
+      guides_.push_back(std::uint64_t(end) << 32 | length);
     } else {
-      update.add(end);
-      add_near(graph.rows().entries(end), length);
+      update_.add(end);
+      add_near(graph_.rows().entries(end), length);
     }
   }
-  std::size_t next = 0;
-  search.run(nodes, graph, guides, {}, [&](std::uint32_t, const RowView& row) { add_near(row, lengths[next++]); });
-}
+  /// Guides have no rows of neighbours: theirs are looked for.
+  void add_guides(RowSearch& search) {
+    std::sort(guides_.begin(), guides_.end());
+    std::vector<std::uint32_t> ids, lengths;
+    for (const auto entry : guides_)
+      if (const auto id = static_cast<std::uint32_t>(entry >> 32); ids.empty() || ids.back() != id) ids.push_back(id), lengths.push_back(static_cast<std::uint32_t>(entry));
+    std::size_t next = 0;
+    search.run(nodes_, graph_, ids, {}, [&](std::uint32_t, const RowView& row) { add_near(row, lengths[next++]); });
+  }
+
+ private:
+  void add_near(const RowView& row, std::uint32_t length) {
+    for (std::size_t k = 0; k < row.to.size(); ++k)
+      if (VisibilityGraph::is_neighbor(row.bits[k]) && VisibilityGraph::bound(row.bits[k]) + length < unit_radius) update_.add(row.to[k]);
+  }
+  const NodeSet& nodes_;
+  const VisibilityGraph& graph_;
+  IdMap& update_;
+  std::vector<std::uint64_t> guides_;  // ids, lengths in the lower half
+};
 
 }  // namespace
 
@@ -90,11 +95,25 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   update.clear(0);
 
   // What the faces cut, and all that hangs on the moved nodes.
-  Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
-  for (const auto key : severed.neighbors) update.add(static_cast<std::uint32_t>(key >> 32)), update.add(static_cast<std::uint32_t>(key));
-  for (const auto g : guides.retired)
-    for (const auto j : graph.entries(g).to) severed.edges.push_back(pair_key(g, j));
-  add_users(nodes, graph, severed.edges, search, update);
+  const Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
+  Users users(nodes, graph, update);
+  for (const auto& row : severed.rows) {
+    std::uint32_t shortest = unit_radius;
+    for (const auto& entry : severed.of(row)) {
+      if (VisibilityGraph::is_edge(entry.bits)) shortest = std::min(shortest, VisibilityGraph::bound(entry.bits));
+      if (VisibilityGraph::is_neighbor(entry.bits)) update.add(row.id);
+    }
+    if (shortest < unit_radius) users.add(row.id, shortest);
+  }
+  std::vector<std::pair<NodeId, NodeId>> lost;  // other edges that go, from one end or both
+  for (const auto g : guides.retired) {
+    const auto row = graph.entries(g);
+    for (std::size_t e = 0; e < row.to.size(); ++e) {
+      lost.push_back({NodeId(g), NodeId(row.to[e])});
+      for (const auto end : {g, row.to[e]}) users.add(end, VisibilityGraph::bound(row.bits[e]));
+    }
+  }
+  users.add_guides(search);
   for (const NodeId m : moved) {
     update.add(m.value);
     for (const auto& n : graph.neighbors(nodes, m)) update.add(n.to.value);
@@ -102,12 +121,22 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     for (std::size_t e = 0; e < row.to.size(); ++e) {
       if (!VisibilityGraph::is_edge(row.bits[e])) continue;
       if (!VisibilityGraph::is_guide(row.to[e])) update.add(row.to[e]);
-      severed.edges.push_back(pair_key(m.value, row.to[e]));
+      lost.push_back({m, NodeId(row.to[e])});
     }
   }
-  std::sort(severed.edges.begin(), severed.edges.end());
-  for (const auto key : severed.edges)
-    if (const NodeId i(static_cast<std::uint32_t>(key >> 32)), j(static_cast<std::uint32_t>(key)); graph.remove(i, j) && !VisibilityGraph::is_guide(j.value)) result.cut_edges.push_back({i, j});
+  std::vector<std::uint32_t> ends;
+  for (const auto& row : severed.rows) {
+    ends.clear();
+    for (const auto& entry : severed.of(row)) {
+      if (!VisibilityGraph::is_edge(entry.bits)) continue;
+      ends.push_back(entry.to);
+      if (row.id < entry.to && !VisibilityGraph::is_guide(entry.to)) result.cut_edges.push_back({NodeId(row.id), NodeId(entry.to)});
+    }
+    graph.drop(row.id, ends);
+  }
+  for (const auto& [i, j] : lost)
+    if (graph.remove(i, j) && !VisibilityGraph::is_guide(i.value) && !VisibilityGraph::is_guide(j.value)) result.cut_edges.push_back(std::minmax(i, j));
+  if (!lost.empty()) std::sort(result.cut_edges.begin(), result.cut_edges.end());
 
   // E_new: each new node's k nearest visible nodes. The nearest are asked in growing numbers, since many may be hidden.
   const auto old_guides = VisibilityGraph::first_guide + graph.guides().size();
@@ -165,23 +194,20 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
 
   // Who saw each other goes on doing so unless a new face came between them. Who did not is asked again: faces that were
   // divided have rounded corners, and a segment that only just touched one may pass now.
-  std::vector<NodePairKey> hidden = severed.neighbors;  // from both ends
-  for (const auto key : severed.neighbors) hidden.push_back(key << 32 | key >> 32);
-  std::sort(hidden.begin(), hidden.end());
-  std::size_t next_hidden = 0;
+  auto next_row = severed.rows.begin();
   const auto is_fresh = [&](std::uint32_t i) { return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i)); };
   const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
-    while (next_hidden < hidden.size() && hidden[next_hidden] >> 32 < i) ++next_hidden;
+    while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
+    const auto lost = next_row != severed.rows.end() && next_row->id == i ? severed.of(*next_row) : std::span<const Severed::Entry>();
     const auto old = graph.rows().entries(i);
     const bool fresh_i = is_fresh(i);
-    for (std::size_t e = 0, o = 0; e < to.size(); ++e) {
+    for (std::size_t e = 0, o = 0, l = 0; e < to.size(); ++e) {
       if (VisibilityGraph::is_edge(bits[e])) continue;
-      const auto key = NodePairKey(i) << 32 | to[e];
       while (o < old.to.size() && old.to[o] < to[e]) ++o;
-      while (next_hidden < hidden.size() && hidden[next_hidden] < key) ++next_hidden;
+      while (l < lost.size() && lost[l].to < to[e]) ++l;
       const bool saw = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) &&
                        !RowStore::has_path(old.bits[o]) && !is_fresh(to[e]);
-      const bool is_hidden = saw ? next_hidden < hidden.size() && hidden[next_hidden] == key : sight.blocked(i, to[e]);
+      const bool is_hidden = saw ? l < lost.size() && lost[l].to == to[e] : sight.blocked(i, to[e]);
       if (is_hidden) bits[e] |= VisibilityGraph::path_bit;
     }
   };

@@ -82,27 +82,37 @@ void VisibilityGraph::append_guide_edges(const NodeSet& nodes, std::span<const s
 }
 
 bool VisibilityGraph::remove(NodeId i, NodeId j) {
-  const auto take = [&](NodeId from, NodeId to) {
-    auto& rows = store(from.value);
-    const auto row = rows.entries(place(from.value));
-    const auto k = place_of(row, to);
-    if (k == row.to.size() || row.to[k] != to.value || !is_edge(row.bits[k])) return false;
-    if (is_neighbor(row.bits[k])) {
-      rows.bits(place(from.value))[k] &= static_cast<std::uint16_t>(~edge_bit);
-      return true;
-    }
-    const auto whole = rows.row(place(from.value));
-    std::vector<std::uint32_t> ids(whole.to.begin(), whole.to.end());
-    std::vector<std::uint16_t> bits(whole.bits.begin(), whole.bits.end());
-    const std::vector<float> paths(whole.paths.begin(), whole.paths.end());
-    ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(k)), bits.erase(bits.begin() + static_cast<std::ptrdiff_t>(k));
-    rows.set(place(from.value), {ids, bits, paths});
-    return true;
-  };
-  if (!take(i, j)) return false;
-  take(j, i);
-  edges_ -= !is_guide(i.value) && !is_guide(j.value);
+  if (!has(i, j)) return false;
+  drop(i.value, {&j.value, 1}), drop(j.value, {&i.value, 1});
   return true;
+}
+
+void VisibilityGraph::drop(std::uint32_t id, std::span<const std::uint32_t> others) {
+  RowStore& rows = store(id);
+  const auto row = rows.entries(place(id));
+  const auto bits = rows.bits(place(id));
+  bool shrinks = false;
+  std::size_t k = 0;
+  for (const auto other : others) {
+    while (row.to[k] != other) ++k;
+    if (is_neighbor(bits[k]))
+      bits[k] &= static_cast<std::uint16_t>(~edge_bit);
+    else
+      shrinks = true;
+    edges_ -= id < other && !is_guide(other);
+  }
+  if (!shrinks) return;
+  const auto whole = rows.row(place(id));
+  std::vector<std::uint32_t> to_left;
+  std::vector<std::uint16_t> bits_left;
+  const std::vector<float> paths(whole.paths.begin(), whole.paths.end());
+  auto next = others.begin();
+  for (k = 0; k < whole.to.size(); ++k) {
+    while (next != others.end() && *next < whole.to[k]) ++next;
+    if (next != others.end() && *next == whole.to[k] && !is_neighbor(whole.bits[k])) continue;
+    to_left.push_back(whole.to[k]), bits_left.push_back(whole.bits[k]);
+  }
+  rows.set(place(id), {to_left, bits_left, paths});
 }
 
 std::uint32_t VisibilityGraph::components(std::vector<std::uint32_t>& of) const {

@@ -48,6 +48,9 @@ class VisibilityGraph {
   /// Neighbours stay what they are.
   bool add(const NodeSet& nodes, NodeId i, NodeId j);
   bool remove(NodeId i, NodeId j);
+  /// Removes edges of a node or guide that it has, to some others (ascending), at its end only: that they are removed at the
+  /// other ends, too, is up to the caller.
+  void drop(std::uint32_t id, std::span<const std::uint32_t> others);
 
   static constexpr std::uint32_t first_guide = 1u << 31;
   static constexpr bool is_guide(std::uint32_t id) { return id >= first_guide; }

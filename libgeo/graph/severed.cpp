@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "geometry/bvh.h"
@@ -51,34 +52,73 @@ struct Surroundings {
   double reach;
 };
 
-// Nodes and guides, ascending, which have one end at least of everything that the faces cut.
-std::vector<std::uint32_t> near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
-                                      std::span<const Corners> faces) {
+// The stretch that some faces cover along one's normal, from `origin`, and some more: a segment beyond it touches none.
+struct Slab {
+  Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, const Vec3& origin, double reach) : origin(origin) {
+    double largest = -1, far = reach;
+    for (const auto f : rows)
+      if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest) largest = n.squaredNorm(), normal = n;
+    for (const auto f : rows)
+      for (const Vec3& corner : faces[f]) {
+        const double h = height(corner);
+        from = std::min(from, h), to = std::max(to, h), far = std::max(far, (corner - origin).lpNorm<Eigen::Infinity>());
+      }
+    // A height takes six operations, each with an error of 2⁻⁵³ of a sum no larger than this.
+    const double rounding = 0x1p-49 * normal.lpNorm<1>() * far;
+    from -= rounding, to += rounding;
+  }
+  double height(const Vec3& x) const {
+    return ((x.x() - origin.x()) * normal.x() + (x.y() - origin.y()) * normal.y()) + (x.z() - origin.z()) * normal.z();
+  }
+  Vec3 origin, normal = Vec3::Zero();
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+};
+
+// Nodes and guides: one end at least of everything that the faces cut.
+struct Near {
+  std::vector<std::uint32_t> ids, slabs;  // for each id, one of `slab`
+  std::vector<Slab> slab;                 // of all faces within reach
+};
+
+Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new, std::span<const Corners> faces,
+                const TriangleBvh& tree) {
   // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
-  const double half = 0.5 * graph.reach() * (1 + 1e-6);
-  std::vector<std::uint32_t> near;
-  if (!(half > 0)) return near;  // no edge yet
+  const double reach = graph.reach() * (1 + 1e-6);
+  Near near;
+  if (!(reach > 0)) return near;  // no edge yet
   std::vector<Surroundings> around;
   std::vector<std::vector<std::uint32_t>> faces_at(1);  // by depth: those that reach into the cube
-  for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], half), faces_at[0].push_back(f);
+  for (std::uint32_t f = 0; f < faces.size(); ++f) around.emplace_back(faces[f], 0.5 * reach), faces_at[0].push_back(f);
+  Vec3 cube = Vec3::Zero();  // the cube entered last
+  double cube_size = 0;
+  bool has_slab = false;
   const auto into = [&](int depth, const Vec3& middle, double size) {
     const auto to = static_cast<std::size_t>(depth) + 1;
     if (faces_at.size() <= to) faces_at.resize(to + 1);
     faces_at[to].clear();
     for (const auto f : faces_at[to - 1])
       if (around[f].reaches(middle, size * (1 + 1e-12))) faces_at[to].push_back(f);
+    cube = middle, cube_size = size, has_slab = false;
     return !faces_at[to].empty();
   };
+  std::vector<std::uint32_t> rows;
   const auto see = [&](int depth, std::uint32_t id) {
     const Vec3& x = graph.position(nodes, id);
     const auto& here = faces_at[static_cast<std::size_t>(depth) + 1];
-    if (std::any_of(here.begin(), here.end(), [&](std::uint32_t f) { return around[f].holds(x); })) near.push_back(id);
+    if (std::none_of(here.begin(), here.end(), [&](std::uint32_t f) { return around[f].holds(x); })) return;
+    if (!has_slab) {
+      rows.clear();
+      const Vec3 way = Vec3::Constant(cube_size + reach);
+      tree.near({cube - way, cube + way}, rows);
+      near.slab.emplace_back(faces, rows, cube, 2 * way.x());
+      has_slab = true;
+    }
+    near.ids.push_back(id), near.slabs.push_back(static_cast<std::uint32_t>(near.slab.size() - 1));
   };
   grid.walk(into, [&](int depth, std::uint32_t i) {
     if (i < first_new.value) see(depth, i);
   });
   graph.guides().grid().walk(into, [&](int depth, std::uint32_t g) { see(depth, VisibilityGraph::first_guide + g); });
-  std::sort(near.begin(), near.end());
   return near;
 }
 
@@ -111,28 +151,43 @@ Severed rows_of(std::span<const Pair> pairs, std::span<const std::uint32_t> ids)
 
 Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
                      std::span<const Corners> faces) {
-  const auto near = near_faces(nodes, graph, grid, first_new, faces);
-  if (near.empty()) return {};
   const TriangleBvh tree(faces);
+  const Near near = near_faces(nodes, graph, grid, first_new, faces, tree);
+  if (near.ids.empty()) return {};
   IdMap number;
-  number.clear(near.size());
-  for (const auto i : near) number.add(i);
+  number.clear(near.ids.size());
+  for (const auto i : near.ids) number.add(i);
   std::vector<Pair> pairs;
-  std::vector<std::size_t> asked;
+  std::vector<std::uint32_t> asked;
   std::vector<Vec3> ends;
   std::vector<std::uint8_t> blocked;
-  for (std::uint32_t at = 0; at < near.size(); ++at) {
+  for (std::uint32_t at = 0; at < near.ids.size(); ++at) {
     constexpr std::size_t ahead = 4;
-    if (at + 2 * ahead < near.size()) graph.store(near[at + 2 * ahead]).prefetch_place(VisibilityGraph::place(near[at + 2 * ahead]));
-    if (at + ahead < near.size()) graph.store(near[at + ahead]).prefetch(VisibilityGraph::place(near[at + ahead]));
-    const auto i = near[at];
+    if (at + 2 * ahead < near.ids.size()) graph.store(near.ids[at + 2 * ahead]).prefetch_place(VisibilityGraph::place(near.ids[at + 2 * ahead]));
+    if (at + ahead < near.ids.size()) graph.store(near.ids[at + ahead]).prefetch(VisibilityGraph::place(near.ids[at + ahead]));
+    const auto i = near.ids[at];
     const auto row = graph.entries(i);
-    asked.clear(), ends.clear();
-    for (std::size_t k = 0; k < row.to.size(); ++k)
-      if (row.to[k] > i || number.find(row.to[k]) >= near.size()) asked.push_back(k), ends.push_back(graph.position(nodes, row.to[k]));  // else j has asked
-    blocked.assign(asked.size(), 0);
+    // What is not beyond the slab on the same side.
+    const Slab& slab = near.slab[near.slabs[at]];
+    const double height = slab.height(graph.position(nodes, i));
+    const bool below = height < slab.from, above = height > slab.to;
+    asked.resize(std::max(asked.size(), row.to.size()));
+    std::size_t count = 0;
+    for (std::uint32_t k = 0; k < row.to.size(); ++k) {
+      const double h = slab.height(graph.position(nodes, row.to[k]));
+      asked[count] = k;
+      count += !((below & (h < slab.from)) | (above & (h > slab.to)));
+    }
+    ends.clear();
+    std::size_t kept = 0;
+    for (std::size_t a = 0; a < count; ++a) {
+      const auto j = row.to[asked[a]];
+      if (number.find(j) < at) continue;  // it has asked
+      asked[kept++] = asked[a], ends.push_back(graph.position(nodes, j));
+    }
+    blocked.assign(kept, 0);
     tree.blocks(graph.position(nodes, i), ends, blocked.data());
-    for (std::size_t a = 0; a < asked.size(); ++a)
+    for (std::size_t a = 0; a < kept; ++a)
       if (blocked[a]) pairs.push_back({at, number.add(row.to[asked[a]]), row.bits[asked[a]]});
   }
   return rows_of(pairs, number.ids());

@@ -1,6 +1,8 @@
 // Boruvka: each component's shortest way out, round by round. A node's nearest nodes are asked first. One that has none
 // of another component among them is searched for in the tree, unless its component knows a way out that is shorter than
 // the distance to the last of them: where nodes are spread evenly it always does.
+// Where only edges beyond the nearest nodes are asked for, all that is joined by shorter edges than any node's last nearest
+// counts as one component from the start. Where nodes are spread evenly that is everything, and nothing is left to do.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>
@@ -23,24 +25,39 @@ struct Way {
 class Boruvka {
  public:
   Boruvka(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k)
-      : tree_(tree), x_(positions), near_(near), k_(static_cast<std::size_t>(k)), component_(positions.size()), best_(positions.size()),
-        asked_(positions.size(), 0) {
+      : tree_(tree), x_(positions), near_(near), k_(static_cast<std::size_t>(k)), component_(positions.size()), components_(positions.size()) {
     std::iota(component_.begin(), component_.end(), 0u);
+  }
+
+  // Joins what edges of nearest nodes join that are shorter than those of every node's last nearest. Each such edge is in
+  // the rows of both its ends, and all other pairs of nodes come later in the tree.
+  void join_near() {
+    if (k_ == 0) return;
+    double reach = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < x_.size(); ++i)
+      if (const auto last = near(i, k_ - 1); last.valid()) reach = std::min(reach, square(i, last.value));
+    constexpr std::size_t few = 8;  // mostly join all
+    for (std::size_t first = 0; first < k_ && components_ > 1; first += first == 0 ? few : k_)
+      for (std::uint32_t i = 0; i < x_.size(); ++i)
+        for (std::size_t q = first; q < (first == 0 ? std::min(few, k_) : k_); ++q) {
+          const auto j = near(i, q);
+          if (!j.valid() || !(square(i, j.value) < reach)) break;
+          if (j.value < i) join(i, j.value);
+        }
+    for (std::uint32_t i = 0; i < x_.size(); ++i) component_[i] = component_[component_[i]];
   }
 
   std::vector<Way> run() {
     std::vector<Way> edges;
-    while (edges.size() + 1 < x_.size()) {
+    if (components_ > 1) best_.resize(x_.size()), asked_.resize(x_.size(), 0);
+    while (components_ > 1) {
       std::fill(best_.begin(), best_.end(), Way());
       for (std::uint32_t i = 0; i < x_.size(); ++i) ask_near(i);
       search();
       for (std::uint32_t c = 0; c < best_.size(); ++c) {
         const Way& way = best_[c];
         if (way.i == none) continue;
-        const auto a = find(way.i), b = find(way.j);
-        if (a == b) continue;
-        component_[std::max(a, b)] = std::min(a, b);
-        edges.push_back(way);
+        if (join(way.i, way.j)) edges.push_back(way);
       }
       for (std::uint32_t i = 0; i < x_.size(); ++i) component_[i] = component_[component_[i]];  // roots come first
     }
@@ -53,6 +70,13 @@ class Boruvka {
   std::uint32_t find(std::uint32_t v) {
     while (component_[v] != v) v = component_[v] = component_[component_[v]];
     return v;
+  }
+  bool join(std::uint32_t i, std::uint32_t j) {
+    const auto a = find(i), b = find(j);
+    if (a == b) return false;
+    component_[std::max(a, b)] = std::min(a, b);
+    --components_;
+    return true;
   }
   void offer(std::uint32_t i, std::uint32_t j) {
     Way& way = best_[component_[i]];
@@ -113,6 +137,7 @@ class Boruvka {
   std::span<const NodeId> near_;
   const std::size_t k_;
   std::vector<std::uint32_t> component_;  // its lowest node, between rounds
+  std::size_t components_;                // how many
   std::vector<Way> best_;                 // of each component, by that node
   std::vector<std::uint32_t> asked_;      // how many of a node's nearest are in its component
   std::vector<std::uint32_t> owner_;
@@ -135,7 +160,9 @@ std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> posit
 }
 
 std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k) {
-  auto edges = Boruvka(tree, positions, near, k).run();
+  Boruvka boruvka(tree, positions, near, k);
+  boruvka.join_near();
+  auto edges = boruvka.run();
   const auto length = static_cast<std::size_t>(k);
   const auto has = [&](std::uint32_t i, std::uint32_t j) {
     const auto row = near.subspan(i * length, length);

@@ -19,7 +19,7 @@ if(KERF_FUZZ)
   target_link_options(kerf_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-set(KERF_ROOMS base geometry surface sampling graph crack body mechanics contact simulation io)
+set(KERF_ROOMS base geometry surface sampling graph crack score body mechanics contact simulation io)
 
 function(kerf_room room)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)

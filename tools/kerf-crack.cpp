@@ -54,8 +54,13 @@ class Cutting {
   void sweep(const std::vector<geo::Front>& fronts) {
     const auto progress = t_.progress();
     std::size_t done = 0, total = 0;
-    for (const auto& f : fronts) total += std::min(w_.to, f.steps.size() - 1) - std::min(w_.from, f.steps.size() - 1);
+    for (const auto& f : fronts) total += f.is_sheet() ? 1 : std::min(w_.to, f.steps.size() - 1) - std::min(w_.from, f.steps.size() - 1);
     for (const auto& front : fronts) {
+      if (front.is_sheet()) {
+        geo::report(progress, "crack " + front.name, done++, total);
+        if (w_.from == 0) insert(front.name, front.steps[0], front.triangles);  // later steps have it already
+        continue;
+      }
       const std::size_t last = std::min(w_.to, front.steps.size() - 1);
       if (w_.from >= last) throw geo::InputError("front '" + front.name + "' has only " + std::to_string(front.steps.size()) + " time steps; change --steps");
       const std::size_t row = state_of(front);
@@ -67,16 +72,17 @@ class Cutting {
     geo::report(progress, "done", total, total);
   }
 
-  void insert(const std::string& path) {
-    const auto sheet = geo::read_surface(path).mesh;
+  void insert(const std::string& name, const std::vector<geo::Vec3>& points, const std::vector<geo::Triangle>& triangles) {
+    geo::TriangleMesh sheet;
+    sheet.vertices = points, sheet.triangles = triangles;
     geo::CrackWork work;
     geo::CrackDelta delta;
     try {
       delta = geo::insert_sheet(complex_, sheet, next_crack(), options_, &work);
     } catch (const geo::GeometryError& e) {
-      throw geo::GeometryError(path + ": " + e.what());
+      throw geo::GeometryError(name + ": " + e.what());
     }
-    note("\"sheet\":" + tool::quoted(path) + "," + figures(work) + remeshed(delta.new_faces));
+    note("\"sheet\":" + tool::quoted(name) + "," + figures(work) + remeshed(delta.new_faces));
   }
 
   void roughen() {
@@ -141,7 +147,7 @@ class Cutting {
       } catch (const geo::GeometryError& e) {
         if (!w_.repro.empty()) {
           geo::write_all(w_.repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, cut_surface(), states_); });
-          geo::write_all(w_.repro + ".front", [&](std::ostream& out) { geo::write_fronts(out, {{front.name, front.closed, {start, next}}}); });
+          geo::write_all(w_.repro + ".front", [&](std::ostream& out) { geo::write_fronts(out, {{front.name, front.closed, {start, next}, {}}}); });
         }
         throw geo::GeometryError(w_.model + ": front '" + front.name + "', " + e.what() + "; " +
                                  (w_.repro.empty() ? "run again with --repro FILE to keep the case" : "the case is in " + w_.repro + ".ply and .front"));
@@ -185,7 +191,7 @@ int main(int argc, char** argv) {
                "  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply\n  kerf-crack bear.off --sheet plane.obj --jagged 0.01 -o broken.ply");
   Wishes w;
   t.argument("MESH", w.model, "A closed surface, or the output of an earlier run to go on with");
-  t.option("--front", w.fronts, "Front files, each front a crack of its own");
+  t.option("--front", w.fronts, "Front files, each front or sheet a crack of its own");
   t.option("--sheet", w.sheets, "Surfaces, open or closed, each inserted whole as a crack of its own");
   t.option("--steps", w.steps, "Sweep from time step A to B only, as A:B");
   t.option("--max-move", w.max_move, "Divide steps in which a front point moves farther; 0: never");
@@ -206,7 +212,10 @@ int main(int argc, char** argv) {
     Cutting cutting(w, t);
     cutting.decimate();
     cutting.sweep(fronts);
-    for (const auto& path : w.sheets) cutting.insert(path);
+    for (const auto& path : w.sheets) {
+      const auto sheet = geo::read_surface(path).mesh;
+      cutting.insert(path, sheet.vertices, sheet.triangles);
+    }
     cutting.roughen();
     cutting.write(target);
   });

@@ -21,7 +21,7 @@ inline Kind kind_of(const std::string& bytes, const std::string& name) {
     end = std::min(bytes.find('\n', at), bytes.size());
     at = bytes.find_first_not_of(" \t\r", at);
     if (at >= end || bytes[at] == '#') continue;
-    if (begins("front ", at) || begins("front\t", at)) return Kind::fronts;
+    if (begins("front ", at) || begins("front\t", at) || begins("sheet ", at) || begins("sheet\t", at)) return Kind::fronts;
     if (begins("OFF", at) || begins("COFF", at) || begins("solid", at)) return Kind::surface;
     lines = lines || begins("l ", at);
     faces = begins("f ", at);

@@ -10,11 +10,12 @@ namespace geo {
 namespace {
 
 void check(const Front& front, const std::string& name) {
-  const std::string who = name + ": front '" + shown(front.name) + "' ";
-  if (front.steps.size() < 2) throw InputError(who + "has one time step only; it needs at least two to sweep anything");
+  const bool sheet = front.is_sheet();
+  const std::string who = name + (sheet ? ": sheet '" : ": front '") + shown(front.name) + "' ";
+  if (front.steps.size() < 2 && !sheet) throw InputError(who + "has one time step only; it needs at least two to sweep anything (a sheet, triangles)");
   for (std::size_t s = 0; s < front.steps.size(); ++s) {
     for (const Vec3& p : front.steps[s])
-      if (!in_range(p)) throw InputError(who + "has a coordinate of no sensible size in step " + std::to_string(s) + "; repair the file");
+      if (!in_range(p)) throw InputError(who + "has a coordinate of no sensible size" + (sheet ? "" : " in step " + std::to_string(s)) + "; repair the file");
     if (front.steps[s].size() < (front.closed ? 3u : 2u))
       throw InputError(who + "has " + std::to_string(front.steps[s].size()) + " point(s) in step " + std::to_string(s) + "; it needs at least " + (front.closed ? "three" : "two"));
   }
@@ -63,21 +64,41 @@ std::vector<Front> parse_fronts(const std::string& bytes, const std::string& nam
   Lines lines(bytes, name);
   std::vector<std::string_view> words;
   std::vector<Front> fronts;
+  bool sheet = false;  // the last one is
+  const auto point = [&](std::size_t first) {
+    if (words.size() != first + 3) lines.fail("a point is three numbers");
+    return Vec3(lines.real(words[first]), lines.real(words[first + 1]), lines.real(words[first + 2]));
+  };
   while (lines.next(words)) {
     if (words[0] == "front") {
       if (words.size() < 2 || words.size() > 3 || (words.size() == 3 && words[2] != "closed")) lines.fail("write 'front NAME' or 'front NAME closed'");
-      fronts.push_back({std::string(words[1]), words.size() == 3, {}});
+      fronts.push_back({std::string(words[1]), words.size() == 3, {}, {}});
+      sheet = false;
+    } else if (words[0] == "sheet") {
+      if (words.size() != 2) lines.fail("write 'sheet NAME'");
+      fronts.push_back({std::string(words[1]), false, {{}}, {}});
+      sheet = true;
     } else if (fronts.empty()) {
       if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib") return from_obj(bytes, name);
-      lines.fail("begins with '" + shown(words[0]) + "'; a front file begins with 'front NAME'");
+      lines.fail("begins with '" + shown(words[0]) + "'; a front file begins with 'front NAME' or 'sheet NAME'");
+    } else if (sheet && words[0] == "v") {
+      fronts.back().steps[0].push_back(point(1));
+    } else if (sheet) {
+      if (words.size() != 4 || words[0] != "f") lines.fail("a sheet has points 'v x y z' and triangles 'f a b c'");
+      Triangle t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto row = lines.integer(words[k + 1]);
+        if (row < 1 || row > static_cast<long long>(fronts.back().steps[0].size())) lines.fail("a triangle names a point that is not there; points are numbered from 1 and stand before");
+        t[k] = static_cast<std::uint32_t>(row - 1);
+      }
+      fronts.back().triangles.push_back(t);
     } else if (words[0] == "step") {
       if (words.size() != 2) lines.fail("write 'step T'");
       lines.real(words[1]);
       fronts.back().steps.emplace_back();
     } else {
       if (fronts.back().steps.empty()) lines.fail("a point stands before the first 'step'");
-      if (words.size() != 3) lines.fail("a point is three numbers");
-      fronts.back().steps.back().push_back({lines.real(words[0]), lines.real(words[1]), lines.real(words[2])});
+      fronts.back().steps.back().push_back(point(0));
     }
   }
   if (fronts.empty()) throw InputError(name + ": holds no front; write 'front NAME'");
@@ -88,6 +109,12 @@ std::vector<Front> parse_fronts(const std::string& bytes, const std::string& nam
 void write_fronts(std::ostream& out, const std::vector<Front>& fronts) {
   out.precision(17);
   for (const auto& f : fronts) {
+    if (f.is_sheet()) {
+      out << "sheet " << f.name << '\n';
+      for (const auto& p : f.steps[0]) out << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+      for (const auto& t : f.triangles) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+      continue;
+    }
     out << "front " << f.name << (f.closed ? " closed" : "") << '\n';
     for (std::size_t s = 0; s < f.steps.size(); ++s) {
       out << "step " << s << '\n';

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::vector<std::string> rooms{"base", "geometry", "surface",   "sampling", "graph",      "crack",
-                                     "body", "mechanics", "contact", "simulation", "io"};
+                                     "score", "body", "mechanics", "contact", "simulation", "io"};
 // The paper's main claim is that surface and discretisation do not know each other.
 const std::set<std::pair<std::string, std::string>> strangers{{"crack", "graph"}, {"crack", "sampling"}};
 // Heavy libraries have one door each: the rooms whose sources may include them. No header may.

@@ -1,0 +1,153 @@
+#include "score/jagged.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "crack/roughen.h"
+#include "geometry/triangle_index.h"
+#include "surface/check.h"
+
+namespace geo {
+namespace {
+
+std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t t) {
+  const auto& c = mesh.triangles[t];
+  return {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
+}
+
+// Drops the triangles that have nothing to do with the material, and the vertices that nothing uses then.
+void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
+  std::vector<char> keep(walls.triangles.size());
+  parallel_for(keep.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto c = corners(walls, t);
+      const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
+      double radius = margin;
+      for (const Vec3& p : c) radius = std::max(radius, margin + (p - middle).norm());
+      keep[t] = skin.closest(middle, radius).row != ~0u || skin.inside(middle);
+    }
+  });
+  std::vector<std::uint32_t> row(walls.vertices.size(), ~0u);
+  TriangleMesh kept;
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    if (!keep[t]) continue;
+    Triangle triangle = walls.triangles[t];
+    for (auto& v : triangle) {
+      if (row[v] == ~0u) row[v] = static_cast<std::uint32_t>(kept.vertices.size()), kept.vertices.push_back(walls.vertices[v]);
+      v = row[v];
+    }
+    kept.triangles.push_back(triangle);
+  }
+  walls = std::move(kept);
+}
+
+// Longest edges first: each is then the longest of all its triangles, which stay about as round as they were.
+void divide(TriangleMesh& walls, double longest) {
+  struct Edge {
+    double length2;
+    std::uint32_t a, b;
+    bool operator<(const Edge& o) const { return std::tie(length2, o.a, o.b) < std::tie(o.length2, a, b); }
+  };
+  const auto key = [](std::uint32_t a, std::uint32_t b) { return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b); };
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> at;
+  std::priority_queue<Edge> edges;
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t t) {
+    auto& triangles = at[key(a, b)];
+    triangles.push_back(t);
+    const double length2 = (walls.vertices[a] - walls.vertices[b]).squaredNorm();
+    if (triangles.size() == 1 && length2 > longest * longest) edges.push({length2, std::min(a, b), std::max(a, b)});
+  };
+  for (std::uint32_t t = 0; t < walls.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) add(walls.triangles[t][k], walls.triangles[t][(k + 1) % 3], t);
+  while (!edges.empty()) {
+    const Edge e = edges.top();
+    edges.pop();
+    auto node = at.extract(key(e.a, e.b));
+    if (node.empty()) continue;
+    const auto middle = static_cast<std::uint32_t>(walls.vertices.size());
+    walls.vertices.push_back(0.5 * (walls.vertices[e.a] + walls.vertices[e.b]));
+    for (const auto t : node.mapped()) {
+      const auto other = static_cast<std::uint32_t>(walls.triangles.size());
+      Triangle half = walls.triangles[t];
+      std::uint32_t apex = 0;
+      for (const auto v : half)
+        if (v != e.a && v != e.b) apex = v;
+      std::replace(walls.triangles[t].begin(), walls.triangles[t].end(), e.b, middle);
+      std::replace(half.begin(), half.end(), e.a, middle);
+      walls.triangles.push_back(half);
+      auto& side = at[key(e.b, apex)];
+      std::replace(side.begin(), side.end(), t, other);
+      add(middle, apex, t), add(e.a, middle, t);
+      at[key(middle, apex)].push_back(other);
+      add(middle, e.b, other);
+    }
+  }
+}
+
+// The vertices of triangles that cross others.
+std::vector<std::uint32_t> crossing_vertices(const TriangleMesh& walls) {
+  TriangleIndex index;
+  index.reserve(walls.triangles.size());
+  for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
+    const auto c = corners(walls, t);
+    index.insert(t, box_of(c[0], c[1], c[2]));
+  }
+  std::vector<char> bad(walls.triangles.size());
+  parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto c = corners(walls, t);
+      near.clear();
+      index.find_near_triangle(c[0], c[1], c[2], 0, near);
+      for (const auto other : near)
+        if (other != t && faces_cross(walls.triangles[t], c, walls.triangles[other], corners(walls, other))) bad[t] = 1;
+    }
+  });
+  std::vector<std::uint32_t> vertices;
+  for (std::size_t t = 0; t < bad.size(); ++t)
+    if (bad[t]) vertices.insert(vertices.end(), walls.triangles[t].begin(), walls.triangles[t].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, double margin) {
+  // Coarsely first, so that little is divided that is dropped afterwards.
+  for (const double edge : {8 * longest, 2 * longest, longest}) {
+    divide(walls, edge);
+    trim(walls, skin, margin);
+  }
+}
+
+void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& o) {
+  if (!(o.amplitude >= 0 && o.amplitude < 1) || !(o.frequency > 0 && o.frequency <= 1e4) || o.octaves < 1 || o.octaves > 16 || !(o.edge >= 0))
+    throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive and at most 10000, its octaves 1 to 16");
+  const double size = skin.box().diagonal();
+  refine_walls(walls, skin, size * (o.edge > 0 ? o.edge : 1 / (8 * o.frequency)), 4 * o.amplitude * size);
+  const std::vector<Vec3> flat = walls.vertices;
+  std::vector<Vec3> way(flat.size(), Vec3::Zero());
+  parallel_for(flat.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double high = o.amplitude * size, fine = o.frequency / size;
+      for (int octave = 0; octave < o.octaves; ++octave, high *= 0.6, fine *= 2)
+        for (int k = 0; k < 3; ++k)
+          way[i][k] += high * noise(fine * (flat[i] - skin.box().lo), o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
+      walls.vertices[i] = flat[i] + way[i];
+    }
+  });
+  std::vector<int> lowered(flat.size());
+  for (auto bad = crossing_vertices(walls); !bad.empty(); bad = crossing_vertices(walls))
+    for (const auto v : bad) {
+      way[v] *= ++lowered[v] < 4 ? 0.5 : 0;
+      walls.vertices[v] = flat[v] + way[v];
+    }
+  trim(walls, skin, 0);
+}
+
+}  // namespace geo

@@ -1,0 +1,199 @@
+#include "score/patterns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <Eigen/LU>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "score/voronoi.h"
+#include "score/walls.h"
+
+namespace geo {
+namespace {
+
+constexpr const char* names[] = {"planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks", "curves", "sheets"};
+constexpr double turn = 6.283185307179586;
+
+Vec3 axis_of(const Box3& box, const PatternOptions& o) {
+  if (o.axis) return *o.axis;
+  int axis = 2;
+  const Vec3 size = box.hi - box.lo;
+  if (o.pattern == Pattern::radial || o.pattern == Pattern::glass) size.minCoeff(&axis);
+  else if (o.pattern != Pattern::curves) size.maxCoeff(&axis);
+  return Vec3::Unit(axis);
+}
+
+Box3 widened(const Box3& box) { return box.grown(0.25 * box.diagonal()); }
+
+// `count` parts of [low, high], a little uneven; the outer ones reach farther by the margin.
+std::vector<double> cuts(double low, double high, int count, double uneven, double margin, Random& random) {
+  std::vector<double> at{low - margin};
+  const double step = (high - low) / count;
+  for (int i = 1; i < count; ++i) at.push_back(low + step * (i + uneven * random.uniform(-0.5, 0.5)));
+  at.push_back(high + margin);
+  return at;
+}
+
+// How many parts along each extent make about so many boxes, about as long as wide.
+std::array<int, 3> divisions(const Vec3& size, int cells) {
+  const double edge = std::cbrt(size.prod() / cells);
+  std::array<int, 3> n;
+  for (int k = 0; k < 3; ++k) n[std::size_t(k)] = std::max(1, int(std::lround(size[k] / edge)));
+  return n;
+}
+
+TriangleMesh planes(const Box3& box, int cells, const PatternOptions& o) {
+  const Mat3 frame = frame_along(axis_of(box, o));
+  const Box3 along = box_along(box, frame);
+  Random random(o.seed);
+  const bool crossing = o.pattern == Pattern::crossing;
+  const auto n = crossing ? divisions(along.hi - along.lo, cells) : std::array<int, 3>{1, 1, cells};
+  std::array<std::vector<double>, 3> at;
+  for (std::size_t k = 0; k < 3; ++k) at[k] = cuts(along.lo[int(k)], along.hi[int(k)], n[k], 0.3, along.diagonal(), random);
+  return grid_walls(at, [&](int i, int j, int k) { return (i * n[1] + j) * n[2] + k; }, frame);
+}
+
+TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
+  // Twice as long as wide, wide as high; each course is shifted by half a brick both ways. A brick is 2 × 2 halves.
+  const Mat3 frame = frame_along(axis_of(box, o));
+  const Box3 along = box_along(box, frame);
+  const Vec3 size = along.hi - along.lo;
+  const double high = std::cbrt(size.prod() / (2.0 * cells));
+  const Vec3 half(high, 0.5 * high, high);
+  Random random(o.seed);
+  std::array<std::vector<double>, 3> at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = int(k);
+    const int n = int(std::ceil(size[axis] / half[axis])) + 2;
+    const double first = along.lo[axis] - half[axis] * random.uniform(1, 2);
+    for (int i = 0; i <= n + 1; ++i) at[k].push_back(first + half[axis] * i);
+    at[k].front() -= size.norm(), at[k].back() += size.norm();
+  }
+  const int columns = int(at[0].size()), rows = int(at[1].size());
+  return grid_walls(at, [&](int i, int j, int k) { return (k * rows + (j + k % 2) / 2) * columns + (i + k % 2) / 2; }, frame);
+}
+
+TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
+  const Mat3 frame = frame_along(axis_of(box, o));
+  const Box3 along = box_along(box, frame);
+  const Vec3 hub = frame.transpose() * o.impact.value_or(box.center());
+  Random random(o.seed);
+  double reach = 0;
+  for (int corner = 0; corner < 4; ++corner)
+    reach = std::max(reach, Vec2((corner & 1 ? along.hi : along.lo).x() - hub.x(), (corner & 2 ? along.hi : along.lo).y() - hub.y()).norm());
+  const bool rings = o.pattern == Pattern::glass;
+  const int spokes = std::max(2, rings ? int(std::lround(std::sqrt(2.5 * cells))) : cells);
+  const int circles = rings ? std::max(1, int(std::lround(double(cells) / spokes))) : 1;
+  std::vector<Vec2> points{{hub.x(), hub.y()}};
+  std::vector<std::array<std::uint32_t, 2>> segments;
+  const auto at = [&](int spoke, int circle) { return circle == 0 ? 0u : static_cast<std::uint32_t>(1 + spoke % spokes * circles + circle - 1); };
+  std::vector<double> angle;
+  for (int s = 0; s < spokes; ++s) angle.push_back(turn / spokes * (s + 0.5 * random.uniform(-0.5, 0.5)));
+  for (int s = 0; s < spokes; ++s)
+    for (int c = 1; c <= circles; ++c) {
+      // Circles stand the closer the nearer to the hub; the last one is outside, where no chord comes near the model.
+      const double uneven = rings && c < circles ? 0.25 * random.uniform(-1, 1) : 0;
+      const double radius = c == circles ? 3 * reach + box.diagonal() : reach * std::pow((c + uneven) / circles, 1.6);
+      const double a = angle[std::size_t(s)] + (c < circles ? turn / spokes * 0.15 * random.uniform(-1, 1) : 0);
+      points.push_back(points[0] + radius * Vec2(std::cos(a), std::sin(a)));
+      segments.push_back({at(s, c - 1), at(s, c)});
+      if (c < circles) segments.push_back({at(s, c), at(s + 1, c)});
+    }
+  const double margin = 0.25 * box.diagonal();
+  return raised_walls(points, segments, along.lo.z() - margin, along.hi.z() + margin, frame);
+}
+
+TriangleMesh cells_of_sites(const TriangleBvh& skin, int cells, const PatternOptions& o) {
+  Mat3 stretch = Mat3::Identity();
+  if (o.pattern == Pattern::wood) {
+    const Vec3 axis = axis_of(skin.box(), o).normalized();
+    stretch -= (1 - 1 / o.grain) * axis * axis.transpose();
+  }
+  const auto sites = spread_sites(skin, cells, stretch, o);
+  if (sites.size() < 2) return {};
+  TriangleMesh walls = voronoi_walls(sites, box_along(widened(skin.box()), stretch.transpose()));
+  const Mat3 back = stretch.inverse();
+  for (Vec3& p : walls.vertices) p = back * p;
+  return walls;
+}
+
+TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
+  const Mat3 frame = frame_along(axis_of(box, o));
+  const Box3 along = box_along(widened(box), frame);
+  std::vector<TriangleMesh> sheets;
+  for (const auto& curve : o.curves) {
+    std::vector<Vec2> points;
+    std::vector<std::array<std::uint32_t, 2>> segments;
+    for (const Vec3& p : curve) {
+      const Vec3 q = frame.transpose() * p;
+      if (!points.empty()) segments.push_back({static_cast<std::uint32_t>(points.size() - 1), static_cast<std::uint32_t>(points.size())});
+      points.push_back({q.x(), q.y()});
+    }
+    sheets.push_back(raised_walls(points, segments, along.lo.z(), along.hi.z(), frame));
+  }
+  return divided_by_each_other(sheets, widened(box));
+}
+
+}  // namespace
+
+Pattern pattern_named(std::string_view name) {
+  std::string all;
+  for (int i = 0; i < int(std::size(names)); ++i) {
+    if (name == names[i]) return Pattern(i);
+    all += std::string(i ? ", " : "") + names[i];
+  }
+  throw InputError("there is no pattern of this name; give one of " + all);
+}
+
+std::vector<Vec3> spread_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o) {
+  Random random(o.seed);
+  const Box3& box = skin.box();
+  const double diagonal = box.diagonal();
+  // How far apart sites stand there, for one away from the impact.
+  constexpr double closest = 0.15;
+  const auto spacing = [&](const Vec3& p) { return o.impact ? 1 - (1 - closest) * std::exp(-std::pow((p - *o.impact).norm() / (2 * o.cluster * diagonal), 2)) : 1.0; };
+  std::vector<Vec3> sites;
+  const auto candidate = [&](Vec3& p) {
+    for (int tries = 0; tries < 100000; ++tries) {
+      for (int k = 0; k < 3; ++k) p[k] = random.uniform(box.lo[k], box.hi[k]);
+      const bool taken = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
+      if (taken && skin.inside(p)) return true;
+    }
+    return false;
+  };
+  while (int(sites.size()) < count) {
+    Vec3 best = Vec3::Zero(), p;
+    double farthest = -1;
+    for (int tries = 0; tries < 10; ++tries) {
+      if (!candidate(p)) throw InputError("no place for Voronoi sites is found inside; is the model thinner than rounding?");
+      const Vec3 q = stretch * p;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Vec3& s : sites) nearest = std::min(nearest, (q - s).norm());
+      nearest /= spacing(p);
+      if (nearest > farthest) farthest = nearest, best = q;
+    }
+    sites.push_back(best);
+  }
+  return sites;
+}
+
+TriangleMesh pattern_walls(const TriangleBvh& skin, int cells, const PatternOptions& o) {
+  const Box3& box = skin.box();
+  switch (o.pattern) {
+    case Pattern::planes:
+    case Pattern::crossing: return planes(box, cells, o);
+    case Pattern::voronoi:
+    case Pattern::wood: return cells_of_sites(skin, cells, o);
+    case Pattern::radial:
+    case Pattern::glass: return wheel(box, cells, o);
+    case Pattern::bricks: return bricks(box, cells, o);
+    case Pattern::curves: return swept_curves(box, o);
+    case Pattern::sheets: return divided_by_each_other(o.sheets, widened(box));
+  }
+  return {};
+}
+
+}  // namespace geo

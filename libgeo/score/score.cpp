@@ -1,0 +1,123 @@
+#include "score/score.h"
+
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "crack/sheet.h"
+#include "score/partial.h"
+#include "surface/pieces.h"
+
+namespace geo {
+namespace {
+
+std::vector<std::array<Vec3, 3>> skin_of(const Complex& model) {
+  std::vector<std::array<Vec3, 3>> skin;
+  for (std::uint32_t f = 0; f < model.face_count(); ++f)
+    if (model.alive(FaceId(f)) && model.face(FaceId(f)).crack == 0) skin.push_back(model.corners(FaceId(f)));
+  return skin;
+}
+
+class Scoring {
+ public:
+  Scoring(const Complex& model, const ScoreOptions& options, const Progress& progress) : model_(model), o_(options), progress_(progress), skin_(skin_of(model)) {}
+
+  Score run() {
+    Try now{o_.pieces, o_.pattern.seed};
+    std::set<int> seen;
+    std::uint64_t variants = 0;
+    while (best_.attempts < o_.attempts && best_.pieces != wanted()) {
+      const bool done = attempt(now);
+      if (as_given()) break;
+      // As many cells more or fewer as pieces are missing, while that leads to new numbers; then with another seed.
+      seen.insert(now.cells);
+      const int next = std::max(1, done ? now.cells + int(wanted()) - int(now.pieces) : 0);
+      if (!done || seen.count(next) || seen.size() >= 8) {
+        now.seed = o_.pattern.seed + 0x9e3779b97f4a7c15ull * ++variants;
+        seen.clear();
+      }
+      now.cells = done ? next : o_.pieces;
+    }
+    if (best_.pieces == 0 && nearest_.pieces > 0) roughened(walls_of(nearest_));
+    if (best_.pieces == 0) throw GeometryError("no such pattern can be inserted" + reason_);
+    if (o_.depth < 1) {
+      if (!(o_.jagged.amplitude > 0)) refine_walls(best_.sheet, skin_, edge(), edge());
+      keep_shallow(best_.sheet, skin_, o_.depth);
+    }
+    return std::move(best_);
+  }
+
+ private:
+  std::uint32_t wanted() const { return static_cast<std::uint32_t>(o_.pieces); }
+  double edge() const { return skin_.box().diagonal() / (8 * o_.jagged.frequency); }
+
+  bool as_given() const { return o_.pattern.pattern == Pattern::curves || o_.pattern.pattern == Pattern::sheets; }
+
+  struct Try {
+    int cells;
+    std::uint64_t seed;
+    std::uint32_t pieces = 0;
+  };
+  TriangleMesh walls_of(const Try& t) const {
+    PatternOptions pattern = o_.pattern;
+    pattern.seed = t.seed;
+    return pattern_walls(skin_, t.cells, pattern);
+  }
+  double off(std::uint32_t pieces) const { return pieces == 0 ? 1e300 : std::abs(double(pieces) - o_.pieces); }
+
+  // Counts the pieces of the pattern as it is; where they are as many as wanted, roughens it. False when it cannot be inserted.
+  bool attempt(Try& t) {
+    report(progress_, "score", static_cast<std::size_t>(best_.attempts), static_cast<std::size_t>(o_.attempts));
+    ++best_.attempts;
+    try {
+      TriangleMesh walls = walls_of(t);
+      t.pieces = pieces_with(walls);
+      if (off(t.pieces) < off(nearest_.pieces)) nearest_ = t;
+      if (!(o_.jagged.amplitude > 0))
+        keep(walls, t.pieces);
+      else if (t.pieces == wanted() || as_given())
+        roughened(std::move(walls));
+      return true;
+    } catch (const GeometryError& e) {
+      reason_ = std::string(": ") + e.what();
+      return false;
+    }
+  }
+  void roughened(TriangleMesh walls) {
+    roughen_walls(walls, skin_, o_.jagged);
+    keep(walls, pieces_with(walls));
+  }
+  void keep(TriangleMesh& walls, std::uint32_t pieces) {
+    if (off(pieces) >= off(best_.pieces)) return;
+    best_.sheet = std::move(walls);
+    best_.pieces = pieces;
+  }
+
+  std::uint32_t pieces_with(const TriangleMesh& walls) const {
+    Complex cut = model_;
+    insert_sheet(cut, walls, cut.crack_count() + 1);
+    return find_pieces(cut).count;
+  }
+
+  const Complex& model_;
+  const ScoreOptions& o_;
+  const Progress& progress_;
+  const TriangleBvh skin_;
+  Score best_;
+  Try nearest_{};
+  std::string reason_;
+};
+
+}  // namespace
+
+Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress) {
+  if (options.pieces < 1 || options.pieces > 1000000) throw InputError("the number of pieces must be between 1 and 1000000");
+  if (!(options.depth > 0 && options.depth <= 1)) throw InputError("the depth must be above 0 and at most 100 percent");
+  if (options.attempts < 1) throw InputError("at least one attempt is needed");
+  const auto& p = options.pattern;
+  if (!(p.cluster > 0 && p.cluster <= 10)) throw InputError("the cluster's size must be above 0 and at most 10 diagonals");
+  if (!(p.grain >= 1 && p.grain <= 1000)) throw InputError("the grain must be between 1 and 1000");
+  return Scoring(model, options, progress).run();
+}
+
+}  // namespace geo

@@ -14,7 +14,7 @@ struct Front {
   std::string name;
   bool closed = false;
   std::vector<std::vector<Vec3>> steps;  ///< points per time step, each at least two
-  std::vector<Triangle> triangles;       ///< of a sheet: rows of steps[0]; else none
+  std::vector<Triangle> triangles{};     ///< of a sheet: rows of steps[0]; else none
 
   bool is_sheet() const { return !triangles.empty(); }
 };

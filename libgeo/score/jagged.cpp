@@ -142,11 +142,15 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
     }
   });
   std::vector<int> lowered(flat.size());
-  for (auto bad = crossing_vertices(walls); !bad.empty(); bad = crossing_vertices(walls))
-    for (const auto v : bad) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto v : crossing_vertices(walls)) {
+      if (way[v].isZero()) continue;
       way[v] *= ++lowered[v] < 4 ? 0.5 : 0;
       walls.vertices[v] = flat[v] + way[v];
+      changed = true;
     }
+  }
   trim(walls, skin, 0);
 }
 

@@ -1,10 +1,10 @@
 #include "score/score.h"
 
 #include <cmath>
-#include <set>
 
 #include "base/error.h"
 #include "crack/sheet.h"
+#include "score/join.h"
 #include "score/partial.h"
 #include "surface/pieces.h"
 
@@ -24,21 +24,25 @@ class Scoring {
 
   Score run() {
     Try now{o_.pieces, o_.pattern.seed};
-    std::set<int> seen;
     std::uint64_t variants = 0;
+    int low = 0, high = 2 * o_.pieces + 2;  // numbers of cells that make too few pieces, and too many
     while (best_.attempts < o_.attempts && best_.pieces != wanted()) {
       const bool done = attempt(now);
       if (as_given()) break;
-      // As many cells more or fewer as pieces are missing, while that leads to new numbers; then with another seed.
-      seen.insert(now.cells);
-      const int next = std::max(1, done ? now.cells + int(wanted()) - int(now.pieces) : 0);
-      if (!done || seen.count(next) || seen.size() >= 8) {
-        now.seed = o_.pattern.seed + 0x9e3779b97f4a7c15ull * ++variants;
-        seen.clear();
+      if (done && now.pieces < wanted()) {
+        low = now.cells;
+        now.cells += o_.pieces - int(now.pieces);
+      } else if (done) {
+        high = now.cells;
+        now.cells = int(double(now.cells) * o_.pieces / now.pieces);
       }
-      now.cells = done ? next : o_.pieces;
+      if (now.cells <= low || now.cells >= high) now.cells = (low + high) / 2;
+      if (!done || high - low < 2) {
+        now = {o_.pieces, o_.pattern.seed + 0x9e3779b97f4a7c15ull * ++variants};
+        low = 0, high = 2 * o_.pieces + 2;
+      }
     }
-    if (best_.pieces == 0 && nearest_.pieces > 0) roughened(walls_of(nearest_));
+    if (best_.pieces == 0 && nearest_.pieces > 0) finish(walls_of(nearest_));
     if (best_.pieces == 0) throw GeometryError("no such pattern can be inserted" + reason_);
     if (o_.depth < 1) {
       if (!(o_.jagged.amplitude > 0)) refine_walls(best_.sheet, skin_, edge(), edge());
@@ -65,38 +69,44 @@ class Scoring {
   }
   double off(std::uint32_t pieces) const { return pieces == 0 ? 1e300 : std::abs(double(pieces) - o_.pieces); }
 
-  // Counts the pieces of the pattern as it is; where they are as many as wanted, roughens it. False when it cannot be inserted.
+  // Counts the pieces of the pattern as it is; where they are few enough too many to be joined, finishes it. False when
+  // it cannot be inserted.
   bool attempt(Try& t) {
     report(progress_, "score", static_cast<std::size_t>(best_.attempts), static_cast<std::size_t>(o_.attempts));
     ++best_.attempts;
     try {
       TriangleMesh walls = walls_of(t);
-      t.pieces = pieces_with(walls);
+      t.pieces = as_given() ? 1 : find_pieces(cut_by(walls)).count;
       if (off(t.pieces) < off(nearest_.pieces)) nearest_ = t;
-      if (!(o_.jagged.amplitude > 0))
-        keep(walls, t.pieces);
-      else if (t.pieces == wanted() || as_given())
-        roughened(std::move(walls));
+      if (as_given() || (t.pieces >= wanted() && t.pieces <= wanted() + wanted() / 4 + 1)) t.pieces = finish(std::move(walls));
       return true;
     } catch (const GeometryError& e) {
       reason_ = std::string(": ") + e.what();
       return false;
     }
   }
-  void roughened(TriangleMesh walls) {
-    roughen_walls(walls, skin_, o_.jagged);
-    keep(walls, pieces_with(walls));
-  }
-  void keep(TriangleMesh& walls, std::uint32_t pieces) {
-    if (off(pieces) >= off(best_.pieces)) return;
-    best_.sheet = std::move(walls);
-    best_.pieces = pieces;
+
+  // Roughens walls, joins pieces that are too many, and keeps what comes nearest. Returns the pieces there were before.
+  std::uint32_t finish(TriangleMesh walls) {
+    if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged);
+    const Complex cut = cut_by(walls);
+    const Pieces pieces = find_pieces(cut);
+    std::uint32_t count = pieces.count;
+    if (count > wanted() && !as_given()) {
+      join_small_pieces(walls, cut, model_.crack_count() + 1, pieces, wanted());
+      count = find_pieces(cut_by(walls)).count;
+    }
+    if (off(count) < off(best_.pieces)) {
+      best_.sheet = std::move(walls);
+      best_.pieces = count;
+    }
+    return pieces.count;
   }
 
-  std::uint32_t pieces_with(const TriangleMesh& walls) const {
+  Complex cut_by(const TriangleMesh& walls) const {
     Complex cut = model_;
     insert_sheet(cut, walls, cut.crack_count() + 1);
-    return find_pieces(cut).count;
+    return cut;
   }
 
   const Complex& model_;

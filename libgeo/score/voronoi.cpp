@@ -131,7 +131,8 @@ bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners)
   return true;
 }
 
-// All walls, or nothing when the sites are too regular for names of four.
+// All walls, or nothing when the sites are too regular for names of four: a corner's place follows from the sites with about
+// as many digits lost as the walls' edges there are short, and half of all digits must be left.
 std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& box) {
   const auto count = static_cast<std::uint32_t>(sites.size());
   Corners corners(sites, box);
@@ -171,7 +172,9 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
   std::map<Name, std::uint32_t> rows;
   for (const auto& [pair, loop] : walls) {
     std::vector<std::uint32_t> polygon;
-    for (const Name& name : loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Name& name = loop[i];
+      if ((corners.at(name) - corners.at(loop[(i + 1) % loop.size()])).norm() < 0x1p-26 * box.diagonal()) return std::nullopt;
       const auto [entry, fresh] = rows.try_emplace(name, static_cast<std::uint32_t>(mesh.vertices.size()));
       if (fresh) mesh.vertices.push_back(corners.at(name));
       polygon.push_back(entry->second);
@@ -192,7 +195,7 @@ TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box) {
   std::sort(sorted.begin(), sorted.end(), [](const Vec3& a, const Vec3& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); });
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) throw InputError("two sites are at one place");
   Random random(sites.size());
-  for (double by = 1e-12 * box.diagonal(); by < 1e-3 * box.diagonal(); by *= 8) {
+  for (double by = 0x1p-16 * box.diagonal(); by < 0x1p-6 * box.diagonal(); by *= 2) {
     if (auto walls = walls_of(moved, box)) return *walls;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = (sites[i] + by * random.direction()).cwiseMax(box.lo).cwiseMin(box.hi);
   }

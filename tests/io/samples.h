@@ -130,6 +130,7 @@ inline std::vector<std::string> sample_surfaces() {
 inline std::vector<std::string> sample_fronts() {
   return {"# two fronts\nfront knife\nstep 0\n-1 -1 1.3\n-1 5 1.3\nstep 1\n2 -1 1.4\n2 5 1.3\nstep 2\n5 -1 1.5\n5 5 1.3\n"
           "front ring closed\nstep 0\n1 1 -1\n3 1 -1\n2 3 -1\nstep 0.5\n1 1 5\n3 1 5\n2 3 5\n2 2 5\n",
+          "sheet two\nv -1 -1 1.3\nv 5 -1 1.4\nv 5 5 1.3\nf 1 2 3\nv -1 5 1.2\nf 1 3 4\nfront a\nstep 0\n1.1 -1 -1\n1.1 -1 5\nstep 1\n1.1 5 -1\n1.2 5 5\n",
           "v -1 -1 1.3\nv -1 5 1.3\nv 2 -1 1.4\nv 2 5 1.3\no step1\nl 1 2\no step2\nl 3 -1\n",
           "o a\nv 1 1 -1\nv 3 1 -1\nv 2 3 -1\nl 1 2 3 1\no b\nv 1 1 5\nv 3 1 5\nv 2 3 5\nl 4/1 5/2 6 4\n"};
 }

@@ -216,6 +216,15 @@ TEST_CASE("fronts are read, and refused with file and line") {
   CHECK_THROWS_WITH(parse_fronts("front a\nstep 0\n0 0 nan\n", "f.front"), Catch::Contains("finite"));
   const auto obj = parse_fronts("v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\no s0\nl 1 2\no s1\nl 3 4\n", "f.obj");
   CHECK(obj.at(0).steps.size() == 2);
+  const auto sheets = parse_fronts("sheet s\nv 0 0 0.1\nv 1 0 0\nv 0 1 0\nf 1 2 3\nfront a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1 0 1\n", "f.front");
+  REQUIRE(sheets.size() == 2);
+  CHECK((sheets[0].is_sheet() && !sheets[1].is_sheet()));
+  const auto again = parse_fronts(bytes_of([&](auto& out) { write_fronts(out, sheets); }), "f");
+  CHECK((again.at(0).steps == sheets[0].steps && again.at(0).triangles == sheets[0].triangles && again.at(1).steps == sheets[1].steps));
+  CHECK_THROWS_WITH(parse_fronts("sheet s\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", "f.front"), Catch::Contains("f.front:4:"));
+  CHECK_THROWS_WITH(parse_fronts("sheet s\nv 0 0 0\nv 1 0 0\nf 0 1 2\n", "f.front"), Catch::Contains("numbered from 1"));
+  CHECK_THROWS_WITH(parse_fronts("sheet s\nv 0 0 0\nv 1 0 0\nv 1 1 0\n", "f.front"), Catch::Contains("triangles"));
+  CHECK_THROWS_WITH(parse_fronts("sheet s\nv 0 0 0\n1 0 0\n", "f.front"), Catch::Contains("f a b c"));
 }
 
 TEST_CASE("any change to a file gives an error or a result") {

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "crack/sheet.h"
 #include "io/kerf_bytes.h"
 #include "io/kerf_container.h"
 #include "io/samples.h"
@@ -72,6 +73,12 @@ Use use_fronts(std::vector<Front> fronts) {
   return [fronts = std::move(fronts)] {
     Complex k = Complex::from_skin(make_block({4, 4, 4}, 2));
     for (const auto& f : fronts) {
+      if (f.is_sheet()) {
+        TriangleMesh sheet;
+        sheet.vertices = f.steps[0], sheet.triangles = f.triangles;
+        insert_sheet(k, sheet, k.crack_count() + 1);
+        continue;
+      }
       FrontState state = begin_front(f.steps[0], f.closed, k.crack_count() + 1);
       auto at = f.steps[0];
       for (std::size_t s = 1; s < f.steps.size(); ++s) advance(k, state, at = correspond(at, f.steps[s], f.closed));

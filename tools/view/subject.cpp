@@ -46,8 +46,16 @@ void add(Subject& subject, const std::string& path) {
       subject.nodes = geo::parse_nodes(bytes, path);
       break;
     case tool::Kind::fronts: {
-      auto fronts = geo::parse_fronts(bytes, path);
-      subject.fronts.insert(subject.fronts.end(), std::make_move_iterator(fronts.begin()), std::make_move_iterator(fronts.end()));
+      for (auto& front : geo::parse_fronts(bytes, path)) {
+        if (!front.is_sheet()) {
+          subject.fronts.push_back(std::move(front));
+          continue;
+        }
+        if (!subject.surface.triangles.empty()) refuse("a surface");
+        subject.surface.vertices = std::move(front.steps[0]);
+        subject.surface.triangles = std::move(front.triangles);
+        subject.surface.patch.assign(subject.surface.triangles.size(), 1);  // seen as a crack
+      }
       break;
     }
     case tool::Kind::surface:

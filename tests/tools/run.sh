@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | killed
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | killed
 set -u
 script=$(realpath "$0")
 PATH=$1:$2:$PATH models=$3 what=$4
@@ -96,7 +96,7 @@ contract)
   kerf-model block --edge 0.25 -o block.ply
   kerf-model front --around block.ply --steps 2 -o ok.front
   kerf-sample block.ply --spacing 12% | kerf-graph --surface block.ply -o ok.kerf
-  for tool in kerf-sample kerf-graph kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-view; do
+  for tool in kerf-sample kerf-graph kerf-score kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-view; do
     $tool --help | grep -q Examples || fail "$tool --help has no examples"
     $tool --version | grep -q "$tool (kerf) [0-9]" || fail "$tool --version"
     expect 2 "see $tool --help" $tool --no-such-option
@@ -130,6 +130,35 @@ contract)
   quietly kerf-graph vdb.pcd --surface level.ply -o vdb.kerf
   quietly kerf-info --check -q vdb.kerf
   kerf-sample block.ply -n 500 --levels 3 --pattern blue --json -o figures.pcd | grep -q '^{"nodes":500,.*"levels":\[{"spacing":.*"thinnest":null,"too_thin":null,"seconds":{"read":' || fail "kerf-sample --json"
+  ;;
+scores)
+  kerf-model block --edge 0.25 -o block.ply
+  for pattern in planes crossing voronoi radial glass wood bricks; do
+    quietly kerf-score block.ply --pattern $pattern --pieces 8 --jagged 0.01 --bumps 4 -o $pattern.front
+    quietly kerf-crack block.ply --front $pattern.front -o $pattern.ply
+    quietly kerf-info --check -q $pattern.front
+    quietly kerf-info --check -q $pattern.ply
+    kerf-info --json $pattern.ply | grep -q '"pieces":8,' || fail "$pattern does not make 8 pieces"
+  done
+  kerf-score -j1 block.ply --pattern voronoi --pieces 8 --jagged 0.01 --bumps 4 -o one.front
+  cmp voronoi.front one.front || fail "threads change bytes"
+  kerf-score block.ply --pattern voronoi --pieces 8 --jagged 0.01 --bumps 4 --seed 2 -o other.front
+  cmp -s voronoi.front other.front && fail "seeds change nothing"
+  quietly kerf-score block.ply --pattern voronoi --pieces 8 --depth 60% -o partial.front
+  quietly kerf-crack block.ply --front partial.front -o partial.ply
+  kerf-info --json partial.ply | grep -q '"pieces":1,' || fail "a partial score parts the body"
+  kerf-info --json partial.ply | grep -q '"crack_faces":0,' && fail "a partial score cuts nothing"
+  printf 'o a\nv 0.5 -1 0\nv 0.6 2 0\nl 1 2\no b\nv -1 0.4 0\nv 3 0.6 0\nl 3 4\n' >lines.obj
+  quietly kerf-score block.ply --pattern curves --curves lines.obj -o curves.front
+  quietly kerf-crack block.ply --front curves.front -o curves.ply
+  kerf-info --json curves.ply | grep -q '"pieces":4,' || fail "two curves that cross do not make 4 pieces"
+  kerf-score block.ply --pattern planes --pieces 3 --json -o planes.front | grep -q '^{"pattern":"planes","pieces":3,"attempts":' || fail "kerf-score --json"
+  for options in "--pattern zigzag" "--pieces 0" "--attempts 0" "--jagged 1" "--bumps 0" "--depth 0%" "--depth 80" "--axis 0,0,0" "--axis up" "--impact 1,2" "--cluster 0" "--grain 0" "--pattern curves" "--sheets x.obj"; do
+    expect 2 "${options%% *}" kerf-score block.ply $options -o x.front
+  done
+  expect 66 "cannot" kerf-score missing.ply -o x.front
+  expect 66 "cannot" kerf-score block.ply --pattern sheets --sheets missing.ply -o x.front
+  expect 73 "cannot" kerf-score block.ply --pieces 3 -o none/x.front
   ;;
 kinds)
   # A file is known by what it holds, not by its first line.

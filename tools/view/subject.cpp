@@ -46,16 +46,20 @@ void add(Subject& subject, const std::string& path) {
       subject.nodes = geo::parse_nodes(bytes, path);
       break;
     case tool::Kind::fronts: {
+      geo::TriangleMesh sheets;  // seen as cracks
       for (auto& front : geo::parse_fronts(bytes, path)) {
         if (!front.is_sheet()) {
           subject.fronts.push_back(std::move(front));
           continue;
         }
-        if (!subject.surface.triangles.empty()) refuse("a surface");
-        subject.surface.vertices = std::move(front.steps[0]);
-        subject.surface.triangles = std::move(front.triangles);
-        subject.surface.patch.assign(subject.surface.triangles.size(), 1);  // seen as a crack
+        const auto first = static_cast<std::uint32_t>(sheets.vertices.size());
+        sheets.vertices.insert(sheets.vertices.end(), front.steps[0].begin(), front.steps[0].end());
+        for (const auto& [a, b, c] : front.triangles) sheets.triangles.push_back({first + a, first + b, first + c});
       }
+      if (sheets.triangles.empty()) break;
+      if (!subject.surface.triangles.empty()) refuse("a surface");
+      sheets.patch.assign(sheets.triangles.size(), 1);
+      subject.surface = std::move(sheets);
       break;
     }
     case tool::Kind::surface:

@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "base/error.h"
+#include "info/files.h"
+#include "io/body_file.h"
+#include "io/scene_file.h"
+#include "io/stream.h"
+#include "model.h"
+#include "tool.h"
+
+namespace info {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Names two nodes at one place; empty when there are none.
+std::string twins(const geo::NodeSet& nodes) {
+  std::vector<std::uint32_t> order(nodes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [&](std::uint32_t i, std::uint32_t j) {
+    const auto &p = nodes.position[i], &q = nodes.position[j];
+    return p == q ? i < j : std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  };
+  std::sort(order.begin(), order.end(), less);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (nodes.position[order[i - 1]] == nodes.position[order[i]])
+      return "nodes " + std::to_string(order[i - 1]) + " and " + std::to_string(order[i]) + " are at one place; remove one of them";
+  return {};
+}
+
+// A frame is a surface whose triangles may touch and cross: only its topology is asked for.
+std::string check_frame(const std::string& path) {
+  const std::string problem = geo::check_surface(geo::read_surface(path).mesh, false).first_problem;
+  return problem.empty() ? problem : fs::path(path).filename().string() + ": " + problem;
+}
+
+}  // namespace
+
+std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report& report) {
+  const auto [lo, hi] = std::minmax_element(nodes.spacing.begin(), nodes.spacing.end());
+  const double volume = std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0);
+  report.headline = counted(nodes.size(), "node") + ", " + rounded(*lo) + " to " + rounded(*hi) + " apart; volume " + rounded(volume) + ".";
+  report.add_text("kind", "nodes");
+  report.add("nodes", nodes.size());
+  report.add_number("spacing_min", *lo);
+  report.add_number("spacing_max", *hi);
+  report.add_number("volume", volume);
+  if (wishes.histograms) report.add_histogram("radii", nodes.radius), report.add_histogram("spacings", nodes.spacing);
+  return wishes.check ? twins(nodes) : std::string();
+}
+
+void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, Report& report) {
+  std::size_t steps = 0, points = 0;
+  std::vector<double> moves;
+  for (const auto& f : fronts) {
+    steps += f.steps.size();
+    for (std::size_t s = 0; s < f.steps.size(); ++s) {
+      points += f.steps[s].size();
+      if (s == 0) continue;
+      const auto next = geo::correspond(f.steps[s - 1], f.steps[s], f.closed);
+      double longest = 0;
+      for (std::size_t i = 0; i < next.size(); ++i) longest = std::max(longest, (next[i] - f.steps[s - 1][i]).norm());
+      moves.push_back(longest);
+    }
+  }
+  report.headline = counted(fronts.size(), "front") + ": " + counted(steps, "time step") + ", " + counted(points, "point") + (moves.empty() ? "." : "; the longest move of a point in a step is " + rounded(*std::max_element(moves.begin(), moves.end())) + ".");
+  report.add_text("kind", "fronts");
+  report.add("fronts", fronts.size());
+  report.add("steps", steps);
+  report.add("points", points);
+  std::vector<std::string> names;
+  for (const auto& f : fronts) names.push_back(tool::quoted(f.name));
+  report.add("names", list(names));
+  if (wishes.histograms) report.add_histogram("moves", moves);
+}
+
+std::string report_scene(const std::string& path, const Wishes& wishes, Report& report) {
+  const geo::Scene scene = geo::read_scene(path);
+  std::vector<std::string> meshes, blades;
+  for (const auto& body : scene.bodies) meshes.push_back(tool::quoted(body.mesh));
+  for (const auto& blade : scene.blades) blades.push_back(tool::quoted(blade.name));
+  report.headline = "A scene: " + counted(scene.bodies.size(), "body", "bodies") + " and " + counted(scene.blades.size(), "blade") + (scene.ground ? " over a ground" : "") + ", " +
+                    counted(static_cast<std::size_t>(scene.frames), "frame") + " at " + rounded(scene.frame_rate) + " a second.";
+  report.add_text("kind", "scene");
+  report.add("bodies", scene.bodies.size());
+  report.add("meshes", list(meshes));
+  report.add("blades", list(blades));
+  report.add("scores", scene.scores.size());
+  report.add("grips", scene.grips.size());
+  report.add("ground", scene.ground);
+  report.add("frames", static_cast<std::size_t>(scene.frames));
+  report.add_number("frame_rate", scene.frame_rate);
+  report.add_number("step", scene.dt);
+  report.add_text("integrator", scene.implicit ? "implicit" : "leapfrog");
+  if (wishes.check) try {
+      for (const auto& body : scene.bodies) tool::read_solid(body.mesh);
+    } catch (const geo::MissingInputError&) {
+      throw;
+    } catch (const geo::InputError& e) {
+      return e.what();
+    }
+  return {};
+}
+
+std::string report_run(const std::string& folder, const Wishes& wishes, Report& report) {
+  const fs::path top(folder), inner = fs::is_directory(top / "frames") ? top / "frames" : top, checkpoint = top / "checkpoint.kerf";
+  std::vector<std::string> frames;
+  for (const auto& entry : fs::directory_iterator(inner))
+    if (entry.path().extension() == ".ply") frames.push_back(entry.path().string());
+  std::sort(frames.begin(), frames.end());
+  const bool resumable = fs::exists(checkpoint);
+  if (frames.empty() && !resumable) throw geo::InputError(folder + ": is no folder of a run: it has neither frames nor a checkpoint");
+  report.headline = "A run: " + counted(frames.size(), "frame") + (resumable ? ", and a checkpoint to go on from" : ", no checkpoint") + ".";
+  report.add_text("kind", "run");
+  report.add("frames", frames.size());
+  report.add("checkpoint", resumable);
+  if (!frames.empty()) {
+    const auto last = geo::read_surface(frames.back()).mesh;
+    report.add("vertices", last.vertices.size());
+    report.add("faces", last.triangles.size());
+  }
+  std::string problem;
+  if (wishes.check)
+    for (std::size_t i = 0; i < frames.size() && problem.empty(); ++i) problem = check_frame(frames[i]);
+  if (resumable) {
+    geo::Input input(checkpoint.string());
+    const auto bytes = input.size();
+    const geo::KerfFile file(std::move(input));
+    Report inside;
+    const std::string found = report_body(file, geo::read_body(file), bytes, wishes, inside);
+    if (problem.empty() && !found.empty()) problem = "checkpoint.kerf: " + found;
+    report.headline += " " + inside.headline;
+    report.add_report("body", inside);
+  }
+  return problem;
+}
+
+}  // namespace info

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "mechanics/deformation.h"
+#include "simulation/edge_runs.h"
 
 namespace geo {
 
@@ -96,25 +97,63 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
   }
 }
 
-void Simulation::cut(FrameWork& work) {
+// From where the blades are to where they will be at the end of the step, in parts where an edge goes far.
+void Simulation::cut(double dt, FrameWork& work) {
   for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
     const Blade& blade = scene_.blades[b];
-    if (!blade.active(state_.time)) continue;
-    Stopwatch watch;
-    const auto gradient = solid_.gradients(state_.motion.displacement);
-    const InverseMap inverse(body_.nodes, state_.motion.displacement, gradient);
-    std::vector<Vec3> next;
-    for (const Vec3& p : blade.at(state_.time)) next.push_back(inverse.material(p));
-    work.front_seconds += watch.lap();
-    auto& fronts = state_.fronts[b];
-    if (fronts.empty()) {
-      fronts.push_back({begin_front(next, blade.closed, body_.surface.crack_count() + 1 + static_cast<std::int32_t>(b)), {}});
-      fronts[0].front.name = blade.name;
-      for (std::size_t i = 0; i < next.size(); ++i) fronts[0].at.push_back(double(i));
+    if (!blade.active(state_.time)) {
+      state_.fronts[b].clear();
       continue;
     }
-    split_step(fronts[0].front, next, work);
+    if (state_.fronts[b].empty()) cut_at(b, state_.time, work);
+    const std::vector<Vec3> from = blade.at(state_.time), to = blade.at(state_.time + dt);
+    double most = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
+    const double finest = *std::min_element(body_.nodes.spacing.begin(), body_.nodes.spacing.end());
+    const int parts = static_cast<int>(std::clamp(std::ceil(most / (blade.limit * finest)), 1.0, 64.0));
+    for (int k = 1; k <= parts; ++k) cut_at(b, state_.time + dt * k / parts, work);
   }
+}
+
+void Simulation::cut_at(std::size_t b, double time, FrameWork& work) {
+  Stopwatch watch;
+  const Blade& blade = scene_.blades[b];
+  std::vector<EdgeFront>& fronts = state_.fronts[b];
+  const Pose pose = blade.motion.at(time);
+  Box3 about;
+  for (const Vec3& p : blade.points) about.add(pose * p);
+  const auto gradient = solid_.gradients(state_.motion.displacement);
+  const PointMap map(body_, state_.motion.displacement, gradient, about);
+  std::vector<std::vector<EdgePoint>> runs;
+  if (blade.closed) {
+    runs.push_back(closed_run(map, body_, blade, pose));
+    if (fronts.empty()) fronts.resize(1);
+  } else {
+    runs = edge_runs(map, body_, blade, pose);
+    fronts = fronts_of(runs, fronts);
+  }
+  work.front_seconds += watch.lap();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (fronts[r].at.empty()) {
+      fronts[r] = begin_edge(runs[r], next_crack(), blade.name, blade.closed);
+      continue;
+    }
+    std::vector<Vec3> to;
+    EdgeFront edge = refined(fronts[r], runs[r], to);
+    ++work.fronts;
+    if (!split_step(edge.front, to, work)) continue;
+    collapse(edge, runs[r]);
+    fronts[r] = std::move(edge);
+  }
+}
+
+// A number that no crack has, nor any front that will leave one.
+std::int32_t Simulation::next_crack() const {
+  std::int32_t last = body_.surface.crack_count();
+  for (const auto& fronts : state_.fronts)
+    for (const EdgeFront& edge : fronts) last = std::max(last, edge.front.crack);
+  for (const GrowingFront& g : state_.fracture.fronts) last = std::max(last, g.front.crack);
+  return last + 1;
 }
 
 // Held nodes are put where their grip will be at the end of the step; what they do to the others is the step's business.
@@ -155,7 +194,7 @@ void Simulation::fracture(double dt, FrameWork& work) {
 
 // One time step, a phase a line.
 void Simulation::step(double dt, FrameWork& work) {
-  cut(work);
+  cut(dt, work);
   move_grips(dt);
   integrate(dt, work);
   state_.time += dt;

@@ -47,7 +47,9 @@ class Simulation {
 
  private:
   void step(double dt, FrameWork& work);
-  void cut(FrameWork& work);
+  void cut(double dt, FrameWork& work);
+  void cut_at(std::size_t blade, double time, FrameWork& work);
+  std::int32_t next_crack() const;
   void move_grips(double dt);
   void integrate(double dt, FrameWork& work);
   void fracture(double dt, FrameWork& work);

@@ -1,0 +1,89 @@
+#include "simulation/edge_front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace geo {
+namespace {
+
+const EdgePoint& nearest(std::span<const EdgePoint> points, double at) {
+  return *std::min_element(points.begin(), points.end(), [&](const EdgePoint& a, const EdgePoint& b) { return std::abs(a.at - at) < std::abs(b.at - at); });
+}
+
+bool has(std::span<const EdgePoint> points, double at) {
+  return std::any_of(points.begin(), points.end(), [&](const EdgePoint& p) { return p.at == at; });
+}
+
+// Point k twice: the copy before it where `before`, else behind it.
+void double_point(EdgeFront& edge, std::size_t k, bool before, double at) {
+  const FrontState::Point p = edge.front.points[k];
+  const auto place = static_cast<std::ptrdiff_t>(before ? k : k + 1);
+  edge.front.points.insert(edge.front.points.begin() + place, p);
+  edge.front.segments.insert(edge.front.segments.begin() + static_cast<std::ptrdiff_t>(k), {p, p});
+  edge.at.insert(edge.at.begin() + place, at);
+}
+
+}  // namespace
+
+EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name, bool closed) {
+  std::vector<Vec3> material;
+  EdgeFront edge;
+  for (const EdgePoint& p : points) material.push_back(p.material), edge.at.push_back(p.at);
+  edge.front = begin_front(material, closed, crack);
+  edge.front.name = name;
+  return edge;
+}
+
+EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to) {
+  EdgeFront result = edge;
+  for (const EdgePoint& p : next) {
+    const auto k = static_cast<std::size_t>(std::lower_bound(result.at.begin(), result.at.end(), p.at) - result.at.begin());
+    if (k < result.at.size() && result.at[k] == p.at) continue;
+    const bool after = k == result.at.size() || (k > 0 && p.at - result.at[k - 1] < result.at[k] - p.at);
+    if (after) double_point(result, k - 1, false, p.at);
+    else double_point(result, k, true, p.at);
+  }
+  to.clear();
+  for (const double at : result.at) to.push_back(nearest(next, at).material);
+  return result;
+}
+
+void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {
+  auto [points, segments, at] = std::tie(edge.front.points, edge.front.segments, edge.at);
+  for (std::size_t s = 0; s < segments.size() && segments.size() > 1;) {
+    if (points[s].position != points[s + 1].position || (has(next, at[s]) && has(next, at[s + 1]))) {
+      ++s;
+      continue;
+    }
+    const std::size_t gone = has(next, at[s]) ? s + 1 : s;
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(gone)), at.erase(at.begin() + static_cast<std::ptrdiff_t>(gone));
+    segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(s));
+  }
+}
+
+EdgeFront part_of(const EdgeFront& edge, double from, double to) {
+  const auto first = static_cast<std::size_t>(std::lower_bound(edge.at.begin(), edge.at.end(), from) - edge.at.begin());
+  const auto end = static_cast<std::size_t>(std::upper_bound(edge.at.begin(), edge.at.end(), to) - edge.at.begin());
+  EdgeFront part;
+  if (end < first + 2) return part;
+  const auto cut = [](const auto& all, std::size_t a, std::size_t b) {
+    return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(a), all.begin() + static_cast<std::ptrdiff_t>(b));
+  };
+  part.front = edge.front;
+  part.front.points = cut(edge.front.points, first, end);
+  part.front.segments = cut(edge.front.segments, first, end - 1);
+  part.at = cut(edge.at, first, end);
+  return part;
+}
+
+EdgeFront joined(EdgeFront a, const EdgeFront& b) {
+  a.front.segments.push_back({a.front.points.back(), b.front.points.front()});
+  a.front.segments.insert(a.front.segments.end(), b.front.segments.begin(), b.front.segments.end());
+  a.front.points.insert(a.front.points.end(), b.front.points.begin(), b.front.points.end());
+  a.front.step = std::max(a.front.step, b.front.step);
+  a.at.insert(a.at.end(), b.at.begin(), b.at.end());
+  return a;
+}
+
+}  // namespace geo

@@ -1,0 +1,108 @@
+// From the world back to the material, and the fronts that blades leave.
+#include <catch2/catch.hpp>
+
+#include "base/random.h"
+#include "io/scene_file.h"
+#include "mechanics/deformation.h"
+#include "simulation/point_map.h"
+#include "simulation/simulation.h"
+#include "surface/check.h"
+#include "surface/pieces.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+// A block whose upper half is bent over.
+struct Bent {
+  Body body;
+  std::vector<Vec3> u;
+  std::vector<Mat3> gradient;
+  Bent() {
+    const TriangleMesh mesh = make_block({1, 1, 2}, 0.2);
+    SampleOptions sampling;
+    sampling.spacing = 0.2, sampling.levels = 1;
+    body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
+    for (const Vec3& x : body.nodes.position) {
+      const double a = 0.6 * x.z(), r = 1 / 0.6 - x.x();
+      u.push_back(Vec3(1 / 0.6 - r * std::cos(a), x.y(), r * std::sin(a)) - x);
+    }
+    gradient = Solid(body.nodes, body.graph, {}).gradients(u);
+  }
+  Vec3 skin(SurfaceVertexId v) const {
+    std::vector<std::pair<NodeId, double>> nodes;
+    bound_nodes(body, v, nodes);
+    const Vec3 x = body.surface.point(body.surface.site(v));
+    return x + displacement_at(x, nodes, body.nodes, u, gradient);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("inside, the inverse of Eq. 1 leads back to the point") {
+  const Bent b;
+  const PointMap map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
+  Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 x(random.uniform(0.25, 0.75), random.uniform(0.25, 0.75), random.uniform(0.25, 1.75));
+    std::vector<std::pair<NodeId, double>> nodes;
+    for (std::uint32_t n = 0; n < b.body.nodes.size(); ++n)
+      if (const double d = (b.body.nodes.position[n] - x).norm(); d < b.body.nodes.radius[n]) nodes.push_back({NodeId(n), d});
+    const PointMap::Place place = map.material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
+    REQUIRE(place.within);
+    CHECK((place.material - x).norm() < 1e-10);
+  }
+}
+
+TEST_CASE("on the skin, the inverse is linear on each deformed triangle") {
+  const Bent b;
+  const PointMap map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
+  Random random(6);
+  for (std::uint32_t f = 0; f < b.body.surface.face_count(); f += 3) {
+    const double s = random.uniform(0.1, 0.4), t = random.uniform(0.1, 0.4);
+    Vec3 x = Vec3::Zero(), y = Vec3::Zero();
+    const double weight[3] = {s, t, 1 - s - t};
+    for (int k = 0; k < 3; ++k) {
+      x += weight[k] * b.body.surface.point(b.body.surface.face(FaceId(f)).v[static_cast<std::size_t>(k)]);
+      y += weight[k] * b.skin(b.body.surface.surface_vertex({FaceId(f), 0}, k));
+    }
+    CHECK((map.material(y).material - x).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("a blade that meets two bodies cuts both, wherever they have moved") {
+  // The second block was modelled far away, and stands behind the first one.
+  const Scene scene = parse_scene(
+      "gravity = [0, 0, 0]\n[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = 'b'\nspacing = 0.25\nposition = [0, 3, 0]\nvelocity = [0, -4, 0]\n"
+      "[time]\nframes = 2\nframe_rate = 4\nstep = 0.05\n[[blade]]\npoints = [[0.507, -0.4, 0], [0.503, 8.4, 0]]\ndivide = 24\nlimit = 0.5\n"
+      "keys = [[0.25, 0, 0, 1.3, 0, 0, 1, 0], [0.4, 0.01, 0, -0.4, 0, 0, 1, 0]]\n",
+      "s.toml");
+  Simulation sim(scene, place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)}));
+  REQUIRE(find_pieces(sim.body().surface).count == 2);
+  FrameWork work = sim.advance_frame();
+  CHECK(find_pieces(sim.body().surface).count == 2);
+  work += sim.advance_frame();
+  CHECK(work.refused == 0);
+  CHECK(find_pieces(sim.body().surface).count == 4);
+  for (const double v : find_pieces(sim.body().surface).volume) CHECK(v == Approx(0.5).epsilon(0.1));
+  CHECK(check_complex(sim.body().surface, true).good());
+  CHECK(check_body(sim.body()).first_problem == "");
+  CHECK(work.fronts > 2 * 6);  // two fronts in each part of a step
+}
+
+TEST_CASE("a step is cut in as many parts as its blade's limit asks for") {
+  const auto run = [](const std::string& limit) {
+    const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.25\n[time]\nframe_rate = 4\nstep = 0.25\n[[blade]]\npoints = [[-0.3, 0.4, 0], [1.3, 0.41, 0]]\ndivide = 8\n"
+                                    "keys = [[0, 0.01, 0, 1.2, 1, 0, 0, 0], [0.25, 0, 0.1, -0.3, 1, 0, 0, 20]]\nlimit = " + limit, "s.toml");
+    Simulation sim(scene, make_block({1, 1, 1}, 0.25));
+    const FrameWork work = sim.advance_frame();
+    CHECK(work.refused == 0);
+    CHECK(find_pieces(sim.body().surface).count == 2);
+    CHECK(check_complex(sim.body().surface, true).good());
+    return work.fronts;
+  };
+  const auto few = run("1.0"), many = run("0.25");
+  CHECK(few >= 4);
+  CHECK(many >= 3 * few);
+}

@@ -15,9 +15,9 @@ int main(int argc, char** argv) {
   std::string kind, text = "K", around;
   int frequency = 22, resolution = 24, steps = 12, points = 24;
   double edge = 0.1, depth = 0.25, bend = 0.06, tilt = 7;
-  t.argument("KIND", kind, "pumpkin, apple, polyp, sphere, block, letter, or front");
+  t.argument("KIND", kind, "pumpkin, apple, polyp, sphere, block, plate, letter, or front");
   t.option("--frequency", frequency, "Of pumpkin, apple, polyp, sphere: 20 f^2 triangles");
-  t.option("--edge", edge, "Of a block: longest edge along an axis");
+  t.option("--edge", edge, "Of a block (2 x 1 x 1) or plate (2 x 1 x 0.12): longest edge along an axis");
   t.option("--text", text, "Of a letter: A to Z");
   t.option("--depth", depth, "Of a letter");
   t.option("--resolution", resolution, "Of a letter: cells per unit of height");
@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
     else if (kind == "polyp") mesh = geo::make_polyp(frequency);
     else if (kind == "sphere") mesh = geo::make_sphere(frequency);
     else if (kind == "block") mesh = geo::make_block({2, 1, 1}, edge);
+    else if (kind == "plate") mesh = geo::make_block({2, 1, 0.12}, edge);
     else if (kind == "letter" && text.size() == 1) mesh = geo::make_letter(text[0], depth, resolution);
     else throw tool::UsageError("'" + kind + "' is no model that is known here");
     if (target.ends_with(".vdb")) return geo::write_level_set(target, mesh, 0.02 * geo::bounding_box(mesh).diagonal());

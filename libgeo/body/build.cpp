@@ -36,16 +36,18 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
     if (body.surface.alive(FaceId(f))) soup.push_back(body.surface.corners(FaceId(f)));
   const TriangleBvh obstacles(soup);
   body.graph = build_visibility_graph(body.nodes, obstacles, body.k, progress);
-  std::vector<std::uint32_t> component;
-  body.graph.components(component);
-  require_inside(body, component);
-  count_pieces(body);
-  auto found = find_disagreement(body, component);
-  mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
-    update_graph(
-        body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
-        body.k, body.grid, body.graph, joins);
-  });
+  {
+    std::vector<std::uint32_t> component;
+    body.graph.components(component);
+    require_inside(body, component);
+    count_pieces(body);
+    auto found = find_disagreement(body, component);
+    mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
+      update_graph(
+          body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
+          body.k, body.grid, body.graph, joins);
+    });
+  }
   if (body.guides > 0) add_guides(body.nodes, body.grid, obstacles, all_guides(body), body.graph);
   build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);
   report(progress, "binding", 0, body.nodes.size());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "geometry/predicates.h"
 #include "graph/guides.h"
 #include "graph/id_map.h"
@@ -82,13 +83,47 @@ class Users {
   std::vector<std::uint64_t> guides_;  // ids, lengths in the lower half
 };
 
+// Of this thread: its memory is kept from one update to the next.
+RowSearch& own_search() {
+  thread_local RowSearch search;
+  return search;
+}
+
+// Rows, kept until all are found.
+class RowBatch {
+ public:
+  void add(std::uint32_t i, const RowView& row) {
+    rows_.push_back({i, row.to.size(), row.paths.size()});
+    to_.insert(to_.end(), row.to.begin(), row.to.end());
+    bits_.insert(bits_.end(), row.bits.begin(), row.bits.end());
+    paths_.insert(paths_.end(), row.paths.begin(), row.paths.end());
+  }
+  void give(const RowSearch::Put& put) const {
+    std::size_t entry = 0, path = 0;
+    for (const auto& [i, entries, paths] : rows_) {
+      put(i, {std::span(to_).subspan(entry, entries), std::span(bits_).subspan(entry, entries), std::span(paths_).subspan(path, paths)});
+      entry += entries, path += paths;
+    }
+  }
+
+ private:
+  struct Row {
+    std::uint32_t i;
+    std::size_t entries, paths;
+  };
+  std::vector<Row> rows_;
+  std::vector<std::uint32_t> to_;
+  std::vector<std::uint16_t> bits_;
+  std::vector<float> paths_;
+};
+
 }  // namespace
 
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved, std::span<const Corners> new_faces,
                          const ObstacleNear& obstacle_near, int k, const NodeGrid& grid, VisibilityGraph& graph,
                          std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides) {
   GraphUpdate result;
-  thread_local RowSearch search;
+  RowSearch& search = own_search();
   const auto& x = nodes.position;
   graph.resize(nodes.size());
   IdMap update;
@@ -194,24 +229,41 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
 
   // Who saw each other goes on doing so unless a new face came between them. Who did not is asked again: faces that were
   // divided have rounded corners, and a segment that only just touched one may pass now.
-  auto next_row = severed.rows.begin();
   const auto is_fresh = [&](std::uint32_t i) { return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i)); };
-  const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
-    while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
-    const auto lost = next_row != severed.rows.end() && next_row->id == i ? severed.of(*next_row) : std::span<const Severed::Entry>();
-    const auto old = graph.rows().entries(i);
-    const bool fresh_i = is_fresh(i);
-    for (std::size_t e = 0, o = 0, l = 0; e < to.size(); ++e) {
-      if (VisibilityGraph::is_edge(bits[e])) continue;
-      while (o < old.to.size() && old.to[o] < to[e]) ++o;
-      while (l < lost.size() && lost[l].to < to[e]) ++l;
-      const bool saw = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) &&
-                       !RowStore::has_path(old.bits[o]) && !is_fresh(to[e]);
-      const bool is_hidden = saw ? l < lost.size() && lost[l].to == to[e] : sight.blocked(i, to[e]);
-      if (is_hidden) bits[e] |= VisibilityGraph::path_bit;
-    }
+  const auto find_rows = [&](std::span<const std::uint32_t> some, const RowSearch::Put& put) {
+    PairSight asked(nodes, graph, obstacle_near);
+    auto next_row = std::lower_bound(severed.rows.begin(), severed.rows.end(), some.empty() ? 0 : some.front(), [](const auto& row, std::uint32_t id) { return row.id < id; });
+    const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
+      while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
+      const auto lost = next_row != severed.rows.end() && next_row->id == i ? severed.of(*next_row) : std::span<const Severed::Entry>();
+      const auto old = graph.rows().entries(i);
+      const bool fresh_i = is_fresh(i);
+      for (std::size_t e = 0, o = 0, l = 0; e < to.size(); ++e) {
+        if (VisibilityGraph::is_edge(bits[e])) continue;
+        while (o < old.to.size() && old.to[o] < to[e]) ++o;
+        while (l < lost.size() && lost[l].to < to[e]) ++l;
+        const bool saw = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) &&
+                         !RowStore::has_path(old.bits[o]) && !is_fresh(to[e]);
+        const bool is_hidden = saw ? l < lost.size() && lost[l].to == to[e] : asked.blocked(i, to[e]);
+        if (is_hidden) bits[e] |= VisibilityGraph::path_bit;
+      }
+    };
+    own_search().run(nodes, graph, some, mark_hidden, put);
   };
-  search.run(nodes, graph, sources, mark_hidden, [&](std::uint32_t i, const RowView& row) { graph.set_neighbors(NodeId(i), row); });
+  const auto set = [&](std::uint32_t i, const RowView& row) { graph.set_neighbors(NodeId(i), row); };
+  constexpr std::size_t grain = 1024;
+  if (threads() == 1 || sources.size() <= grain) {
+    find_rows(sources, set);
+  } else {
+    // The graph stays as it is until all are found.
+    std::vector<RowBatch> batches((sources.size() + grain - 1) / grain);
+    parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b)
+        find_rows(std::span(sources).subspan(b * grain, std::min(grain, sources.size() - b * grain)),
+                  [&](std::uint32_t i, const RowView& row) { batches[b].add(i, row); });
+    });
+    for (const RowBatch& batch : batches) batch.give(set);
+  }
   for (const auto i : sources) result.updated_nodes.push_back(NodeId(i));
   return result;
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "cases.h"
 #include "graph/guides.h"
 #include "graph/neighborhoods.h"
@@ -110,6 +111,33 @@ TEST_CASE("incremental updates equal a build from scratch, bit for bit") {
     }
   }
   CHECK(rows_compared > 20000);
+}
+
+TEST_CASE("updates are the same for any number of threads") {
+  Random random(5);
+  const NodeSet nodes = jittered(random, 26, 0.3, 1.3);
+  std::vector<VisibilityGraph> graphs;
+  std::vector<std::vector<NodeId>> updated;
+  for (const int count : {1, 2, 3}) {
+    set_threads(count);
+    Cut cut(nodes, {}, 26);
+    const auto at = [](double u, double v) { return Vec3(u, 0.511 + 0.05 * std::sin(5 * u + 3 * v), v); };
+    for (int step = 0; step < 2; ++step) {
+      Soup fresh;
+      for (int j = 0; j < 6; ++j) {
+        const double u0 = 0.45 * step - 0.1, u1 = u0 + 0.45, v0 = j / 5.0 - 0.1, v1 = v0 + 0.2;
+        fresh.push_back({at(u0, v0), at(u1, v0), at(u1, v1)}), fresh.push_back({at(u0, v0), at(u1, v1), at(u0, v1)});
+      }
+      updated.push_back(cut.step(NodeId(cut.nodes.size()), {}, fresh).updated_nodes);
+      graphs.push_back(cut.graph);
+    }
+  }
+  set_threads(0);
+  CHECK(updated[1].size() > 1024);  // more than one block of rows
+  for (std::size_t g = 2; g < graphs.size(); ++g) {
+    CHECK(graphs[g] == graphs[g % 2]);
+    CHECK((updated[g] == updated[g % 2]));
+  }
 }
 
 TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {

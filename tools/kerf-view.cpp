@@ -38,7 +38,7 @@ Kind kind_of_output(const std::string& path) {
 
 struct Wishes {
   std::vector<std::string> paths;
-  std::string size, camera = "30,22", cutaway, color = "patch", skin = "#e0803a", before;
+  std::string size, camera = "30,22", cutaway, color = "patch", skin = "#e0803a", before, steps;
   bool no_ground = false, hollow = false;
   int columns = 4, frames = 0, samples = 3, node = -1;
   double zoom = 1, rate = 24, megabytes = 20;
@@ -58,6 +58,8 @@ view::Look checked(const Wishes& w, view::Look look) {
   } catch (const geo::InputError& e) {
     throw tool::UsageError(e.what());
   }
+  char rest = 0;
+  if (!w.steps.empty() && (std::sscanf(w.steps.c_str(), "%zu:%zu%c", &look.first_step, &look.last_step, &rest) != 2 || look.first_step > look.last_step)) throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A up to B");
   if (w.node >= 0) look.node = static_cast<std::uint32_t>(w.node);
   look.section = !w.hollow && !look.inside();
   if (!w.cutaway.empty()) {
@@ -83,8 +85,14 @@ class Drawing {
       : w_(w), look_(look), eye_(std::move(eye)), options_(options), progress_(std::move(progress)) {}
 
   view::Picture still() {
-    const view::Stage stage = staged(w_.paths);
+    const view::Subject subject = view::read_subject(w_.paths);
+    view::Stage stage = view::stage_of(subject, look_);
+    stage.ground = !w_.no_ground;
     eye_.box = view::box_of(stage);
+    if (look_.node && w_.zoom > 1) {  // looked at closely: the node in the middle
+      const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
+      eye_.box = {eye_.box.lo + away, eye_.box.hi + away};
+    }
     geo::report(progress_, "render", 0, 1);
     return view::render(stage, eye_, options_);
   }
@@ -152,7 +160,7 @@ int main(int argc, char** argv) {
   t.argument("FILE", w.paths, "Surface, body, node and front files, together in one picture; or the folder of a kerf-sim run");
   t.option("--size", w.size, "Width x height in pixels (960x720; 480x360 on a sheet and animated)");
   t.option("--camera", w.camera, "Azimuth, elevation in degrees");
-  t.option("--zoom", w.zoom, "1 shows everything");
+  t.option("--zoom", w.zoom, "1 shows everything; above it the node of --node is in the middle");
   t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
   t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
   t.option("--color", w.color, "patch (skin and the two sheets of cracks), piece, or plain");
@@ -165,6 +173,7 @@ int main(int argc, char** argv) {
   t.option("--node", w.node, "Draw the neighbourhood of this node: blue sees it, orange is behind a face");
   t.flag("--trees", look.trees, "Draw masters (their nodes' links red) and trees of slaves; with --node those of one node");
   t.flag("--seams", look.seams, "Draw where cracks meet the skin, green, and where they end, red");
+  t.option("--steps", w.steps, "Draw fronts from time step A to B, as A:B");
   t.flag("--wire", look.wire, "Draw the triangles' edges");
   t.option("--opacity", look.opacity, "Of the surface, 0 to 1");
   t.flag("--sheets", look.sheets, "With --opacity: the skin is see-through, cracks are not");

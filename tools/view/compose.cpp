@@ -86,7 +86,7 @@ Stage stage_of(const Subject& subject, const Look& look) {
   add_nodes(stage, subject, position, look);
   add_trees(stage, subject, position, look);
   if (look.seams) add_seams(stage);
-  add_fronts(stage, subject.fronts);
+  add_fronts(stage, subject.fronts, look);
   cut(stage, look);
   return stage;
 }

@@ -26,6 +26,7 @@ struct Look {
   bool seams = false;            ///< where cracks meet the skin (green) and where they end (red)
   bool trees = false;            ///< masters and their trees of slaves
   std::optional<std::uint32_t> node;    ///< this node's neighbourhood
+  std::size_t first_step = 0, last_step = ~std::size_t(0);  ///< of fronts
   const geo::Body* before = nullptr;    ///< an earlier state of the body: cut edges are those it had, updated nodes are red
   double opacity = 1;
   bool sheets = false;  ///< sheets of cracks stay opaque in a skin that is not

@@ -22,19 +22,19 @@ void add_seams(Stage& stage) {
   }
 }
 
-void add_fronts(Stage& stage, const std::vector<geo::Front>& fronts) {
+void add_fronts(Stage& stage, const std::vector<geo::Front>& fronts, const Look& look) {
   geo::Box3 box = geo::bounding_box(stage.surface);
   for (const auto& front : fronts)
     for (const auto& step : front.steps)
       for (const auto& p : step) box.add(p);
   const double width = 0.002 * box.diagonal();
   for (const auto& front : fronts)
-    for (std::size_t s = 0; s < front.steps.size(); ++s) {
+    for (std::size_t s = look.first_step; s < front.steps.size() && s <= look.last_step; ++s) {
       const auto& points = front.steps[s];
       const Color color = viridis(front.steps.size() > 1 ? double(s) / double(front.steps.size() - 1) : 0);
       const std::size_t n = points.size();
       for (std::size_t i = 0; i + (front.closed ? 0 : 1) < n; ++i) stage.sticks.push_back({points[i], points[(i + 1) % n], width, color});
-      if (s + 1 < front.steps.size() && front.steps[s + 1].size() == n)
+      if (s + 1 < front.steps.size() && s + 1 <= look.last_step && front.steps[s + 1].size() == n)
         for (std::size_t i = 0; i < n; ++i) stage.sticks.push_back({points[i], front.steps[s + 1][i], 0.4 * width, Color{0.4f, 0.4f, 0.42f}});
     }
 }

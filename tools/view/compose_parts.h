@@ -15,7 +15,7 @@ void add_trees(Stage& stage, const Subject& subject, const std::vector<geo::Vec3
 /// Along the surface's sheets: edges shared with the skin in green, tips in red.
 void add_seams(Stage& stage);
 
-/// A line each time step, and the ways of the points between steps.
-void add_fronts(Stage& stage, const std::vector<geo::Front>& fronts);
+/// A line each time step from look.first_step to last_step, and the ways of the points between steps.
+void add_fronts(Stage& stage, const std::vector<geo::Front>& fronts, const Look& look);
 
 }  // namespace view

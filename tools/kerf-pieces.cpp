@@ -1,76 +1,96 @@
-// kerf-pieces: a closed mesh for each piece, and the bonds between them.
+// kerf-pieces: a closed mesh for each piece, and the bonds between them; as a folder, or all in one .glb.
 #include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
-#include <map>
 
+#include "io/chunk_file.h"
 #include "io/stream.h"
 #include "model.h"
-#include "surface/pieces.h"
+#include "surface/chunks.h"
 #include "tool.h"
 
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Wishes {
+  std::string model, bonds, up = "y";
+  bool obj = false, hulls = false;
+  int hull_corners = 64;
+  double tile = 0.25, strength = 1;
+};
+
+void check(const Wishes& w, const std::string& output) {
+  if (output.empty() || output == "-") throw tool::UsageError("give a folder or a .glb with -o");
+  if (w.up != "y" && w.up != "z") throw tool::UsageError("--up must be y or z");
+  if (w.hull_corners < 4 || w.hull_corners > 100000) throw tool::UsageError("--hull-corners must be between 4 and 100000");
+  if (!(w.tile > 0 && w.tile <= 1e6)) throw tool::UsageError("--tile must be positive and at most 1000000");
+  if (!(w.strength >= 0 && w.strength <= 1e100)) throw tool::UsageError("--strength must not be negative");
+}
+
+std::string name_of(std::size_t piece, const char* end) {
+  char name[64];
+  std::snprintf(name, sizeof name, "piece_%03zu%s", piece, end);
+  return name;
+}
+
+// Written aside as a whole folder, then renamed.
+void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk>& chunks, const std::vector<geo::Bond>& bonds, geo::ChunkNotes notes) {
+  if (folder.filename().empty()) folder = folder.parent_path();
+  std::error_code error;
+  const fs::path aside = folder.string() + "." + std::to_string(::getpid()) + ".tmp";
+  geo::Unfinished unfinished(aside.string());
+  if (!fs::create_directories(aside, error)) throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
+  const char* end = w.obj ? ".obj" : ".ply";
+  const auto write = [&](const std::string& name, const geo::TriangleMesh& mesh) {
+    geo::write_all((aside / name).string(), [&](std::ostream& out) { w.obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
+  };
+  for (std::size_t p = 0; p < chunks.size(); ++p) {
+    notes.names.push_back(name_of(p, end));
+    write(notes.names.back(), chunks[p].mesh);
+    if (w.hulls) write("hull_" + name_of(p, end).substr(6), geo::hull_of(chunks[p].mesh, static_cast<std::size_t>(w.hull_corners)));
+  }
+  geo::write_all((aside / "pieces.json").string(), [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
+  unfinished.commit(folder.string());  // over the empty folder, if there is one
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-pieces", "Writes each piece of a cut surface as a closed mesh, with volumes and bonds in pieces.json.",
-               "  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj -o pieces/");
-  std::string model;
-  bool obj = false;
-  t.argument("SURFACE", model, "A cut surface from kerf-crack");
-  t.flag("--obj", obj, "OBJ instead of PLY");
-  t.output("Folder; made when it is not there");
+  tool::Tool t("kerf-pieces", "Writes each piece of a cut surface as a closed mesh, with bonds between them: all in one .glb, or as a folder.",
+               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o pieces/");
+  Wishes w;
+  t.argument("SURFACE", w.model, "A cut surface from kerf-crack");
+  t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");
+  t.flag("--hulls", w.hulls, "Also the convex hull of each piece, for a physics engine: nodes UCX_piece_... or files hull_...");
+  t.option("--hull-corners", w.hull_corners, "How many corners a hull has at most");
+  t.option("--tile", w.tile, "Size of one texture tile on inner faces, as a fraction of the model's diagonal");
+  t.option("--strength", w.strength, "Force that an area of 1 withstands; a bond's strength is this times its area");
+  t.option("--up", w.up, "Of a .glb: which axis of the model is up, y or z");
+  t.option("--bonds", w.bonds, "Of a .glb: also write what its scene's extras say of pieces and bonds to this JSON file");
+  t.output("pieces.glb, or a folder; made when it is not there");
   return t.run(argc, argv, [&] {
-    namespace fs = std::filesystem;
-    if (t.output_path.empty() || t.output_path == "-") throw tool::UsageError("give a folder with -o");
-    fs::path folder = t.output_path;
-    if (folder.filename().empty()) folder = folder.parent_path();
+    check(w, t.output_path);
+    const bool glb = t.output_path.ends_with(".glb");
+    if (!glb && !w.bonds.empty()) throw tool::UsageError("--bonds belongs to a .glb; a folder has pieces.json");
     std::error_code error;
-    const bool there = fs::exists(folder, error);
-    if (there && !fs::is_directory(folder, error)) throw geo::OutputError(folder.string() + ": is not a folder; give another name");
-    if (there && !fs::is_empty(folder, error)) throw geo::OutputError(folder.string() + ": is not empty; remove it or give another name");
-    const auto file = tool::read_solid(model);
-    const geo::Complex complex = tool::complex_of(file, model);
-    const geo::Pieces pieces = geo::find_pieces(complex);
-    struct Bond {
-      double area = 0;
-      geo::Vec3 normal = geo::Vec3::Zero(), center = geo::Vec3::Zero();
-    };
-    std::map<std::pair<int, int>, Bond> bonds;
-    for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
-      if (!complex.alive(geo::FaceId(f)) || complex.face(geo::FaceId(f)).crack == 0) continue;
-      const int behind = pieces.of_side[f * 2], before = pieces.of_side[f * 2 + 1];
-      if (behind == before) continue;
-      const auto c = complex.corners(geo::FaceId(f));
-      const geo::Vec3 n = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
-      Bond& bond = bonds[{std::min(behind, before), std::max(behind, before)}];
-      bond.area += n.norm();
-      bond.normal += behind < before ? n : geo::Vec3(-n);
-      bond.center += n.norm() * (c[0] + c[1] + c[2]) / 3;
+    if (!glb && fs::exists(t.output_path, error)) {
+      if (!fs::is_directory(t.output_path, error)) throw geo::OutputError(t.output_path + ": is not a folder; give another name");
+      if (!fs::is_empty(t.output_path, error)) throw geo::OutputError(t.output_path + ": is not empty; remove it or give another name");
     }
-    // Written aside as a whole folder, then renamed.
-    const fs::path aside = folder.string() + "." + std::to_string(::getpid()) + ".tmp";
-    geo::Unfinished unfinished(aside.string());
-    if (!fs::create_directories(aside, error)) throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
-    {
-      std::string json = "{\"pieces\":[";
-      for (std::uint32_t p = 0; p < pieces.count; ++p) {
-        char name[64];
-        std::snprintf(name, sizeof name, "piece_%03u.%s", p, obj ? "obj" : "ply");
-        geo::TriangleMesh mesh = geo::piece_mesh(complex, pieces, p);
-        geo::carry(file.mesh, mesh);
-        mesh.site.clear();  // a piece is a model of its own; patch still tells skin from crack
-        geo::write_all((aside / name).string(), [&](std::ostream& out) { obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
-        json += std::string(p ? "," : "") + "{\"file\":\"" + name + "\",\"volume\":" + tool::number(pieces.volume[p]) + ",\"triangles\":" + std::to_string(mesh.triangles.size()) + "}";
-      }
-      json += "],\"bonds\":[";
-      bool first = true;
-      const auto vector = [](const geo::Vec3& v) { return "[" + tool::number(v.x()) + "," + tool::number(v.y()) + "," + tool::number(v.z()) + "]"; };
-      for (const auto& [pair, bond] : bonds) {
-        json += std::string(first ? "" : ",") + "{\"a\":" + std::to_string(pair.first) + ",\"b\":" + std::to_string(pair.second) + ",\"area\":" + tool::number(bond.area) +
-                ",\"normal\":" + vector(bond.normal.normalized()) + ",\"centroid\":" + vector(bond.center / bond.area) + "}";
-        first = false;
-      }
-      geo::write_all((aside / "pieces.json").string(), [&](std::ostream& out) { out << json << "]}\n"; });
-      unfinished.commit(folder.string());  // over the empty folder, if there is one
+    const auto file = tool::read_solid(w.model);
+    const geo::Complex complex = tool::complex_of(file, w.model);
+    const geo::Pieces pieces = geo::find_pieces(complex);
+    const auto bonds = geo::find_bonds(complex, pieces);
+    const auto chunks = geo::make_chunks(complex, pieces, file.mesh, w.tile * complex.extent().diagonal());
+    geo::ChunkNotes notes{{}, w.strength};
+    if (!glb) {
+      write_folder(t.output_path, w, chunks, bonds, notes);
+    } else {
+      for (std::size_t p = 0; p < chunks.size(); ++p) notes.names.push_back(name_of(p, ""));
+      geo::write_all(t.output_path, [&](std::ostream& out) { geo::write_glb(out, chunks, bonds, notes, {w.hulls ? static_cast<std::size_t>(w.hull_corners) : 0, w.up == "z"}); });
+      if (!w.bonds.empty()) geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
     }
     if (t.json) std::printf("{\"pieces\":%u,\"bonds\":%zu}\n", pieces.count, bonds.size());
     if (t.verbose) t.say("kerf-pieces: " + std::to_string(pieces.count) + " pieces, " + std::to_string(bonds.size()) + " bonds");

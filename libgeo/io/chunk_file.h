@@ -1,0 +1,35 @@
+// Pieces and bonds in files: glTF 2.0 (binary) with everything in one, and JSON.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "surface/chunks.h"
+
+namespace geo {
+
+/// What is told of pieces beside their shapes.
+struct ChunkNotes {
+  std::vector<std::string> names;  ///< of each piece: its node, or its file
+  double strength = 1;             ///< force an area of 1 withstands; a bond's strength is this times its area
+};
+
+/// `{"pieces": [{"file", "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal", "centroid", "strength"}]}`.
+void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes);
+
+struct GlbOptions {
+  std::size_t hull_corners = 0;  ///< of the convex hull below each piece's node, named UCX_ and the piece's name; 0: none
+  bool z_up = false;             ///< the model's z is up; glTF's is y
+};
+
+/// A .glb: a root node with one node for each piece, whose origin is the piece's centroid, and one material for each group,
+/// that of cracks with a face on the inside. Normals are those given, on cracks and where there are none those of the
+/// triangles around each corner that are bent less than 45 degrees. Colours become linear, as glTF wants them. What
+/// write_bonds() says is in the scene's `extras`. Coordinates are single precision about each centroid.
+void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes, const GlbOptions& options = {});
+
+/// The convex hull of a piece as a mesh, of so many corners at most.
+TriangleMesh hull_of(const TriangleMesh& mesh, std::size_t most);
+
+}  // namespace geo

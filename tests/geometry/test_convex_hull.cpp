@@ -1,0 +1,65 @@
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "base/random.h"
+#include "cases.h"
+#include "geometry/convex_hull.h"
+#include "geometry/predicates.h"
+
+using namespace geo;
+
+namespace {
+
+// Closed, of one shell (Euler), and nothing before any triangle among those of its own corners or, where `all`, of the points.
+void check_hull(const std::vector<Vec3>& points, const std::vector<Triangle>& hull, bool all) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  std::vector<char> used(points.size());
+  std::size_t corners = 0;
+  for (const auto& t : hull)
+    for (std::size_t k = 0; k < 3; ++k) {
+      ++edges[{t[k], t[(k + 1) % 3]}];
+      if (!used[t[k]]) used[t[k]] = 1, ++corners;
+    }
+  for (const auto& [edge, times] : edges) {
+    REQUIRE(times == 1);
+    REQUIRE(edges.count({edge.second, edge.first}) == 1);
+  }
+  CHECK(hull.size() == 2 * corners - 4);
+  for (const auto& t : hull)
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (all || used[i]) REQUIRE(orient3d(points[t[0]], points[t[1]], points[t[2]], points[i]) <= 0);
+}
+
+}  // namespace
+
+TEST_CASE("Nothing is outside of a convex hull", "[hull]") {
+  const auto [first, count] = seeds(60);
+  for (int c = 0; c < count; ++c) {
+    const auto seed = first + static_cast<std::uint64_t>(c);
+    INFO("seed " << seed);
+    Random random(seed);
+    std::vector<Vec3> points(4 + random.below(120));
+    for (Vec3& p : points) {
+      p = random.direction();
+      if (seed % 3 == 0) p *= random.uniform();
+      if (seed % 3 == 1) p = Vec3(random.below(4), random.below(4), random.below(4));  // many in one plane, many at one place
+    }
+    const auto hull = convex_hull(points);
+    if (hull.empty()) {
+      REQUIRE(points.size() < 10);
+      continue;
+    }
+    check_hull(points, hull, true);
+    if (seed % 3 == 2) CHECK(hull.size() == 2 * points.size() - 4);  // all are on the ball
+    const auto few = convex_hull(points, 12);
+    check_hull(points, few, false);
+    CHECK(few.size() <= 2 * 12 - 4);
+  }
+}
+
+TEST_CASE("What lies in a plane has no hull of volume", "[hull]") {
+  CHECK(convex_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).empty());
+  CHECK(convex_hull(std::vector<Vec3>(7, Vec3(1, 2, 3))).empty());
+  CHECK(convex_hull(std::vector<Vec3>{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {5, 5, 5}}).empty());
+  CHECK(convex_hull(std::vector<Vec3>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}, {0.3, 0.2, 1}}).empty());
+}

@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
     const geo::Pieces pieces = geo::find_pieces(complex);
     const auto bonds = geo::find_bonds(complex, pieces);
     const auto chunks = geo::make_chunks(complex, pieces, file.mesh, w.tile * complex.extent().diagonal());
-    geo::ChunkNotes notes{{}, w.strength};
+    geo::ChunkNotes notes{glb ? "node" : "file", {}, w.strength};
     if (!glb) {
       write_folder(t.output_path, w, chunks, bonds, notes);
     } else {

@@ -11,11 +11,12 @@ namespace geo {
 
 /// What is told of pieces beside their shapes.
 struct ChunkNotes {
-  std::vector<std::string> names;  ///< of each piece: its node, or its file
+  std::string kind = "file";       ///< what pieces are named by: file or node
+  std::vector<std::string> names;  ///< of each piece
   double strength = 1;             ///< force an area of 1 withstands; a bond's strength is this times its area
 };
 
-/// `{"pieces": [{"file", "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal", "centroid", "strength"}]}`.
+/// `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal", "centroid", "strength"}]}`.
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes);
 
 struct GlbOptions {

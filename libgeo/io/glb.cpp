@@ -13,10 +13,10 @@ using Json = nlohmann::ordered_json;
 
 Json row(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes, const char* key) {
+Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes) {
   Json pieces = Json::array(), held = Json::array();
   for (std::size_t p = 0; p < chunks.size(); ++p)
-    pieces.push_back({{key, notes.names[p]}, {"volume", chunks[p].volume}, {"centroid", row(chunks[p].centroid)}, {"triangles", chunks[p].mesh.triangles.size()}});
+    pieces.push_back({{notes.kind, notes.names[p]}, {"volume", chunks[p].volume}, {"centroid", row(chunks[p].centroid)}, {"triangles", chunks[p].mesh.triangles.size()}});
   for (const Bond& b : bonds)
     held.push_back({{"a", b.a}, {"b", b.b}, {"area", b.area}, {"normal", row(b.normal)}, {"centroid", row(b.centroid)}, {"strength", notes.strength * b.area}});
   return {{"pieces", pieces}, {"bonds", held}};
@@ -158,7 +158,7 @@ Json hull_primitive(Glb& glb, const TriangleMesh& hull, const Vec3& origin) {
 }  // namespace
 
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes) {
-  out << bonds_json(chunks, bonds, notes, "file").dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  out << bonds_json(chunks, bonds, notes).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 TriangleMesh hull_of(const TriangleMesh& mesh, std::size_t most) {
@@ -211,7 +211,7 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
   const double half = std::sqrt(0.5);
   if (options.z_up) root["rotation"] = Json::array({-half, 0.0, 0.0, half});
   const std::size_t top = glb.node(std::move(root));
-  glb.json["scenes"].push_back({{"nodes", Json::array({top})}, {"extras", bonds_json(chunks, bonds, notes, "node")}});
+  glb.json["scenes"].push_back({{"nodes", Json::array({top})}, {"extras", bonds_json(chunks, bonds, notes)}});
   glb.write(out);
 }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "crack/sheet.h"
 #include "mechanics/deformation.h"
 #include "simulation/edge_runs.h"
 
@@ -46,6 +47,15 @@ void Simulation::score(const Progress& progress) {
   FrameWork work;
   for (std::size_t s = 0; s < scene_.scores.size(); ++s) {
     const Front& front = scene_.scores[s];
+    if (front.is_sheet()) {
+      report(progress, "prescoring", s, scene_.scores.size());
+      TriangleMesh sheet;
+      sheet.vertices = front.steps[0], sheet.triangles = front.triangles;
+      Complex scored = body_.surface;
+      insert_sheet(scored, sheet, scored.crack_count() + 1);
+      adopt(follow(body_, scored, &work.split), work);
+      continue;
+    }
     FrontState state = begin_front(front.steps.at(0), front.closed, body_.surface.crack_count() + 1);
     for (std::size_t k = 1; k < front.steps.size(); ++k) {
       report(progress, "prescoring", s, scene_.scores.size());
@@ -79,17 +89,21 @@ void Simulation::prepare() {
   }
 }
 
+// What follows the body after a crack.
+void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
+  if (delta.crack.empty()) return;
+  Stopwatch watch;
+  solid_.update(body_.nodes, body_.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
+  for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
+  prepare();
+  work.mechanics_seconds += watch.lap();
+}
+
 bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work) {
   CrackOptions options;
   options.seed = scene_.seed;
   try {
-    const BodyDelta delta = split(body_, front, next, options, &work.split);
-    if (delta.crack.empty()) return true;
-    Stopwatch watch;
-    solid_.update(body_.nodes, body_.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state_.motion);
-    for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
-    prepare();
-    work.mechanics_seconds += watch.lap();
+    adopt(split(body_, front, next, options, &work.split), work);
     return true;
   } catch (const GeometryError&) {
     ++work.refused;

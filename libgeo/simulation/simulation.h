@@ -54,6 +54,7 @@ class Simulation {
   void integrate(double dt, FrameWork& work);
   void fracture(double dt, FrameWork& work);
   /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
+  void adopt(const BodyDelta& delta, FrameWork& work);
   bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work);
   void begin_motion();
   void score(const Progress& progress);

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | killed
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | chunks | killed
 set -u
 script=$(realpath "$0")
 PATH=$1:$2:$PATH models=$3 what=$4
@@ -159,6 +159,37 @@ scores)
   expect 66 "cannot" kerf-score missing.ply -o x.front
   expect 66 "cannot" kerf-score block.ply --pattern sheets --sheets missing.ply -o x.front
   expect 73 "cannot" kerf-score block.ply --pieces 3 -o none/x.front
+  ;;
+chunks)
+  here=$(dirname "$script")
+  kerf-model pumpkin --frequency 8 -o pumpkin.ply
+  quietly kerf-score pumpkin.ply --pieces 12 --jagged 0.015 -o score.front
+  quietly kerf-crack pumpkin.ply --front score.front -o broken.ply
+  volume=$(kerf-info --json pumpkin.ply | grep -o '"volume":[0-9.e+-]*' | cut -d: -f2)
+  quietly kerf-pieces broken.ply --hulls --strength 2 --bonds bonds.json -o pieces.glb
+  python3 "$here/check_glb.py" pieces.glb bonds.json "$volume" 12 || fail "the .glb"
+  quietly kerf-pieces -j1 broken.ply --hulls --strength 2 --up y -o one.glb
+  cmp pieces.glb one.glb || fail "threads change bytes"
+  quietly kerf-pieces broken.ply --up z --tile 1 -o turned.glb
+  cmp -s pieces.glb turned.glb && fail "options change nothing"
+  # An importer that is not ours; and back.
+  if command -v assimp >/dev/null; then
+    assimp info pieces.glb >assimp.txt || fail "assimp cannot import the .glb: $(cat assimp.txt)"
+    assimp export pieces.glb back.ply >assimp.txt || fail "assimp cannot convert the .glb: $(cat assimp.txt)"
+    grep -q 'Materials: *[23]$' <(assimp info pieces.glb) || fail "assimp finds other materials"
+  fi
+  for kind in "" --obj; do
+    quietly kerf-pieces broken.ply $kind --hulls --strength 2 -o folder
+    for file in folder/piece_* folder/hull_*; do quietly kerf-info --check -q $file; done
+    [ "$(ls folder/piece_* | wc -l)" = 12 ] || fail "not 12 files"
+    sed 's/"file":"\(piece_[0-9]*\)\.[a-z]*/"node":"\1/g' folder/pieces.json | cmp - bonds.json || fail "bonds differ"
+    rm -r folder
+  done
+  for options in "--up x" "--tile 0" "--strength -1" "--hull-corners 3"; do
+    expect 2 "${options%% *}" kerf-pieces broken.ply $options -o x.glb
+  done
+  expect 2 "folder has pieces.json" kerf-pieces broken.ply --bonds b.json -o x
+  expect 73 "cannot" kerf-pieces broken.ply -o none/x.glb
   ;;
 kinds)
   # A file is known by what it holds, not by its first line.

@@ -5,7 +5,7 @@ function show(key) {
   const control = $(key);
   if (control.type === "checkbox") control.checked = state[key];
   else control.value = String(state[key]);
-  if (key === "frame") $("frame-label").textContent = about.surfaces.length ? about.surfaces[state.frame].label : "";
+  if (key === "frame" || key === "rest") $("frame-label").textContent = shownSurface() >= 0 ? about.surfaces[shownSurface()].label : "";
 }
 function set(key, value) {
   if (state[key] === value) return;
@@ -110,15 +110,28 @@ function dress() {
   }));
 }
 
+// A view to begin with, behind the page's name: #nodes=true&skin=0.25&selected=12
+function followAddress() {
+  for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
+    if (key in view && key !== "target") view[key] = Number(value);
+    if (!(key in state)) continue;
+    state[key] = value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value;
+  }
+  if (hasNodes() && !about.nodes.fields.includes(state.field)) state.field = about.nodes.fields[0];
+  state.frame = Math.min(Math.max(0, Math.round(state.frame) || 0), Math.max(0, frameCount() - 1));
+  if (!hasNodes() || !(state.selected >= 0 && state.selected < about.nodes.count)) state.selected = -1;
+}
+
 async function begin() {
   about = JSON.parse($("about").textContent);
   arrays = await unpack($("data").textContent, about.arrays);
   $("data").textContent = "";
   dress();
+  followAddress();
   layers.push(new SurfaceLayer(), new FrontLayer(), new NodeLayer(), new GraphLayer(), new BindingLayer(), new InspectLayer());
   listenToControls(), listenToKeys(), listenToPointer();
   new ResizeObserver(resize).observe($("stage"));
-  resize(), resetView(), changed(), draw();
+  resize(), changed(), draw();
   $("wait").hidden = true;
 }
 begin().catch((problem) => {

@@ -1,0 +1,69 @@
+#!/bin/bash
+# What kerf-view draws besides pages: pictures of every kind of thing, animations; the same for any number of threads.
+#   tests/tools/pictures.sh TOOLS_DIR SAMPLES_DIR
+set -u
+PATH=$1:$2:$PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+fail() { echo "FAILED: $*"; failed=1; }
+draw() { kerf-view "$@" --size 96x72 --samples 1 -q || fail "kerf-view $*"; }
+
+kerf-model pumpkin --frequency 8 -o p.ply
+kerf-model front --around p.ply --steps 8 -o halve.front
+kerf-sample p.ply -n 400 | kerf-graph --surface p.ply -o p.kerf
+kerf-crack p.ply --front halve.front --steps 0:5 -o half.ply
+kerf-crack p.ply --front halve.front -o whole.ply
+kerf-update p.kerf --surface half.ply -o half.kerf
+kerf-update p.kerf --surface whole.ply -o whole.kerf
+
+# Each option changes what is drawn.
+draw half.kerf --opacity 0.3 -o plain.png
+for options in --nodes --edges --cut-edges "--cut-edges --before p.kerf" "--nodes --field neighbors" "--nodes --before p.kerf" "--node 7" "--node 7 --zoom 3" --trees "--trees --node 7" --seams --wire --sheets "--cut-away 0,-1,0"; do
+  draw half.kerf --opacity 0.3 $options -o "drawn $options.png"
+  for other in plain.png "drawn "*.png; do
+    [ "$other" = "drawn $options.png" ] || ! cmp -s "$other" "drawn $options.png" || fail "'$options' draws what $other has"
+  done
+done
+draw half.ply halve.front -o front.png
+draw half.ply halve.front --steps 4:5 -o step.png
+cmp -s front.png step.png && fail "--steps changes nothing"
+# Nodes move with their pieces.
+draw whole.kerf --opacity 0.3 --nodes --explode 0.8 -o apart.png
+draw whole.kerf --opacity 0.3 --nodes --explode 0.8 -j 1 -o again.png
+cmp apart.png again.png || fail "threads change the picture"
+
+# Animations: as many frames as asked for, the same bytes again.
+draw whole.ply --explode 0.5 --frames 5 -o turn.webp
+draw whole.ply --explode 0.5 --frames 5 -j 1 -o again.webp
+cmp turn.webp again.webp || fail "threads change the animation"
+python3 - <<'P' || fail "turn.webp"
+data = open("turn.webp", "rb").read()
+assert data[:4] == b"RIFF" and data[8:12] == b"WEBP" and int.from_bytes(data[4:8], "little") + 8 == len(data)
+assert data.count(b"ANMF") == 5 and data.count(b"ANIM") == 1
+P
+mkdir frames && cp p.ply frames/frame_0000.ply && cp half.ply frames/frame_0001.ply && cp whole.ply frames/frame_0002.ply
+draw frames --rate 10 -o run.mp4
+[ "$(ffprobe -v error -count_frames -select_streams v -show_entries stream=codec_name,width,height,nb_read_frames -of csv=p=0 run.mp4)" = h264,96,72,3 ] || fail "run.mp4: $(ffprobe -v error -show_streams run.mp4)"
+draw frames --frames 2 -o two.webp
+[ "$(grep -ao ANMF two.webp | wc -l)" = 2 ] || fail "--frames"
+# Refused.
+says() {
+  local code=$1 pattern=$2 said
+  shift 2
+  said=$("$@" 2>&1 >/dev/null)
+  [ $? = "$code" ] || fail "$* does not exit with $code: $said"
+  grep -q -e "$pattern" <<<"$said" || fail "$* does not say '$pattern' but: $said"
+}
+says 65 "no field 'colour', but radius" kerf-view half.kerf --nodes --field colour -o x.png
+says 65 "no node 9999" kerf-view half.kerf --node 9999 -o x.png
+says 65 "second file with nodes" kerf-view half.kerf p.kerf -o x.png
+says 65 "more nodes" kerf-view p.kerf --nodes --before half.kerf -o x.png
+says 2 "A:B" kerf-view half.ply halve.front --steps 5:4 -o x.png
+says 2 "one folder" kerf-view frames p.ply -o x.png
+says 2 "give a file" kerf-view -o x.png
+says 73 "ffmpeg is not installed" env PATH="$1:$2" kerf-view whole.ply --size 64x48 -o x.mp4
+[ ! -e x.png ] && [ ! -e x.mp4 ] || fail "something is left behind"
+ls ./*.tmp >/dev/null 2>&1 && fail "something is left behind: $(ls ./*.tmp)"
+exit $failed

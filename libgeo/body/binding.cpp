@@ -97,9 +97,9 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
   return best;
 }
 
-NodeId stray_node_of(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& in_piece) {
+NodeId stray_node_of(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept) {
   const auto near = body.grid.nearest(body.nodes.position, body.surface.point(body.surface.site(v)), 1, ~0u,
-                                      [&](std::uint32_t i) { return in_piece(NodeId(i)); });
+                                      [&](std::uint32_t i) { return accept(NodeId(i)); });
   return near.empty() ? NodeId() : NodeId(near[0]);
 }
 
@@ -141,18 +141,22 @@ Binding build_binding(const Body& body) {
   for (std::uint32_t v = 0; v < n; ++v)
     if (b.master_node[v].valid()) b.master[v] = b.parent[v] = SurfaceVertexId(v), level.push_back(SurfaceVertexId(v));
   spread();
-  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece.
+  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece, else the nearest of all.
   Pieces pieces;
-  const auto piece_at = [&](Side s) { return k.has(s) ? pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)] : -1; };
+  const auto piece_before = [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; };
+  constexpr std::int32_t not_asked = -2;
+  std::vector<std::int32_t> piece_of_node;
   for (std::uint32_t v = 0; v < n; ++v) {
     const SurfaceVertexId id(v);
     if (!k.alive(id) || b.master[v].valid()) continue;
-    if (pieces.of_side.empty()) pieces = find_pieces(k);
-    const auto piece = piece_at(k.corner_of(id).first);
-    const NodeId node = stray_node_of(body, id, [&](NodeId i) {
-      return piece_at(side_seen_from(k, body.nodes.position[i.index()], body.nodes.spacing[i.index()])) == piece;
+    if (pieces.of_side.empty()) pieces = find_pieces(k), piece_of_node.assign(body.nodes.size(), not_asked);
+    const auto piece = piece_before(k.corner_of(id).first);
+    NodeId node = stray_node_of(body, id, [&](NodeId i) {
+      auto& known = piece_of_node[i.index()];
+      if (known == not_asked) known = piece_around(k, body.nodes.position[i.index()], piece_before);
+      return known == piece;
     });
-    if (!node.valid()) continue;
+    if (!node.valid()) node = stray_node_of(body, id, [](NodeId) { return true; });
     b.master_node[v] = node;
     b.master[v] = b.parent[v] = id;
     level.assign(1, id);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@
 
 namespace geo {
 
-/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries.
+/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries. A crumb that
+/// has no room for a node is rigid debris, carried by the nearest one.
 struct Binding {
   std::vector<NodeId> master_node;       ///< of masters: the node with the visibility edge; else invalid
   std::vector<SurfaceVertexId> master;   ///< the master whose tree a vertex hangs in; invalid: orphan
@@ -28,6 +30,7 @@ struct Binding {
 struct Upkeep {
   std::vector<std::int32_t> piece;   ///< per surface vertex: a number for its piece of material, −1: dead
   std::int32_t pieces = 0;           ///< how many numbers there are
+  std::set<std::int32_t> bare;       ///< pieces without a node, as far as known: crumbs in which doubles have no room for one
   bool inner_shells = false;         ///< a piece may be bounded by several shells: cavities, cracks inside
   std::vector<std::uint32_t> depth;  ///< per surface vertex: edges to its master; ~0u: orphan
   std::vector<SurfaceVertexId> strays;  ///< masters of shells that no node looks at, ascending
@@ -73,6 +76,7 @@ Binding build_binding(const Body& body);
 struct SplitWork {
   CrackWork crack;
   std::size_t edges_cut = 0, edges_added = 0, nodes_updated = 0, nodes_added = 0, nodes_moved = 0, orphans = 0;
+  std::size_t nodes_mended = 0;  ///< of those added, the last: in pieces without a node and passages too narrow for the sampling
   double resample_seconds = 0, graph_seconds = 0, binding_seconds = 0;
 };
 
@@ -102,6 +106,7 @@ void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<Node
 /// Every invariant of a body that can be checked alone; empty when all hold, else the first offending ids.
 struct BodyReport {
   std::size_t graph_components = 0, pieces = 0, edges_crossing = 0, orphans = 0, nodes_outside = 0;
+  std::size_t crumbs = 0;  ///< of the pieces, those without a node: too thin for one
   std::string first_problem;
   bool good() const { return first_problem.empty(); }
 };

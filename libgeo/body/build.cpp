@@ -13,7 +13,7 @@ namespace {
 void require_inside(const Body& body, const std::vector<std::uint32_t>& component) {
   std::uint32_t asked = 0;  // components are numbered by their lowest nodes
   for (std::size_t i = 0; i < component.size(); ++i)
-    if (component[i] == asked && ++asked > 0 && !is_inside(body.surface, body.nodes.position[i], body.nodes.spacing[i]))
+    if (component[i] == asked && ++asked > 0 && !is_inside(body.surface, body.nodes.position[i]))
       throw InputError("node " + std::to_string(i) + " is not inside the surface; sample the same model that the body is made of");
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "body/body.h"
+#include "body/connect.h"
 #include "body/locate.h"
 #include "surface/pieces.h"
 
@@ -17,10 +18,11 @@ BodyReport check_body(const Body& body) {
   report.graph_components = body.graph.components(component);
   const Pieces pieces = find_pieces(k);
   report.pieces = pieces.count;
+  const auto piece_before = [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; };
   std::vector<std::int32_t> piece_of(report.graph_components, -1);
+  std::vector<std::uint32_t> component_of(pieces.count, ~0u);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Side s = side_seen_from(k, body.nodes.position[i], body.nodes.spacing[i]);
-    const auto piece = pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
+    const auto piece = piece_around(k, body.nodes.position[i], piece_before);
     if (piece < 0 || is_blocked(k, body.nodes.position[i], body.nodes.position[i])) {
       ++report.nodes_outside;
       note("node " + std::to_string(i) + " is not inside the material");
@@ -29,6 +31,9 @@ BodyReport check_body(const Body& body) {
     auto& known = piece_of[component[i]];
     if (known >= 0 && known != piece) note("node " + std::to_string(i) + " is connected to another piece");
     known = piece;
+    auto& part = component_of[static_cast<std::size_t>(piece)];
+    if (part != ~0u && part != component[i]) note("node " + std::to_string(i) + " is not connected to others of its piece");
+    part = component[i];
     for (const NodeId j : body.graph.edges(NodeId(i)))
       if (j.value > i && is_blocked(k, body.nodes.position[i], body.nodes.position[j.index()])) {
         ++report.edges_crossing;
@@ -43,9 +48,13 @@ BodyReport check_body(const Body& body) {
         note("an edge of guide " + std::to_string(g) + " crosses a face");
       }
   }
-  if (report.graph_components != report.pieces)
-    note("the graph has " + std::to_string(report.graph_components) + " components and the material " +
-         std::to_string(report.pieces) + " pieces");
+  for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
+    if (!k.alive(SurfaceVertexId(v))) continue;
+    auto& part = component_of[static_cast<std::size_t>(piece_before(k.corner_of(SurfaceVertexId(v)).first))];
+    if (part != ~0u) continue;
+    part = 0, ++report.crumbs;
+    if (room_in(k, SurfaceVertexId(v), body.grid.cell(), piece_before)) note("the piece of surface vertex " + std::to_string(v) + " has no node");
+  }
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     if (k.alive(FaceId(f))) soup.push_back(k.corners(FaceId(f)));

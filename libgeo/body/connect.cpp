@@ -75,10 +75,14 @@ Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, 
   };
   // Every part into which cut edges divided a component has an end of one that leads to another part.
   std::set<std::int32_t> divided;
+  std::map<std::uint32_t, std::int32_t> piece_of_part;  // by its lowest node so far
   for (const auto& [a, b] : cut) {
     if (components.joined(a.value, b.value)) continue;
-    for (const NodeId i : {a, b})
-      if (const auto piece = piece_of(body, i); piece >= 0) divided.insert(origin_of(piece)), look_at(components, piece, i, found);
+    for (const NodeId i : {a, b}) {
+      const auto [at, fresh] = piece_of_part.try_emplace(components.lowest(i.value), -1);
+      if (fresh) at->second = piece_of(body, i);
+      if (at->second >= 0) divided.insert(origin_of(at->second)), look_at(components, at->second, i, found);
+    }
   }
   // Material came apart and the graph did not: its nodes are all in one of the parts.
   for (const Offcut& o : offcuts)

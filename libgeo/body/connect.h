@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "body/nodes.h"
@@ -32,6 +33,11 @@ void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Dis
 
 /// The connected parts of G.
 Regions components_of(const Body& body);
+
+/// A point inside the piece that a shell bounds, on the line from the middle of one of the shell's largest faces straight
+/// into it, half way to what comes next, at most half of `reach` away. Nothing where doubles have no room for one: a crumb
+/// some last places thick. v: any vertex of the shell; `piece` numbers the sides with material.
+std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, const std::function<std::int32_t(Side)>& piece);
 
 /// Updates the graph after nodes were added; `joins` are pairs that see each other and are to have an edge, near or not.
 using GraphUpdater = std::function<void(NodeId first_new, std::span<const NodePair> joins)>;

@@ -1,9 +1,8 @@
 #include "body/locate.h"
 
 #include <algorithm>
+#include <limits>
 
-#include "base/error.h"
-#include "geometry/distance.h"
 #include "geometry/predicates.h"
 
 namespace geo {
@@ -30,53 +29,57 @@ bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
   return k.has(s) && orient3d(own[0], own[1], own[2], p) == (s.which ? 1 : -1) && !is_blocked(k, base, p, s.face);
 }
 
-Side side_seen_from(const Complex& complex, const Vec3& p, double reach) {
+std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::function<std::int32_t(Side)>& piece) {
+  // Along the axis on which the way out is shortest.
+  const Box3& extent = complex.extent();
+  int axis = 0;
+  double shortest = std::numeric_limits<double>::infinity();
+  bool up = true;
+  for (int i = 0; i < 3; ++i)
+    for (const bool above : {true, false})
+      if (const double way = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; way < shortest) shortest = way, axis = i, up = above;
+  Box3 line{p, p};
+  const double beyond = std::max(shortest, 0.0) + extent.diagonal();
+  (up ? line.hi : line.lo)[axis] += up ? beyond : -beyond;
   std::vector<FaceId> faces;
-  const double everything = 4 * (complex.extent().diagonal() + (p - complex.extent().center()).norm());
-  for (double r = reach;; r *= 2) {
-    faces.clear();
-    complex.near(Box3{p, p}.grown(r), faces);
-    if (!faces.empty() || r > everything) break;
-  }
-  if (faces.empty()) throw GeometryError("the complex has no faces");
-  const auto middle = [&](FaceId f) {
-    const auto t = complex.corners(f);
-    return Vec3((t[0] + t[1] + t[2]) / 3);
+  complex.near(line, faces);
+  const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+  // The turn from edge ab to the line, which stands an infinitesimal ε off along u and ε² along v.
+  const auto turn = [&](const Vec3& a, const Vec3& b) {
+    if (const int sign = orient2d(a, b, p, axis); sign != 0) return sign;
+    if (a[v] != b[v]) return a[v] > b[v] ? 1 : -1;
+    return a[u] != b[u] ? (b[u] > a[u] ? 1 : -1) : 0;
   };
-  // The nearest middle that nothing hides tells without doubt, unless p is in the face's plane.
-  std::vector<std::pair<double, FaceId>> targets;
-  for (const FaceId f : faces) targets.push_back({(middle(f) - p).squaredNorm(), f});
-  std::sort(targets.begin(), targets.end());
-  for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 16); ++i) {
-    const FaceId f = targets[i].second;
+  std::vector<std::pair<std::int32_t, int>> windings;
+  const auto count = [&](Side s, int by) {
+    const auto of = complex.has(s) ? piece(s) : -1;
+    if (of < 0) return;
+    const auto at = std::find_if(windings.begin(), windings.end(), [&](const auto& w) { return w.first == of; });
+    if (at == windings.end())
+      windings.push_back({of, by});
+    else
+      at->second += by;
+  };
+  for (const FaceId f : faces) {
     const auto t = complex.corners(f);
-    const int above = orient3d(t[0], t[1], t[2], p);
-    if (above != 0 && !is_blocked(complex, p, middle(f), f)) return {f, above > 0 ? 1 : 0};
+    const int facing = turn(t[0], t[1]);
+    if (facing == 0 || turn(t[1], t[2]) != facing || turn(t[2], t[0]) != facing) continue;
+    const int before = up ? -facing : facing;  // where p is when the line meets the face
+    if (orient3d(t[0], t[1], t[2], p) != before) continue;
+    count({f, before > 0 ? 1 : 0}, 1), count({f, before > 0 ? 0 : 1}, -1);
   }
-  // Else what the line to the nearest middle meets first.
-  const FaceId target = targets[0].second;
-  const Vec3 q = middle(target);
-  Box3 box{p, p};
-  box.add(q);
-  std::vector<FaceId> between;
-  complex.near(box, between);
-  FaceId first = target;
-  double best = 1;
-  for (const FaceId f : between) {
-    const auto t = complex.corners(f);
-    if (f == target || !segment_meets_triangle(p, q, t[0], t[1], t[2])) continue;
-    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-    const double at = n.dot(t[0] - p), along = n.dot(q - p);
-    if (along != 0 && at / along < best) best = at / along, first = f;
+  // Where sheets have changed places several pieces may lie over each other: less a crumb, they are one.
+  int sum = 0;
+  std::pair<std::int32_t, int> most{-1, 0};
+  for (const auto& w : windings) {
+    sum += w.second;
+    if (w.second > most.second || (w.second == most.second && w.first < most.first)) most = w;
   }
-  const auto t = complex.corners(first);
-  return {first, orient3d(t[0], t[1], t[2], p) > 0 ? 1 : 0};
+  return sum > 0 ? most.first : -1;
 }
 
-bool is_inside(const Complex& complex, const Vec3& p, double reach) {
-  const Side s = side_seen_from(complex, p, reach);
-  const auto t = complex.corners(s.face);
-  return complex.has(s) && !segment_meets_triangle(p, p, t[0], t[1], t[2]);
+bool is_inside(const Complex& complex, const Vec3& p) {
+  return piece_around(complex, p, [](Side) { return 0; }) == 0 && !is_blocked(complex, p, p);
 }
 
 }  // namespace geo

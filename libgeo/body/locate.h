@@ -1,5 +1,7 @@
-// Where a point is with respect to the complex: which side of which face it looks at.
+// Where a point is with respect to the complex: what is in its way, before which side it stands, in which piece it is.
 #pragma once
+
+#include <functional>
 
 #include "body/body.h"
 
@@ -15,11 +17,12 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId exc
 /// then p is in the material before that side. The face itself is left out because its own point is rounded.
 bool stands_before(const Complex& complex, Side s, const Vec3& base, const Vec3& p);
 
-/// The side that one sees from p when looking at the middle of a near face: the point is in that side's piece, or, when
-/// the side has no material, outside. `reach`: how far to look first; it is widened until a face is found.
-Side side_seen_from(const Complex& complex, const Vec3& p, double reach);
+/// The piece that p is in, −1: none. `piece` numbers the sides with material. Decided by topology: p is where a piece's whole
+/// boundary winds around it, counted along a line from p out of the complex by exact predicates, with ties broken
+/// symbolically. So a crumb whose sheets rounding has exchanged holds no point, and hides from none which piece it is in.
+std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::function<std::int32_t(Side)>& piece);
 
 /// True when p is strictly inside the material.
-bool is_inside(const Complex& complex, const Vec3& p, double reach);
+bool is_inside(const Complex& complex, const Vec3& p);
 
 }  // namespace geo

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
@@ -45,13 +46,10 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
       continue;
     // The donor is the nearest node that sees it; else, in a fresh sliver, the nearest of all.
     const auto candidates = body.grid.nearest(body.nodes.position, s.position, 8, ~0u, all);
-    NodeId donor(candidates[0]);
-    for (const auto i : candidates)
-      if (!is_blocked(body.surface, body.nodes.position[i], s.position)) {
-        donor = NodeId(i);
-        break;
-      }
-    insert_node(body, s.position, donor, spacing);
+    const auto seen = std::find_if(candidates.begin(), candidates.end(), [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); });
+    // Where rounding has exchanged two sheets, even air may be before a side with material.
+    if (seen == candidates.end() && !is_inside(body.surface, s.position)) continue;
+    insert_node(body, s.position, NodeId(seen == candidates.end() ? candidates[0] : *seen), spacing);
     if (++count == limit) break;
   }
   return count;
@@ -71,14 +69,24 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
       const double d = (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm();
       if (d > 0.02 * spacing) continue;
       const int above = orient3d(t[0], t[1], t[2], x);
-      Vec3 away = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-      if (above < 0) away = -away;
+      const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+      // A node on the face takes any side, and where faces meet any way out.
+      std::vector<Vec3> ways{above < 0 ? Vec3(-n) : n};
+      if (above == 0) {
+        ways.push_back(-n);
+        for (Random random(i); ways.size() < 16;) ways.push_back(random.direction());
+      }
       // As far as there is room, at most a tenth of the spacing.
-      for (double step = 0.1 * spacing; step > 1e-6 * spacing; step *= 0.5) {
-        const Vec3 to = x + step * away, from = above == 0 ? Vec3(x + 1e-3 * step * away) : x;
-        if (is_blocked(body.surface, from, to)) continue;
+      const auto way = [&](const Vec3& along) {
+        for (double step = 0.1 * spacing; step > 1e-6 * spacing; step *= 0.5)
+          if (!is_blocked(body.surface, above == 0 ? Vec3(x + 1e-3 * step * along) : x, x + step * along)) return Vec3(step * along);
+        return Vec3(Vec3::Zero());
+      };
+      for (const Vec3& along : ways) {
+        const Vec3 move = way(along);
+        if (move == Vec3::Zero()) continue;
         body.grid.erase(i, x);
-        body.nodes.position[i] = to;
+        body.nodes.position[i] = x + move;
         body.grid.insert(body.nodes.position, i);
         moved.push_back(NodeId(i));
         break;

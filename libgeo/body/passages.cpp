@@ -50,8 +50,7 @@ std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
     to[i % 3] = i < 3 ? k.extent().hi[i % 3] + reach : k.extent().lo[i % 3] - reach;
     look(to);
   }
-  const Side near = side_seen_from(k, x, reach);
-  std::vector<FaceId> targets{near.face};
+  std::vector<FaceId> targets;
   k.near(Box3{x, x}.grown(reach), targets);
   for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 32); ++i) {
     const auto t = k.corners(targets[i]);
@@ -174,41 +173,11 @@ bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
   return true;
 }
 
-// A node on the line from the middle of one of the shell's largest faces straight into it, half way to what comes next.
-// Invalid where doubles have no room for one: a crumb some last places thick.
 NodeId insert_into(Body& body, SurfaceVertexId v) {
-  const Complex& k = body.surface;
-  std::vector<SurfaceVertexId> shell{v}, around;
-  std::set<SurfaceVertexId> seen{v};
-  std::vector<std::pair<double, Side>> sides;  // by area, the largest first
-  for (std::size_t i = 0; i < shell.size(); ++i) {
-    for (const FaceId f : k.faces_at(k.site(shell[i])))
-      for (int which = 0; which < 2; ++which)
-        for (int c = 0; c < 3; ++c) {
-          if (!k.has({f, which}) || k.surface_vertex({f, which}, c) != shell[i]) continue;
-          const auto t = k.corners(f);
-          sides.push_back({-(t[1] - t[0]).cross(t[2] - t[0]).norm(), Side{f, which}});
-        }
-    around.clear();
-    k.surface_neighbors(shell[i], around);
-    for (const auto w : around)
-      if (seen.insert(w).second) shell.push_back(w);
-  }
-  std::sort(sides.begin(), sides.end());
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-  for (std::size_t i = 0; i < std::min<std::size_t>(sides.size(), 16); ++i) {
-    const Side s = sides[i].second;
-    const auto t = k.corners(s.face);
-    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-    const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-    const NodeId donor(body.grid.nearest(body.nodes.position, middle, 1, ~0u, [](auto) { return true; })[0]);
-    for (double step = body.nodes.spacing[donor.index()]; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
-      const Vec3 x = middle + 0.5 * step * inwards;
-      if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) && !is_blocked(k, x, x))
-        return insert_node(body, x, donor, body.nodes.spacing[donor.index()]);
-    }
-  }
-  return {};
+  const auto nearest = [&](const Vec3& x) { return NodeId(body.grid.nearest(body.nodes.position, x, 1, ~0u, [](auto) { return true; })[0]); };
+  const double spacing = body.nodes.spacing[nearest(body.surface.point(body.surface.site(v))).index()];
+  const auto x = room_in(body.surface, v, spacing, [&](Side s) { return body.upkeep.piece[body.surface.surface_vertex(s, 0).index()]; });
+  return x ? insert_node(body, *x, nearest(*x), spacing) : NodeId();
 }
 
 /// Finds other nodes of a node's piece; what was found out about a node is kept.
@@ -249,15 +218,50 @@ bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std
 
 }  // namespace
 
+std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, const std::function<std::int32_t(Side)>& piece) {
+  const auto wanted = piece(k.corner_of(v).first);
+  std::vector<SurfaceVertexId> shell{v}, around;
+  std::set<SurfaceVertexId> seen{v};
+  std::vector<std::pair<double, Side>> sides;  // by area, the largest first
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    for (const FaceId f : k.faces_at(k.site(shell[i])))
+      for (int which = 0; which < 2; ++which)
+        for (int c = 0; c < 3; ++c) {
+          if (!k.has({f, which}) || k.surface_vertex({f, which}, c) != shell[i]) continue;
+          const auto t = k.corners(f);
+          sides.push_back({-(t[1] - t[0]).cross(t[2] - t[0]).norm(), Side{f, which}});
+        }
+    around.clear();
+    k.surface_neighbors(shell[i], around);
+    for (const auto w : around)
+      if (seen.insert(w).second) shell.push_back(w);
+  }
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  for (std::size_t i = 0; i < std::min<std::size_t>(sides.size(), 16); ++i) {
+    const Side s = sides[i].second;
+    const auto t = k.corners(s.face);
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    for (double step = reach; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
+      const Vec3 x = middle + 0.5 * step * inwards;
+      if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) && !is_blocked(k, x, x) && piece_around(k, x, piece) == wanted) return x;
+    }
+  }
+  return {};
+}
+
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
-    for (const auto v : found.empty)
+    for (const auto v : found.empty) {
+      const auto piece = body.upkeep.piece[v.index()];
       if (const NodeId i = insert_into(body, v); i.valid())
-        found.known[body.upkeep.piece[v.index()]] = i;
+        found.known[piece] = i, body.upkeep.bare.erase(piece);
       else
-        found.known.erase(body.upkeep.piece[v.index()]);
+        found.known.erase(piece), body.upkeep.bare.insert(piece);
+    }
     Regions before = components_of(body);
     Neighborhood pieces(body);
     std::vector<NodePair> joins;

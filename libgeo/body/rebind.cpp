@@ -121,7 +121,7 @@ void Rebinding::renew_strays(NodeId first_new, const std::vector<NodeId>& moved)
       const double d = (body_.nodes.position[node.index()] - q).squaredNorm();
       const auto rivals = [&](NodeId i) { return (body_.nodes.position[i.index()] - q).squaredNorm() <= d; };
       stays = !std::binary_search(moved.begin(), moved.end(), node) && std::none_of(moved.begin(), moved.end(), rivals) &&
-              piece_of(body_, node) == body_.upkeep.piece[v.index()];
+              (body_.upkeep.bare.count(body_.upkeep.piece[v.index()]) || piece_of(body_, node) == body_.upkeep.piece[v.index()]);
       for (std::uint32_t i = first_new.value; i < body_.nodes.size() && stays; ++i) stays = !rivals(NodeId(i));
     }
     if (!stays) dismiss_stray(v);
@@ -216,8 +216,13 @@ void Rebinding::grow() {
 void Rebinding::adopt_strays() {
   for (const auto v : orphans_) {
     if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
-    const NodeId node = stray_node_of(body_, v, [&](NodeId i) { return piece_of(body_, i) == body_.upkeep.piece[v.index()]; });
-    if (!node.valid()) continue;
+    const auto piece = body_.upkeep.piece[v.index()];
+    NodeId node;
+    if (!body_.upkeep.bare.count(piece)) node = stray_node_of(body_, v, [&](NodeId i) { return piece_of(body_, i) == piece; });
+    if (!node.valid()) {
+      body_.upkeep.bare.insert(piece);
+      node = stray_node_of(body_, v, [](NodeId) { return true; });
+    }
     set_node(v, node);
     strays_.insert(std::lower_bound(strays_.begin(), strays_.end(), v), v);
     offer(v, 0, v);

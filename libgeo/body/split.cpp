@@ -45,6 +45,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   std::vector<std::uint32_t> component;
   if (recounted) body.graph.components(component);
   auto found = recounted ? find_disagreement(body, component) : find_disagreement(body, update.cut_edges, offcuts, delta.first_new_node);
+  const std::size_t sampled = body.nodes.size();
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     const auto more =
         update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, joins);
@@ -62,6 +63,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
     work->edges_cut += update.cut_edges.size(), work->edges_added += update.added_edges.size();
     work->nodes_updated += delta.updated_nodes.size(),
         work->nodes_added += body.nodes.size() - delta.first_new_node.index();
+    work->nodes_mended += body.nodes.size() - sampled;
     work->nodes_moved += delta.moved_nodes.size(), work->orphans += delta.rebound.size();
   }
   return delta;

@@ -42,13 +42,14 @@ void place_inner(Body& body) {
   auto& of = body.upkeep.piece;
   const auto own = of;
   const auto pieces = body.upkeep.pieces;
+  const auto bare = body.upkeep.bare;
   count_pieces(body);
   std::vector<std::int32_t> number(static_cast<std::size_t>(body.upkeep.pieces), -1);
   for (std::size_t v = 0; v < own.size(); ++v)
     if (own[v] >= 0) number[static_cast<std::size_t>(of[v])] = own[v];
   for (std::size_t v = 0; v < own.size(); ++v)
     if (k.alive(SurfaceVertexId(v))) of[v] = own[v] >= 0 ? own[v] : number[static_cast<std::size_t>(of[v])];
-  body.upkeep.pieces = pieces;
+  body.upkeep.pieces = pieces, body.upkeep.bare = bare;
   body.upkeep.inner_shells = true;
 }
 
@@ -65,6 +66,7 @@ void count_pieces(Body& body) {
       keep.piece[v] = pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
     }
   keep.pieces = static_cast<std::int32_t>(pieces.count);
+  keep.bare.clear();
   keep.inner_shells = pieces.shells > pieces.count;
 }
 
@@ -91,8 +93,11 @@ void begin_upkeep(Body& body) {
 }
 
 std::int32_t piece_of(const Body& body, NodeId i) {
-  const Side s = side_seen_from(body.surface, body.nodes.position[i.index()], body.nodes.spacing[i.index()]);
-  return body.surface.has(s) ? body.upkeep.piece[body.surface.surface_vertex(s, 0).index()] : -1;
+  return piece_at(body, body.nodes.position[i.index()]);
+}
+
+std::int32_t piece_at(const Body& body, const Vec3& p) {
+  return piece_around(body.surface, p, [&](Side s) { return body.upkeep.piece[body.surface.surface_vertex(s, 0).index()]; });
 }
 
 std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recounted) {

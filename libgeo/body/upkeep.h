@@ -11,8 +11,9 @@ void begin_upkeep(Body& body);
 /// The pieces of all surface vertices, counted from scratch.
 void count_pieces(Body& body);
 
-/// The piece of material that a node is in, by what it sees; −1: none.
+/// The piece of material that a node or a point is in; −1: none.
 std::int32_t piece_of(const Body& body, NodeId i);
+std::int32_t piece_at(const Body& body, const Vec3& p);
 
 /// A piece that a step cut off.
 struct Offcut {

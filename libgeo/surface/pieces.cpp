@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
@@ -14,7 +15,6 @@ namespace {
 struct Shell {
   std::vector<Side> sides;
   double volume = 0;
-  double doubt = 0;  ///< rounding may have made this much of the volume
 };
 
 std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_side) {
@@ -35,7 +35,6 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
         stack.pop_back();
         shell.sides.push_back(s);
         const auto c = k.corners(s.face);
-        shell.doubt += 0x1p-50 * (c[0] - origin).norm() * (c[1] - origin).norm() * (c[2] - origin).norm();
         const double part = (c[0] - origin).dot((c[1] - origin).cross(c[2] - origin)) / 6;
         const double y = (s.which == 0 ? part : -part) - carry, t = shell.volume + y;
         carry = (t - shell.volume) - y;
@@ -52,21 +51,67 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
   return shells;
 }
 
-// True when the shell encloses something: a fold of a crack onto itself does not, whatever rounding makes of its volume.
-// Nor does rounding decide of a crumb: were it an inner shell, it would enclose the shells across its faces.
-bool is_outer(std::uint32_t id, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
-  const Shell& shell = shells[id];
-  bool thick = false, beside_larger = false;
-  for (const Side s : shell.sides) {
-    const auto other = of_side[s.face.index() * 2 + 1 - static_cast<std::size_t>(s.which)];
-    if (other == static_cast<std::int32_t>(id)) continue;
-    thick = true;
-    if (other >= 0) {
-      const Shell& next = shells[static_cast<std::size_t>(other)];
-      beside_larger |= std::abs(next.volume) > 2 * std::abs(shell.volume) + shell.doubt + next.doubt;
+// Shells that share faces, in groups: the group of each shell.
+std::vector<std::uint32_t> group(std::size_t shells, const std::vector<std::int32_t>& of_side) {
+  std::vector<std::uint32_t> root(shells);
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&](std::uint32_t s) {
+    while (root[s] != s) s = root[s] = root[root[s]];
+    return s;
+  };
+  for (std::size_t f = 0; f + 1 < of_side.size(); f += 2)
+    if (of_side[f] >= 0 && of_side[f + 1] >= 0) {
+      const auto a = find(static_cast<std::uint32_t>(of_side[f])), b = find(static_cast<std::uint32_t>(of_side[f + 1]));
+      root[std::max(a, b)] = std::min(a, b);
     }
+  for (std::uint32_t s = 0; s < shells; ++s) root[s] = find(s);
+  return root;
+}
+
+// Of the shells of faces that hang together, one looks outwards at what is around them all: it has corners at the extreme
+// points. Where several have, it is the one with the most volume outside.
+std::uint32_t outward(const Complex& k, const std::vector<Shell>& shells, std::vector<std::uint32_t> of_group) {
+  for (int way = 0; way < 6 && of_group.size() > 1; ++way) {
+    const auto farther = [&](VertexId a, VertexId b) {
+      for (int i = 0; i < 3; ++i) {
+        const double xa = k.point(a)[(way + i) % 3], xb = k.point(b)[(way + i) % 3];
+        if (xa != xb) return way < 3 ? xa > xb : xa < xb;
+      }
+      return a < b;
+    };
+    VertexId extreme;
+    std::vector<std::uint32_t> there;
+    for (const auto s : of_group)
+      for (const Side side : shells[s].sides)
+        for (const VertexId v : k.face(side.face).v) {
+          if (!extreme.valid() || farther(v, extreme)) extreme = v, there.clear();
+          if (v == extreme && (there.empty() || there.back() != s)) there.push_back(s);
+        }
+    of_group = there;
   }
-  return thick && (shell.volume > 0 || beside_larger);
+  return *std::min_element(of_group.begin(), of_group.end(), [&](auto a, auto b) { return shells[a].volume < shells[b].volume; });
+}
+
+// True for shells that bound a piece from outside. Faces that hang together divide space into one region for each of the
+// shells that they have, air included (Alexander's duality). All but one of these regions are enclosed by them: a piece of
+// material each, however thin, and whatever rounding makes of its volume. The one around them is air where they have skin
+// that encloses something, else the inside of another piece.
+std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
+  const auto root = group(shells.size(), of_side);
+  std::vector<std::vector<std::uint32_t>> groups(shells.size());
+  for (std::uint32_t s = 0; s < shells.size(); ++s) groups[root[s]].push_back(s);
+  std::vector<std::uint8_t> outer(shells.size(), 1);
+  for (const auto& members : groups) {
+    if (members.empty()) continue;
+    bool skin = false;
+    double volume = 0;  // that the skin encloses: faces between shells do not count
+    for (const auto s : members) {
+      volume += shells[s].volume;
+      for (const Side side : shells[s].sides) skin |= k.face(side.face).crack == 0;
+    }
+    if (!(skin && volume > 0)) outer[outward(k, shells, members)] = 0;
+  }
+  return outer;
 }
 
 }  // namespace
@@ -74,16 +119,17 @@ bool is_outer(std::uint32_t id, const std::vector<Shell>& shells, const std::vec
 Pieces find_pieces(const Complex& k) {
   std::vector<std::int32_t> shell_of;
   const auto shells = find_shells(k, shell_of);
+  const auto is_outer = find_outer(k, shells, shell_of);
   std::vector<std::uint32_t> outer;
   for (std::uint32_t s = 0; s < shells.size(); ++s)
-    if (is_outer(s, shells, shell_of)) outer.push_back(s);
+    if (is_outer[s]) outer.push_back(s);
 
   // Cavities and internal cracks belong to the smallest outer shell around them.
   std::vector<std::uint32_t> owner(shells.size());
   std::vector<TriangleBvh> trees(shells.size());
   for (std::uint32_t s = 0; s < shells.size(); ++s) {
     owner[s] = s;
-    if (std::find(outer.begin(), outer.end(), s) != outer.end()) continue;
+    if (is_outer[s]) continue;
     double best = std::numeric_limits<double>::infinity();
     for (const auto o : outer) {
       if (shells[o].volume >= best) continue;

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "body/body.h"
 #include "body/locate.h"
-#include "invariants/random_cuts.h"
+#include "invariants/cut_bodies.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -97,23 +97,12 @@ TEST_CASE("Guides follow the front of a crack", "[body]") {
 TEST_CASE("Random cuts keep a pumpkin's body and its guides in step", "[body]") {
   const Body model = make_body(make_pumpkin(5), 0.25, 0.5);
   std::size_t placed = 0, retired = 0;
-  for (int c = 0; c < random_cuts::cases(6); ++c) {
-    const auto seed = static_cast<std::uint64_t>(c) + 1;
-    Random random(seed * 32452843);
-    Body body = model;
-    for (std::int32_t crack = 1; crack <= 2; ++crack) {
-      const auto cut = random_cuts::make_cut(model.surface.extent(), random);
-      const int steps = random.below(2) == 0 ? 1 : 12;
-      auto front = begin_front(cut.at(0), false, crack);
-      for (int s = 1; s <= steps; ++s) {
-        INFO("seed " << seed << ", crack " << crack << ", step " << s << " of " << steps);
-        if (split(body, front, cut.at(double(s) / steps)).crack.empty()) continue;
-        CHECK(check_body(body).first_problem == "");
-      }
-    }
-    placed += body.graph.guides().size() - model.graph.guides().size();
-    for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) retired += body.graph.guides().retired(g);
-  }
+  random_cuts::cut_bodies(
+      model, 6, 32452843, [](const Body& body) { CHECK(check_body(body).first_problem == ""); },
+      [&](const Body& body) {
+        placed += body.graph.guides().size() - model.graph.guides().size();
+        for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) retired += body.graph.guides().retired(g);
+      });
   CHECK(placed > 100);
   CHECK(retired > 50);
 }

@@ -9,7 +9,7 @@
 #include "body/nodes.h"
 #include "geometry/bvh.h"
 #include "graph/neighborhoods.h"
-#include "invariants/random_cuts.h"
+#include "invariants/cut_bodies.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -104,22 +104,10 @@ TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[b
 TEST_CASE("Random cuts keep a pumpkin's body in step", "[body]") {
   const Body model = make_body(make_pumpkin(5), 0.25);
   const double volume = total(model.nodes.volume);
-  for (int c = 0; c < random_cuts::cases(8); ++c) {
-    const auto seed = static_cast<std::uint64_t>(c) + 1;
-    Random random(seed * 15485863);
-    Body body = model;
-    for (std::int32_t crack = 1; crack <= 2; ++crack) {
-      const auto cut = random_cuts::make_cut(model.surface.extent(), random);
-      const int steps = random.below(2) == 0 ? 1 : 12;
-      auto front = begin_front(cut.at(0), false, crack);
-      for (int s = 1; s <= steps; ++s) {
-        INFO("seed " << seed << ", crack " << crack << ", step " << s << " of " << steps);
-        if (split(body, front, cut.at(double(s) / steps)).crack.empty()) continue;
-        CHECK(check_body(body).first_problem == "");
-        CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
-      }
-    }
-  }
+  random_cuts::cut_bodies(model, 8, 15485863, [&](const Body& body) {
+    CHECK(check_body(body).first_problem == "");
+    CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
+  });
 }
 
 TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {

@@ -6,18 +6,20 @@
 
 #include "crack/grid_case.h"
 
-/// The smallest case that `fails` holds of and that is found by dropping cracks, steps and points, undoing subdivision, and
-/// moving coordinates towards small integers, as long as any of these helps. `fails` holds of `grid`.
-inline GridCase shrink(GridCase grid, const std::function<bool(const GridCase&)>& fails) {
-  const auto attempt = [&](const GridCase& smaller) {
+/// The smallest case that `fails` holds of and that is found by dropping cracks, steps and points, and by simplify(case, attempt),
+/// as long as any of these helps. attempt() takes a simpler case over where it fails, too, and returns whether it did; simplify()
+/// returns whether any attempt succeeded. `fails` holds of `small`.
+template <class Case, class Simplify>
+Case shrink(Case small, const std::function<bool(const Case&)>& fails, const Simplify& simplify) {
+  const auto attempt = [&](const Case& smaller) {
     if (!fails(smaller)) return false;
-    grid = smaller;
+    small = smaller;
     return true;
   };
   const auto drop_cracks = [&] {
     bool any = false;
-    for (std::size_t c = grid.cracks.size(); c-- > 0 && grid.cracks.size() > 1;) {
-      GridCase smaller = grid;
+    for (std::size_t c = small.cracks.size(); c-- > 0 && small.cracks.size() > 1;) {
+      Case smaller = small;
       smaller.cracks.erase(smaller.cracks.begin() + static_cast<std::ptrdiff_t>(c));
       any |= attempt(smaller);
     }
@@ -25,9 +27,9 @@ inline GridCase shrink(GridCase grid, const std::function<bool(const GridCase&)>
   };
   const auto drop_steps = [&] {
     bool any = false;
-    for (std::size_t c = 0; c < grid.cracks.size(); ++c)
-      for (std::size_t s = grid.cracks[c].rows.size(); s-- > 0 && grid.cracks[c].rows.size() > 2;) {
-        GridCase smaller = grid;
+    for (std::size_t c = 0; c < small.cracks.size(); ++c)
+      for (std::size_t s = small.cracks[c].rows.size(); s-- > 0 && small.cracks[c].rows.size() > 2;) {
+        Case smaller = small;
         smaller.cracks[c].rows.erase(smaller.cracks[c].rows.begin() + static_cast<std::ptrdiff_t>(s));
         any |= attempt(smaller);
       }
@@ -35,17 +37,28 @@ inline GridCase shrink(GridCase grid, const std::function<bool(const GridCase&)>
   };
   const auto drop_points = [&] {
     bool any = false;
-    for (std::size_t c = 0; c < grid.cracks.size(); ++c) {
-      const std::size_t least = grid.cracks[c].closed ? 3 : 2;
-      for (std::size_t p = grid.cracks[c].rows[0].size(); p-- > 0 && grid.cracks[c].rows[0].size() > least;) {
-        GridCase smaller = grid;
+    for (std::size_t c = 0; c < small.cracks.size(); ++c) {
+      const std::size_t least = small.cracks[c].closed ? 3 : 2;
+      for (std::size_t p = small.cracks[c].rows[0].size(); p-- > 0 && small.cracks[c].rows[0].size() > least;) {
+        Case smaller = small;
         for (auto& row : smaller.cracks[c].rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(p));
         any |= attempt(smaller);
       }
     }
     return any;
   };
-  const auto simplify = [&] {
+  for (bool any = true; any;) {
+    any = drop_cracks();
+    any |= drop_steps();
+    any |= drop_points();
+    any |= simplify(small, attempt);
+  }
+  return small;
+}
+
+/// Also by undoing subdivision, and moving coordinates towards small integers.
+inline GridCase shrink(GridCase given, const std::function<bool(const GridCase&)>& fails) {
+  const auto simplify = [](const GridCase& grid, const auto& attempt) {
     bool any = false;
     if (grid.divisions > 1) {
       GridCase smaller = grid;
@@ -76,11 +89,5 @@ inline GridCase shrink(GridCase grid, const std::function<bool(const GridCase&)>
     }
     return any;
   };
-  for (bool any = true; any;) {
-    any = drop_cracks();
-    any |= drop_steps();
-    any |= drop_points();
-    any |= simplify();
-  }
-  return grid;
+  return shrink<GridCase>(std::move(given), fails, simplify);
 }

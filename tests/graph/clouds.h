@@ -1,10 +1,7 @@
-// Sets of points of every kind that neighbour searches meet, and the vector instructions that they may run on.
+// Sets of points of every kind that neighbour searches meet.
 #pragma once
 
-#include <hwy/targets.h>
-
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "base/random.h"
@@ -37,15 +34,4 @@ inline std::vector<geo::Vec3> cloud(geo::Random& random, int kind, int count) {
     }
   }
   return p;
-}
-
-/// Runs `check` on each kind of vectors that this machine has.
-inline void on_every_target(const std::function<void()>& check) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "cases.h"
 #include "clouds.h"
+#include "vectors.h"
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"
 

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "cases.h"
 #include "clouds.h"
+#include "vectors.h"
 #include "geometry/predicates.h"
 #include "graph/visibility.h"
 

@@ -7,7 +7,9 @@
 #include <set>
 #include <string>
 
+#include "base/random.h"
 #include "body/locate.h"
+#include "body/nodes.h"
 #include "body/upkeep.h"
 #include "surface/pieces.h"
 
@@ -21,6 +23,50 @@ inline double total(const std::vector<double>& v) { return std::accumulate(v.beg
 inline NodeId carrier(const Body& body, std::size_t v) {
   const auto& b = body.binding;
   return v < b.master.size() && b.master[v].valid() ? b.master_node[b.master[v].index()] : NodeId();
+}
+
+/// Components of G against pieces of material: one for each, but for crumbs that have no room for a node. A point is in a piece
+/// when a ray from it crosses the piece's boundary an odd number of times. No edge crosses a face.
+inline std::string fault_of_components(const Body& body, const TriangleBvh& faces, const Pieces& pieces, const std::vector<std::uint32_t>& component,
+                                       std::size_t components) {
+  const Complex& k = body.surface;
+  std::vector<std::vector<std::array<Vec3, 3>>> around(pieces.count);
+  std::vector<std::vector<Vec3>> corners(pieces.count);
+  for (std::uint32_t f = 0; f < k.face_count(); ++f)
+    for (std::size_t which = 0; which < 2; ++which)
+      if (const auto piece = pieces.of_side[f * 2 + which]; piece >= 0) {
+        const auto t = k.corners(FaceId(f));
+        if (piece != pieces.of_side[f * 2 + 1 - which]) around[static_cast<std::size_t>(piece)].push_back(t);
+        corners[static_cast<std::size_t>(piece)].insert(corners[static_cast<std::size_t>(piece)].end(), t.begin(), t.end());
+      }
+  std::vector<TriangleBvh> boundary(around.begin(), around.end());
+  std::vector<std::uint32_t> component_of(pieces.count, ~0u);
+  std::uint32_t next = 0;  // components are numbered by their lowest nodes
+  for (std::uint32_t i = 0; i < component.size(); ++i) {
+    if (component[i] != next) continue;
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < pieces.count; ++p) {
+      if (!boundary[p].inside(body.nodes.position[i])) continue;
+      if (++count > 1) return "node " + std::to_string(i) + " is in several pieces";
+      if (component_of[p] != ~0u) return "node " + std::to_string(i) + " is not connected to others of its piece";
+      component_of[p] = next;
+    }
+    if (count == 0) return "node " + std::to_string(i) + " is in no piece";
+    ++next;
+  }
+  if (next != components) return "components are not numbered by their lowest nodes";
+  Random random(pieces.count);
+  for (std::size_t p = 0; p < pieces.count; ++p) {
+    if (component_of[p] != ~0u) continue;
+    for (int attempt = 0; attempt < 300; ++attempt) {
+      const auto corner = [&]() -> const Vec3& { return corners[p][random.below(static_cast<std::uint32_t>(corners[p].size()))]; };
+      const double u = random.uniform(), v = random.uniform(), w = random.uniform();
+      const Vec3 q = (1 - u) * corner() + u * ((1 - v) * corner() + v * ((1 - w) * corner() + w * corner()));
+      // In a crumb whose sheets rounding has exchanged, a point is less than outside.
+      if (boundary[p].inside(q) && !faces.blocks(q, q) && piece_around(k, q, [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; }) == static_cast<std::int32_t>(p)) return "piece " + std::to_string(p) + " has room, but no node";
+    }
+  }
+  return {};
 }
 
 /// Nodes, graph, rows and binding alone; empty when all is well.
@@ -44,24 +90,16 @@ inline std::string fault_of(const Body& body, double volume) {
   }
   if (std::abs(total(body.nodes.volume) - volume) > 1e-12 * volume) return "the volumes of the nodes do not sum to what they did";
 
+  for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) {
+    const auto id = VisibilityGraph::first_guide + g;
+    for (const auto to : body.graph.entries(id).to)
+      if (to < id && faces.blocks(body.graph.position(body.nodes, to), body.graph.guides().position(g))) return "an edge of guide " + name(g) + " crosses a face";
+  }
+
   const Pieces pieces = find_pieces(k);
   std::vector<std::uint32_t> component;
   const auto components = body.graph.components(component);
-  // Dust, some last places thick, has no room for a node in doubles; rounding may have turned it inside out.
-  const auto dust = [&](std::int32_t piece) { return std::abs(pieces.volume[static_cast<std::size_t>(piece)]) < 1e-11 * volume; };
-  std::vector<std::set<std::int32_t>> met(components);
-  std::set<std::int32_t> all;
-  for (std::uint32_t i = 0; i < x.size(); ++i) {
-    const Side s = side_seen_from(k, x[i], body.nodes.spacing[i]);
-    const auto piece = k.has(s) ? pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)] : -1;
-    if (piece >= 0 && dust(piece)) continue;
-    met[component[i]].insert(piece), all.insert(piece);
-    if (met[component[i]].size() > 1) return "node " + name(i) + " is connected to another piece";
-  }
-  if (const auto found = static_cast<std::size_t>(std::ranges::count_if(met, [](const auto& of) { return !of.empty(); })); found != all.size())
-    return std::to_string(found) + " components in " + std::to_string(all.size()) + " pieces";
-  for (std::int32_t p = 0; p < static_cast<std::int32_t>(pieces.count); ++p)
-    if (!all.count(p) && !dust(p)) return "piece " + std::to_string(p) + " has no node";
+  if (const auto fault = fault_of_components(body, faces, pieces, component, components); !fault.empty()) return fault;
 
   VisibilityGraph scratch = body.graph;
   build_neighborhoods(body.nodes, scratch, faces);
@@ -74,14 +112,17 @@ inline std::string fault_of(const Body& body, double volume) {
   }
   const Binding binding = build_binding(body);
   for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
-    if (k.alive(SurfaceVertexId(v)) && !binding.master[v].valid()) {
-      const Side s = k.corner_of(SurfaceVertexId(v)).first;
-      if (!dust(pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)])) return "surface vertex " + name(v) + " has no master";
-    }
+    if (k.alive(SurfaceVertexId(v)) && !binding.master[v].valid()) return "surface vertex " + name(v) + " has no master";
     if (binding.master[v] != body.binding.master[v] || binding.parent[v] != body.binding.parent[v] || binding.master_node[v] != body.binding.master_node[v])
       return "surface vertex " + name(v) + " is not bound as from scratch";
   }
   if (binding.closest != body.binding.closest) return "a node's closest vertex is not that of scratch";
+  Body marked;
+  marked.nodes = body.nodes, marked.graph = body.graph, marked.debris.resize(x.size());
+  std::vector<NodeId> all;
+  for (std::uint32_t i = 0; i < x.size(); ++i) all.push_back(NodeId(i));
+  mark_debris(marked, all);
+  if (marked.debris != body.debris) return "debris is not that of scratch";
 
   // What is kept for the next step.
   Body again;
@@ -99,14 +140,59 @@ inline std::string fault_of(const Body& body, double volume) {
   return {};
 }
 
-/// The same, and what a step made of `before`.
-inline std::string fault_of(const Body& before, const Body& body, const BodyDelta& delta, double volume) {
+/// Nodes that are new or moved have edges to the nearest that they see, guides to all that they see. `mended`: how many of the
+/// new nodes came last, to join what was apart; what came after a node need not have an edge to it.
+inline std::string fault_of_new_edges(const Body& before, const Body& body, const BodyDelta& delta, std::size_t mended, const TriangleBvh& faces) {
+  const auto& x = body.nodes.position;
+  const auto n = static_cast<std::uint32_t>(x.size()), first = delta.first_new_node.value, first_mended = n - static_cast<std::uint32_t>(mended);
+  std::vector<std::pair<double, std::uint32_t>> near;
+  const auto sees = [&](std::uint32_t i, std::uint32_t j) {
+    const auto [low, high] = std::minmax(i, j);
+    return !faces.blocks(body.graph.position(body.nodes, low), body.graph.position(body.nodes, high));
+  };
+  const auto is_moved = [&](std::uint32_t i) { return std::binary_search(delta.moved_nodes.begin(), delta.moved_nodes.end(), NodeId(i)); };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (i < first && !is_moved(i)) continue;
+    near.clear();
+    for (std::uint32_t j = 0; j < n; ++j)
+      if (j != i) near.push_back({squared_distance(x[i], x[j]), j});
+    const auto count = std::min(near.size(), static_cast<std::size_t>(3 * body.k));
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+    int seen = 0;
+    for (std::size_t c = 0; c < count && seen < body.k; ++c) {
+      const auto j = near[c].second;
+      if (!sees(i, j)) continue;
+      ++seen;
+      if ((j < i || j < first_mended) && !body.graph.has(NodeId(i), NodeId(j)))
+        return "node " + std::to_string(i) + " has no edge to " + std::to_string(j) + ", one of the nearest that it sees";
+    }
+  }
+  const GuideSet &guides = body.graph.guides(), &old = before.graph.guides();
+  for (std::uint32_t g = 0; g < guides.size(); ++g) {
+    const auto id = VisibilityGraph::first_guide + g;
+    const auto wrong = [&](std::uint32_t other, double reach, bool fresh) {
+      const bool edge = body.graph.has(NodeId(id), NodeId(other)), had = g < old.size() && before.graph.has(NodeId(id), NodeId(other));
+      if (g < old.size() && !fresh && !had) return edge;
+      return edge != (reach > 0 && squared_distance(body.graph.position(body.nodes, other), guides.position(g)) <= reach * reach && sees(id, other));
+    };
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (wrong(i, guides.radius(g), i >= first || is_moved(i))) return "the edge of guide " + std::to_string(g) + " to node " + std::to_string(i) + " is not as it should be";
+    for (std::uint32_t h = 0; h < g; ++h)
+      if (wrong(VisibilityGraph::first_guide + h, guides.retired(g) || guides.retired(h) ? 0.0 : std::max(guides.radius(g), guides.radius(h)), false))
+        return "the edge of guides " + std::to_string(g) + " and " + std::to_string(h) + " is not as it should be";
+  }
+  return {};
+}
+
+/// The same as of a body alone, and what a step made of `before`; see fault_of_new_edges().
+inline std::string fault_of(const Body& before, const Body& body, const BodyDelta& delta, std::size_t mended, double volume) {
   if (const auto fault = fault_of(body, volume); !fault.empty()) return fault;
   const auto& x = body.nodes.position;
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
     if (body.surface.alive(FaceId(f))) soup.push_back(body.surface.corners(FaceId(f)));
   const TriangleBvh faces(soup);
+  if (const auto fault = fault_of_new_edges(before, body, delta, mended, faces); !fault.empty()) return fault;
   const auto stood = [&](NodeId i) { return !std::binary_search(delta.moved_nodes.begin(), delta.moved_nodes.end(), i); };
   for (std::uint32_t i = 0; i < before.nodes.size(); ++i) {
     if (stood(NodeId(i)) != (x[i] == before.nodes.position[i])) return "node " + std::to_string(i) + " moved unsaid";

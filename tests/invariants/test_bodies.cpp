@@ -1,164 +1,172 @@
 // Bodies cut at random: after every step graph, rows and binding are those of scratch, components are pieces, nodes are
-// inside. A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]'; one case of it: KERF_CASE=7000123 and the
-// name of the test; KERF_TELL=1 tells of every step.
+// inside, whatever the number of threads and the vectors. A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]';
+// one case of it: KERF_CASE=7000123 and the name of the test; KERF_TELL=1 tells of every step.
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <filesystem>
-#include <optional>
+#include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cases.h"
-#include "crack/decimate.h"
-#include "crack/grid_case.h"
-#include "crack/shrink.h"
+#include "invariants/body_case.h"
 #include "invariants/body_faults.h"
-#include "invariants/models.h"
 #include "invariants/random_sweeps.h"
 #include "io/stream.h"
-#include "sampling/sample.h"
+#include "vectors.h"
 
 using namespace geo;
 
 namespace {
 
-struct Crack {
-  std::string kind;
-  bool closed = false;
-  std::vector<std::vector<Vec3>> rows;
-};
-
 struct Outcome {
-  std::string fault, where;  ///< empty: every invariant held after every step
-  std::size_t steps = 0, refused = 0, parted = 0;
+  std::string fault;                ///< empty: every invariant held after every step
+  std::size_t crack = 0, step = 0;  ///< where it did not
+  std::size_t steps = 0, cutting = 0, refused = 0, parted = 0;
   Body body;
 };
 
 // `check` every step, or none.
-Outcome cut(const Body& model, const std::vector<Crack>& cracks, bool check) {
+Outcome cut(const BodyCase& c, bool check) {
   Outcome result;
+  const Body& model = body_cases::body_of(c);
   result.body = model;
   const double volume = body_faults::total(model.nodes.volume);
-  for (std::size_t c = 0; c < cracks.size(); ++c) {
-    FrontState front = begin_front(cracks[c].rows[0], cracks[c].closed, static_cast<std::int32_t>(c + 1));
-    for (std::size_t s = 1; s < cracks[c].rows.size(); ++s) {
+  for (result.crack = 0; result.crack < c.cracks.size(); ++result.crack) {
+    const GridCrack& crack = c.cracks[result.crack];
+    FrontState front = begin_front(crack.rows[0], crack.closed, static_cast<std::int32_t>(result.crack + 1));
+    for (result.step = 1; result.step < crack.rows.size(); ++result.step) {
       const Body before = check ? result.body : Body();
       ++result.steps;
-      std::string fault;
       SplitWork work;
       try {
-        const BodyDelta delta = split(result.body, front, cracks[c].rows[s], {}, &work);
+        const BodyDelta delta = split(result.body, front, crack.rows[result.step], {}, &work);
         result.parted += delta.parted.size();
         if (check && std::getenv("KERF_TELL"))
-          WARN("crack " << c + 1 << " step " << s << ": " << delta.crack.new_crack_faces.size() << " crack faces, " << result.body.nodes.size() << " nodes, "
-                        << delta.parted.size() << " pieces more, " << work.resample_seconds << " + " << work.graph_seconds << " + " << work.binding_seconds << " s");
-        if (check && !delta.crack.empty()) fault = body_faults::fault_of(before, result.body, delta, volume);
+          WARN("crack " << result.crack + 1 << " step " << result.step << ": " << delta.crack.new_crack_faces.size() << " crack faces, " << result.body.nodes.size()
+                        << " nodes, " << delta.parted.size() << " pieces more, " << work.resample_seconds << " + " << work.graph_seconds << " + " << work.binding_seconds << " s");
+        if (delta.crack.empty()) continue;
+        ++result.cutting;
+        if (check) result.fault = body_faults::fault_of(before, result.body, delta, work.nodes_mended, volume);
       } catch (const GeometryError&) {
         ++result.refused;
-        if (check && (result.body.nodes.position != before.nodes.position || !(result.body.graph == before.graph) ||
-                      !(result.body.binding == before.binding) || result.body.surface.face_count() != before.surface.face_count()))
-          fault = "a refused step changed the body";
-        else
+        if (!check || (result.body.nodes.position == before.nodes.position && result.body.graph == before.graph &&
+                       result.body.binding == before.binding && result.body.surface.face_count() == before.surface.face_count()))
           break;
+        result.fault = "a refused step changed the body";
       }
-      if (fault.empty()) continue;
-      result.fault = fault, result.where = "crack " + std::to_string(c + 1) + " (" + cracks[c].kind + "), step " + std::to_string(s);
-      return result;
+      if (!result.fault.empty()) return result;
     }
   }
   return result;
 }
 
-bool same(const Body& a, const Body& b) {
-  if (a.nodes.position != b.nodes.position || a.nodes.volume != b.nodes.volume || !(a.graph == b.graph) || !(a.binding == b.binding)) return false;
-  return true;
+// Vectors as doubles may differ in more than value.
+bool same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
 }
 
-struct Tally {
-  std::size_t cases = 0, steps = 0, refused = 0, parted = 0;
-  // Every fifth case again with other numbers of threads.
-  void run(const Body& model, const std::vector<Crack>& cracks, const std::string& name) {
+bool same(const Body& a, const Body& b) {
+  return same(a.nodes.position, b.nodes.position) && a.nodes.volume == b.nodes.volume && a.graph == b.graph && a.binding == b.binding && a.debris == b.debris;
+}
+
+class Campaign {
+ public:
+  ~Campaign() {
+    if (std::getenv("KERF_CASES"))
+      WARN(cases_ << " sequences, " << steps_ << " steps, " << cutting_ << " of them cut something, " << refused_ << " refused, " << parted_ << " pieces came off, "
+                  << guided_ << " sequences with guides, " << varied_ << " runs with other threads and vectors");
+  }
+
+  /// Cuts with two threads, and with one and four and other vectors again.
+  void run(const BodyCase& c, std::uint64_t seed) {
     set_threads(2);
-    const Outcome two = cut(model, cracks, true);
-    INFO(name << ", " << two.where);
-    CHECK(two.fault == "");
-    for (const int threads : {1, 4}) {
-      if (cases % 5 != 0 || !two.fault.empty()) continue;
-      set_threads(threads);
-      CHECK(same(two.body, cut(model, cracks, false).body));
-    }
+    INFO("KERF_CASE=" << seed << ", " << c.recipe());
+    if (made_.insert(c.recipe()).second) require_good_model(c);
+    const Outcome two = cut(c, true);
+    ++cases_, steps_ += two.steps, cutting_ += two.cutting, refused_ += two.refused, parted_ += two.parted, guided_ += c.guides > 0;
+    if (!two.fault.empty()) keep(c, seed, two);
+    if (two.fault.empty()) vary([&] { CHECK(same(two.body, cut(c, false).body)); });
     set_threads(0);
-    ++cases, steps += two.steps, refused += two.refused, parted += two.parted;
   }
-  ~Tally() {
-    if (std::getenv("KERF_CASES")) WARN(cases << " sequences, " << steps << " steps, " << refused << " refused, " << parted << " pieces came off");
+
+ private:
+  // Nothing is wrong with it yet, and it is the same however it is built.
+  void require_good_model(const BodyCase& c) {
+    const Body& model = body_cases::body_of(c);
+    REQUIRE(body_faults::fault_of(model, body_faults::total(model.nodes.volume)) == "");
+    vary([&] { CHECK(same(model, body_cases::make_body(c))); });
+    set_threads(2);
   }
+
+  // With one and with four threads, and of the kinds of vectors there are two in turn.
+  void vary(const std::function<void()>& check) {
+    static const auto targets = hwy::SupportedAndGeneratedTargets();
+    for (const int threads : {1, 4}) {
+      set_threads(threads);
+      use_vectors(targets[varied_++ % targets.size()]);
+      check();
+      use_vectors(0);
+    }
+  }
+
+  // Shrinks what fails, where it is not known yet, into a file.
+  void keep(const BodyCase& c, std::uint64_t seed, const Outcome& outcome) {
+    const std::string kind = kind_of(outcome.fault), where = "crack " + std::to_string(outcome.crack + 1) + ", step " + std::to_string(outcome.step);
+    if (++kinds_[kind] > 2) {
+      FAIL_CHECK(where << ": " << outcome.fault);
+      return;
+    }
+    const std::string file = "body-" + std::to_string(seed) + ".front";
+    BodyCase small = c;
+    small.cracks.resize(outcome.crack + 1);
+    small.cracks.back().rows.resize(outcome.step + 1);
+    if (!std::getenv("KERF_WHOLE")) small = body_cases::shrink(small, [&](const BodyCase& s) { return fails_alike(s, kind); });
+    write_all(file, [&](std::ostream& out) { body_cases::write_body_case(out, small, "found with seed " + std::to_string(seed) + ": " + outcome.fault); });
+    FAIL_CHECK(where << ": " << outcome.fault << "; the smallest such case is in " << file);
+  }
+
+  static bool fails_alike(const BodyCase& c, const std::string& kind) {
+    try {
+      return kind_of(cut(c, true).fault) == kind;
+    } catch (const InputError&) {  // no such model
+      return false;
+    }
+  }
+
+  std::size_t cases_ = 0, steps_ = 0, cutting_ = 0, refused_ = 0, parted_ = 0, guided_ = 0, varied_ = 0;
+  std::set<std::string> made_;
+  std::map<std::string, int> kinds_;
 };
 
-/// A real model with about 1,500 faces and some hundred nodes.
-Body make_model(const std::string& name) {
-  Complex k = Complex::from_skin(invariants::model(name));
-  decimate(k, {}, {.deviation = 0.02, .faces = 1500});
-  auto coarse = k.two_sided();
-  coarse.site.clear(), coarse.source.clear();
-  require_solid(coarse);
-  k = Complex::from_skin(coarse);
-  SampleOptions sampling;
-  sampling.count = 900;
-  NodeSet nodes = sample_nodes(coarse, sampling);
-  return build_body(std::move(k), std::move(nodes));
-}
-
 /// Up to three cracks of up to ten steps; some run along the sheet of an earlier one.
-std::vector<Crack> random_cracks(const Body& model, Random& random) {
-  std::vector<Crack> cracks;
+std::vector<GridCrack> random_cracks(const Complex& surface, Random& random) {
+  std::vector<GridCrack> cracks;
   for (int c = 1 + static_cast<int>(random.below(3)); c > 0; --c) {
     if (!cracks.empty() && random.below(5) == 0) {
-      cracks.push_back(cracks.back());
-      cracks.back().kind = "again " + cracks.back().kind;
+      cracks.push_back(GridCrack(cracks.back()));
       continue;
     }
-    const auto sweep = random_sweeps::make_sweep(model.surface, random, 10);
-    cracks.push_back({sweep.kind, sweep.closed, sweep.rows});
+    const auto sweep = random_sweeps::make_sweep(surface, random, 10);
+    cracks.push_back({sweep.closed, sweep.rows});
   }
   return cracks;
 }
 
 const std::vector<std::string> model_names{"bear", "elephant", "dino", "hand", "femur", "bull", "homer", "knot1", "eight", "couplingdown", "pumpkin"};
 
-/// A block of 4 × 4 × 4 with nodes on a regular grid, those of whole coordinates included: cracks run exactly through
-/// nodes and the planes between them.
-Body make_grid_body(int divisions) {
-  const TriangleMesh block = make_block({4, 4, 4}, 4.0 / divisions);
-  NodeSet nodes;
-  for (int z = 1; z < 8; ++z)
-    for (int y = 1; y < 8; ++y)
-      for (int x = 1; x < 8; ++x) {
-        nodes.position.push_back(0.5 * Vec3(x, y, z));
-        nodes.spacing.push_back(0.5), nodes.radius.push_back(1.0), nodes.volume.push_back(64.0 / 343);
-      }
-  return build_body(Complex::from_skin(block), nodes);
-}
-
-Outcome cut_grid(const GridCase& grid) {
-  static const std::array<Body, 2> models{make_grid_body(1), make_grid_body(2)};
-  std::vector<Crack> cracks;
-  for (const auto& c : grid.cracks) cracks.push_back({"grid", c.closed, c.rows});
-  return cut(models[grid.divisions == 1 ? 0 : 1], cracks, true);
-}
-
-/// Thin slits beside each other, the nodes jittered: what lies between two of them holds few nodes or none.
-std::vector<Crack> random_slits(const Body& model, Random& random) {
-  const Box3& box = model.surface.extent();
+/// Thin slits beside each other: what lies between two of them holds few nodes or none.
+std::vector<GridCrack> random_slits(const Complex& surface, Random& random) {
+  const Box3& box = surface.extent();
   const double size = box.diagonal();
   const Vec3 n = random.direction(), u = n.unitOrthogonal(), v = n.cross(u);
   const Vec3 middle = box.center() + random.uniform(0, 0.15) * size * random.direction();
-  std::vector<Crack> cracks;
+  std::vector<GridCrack> cracks;
   double at = 0;
   const int steps = 1 + static_cast<int>(random.below(6));
   const bool complete = random.below(2);
   for (int c = 0; c < 4; ++c) {
-    Crack crack;
-    crack.kind = complete ? "cut" : "slit";
+    GridCrack crack;
     at += std::pow(10, random.uniform(-5, -1.2)) * size;
     const double depth = complete ? 2.4 : random.uniform(0.9, 1.5), tilt = random.below(3) ? 0.0 : random.uniform(-0.01, 0.01);
     for (int s = 0; s <= steps; ++s) {
@@ -171,6 +179,9 @@ std::vector<Crack> random_slits(const Body& model, Random& random) {
   return cracks;
 }
 
+// Every third body has guides along its concave edges and the fronts of its cracks.
+double guides_for(std::uint64_t seed) { return seed / model_names.size() % 3 == 0 ? 0.7 : 0.0; }
+
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int share = 1;  // each costs several times as much here
 #else
@@ -181,50 +192,50 @@ constexpr int share = 2;
 
 TEST_CASE("Cut bodies are as from scratch after every step: real models", "[bodies][models]") {
   const Seeds which = seeds(11 * share);
-  Tally tally;
-  for (std::size_t m = 0; m < model_names.size(); ++m) {
-    std::optional<Body> model;
-    for (int c = 0; c < which.count; ++c) {
-      const std::uint64_t seed = which.first + static_cast<std::uint64_t>(c);
+  Campaign campaign;
+  for (std::size_t m = 0; m < model_names.size(); ++m)
+    for (int i = 0; i < which.count; ++i) {
+      const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
       if (seed % model_names.size() != m) continue;
-      INFO("KERF_CASE=" << seed << ", " << model_names[m]);
-      if (!model) {
-        model = make_model(model_names[m]);
-        REQUIRE(body_faults::fault_of(*model, body_faults::total(model->nodes.volume)) == "");
-      }
+      BodyCase c{.model = model_names[m], .guides = guides_for(seed), .cracks = {}};
       Random random(seed * 104729);
-      tally.run(*model, random_cracks(*model, random), "KERF_CASE=" + std::to_string(seed) + ", " + model_names[m]);
+      c.cracks = random_cracks(body_cases::body_of(c).surface, random);
+      campaign.run(c, seed);
     }
-  }
 }
 
 TEST_CASE("Cut bodies are as from scratch after every step: slits beside each other", "[bodies][slits]") {
   const Seeds which = seeds(6 * share);
-  const auto mesh = make_pumpkin(5);
-  SampleOptions sampling;
-  sampling.count = 700, sampling.jitter = 0.3;
-  const Body model = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
-  Tally tally;
-  for (int c = 0; c < which.count; ++c) {
-    const std::uint64_t seed = which.first + static_cast<std::uint64_t>(c);
+  Campaign campaign;
+  for (int i = 0; i < which.count; ++i) {
+    const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
+    BodyCase c{.model = "pumpkin", .faces = 800, .nodes = 700, .jitter = 0.3, .guides = guides_for(seed), .cracks = {}};
     Random random(seed * 15485863);
-    tally.run(model, random_slits(model, random), "KERF_CASE=" + std::to_string(seed));
+    c.cracks = random_slits(body_cases::body_of(c).surface, random);
+    campaign.run(c, seed);
   }
 }
 
 TEST_CASE("Cut bodies are as from scratch after every step: cracks through nodes of a grid", "[bodies][aligned]") {
-  const Seeds which = seeds(14 * share);
-  std::size_t steps = 0, refused = 0;
-  for (int c = 0; c < which.count; ++c) {
-    const std::uint64_t seed = which.first + static_cast<std::uint64_t>(c);
-    const Outcome result = cut_grid(random_case(seed));
-    steps += result.steps, refused += result.refused;
-    if (result.fault.empty()) continue;
-    if (std::getenv("KERF_TELL")) WARN("KERF_CASE=" << seed << ", " << result.where << ": " << result.fault);
-    const std::string kind = kind_of(result.fault), file = "body-" + std::to_string(seed) + ".front";
-    const GridCase small = shrink(random_case(seed), [&](const GridCase& g) { return kind_of(cut_grid(g).fault) == kind; });
-    write_all(file, [&](std::ostream& out) { write_case(out, small, "found with seed " + std::to_string(seed) + ": " + result.fault); });
-    FAIL_CHECK("KERF_CASE=" << seed << ", " << result.where << ": " << result.fault << "; the smallest such case is in " << file);
+  const Seeds which = seeds(15 * share);
+  Campaign campaign;
+  for (int i = 0; i < which.count; ++i) {
+    const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
+    const GridCase grid = random_case(seed);
+    campaign.run({.faces = grid.divisions, .nodes = 343, .guides = guides_for(seed), .cracks = grid.cracks}, seed);
   }
-  if (std::getenv("KERF_CASES")) WARN(which.count << " sequences, " << steps << " steps, " << refused << " refused");
+}
+
+TEST_CASE("Kept cases of cut bodies are as from scratch after every step", "[bodies]") {
+  // Each failed once: files that the tests above left behind.
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(KERF_KEPT_BODIES)) {
+    const std::string name = entry.path().filename().string();
+    CAPTURE(name);
+    const Outcome result = cut(body_cases::read_body_case(read_all(entry.path().string()), name), true);
+    CHECK(result.fault == "");
+    CHECK(result.refused == 0);
+    ++count;
+  }
+  CHECK(count >= 1);
 }

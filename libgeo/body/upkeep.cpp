@@ -53,6 +53,20 @@ void place_inner(Body& body) {
   body.upkeep.inner_shells = true;
 }
 
+// True when vertices of several pieces hang together: where rounding had exchanged the sheets of a crumb, a later crack may
+// join it to what is beside it.
+bool have_joined(const Body& body, const CrackDelta& delta) {
+  const auto& of = body.upkeep.piece;
+  std::vector<SurfaceVertexId> around;
+  for (const auto* vertices : {&delta.touched_surface_vertices, &delta.new_surface_vertices})
+    for (const auto v : *vertices) {
+      around.clear();
+      body.surface.surface_neighbors(v, around);
+      if (std::any_of(around.begin(), around.end(), [&](SurfaceVertexId w) { return of[w.index()] != of[v.index()]; })) return true;
+    }
+  return false;
+}
+
 }  // namespace
 
 void count_pieces(Body& body) {
@@ -127,6 +141,7 @@ std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recou
   fill_across();
   if (unknown) place_inner(body), fill_across();
 
+  const bool joined = have_joined(body, delta);
   Regions shells = shells_of(k);
   std::erase_if(across, [&](const auto& sides) { return sides[0] == sides[1] || of[sides[0].index()] != of[sides[1].index()]; });
   for (const auto& sides : across)
@@ -150,7 +165,7 @@ std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recou
       for (const auto w : shells.inside(v.value)) of[w] = offcuts.back().piece;
     }
   }
-  recounted = !offcuts.empty() && body.upkeep.inner_shells;
+  recounted = joined || (!offcuts.empty() && body.upkeep.inner_shells);
   if (recounted) count_pieces(body);
   return offcuts;
 }

@@ -23,8 +23,8 @@ struct Offcut {
 
 /// Brings the pieces of surface vertices up to date after a step: only what new crack faces can have separated is looked
 /// at, and of two parts the one with less surface. A crack face parts material exactly when its sides are on different
-/// shells. `recounted` is set when that was not enough: a piece that may have inner shells came apart, and all pieces
-/// were counted (and numbered) anew.
+/// shells. `recounted` is set when that was not enough: a piece that may have inner shells came apart, or a crumb was joined to
+/// something, and all pieces were counted (and numbered) anew.
 std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recounted);
 
 }  // namespace geo

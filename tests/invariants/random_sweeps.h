@@ -36,11 +36,11 @@ struct Sweep {
   std::vector<std::vector<Vec3>> rows;
 };
 
-/// Twelve steps or fewer; `most`: no more than this.
-inline Sweep make_sweep(const Complex& k, Random& random, int most = 12) {
+/// So many steps, or now and then a few.
+inline Sweep make_sweep(const Complex& k, Random& random, int usual = 12) {
   Sweep sweep;
   const double size = k.extent().diagonal();
-  const int steps = std::min(most, random.below(3) ? 12 : 1 + static_cast<int>(random.below(4)));
+  const int steps = random.below(3) ? usual : 1 + static_cast<int>(random.below(4));
   if (random.below(5) == 0) {
     sweep.kind = "ring";
     sweep.closed = true;

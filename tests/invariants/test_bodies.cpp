@@ -139,6 +139,20 @@ class Campaign {
   std::map<std::string, int> kinds_;
 };
 
+// The steps that come near the model, no more than ten.
+std::vector<std::vector<Vec3>> near_steps(const Complex& surface, std::vector<std::vector<Vec3>> rows) {
+  const auto is_near = [&](std::size_t s) {
+    Box3 box;
+    for (const auto row : {s, s + 1})
+      for (const Vec3& p : rows[row]) box.add(p);
+    return box.meets(surface.extent());
+  };
+  while (rows.size() > 2 && !is_near(0)) rows.erase(rows.begin());
+  while (rows.size() > 2 && !is_near(rows.size() - 2)) rows.pop_back();
+  if (rows.size() > 11) rows.resize(11);
+  return rows;
+}
+
 /// Up to three cracks of up to ten steps; some run along the sheet of an earlier one.
 std::vector<GridCrack> random_cracks(const Complex& surface, Random& random) {
   std::vector<GridCrack> cracks;
@@ -147,8 +161,8 @@ std::vector<GridCrack> random_cracks(const Complex& surface, Random& random) {
       cracks.push_back(GridCrack(cracks.back()));
       continue;
     }
-    const auto sweep = random_sweeps::make_sweep(surface, random, 10);
-    cracks.push_back({sweep.closed, sweep.rows});
+    const auto sweep = random_sweeps::make_sweep(surface, random, 16);
+    cracks.push_back({sweep.closed, near_steps(surface, sweep.rows)});
   }
   return cracks;
 }

@@ -212,6 +212,7 @@ TEST_CASE("Cut bodies are as from scratch after every step: real models", "[bodi
       const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
       if (seed % model_names.size() != m) continue;
       BodyCase c{.model = model_names[m], .guides = guides_for(seed), .cracks = {}};
+      if (seed / model_names.size() % 4 != 0) c.faces = 800, c.nodes = 500;
       Random random(seed * 104729);
       c.cracks = random_cracks(body_cases::body_of(c).surface, random);
       campaign.run(c, seed);

@@ -25,9 +25,9 @@ inline NodeId carrier(const Body& body, std::size_t v) {
   return v < b.master.size() && b.master[v].valid() ? b.master_node[b.master[v].index()] : NodeId();
 }
 
-/// Components of G against pieces of material: one for each, but for crumbs that have no room for a node. A point is in a piece
+/// Components of G against pieces of material: one for each, but for crumbs that have no room for a node in doubles. A point is in a piece
 /// when a ray from it crosses the piece's boundary an odd number of times. No edge crosses a face.
-inline std::string fault_of_components(const Body& body, const TriangleBvh& faces, const Pieces& pieces, const std::vector<std::uint32_t>& component,
+inline std::string fault_of_components(const Body& body, const Pieces& pieces, const std::vector<std::uint32_t>& component,
                                        std::size_t components) {
   const Complex& k = body.surface;
   std::vector<std::vector<std::array<Vec3, 3>>> around(pieces.count);
@@ -62,8 +62,9 @@ inline std::string fault_of_components(const Body& body, const TriangleBvh& face
       const auto corner = [&]() -> const Vec3& { return corners[p][random.below(static_cast<std::uint32_t>(corners[p].size()))]; };
       const double u = random.uniform(), v = random.uniform(), w = random.uniform();
       const Vec3 q = (1 - u) * corner() + u * ((1 - v) * corner() + v * ((1 - w) * corner() + w * corner()));
-      // In a crumb whose sheets rounding has exchanged, a point is less than outside.
-      if (boundary[p].inside(q) && !faces.blocks(q, q) && piece_around(k, q, [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; }) == static_cast<std::int32_t>(p)) return "piece " + std::to_string(p) + " has room, but no node";
+      // Room is what is clear of the boundary by a few last places. In a crumb whose sheets rounding has exchanged, a point is
+      // less than outside.
+      if (boundary[p].inside(q) && boundary[p].closest(q).distance > 0x1p-48 * k.extent().diagonal() && piece_around(k, q, [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; }) == static_cast<std::int32_t>(p)) return "piece " + std::to_string(p) + " has room, but no node";
     }
   }
   return {};
@@ -99,7 +100,7 @@ inline std::string fault_of(const Body& body, double volume) {
   const Pieces pieces = find_pieces(k);
   std::vector<std::uint32_t> component;
   const auto components = body.graph.components(component);
-  if (const auto fault = fault_of_components(body, faces, pieces, component, components); !fault.empty()) return fault;
+  if (const auto fault = fault_of_components(body, pieces, component, components); !fault.empty()) return fault;
 
   VisibilityGraph scratch = body.graph;
   build_neighborhoods(body.nodes, scratch, faces);

@@ -9,9 +9,9 @@ trap 'rm -rf "$stage"' EXIT
 cd "$stage"
 export HOME="$stage" XDG_CACHE_HOME="$stage"
 mkdir models
-for f in 3 4 5; do kerf-model pumpkin --frequency $f -o models/pumpkin-$f.ply; done
+for f in 3 4; do kerf-model pumpkin --frequency $f -o models/pumpkin-$f.ply; done
 cat >config.yaml <<END
-models: [../models/pumpkin-3.ply, ../models/pumpkin-4.ply, ../models/pumpkin-5.ply]
+models: [../models/pumpkin-3.ply, ../models/pumpkin-4.ply]
 out: out
 score: {pattern: voronoi, pieces: 5, jagged: 0.01, seed: 3}
 own: {pumpkin-4: {pattern: planes, pieces: 3}}
@@ -32,7 +32,7 @@ until ls killed/out/*.ply >/dev/null 2>&1; do
   kill -0 $group || { cat log; exit 1; }
   sleep 0.05
 done
-kill -KILL -- -$group
+kill -9 -$group
 wait $group || true
 made=$(find killed/out -maxdepth 1 -type f | wc -l)
 batch --unlock >log 2>&1 || { cat log; exit 1; }
@@ -43,6 +43,6 @@ for file in whole/out/*.front whole/out/*.ply whole/out/*.glb whole/out/*.png; d
   cmp "$file" "killed/out/${file#whole/out/}"
   all=$((all + 1))
 done
-test $all = 12
+test $all = 8
 test "$made" -lt $all
 echo "$made of $all files were there when it was killed; all are the same"

@@ -88,32 +88,61 @@ void divide(TriangleMesh& walls, double longest) {
   }
 }
 
-// The vertices of triangles that cross others.
-std::vector<std::uint32_t> crossing_vertices(const TriangleMesh& walls) {
-  TriangleIndex index;
-  index.reserve(walls.triangles.size());
-  for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
-    const auto c = corners(walls, t);
-    index.insert(t, box_of(c[0], c[1], c[2]));
-  }
-  std::vector<char> bad(walls.triangles.size());
-  parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto c = corners(walls, t);
-      near.clear();
-      index.find_near_triangle(c[0], c[1], c[2], 0, near);
-      for (const auto other : near)
-        if (other != t && faces_cross(walls.triangles[t], c, walls.triangles[other], corners(walls, other))) bad[t] = 1;
+// Finds triangles that cross each other, again where some have changed.
+class Crossings {
+ public:
+  explicit Crossings(const TriangleMesh& walls) : walls_(walls), at_(walls.vertices.size()) {
+    index_.reserve(walls.triangles.size());
+    for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
+      insert(t);
+      asked_.push_back(t);
+      for (const auto v : walls.triangles[t]) at_[v].push_back(t);
     }
-  });
-  std::vector<std::uint32_t> vertices;
-  for (std::size_t t = 0; t < bad.size(); ++t)
-    if (bad[t]) vertices.insert(vertices.end(), walls.triangles[t].begin(), walls.triangles[t].end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
+  }
+
+  // The vertices, ascending, of those that cross others, among all or, after moved(), those with moved vertices.
+  std::vector<std::uint32_t> vertices() const {
+    std::vector<std::vector<std::uint32_t>> bad(asked_.size());
+    parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto t = asked_[i];
+        const auto c = corners(walls_, t);
+        near.clear();
+        index_.find_near_triangle(c[0], c[1], c[2], 0, near);
+        for (const auto other : near)
+          if (other != t && faces_cross(walls_.triangles[t], c, walls_.triangles[other], corners(walls_, other)))
+            for (const auto each : {t, other}) bad[i].insert(bad[i].end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
+      }
+    });
+    std::vector<std::uint32_t> all;
+    for (const auto& some : bad) all.insert(all.end(), some.begin(), some.end());
+    return sorted(std::move(all));
+  }
+
+  void moved(const std::vector<std::uint32_t>& vertices) {
+    asked_.clear();
+    for (const auto v : vertices) asked_.insert(asked_.end(), at_[v].begin(), at_[v].end());
+    asked_ = sorted(std::move(asked_));
+    for (const auto t : asked_) index_.erase(t), insert(t);
+  }
+
+ private:
+  static std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> rows) {
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    return rows;
+  }
+  void insert(std::uint32_t t) {
+    const auto c = corners(walls_, t);
+    index_.insert(t, box_of(c[0], c[1], c[2]));
+  }
+
+  const TriangleMesh& walls_;
+  std::vector<std::vector<std::uint32_t>> at_;  // triangles at each vertex
+  std::vector<std::uint32_t> asked_;
+  TriangleIndex index_;
+};
 
 }  // namespace
 
@@ -142,14 +171,17 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
     }
   });
   std::vector<int> lowered(flat.size());
+  Crossings crossings(walls);
   for (bool changed = true; changed;) {
     changed = false;
-    for (const auto v : crossing_vertices(walls)) {
-      if (way[v].isZero()) continue;
+    std::vector<std::uint32_t> bad = crossings.vertices();
+    std::erase_if(bad, [&](std::uint32_t v) { return way[v].isZero(0); });
+    for (const auto v : bad) {
       way[v] *= ++lowered[v] < 4 ? 0.5 : 0;
       walls.vertices[v] = flat[v] + way[v];
       changed = true;
     }
+    crossings.moved(bad);
   }
   trim(walls, skin, 0);
 }

@@ -98,6 +98,7 @@ void read_blade(TomlTable& t, Scene& s, Files& files) {
   t.get("back", blade.back);
   t.get("thickness", blade.thickness, 0, 1e9);
   if (blade.thickness > 0 && !(blade.back.norm() > 0)) t.fail("a blade with 'thickness' needs 'back': the way from its edge to its back");
+  t.get("stiffness", blade.stiffness, 0, 1e12);
   t.get("limit", blade.limit, 1e-3, 1e9);
   s.blades.push_back(std::move(blade));
 }
@@ -109,7 +110,9 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
   t.get("body", body, 0, static_cast<int>(s.bodies.size()) - 1);
   if (file.empty()) t.fail("'score.file' is missing: name a front file");
   const SceneBody& of = s.bodies[static_cast<std::size_t>(body)];
-  for (Front& front : parse_fronts(files.read(file), file)) {
+  const std::filesystem::path path = file;
+  const std::string name = path.filename().string();
+  for (Front& front : parse_fronts(files.read(file), name)) {
     for (auto& step : front.steps)
       for (Vec3& p : step) p = of.place * (of.scale * p);
     s.scores.push_back(std::move(front));

@@ -42,6 +42,7 @@ struct Blade {
   Motion motion;             ///< at least two keys; the blade is there from the first to the last
   Vec3 back = Vec3::Zero();  ///< from the edge to the back of the blade, in its own coordinates; its length is the blade's width
   double thickness = 0;      ///< of the wedge at its back, model units; 0: parts nothing
+  double stiffness = 1e4;    ///< of what the wedge pushes with: acceleration per depth, 1/s²
   double limit = 1;          ///< longest way of an edge point within one cut, in node spacings (§ 5.1)
 
   bool active(double time) const { return motion.active(time); }

@@ -42,7 +42,7 @@ void Simulation::begin_motion() {
   }
 }
 
-// Cracks that are there before time begins.
+// Cracks that are there before time begins: fronts step by step, sheets whole.
 void Simulation::score(const Progress& progress) {
   FrameWork work;
   for (std::size_t s = 0; s < scene_.scores.size(); ++s) {
@@ -52,11 +52,11 @@ void Simulation::score(const Progress& progress) {
       TriangleMesh sheet;
       sheet.vertices = front.steps[0], sheet.triangles = front.triangles;
       Complex scored = body_.surface;
-      insert_sheet(scored, sheet, scored.crack_count() + 1);
+      insert_sheet(scored, sheet, next_crack());
       adopt(follow(body_, scored, &work.split), work);
       continue;
     }
-    FrontState state = begin_front(front.steps.at(0), front.closed, body_.surface.crack_count() + 1);
+    FrontState state = begin_front(front.steps.at(0), front.closed, next_crack());
     for (std::size_t k = 1; k < front.steps.size(); ++k) {
       report(progress, "prescoring", s, scene_.scores.size());
       if (!split_step(state, correspond(front.steps[0], front.steps[k], front.closed), work))
@@ -183,6 +183,19 @@ void Simulation::move_grips(double dt) {
   }
 }
 
+// Thick blades, where they will be at the end of the step.
+void Simulation::push(double dt) {
+  wedge_ = {};
+  std::vector<double> mass;
+  for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
+    const Blade& blade = scene_.blades[b];
+    if (!(blade.thickness > 0) || !blade.active(state_.time)) continue;
+    for (std::size_t i = mass.size(); i < body_.nodes.size(); ++i) mass.push_back(solid_.mass(NodeId(i)));
+    wedge_.add(b, blade, blade.motion.at(state_.time + dt), body_.nodes.position, state_.motion.displacement, environment_.clearance, mass, blade.stiffness);
+  }
+  environment_.contact = wedge_.empty() ? nullptr : &wedge_;
+}
+
 void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
   const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
@@ -192,6 +205,9 @@ void Simulation::integrate(double dt, FrameWork& work) {
     const Vec3 x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
     state_.motion.velocity[i.index()] = (grip.motion.at(state_.time + dt) * Vec3(x - middle) - grip.motion.at(state_.time) * Vec3(x - middle)) / dt;
   }
+  work.blade_force.resize(scene_.blades.size(), Vec3::Zero());
+  const auto reaction = wedge_.reaction(state_.motion.displacement, scene_.blades.size());
+  for (std::size_t b = 0; b < reaction.size(); ++b) work.blade_force[b] += dt * scene_.frame_rate * reaction[b];
   work.newton += static_cast<std::size_t>(report.newton), work.cg += static_cast<std::size_t>(report.cg), ++work.steps;
   work.energy = report.energy;
   work.mechanics_seconds += watch.lap();
@@ -210,6 +226,7 @@ void Simulation::fracture(double dt, FrameWork& work) {
 void Simulation::step(double dt, FrameWork& work) {
   cut(dt, work);
   move_grips(dt);
+  push(dt);
   integrate(dt, work);
   state_.time += dt;
   fracture(dt, work);

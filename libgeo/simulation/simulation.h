@@ -9,6 +9,7 @@
 #include "simulation/fracture_step.h"
 #include "simulation/model.h"
 #include "simulation/scene.h"
+#include "simulation/wedge.h"
 #include "simulation/work.h"
 
 namespace geo {
@@ -52,9 +53,10 @@ class Simulation {
   std::int32_t next_crack() const;
   void move_grips(double dt);
   void integrate(double dt, FrameWork& work);
+  void push(double dt);
   void fracture(double dt, FrameWork& work);
-  /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
   void adopt(const BodyDelta& delta, FrameWork& work);
+  /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
   bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work);
   void begin_motion();
   void score(const Progress& progress);
@@ -65,6 +67,7 @@ class Simulation {
   Body body_;
   Solid solid_;
   Environment environment_;
+  Wedge wedge_;
   std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
 };
 

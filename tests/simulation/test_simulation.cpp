@@ -74,3 +74,69 @@ TEST_CASE("a falling cube is halved and both halves go on falling as one") {
   const TriangleMesh surface = sim.surface();
   CHECK(signed_volume(surface) == Approx(1).epsilon(0.05));
 }
+
+TEST_CASE("a thick blade pushes the sheets apart, and feels them") {
+  const auto run = [](const std::string& thickness) {
+    const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 2, 2, 0.15]]\n[time]\nframe_rate = 10\nstep = 0.05\n[[blade]]\n"
+                                    "points = [[0, -0.3, 0], [0, 1.3, 0]]\ndivide = 8\nkeys = [[0, 0.507, 0, 1.2, 0, 0, 1, 2], [0.4, 0.503, 0, 0.4, 0, 0, 1, 2]]\nback = [0, 0, 1]\nthickness = " + thickness, "s.toml");
+    Simulation sim(scene, make_block({1, 1, 1}, 0.2));
+    Vec3 force = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) {
+      const FrameWork work = sim.advance_frame();
+      CHECK(work.refused == 0);
+      force += work.blade_force.at(0);
+    }
+    double left = 0, right = 0;
+    for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
+      if (sim.body().nodes.position[i].z() > 0.7) (sim.body().nodes.position[i].x() < 0.5 ? left : right) += sim.state().motion.displacement[i].x() * sim.body().nodes.volume[i];
+    return std::tuple(left, right, force);
+  };
+  const auto [left, right, force] = run("0.3");
+  CHECK(left < -0.001);
+  CHECK(right > 0.001);
+  CHECK(force.z() > 0);  // it is held up
+  CHECK(std::abs(force.x()) < force.z());
+  const auto [still_left, still_right, none] = run("0.0");
+  CHECK(std::abs(still_left) + std::abs(still_right) < 1e-6);
+  CHECK(none == Vec3::Zero());
+}
+
+TEST_CASE("a grip carries the nodes that it holds, and lets go") {
+  const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.25\n[time]\nframe_rate = 10\nstep = 0.05\n[[grip]]\nbox = [-1, -1, 0.8, 2, 2, 2]\n"
+                                  "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.2, 0, 0, 0.1, 0, 0, 1, 0]]\nrelease = true\n", "s.toml");
+  Simulation sim(scene, make_block({1, 1, 1}, 0.25));
+  sim.advance_frame(), sim.advance_frame();
+  std::size_t held = 0;
+  for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
+    if (sim.body().nodes.position[i].z() > 0.8) {
+      ++held;
+      CHECK((sim.state().motion.displacement[i] - Vec3(0, 0, 0.1)).norm() < 1e-12);
+      CHECK((sim.state().motion.velocity[i] - Vec3(0, 0, 0.5)).norm() < 1e-9);
+    }
+  CHECK(held > 0);
+  const Vec3 before = sim.state().motion.displacement.back();
+  sim.advance_frame();
+  CHECK(sim.state().motion.displacement.back() != before);
+}
+
+TEST_CASE("bodies with velocities and prescored fronts begin as the scene says") {
+  Scene scene = parse_scene("gravity = [0, 0, 0]\n[[body]]\nmesh = 'a'\nspacing = 0.25\nvelocity = [0, 0, 1]\n[[body]]\nmesh = 'b'\nspacing = 0.25\nscale = 0.5\nposition = [3, 0, 0]\nrotation = [0, 0, 1, 90]\nspin = [0, 0, 2]\n", "s.toml");
+  Front front{"score", false, {{{-0.3, 0.507, 1.3}, {1.3, 0.503, 1.3}}, {{-0.3, 0.511, -0.3}, {1.3, 0.509, -0.3}}}};
+  Front sheet{"sheet", false, {{{2, 0.213, -1}, {4, 0.213, -1}, {3, 0.219, 2}}}, {{0, 1, 2}}};
+  scene.scores = {front, sheet};
+  const Model model = place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
+  const Simulation sim(scene, model);
+  const Pieces pieces = find_pieces(sim.body().surface);
+  CHECK(pieces.count == 4);
+  CHECK(check_body(sim.body()).first_problem == "");
+  double volume = 0;
+  for (const double v : pieces.volume) volume += v;
+  CHECK(volume == Approx(1.125).epsilon(1e-12));
+  Vec3 turning = Vec3::Zero();
+  for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
+    const Vec3& v = sim.state().motion.velocity[i];
+    if (sim.state().part[i] == 0) CHECK(v == Vec3(0, 0, 1));
+    else turning += (sim.body().nodes.position[i] - Vec3(2.75, 0.25, 0.25)).cross(v);
+  }
+  CHECK(turning.z() > 0);
+}

@@ -1,0 +1,65 @@
+#include "simulation/wedge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace geo {
+
+void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x, const std::vector<Vec3>& u,
+                const std::vector<double>& clearance, const std::vector<double>& mass, double stiffness) {
+  const Vec3 back = pose.rotation * shape.back;
+  const double width = back.norm(), slope = 0.5 * shape.thickness / width;
+  const std::size_t n = shape.points.size(), segments = shape.closed ? n : n - 1;
+  Box3 box;
+  for (const Vec3& p : shape.points) box.add(pose * p), box.add(pose * p + back);
+  box = box.grown(shape.thickness + *std::max_element(clearance.begin(), clearance.end()));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 world = x[i] + u[i];
+    if (!box.meets({world, world})) continue;
+    // The segment behind which the node is, the nearest one of several.
+    Contact found{i, blade, Vec3::Zero(), mass[i] * stiffness, 0};
+    double least = 0.5 * shape.thickness + clearance[i];
+    for (std::size_t s = 0; s < segments; ++s) {
+      const Vec3 a = pose * shape.points[s], along = pose * shape.points[(s + 1) % n] - a, normal = along.cross(back).normalized(), r = world - a;
+      // In the plane of the flank: r = α along + β back + d normal.
+      const double aa = along.squaredNorm(), ab = along.dot(back), bb = width * width, ra = r.dot(along), rb = r.dot(back), det = aa * bb - ab * ab;
+      const double alpha = (ra * bb - rb * ab) / det, beta = (rb * aa - ra * ab) / det, d = r.dot(normal);
+      if (!(alpha >= 0 && alpha <= 1 && beta >= 0 && beta <= 1 && std::abs(d) < least)) continue;
+      least = std::abs(d);
+      found.normal = ((d < 0 ? -1.0 : 1.0) * normal - slope * back / width).normalized();
+      found.offset = clearance[i] - found.normal.dot(r - u[i]);
+    }
+    if (found.normal != Vec3::Zero()) contacts_.push_back(found);
+  }
+}
+
+double Wedge::energy(const std::vector<Vec3>& u) const {
+  double sum = 0;
+  for (const Contact& c : contacts_) sum += 0.5 * c.stiffness * std::pow(std::max(0.0, c.depth(u)), 2);
+  return sum;
+}
+
+void Wedge::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
+  for (Contact& c : contacts_) {
+    c.deep = c.depth(u) > 0;
+    if (c.deep) out[c.node] += c.stiffness * c.depth(u) * c.normal;
+  }
+}
+
+void Wedge::blocks(std::vector<Mat3>& out) const {
+  for (const Contact& c : contacts_)
+    if (c.deep) out[c.node] += c.stiffness * c.normal * c.normal.transpose();
+}
+
+void Wedge::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
+  for (const Contact& c : contacts_)
+    if (c.deep) out[c.node] += c.stiffness * c.normal.dot(p[c.node]) * c.normal;
+}
+
+std::vector<Vec3> Wedge::reaction(const std::vector<Vec3>& u, std::size_t blades) const {
+  std::vector<Vec3> sum(blades, Vec3::Zero());
+  for (const Contact& c : contacts_) sum[c.blade] -= c.stiffness * std::max(0.0, c.depth(u)) * c.normal;
+  return sum;
+}
+
+}  // namespace geo

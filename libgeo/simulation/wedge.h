@@ -1,0 +1,40 @@
+// What a thick blade does: behind its edge the material has to make way (§ 5.1 leaves it to the contact of objects).
+#pragma once
+
+#include <vector>
+
+#include "mechanics/potential.h"
+#include "simulation/scene.h"
+
+namespace geo {
+
+/// Nodes beside the flanks of blades, each before a plane through the edge: an energy ½ m k d² where the material that the
+/// node stands for is d beyond it, as with the ground. Made anew for each time step, by the sides that nodes are on.
+class Wedge : public Potential {
+ public:
+  /// Adds the nodes that a blade at `pose` has beside it. `x`, `u`, `clearance` (how far the material goes around each), `mass`:
+  /// per node. `stiffness`: acceleration per depth, 1/s².
+  void add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x, const std::vector<Vec3>& u,
+           const std::vector<double>& clearance, const std::vector<double>& mass, double stiffness);
+  bool empty() const { return contacts_.empty(); }
+
+  double energy(const std::vector<Vec3>& u) const override;
+  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
+  void blocks(std::vector<Mat3>& out) const override;
+  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
+  /// What the material does to each of so many blades at displacements u, N.
+  std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
+
+ private:
+  struct Contact {
+    std::size_t node, blade;
+    Vec3 normal;        // out of the blade
+    double stiffness;   // N/m
+    double offset;      // depth = offset − normal · u
+    bool deep = false;  // at the last force()
+    double depth(const std::vector<Vec3>& u) const { return offset - normal.dot(u[node]); }
+  };
+  std::vector<Contact> contacts_;
+};
+
+}  // namespace geo

@@ -423,6 +423,33 @@ killed)
   find killed -name '*.tmp' -delete  # a killed program leaves what it was writing aside
   diff -r whole killed || fail "a run that was killed differs"
   ;;
+scene)
+  # A scene of the paper, small: to its end, with the pieces that it must have, sound, at rest or finite; also with the time
+  # step doubled and halved, and with material ten times softer and stiffer.
+  scene=$5 file=$(dirname "$script")/../../samples/scenes/$5.toml
+  mkdir models
+  models=$PWD/models
+  kerf-model pumpkin --frequency 10 -o models/pumpkin.ply
+  kerf-model apple --frequency 10 -o models/apple.ply
+  kerf-model polyp --frequency 8 -o models/polyp.ply
+  kerf-score -q models/pumpkin.ply --pattern voronoi --pieces 6 -o models/smash.front
+  case $scene in
+  polyp) young=4e5 pieces=2 set="--set body.mesh=models/polyp.ply --set body.nodes=150" ;;
+  halve) young=4e4 pieces=2 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
+  smashed) young=3e5 pieces=12 set="--set body.0.mesh=models/pumpkin.ply --set body.1.mesh=models/pumpkin.ply --set score.0.file=models/smash.front --set score.1.file=models/smash.front --set body.0.nodes=150 --set body.1.nodes=150" ;;
+  esac
+  kerf-sim -q $file $set -o run --frames 32 || fail "$scene"
+  grep -q "\"pieces\":$pieces," run/summary.json || fail "$scene has not $pieces pieces: $(cat run/summary.json)"
+  grep -q '"refused":0' run/summary.json || fail "$scene has refused steps: $(cat run/summary.json)"
+  grep -qi "nan\|inf" run/frames.jsonl && fail "$scene has numbers that are none"
+  kerf-info --check -q run/checkpoint.kerf || fail "the body of $scene is not sound"
+  for other in time.step=0.042 time.step=0.0105 material.young=${young%e*}e$((${young#*e} - 1)) material.young=${young%e*}e$((${young#*e} + 1)); do
+    kerf-sim -q $file $set --set $other -o other --frames 12 || fail "$scene with $other"
+    grep -qi "nan\|inf" other/frames.jsonl && fail "$scene with $other has numbers that are none"
+    kerf-info --check -q other/checkpoint.kerf || fail "the body of $scene with $other is not sound"
+    rm -rf other
+  done
+  ;;
 *) fail "unknown test $what" ;;
 esac
 exit $failed

@@ -57,7 +57,9 @@ void require_material(const Material& m) {
   if (!(m.young > 0) || !std::isfinite(m.young)) throw InputError("Young's modulus must be positive");
   if (!(m.poisson > -1 && m.poisson < 0.5)) throw InputError("Poisson's ratio must lie between -1 and 0.5");
   if (!(m.density > 0) || !std::isfinite(m.density)) throw InputError("the density must be positive");
-  if (!(m.volume_term >= 0) || !(m.damping >= 0) || !(m.mode_penalty >= 0)) throw InputError("volume term, damping and mode penalty must not be negative");
+  if (!(m.volume_term >= 0) || !(m.damping >= 0) || !(m.viscosity >= 0) || !(m.mode_penalty >= 0))
+    throw InputError("volume term, damping, viscosity and mode penalty must not be negative");
+  if (!(m.yield >= 0) || !(m.creep >= 0) || !(m.most_plastic >= 0)) throw InputError("yield, creep and the most plastic strain must not be negative");
 }
 
 double energy_density(const Material& m, const Mat3& f) {
@@ -94,6 +96,12 @@ Mat9 stress_derivative(const Material& m, const Mat3& f) {
     h.col(c) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(s.data());
   }
   return 0.5 * (h + h.transpose());
+}
+
+StiffnessConstants stiffness_constants(const Material& m) {
+  if (m.model == ElasticModel::saint_venant_kirchhoff) return {false, float(m.mu()), float(m.lambda()), 1, float(m.volume_term)};
+  const Stable p(m);
+  return {true, float(p.mu), float(p.lambda), float(p.alpha), float(m.volume_term)};
 }
 
 Mat9 projected_derivative(const Material& m, const Mat3& f) {

@@ -7,14 +7,23 @@ namespace geo {
 
 enum class ElasticModel { saint_venant_kirchhoff, neo_hookean };
 
+/// Where strain energy is summed. `galerkin`: at quadrature points, with the full derivative of the shape functions;
+/// `mueller04`: at nodes, with moving least squares' own (diffuse) one, softer by a fifth or more (docs/validation.md).
+enum class Discretisation { galerkin, mueller04 };
+
 struct Material {
+  Discretisation discretisation = Discretisation::galerkin;
   ElasticModel model = ElasticModel::neo_hookean;
   double young = 1e5;      ///< Pa (model units: m)
   double poisson = 0.3;    ///< −1 < ν < 0.5
   double density = 1000;   ///< kg/m³
   double volume_term = 0;  ///< k_v of ½ k_v (det F − 1)², Pa; keeps Saint-Venant–Kirchhoff from collapsing
   double damping = 0.5;    ///< mass-proportional, 1/s
-  double mode_penalty = 0.05;  ///< α of the penalty on modes that nodal strains do not see
+  double viscosity = 0;    ///< η of ½ η |Ė|², E the Green strain, Pa·s: resists changes of shape, not motion
+  double mode_penalty = 0.05;  ///< of mueller04: α of the penalty on modes that nodal strains do not see
+  double yield = 0;        ///< norm of the elastic strain beyond which material flows; 0: never (plasticity.h)
+  double creep = 1;        ///< the share of the elastic strain that flows in a second
+  double most_plastic = 1; ///< norm that the plastic strain cannot pass
   double lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
   double mu() const { return young / (2 * (1 + poisson)); }
 };
@@ -26,6 +35,12 @@ void require_material(const Material& material);
 double energy_density(const Material& material, const Mat3& f);
 /// First Piola–Kirchhoff stress ∂Ψ/∂F, Pa.
 Mat3 stress(const Material& material, const Mat3& f);
+/// What principal stiffness needs of a material (point_lanes.h): μ, λ and α of the stable neo-Hookean energy are its own.
+struct StiffnessConstants {
+  bool neo_hookean = true;
+  float mu = 0, lambda = 0, alpha = 1, volume = 0;
+};
+StiffnessConstants stiffness_constants(const Material& material);
 using Mat9 = Eigen::Matrix<double, 9, 9>;
 /// ∂²Ψ/∂F², column-major vectorised.
 Mat9 stress_derivative(const Material& material, const Mat3& f);

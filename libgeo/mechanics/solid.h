@@ -1,26 +1,27 @@
-// A deforming solid: point-based elasticity after Müller et al. (2004), total Lagrangian, with the discrete energy's own
-// forces. Shape functions live in material space and change only where neighbourhoods do.
+// A deforming solid, total Lagrangian, with the discrete energy's own forces. Shape functions live in material space and
+// change only where a cut passes.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "graph/visibility_graph.h"
 #include "mechanics/elasticity.h"
+#include "mechanics/galerkin.h"
+#include "mechanics/node_rows.h"
 #include "mechanics/potential.h"
 #include "sampling/node_set.h"
 
 namespace geo {
 
-/// How well a node's neighbours span space.
-enum class Rung : std::uint8_t { full, regularised, rigid };
-
 struct State {
   std::vector<Vec3> displacement;  ///< per node, model units
   std::vector<Vec3> velocity;      ///< per node, model units per second
+  std::vector<Mat3> plastic = {};  ///< per material point: plastic part of the Green strain; empty: none yet
 };
 
 /// What acts on nodes besides elasticity.
@@ -32,6 +33,7 @@ struct Environment {
   double friction = 0.5;          ///< share of the tangential velocity that a touching node loses per 0.01 s
   std::vector<double> clearance;  ///< per node: distance to the skin below it; empty: none
   std::vector<std::uint8_t> fixed;  ///< per node: 1 keeps it where it is; empty: none
+  std::vector<Vec3> load;           ///< per node: a force, N; empty: none
   Potential* contact = nullptr;     ///< of the implicit step; none: nothing touches
 };
 
@@ -40,58 +42,75 @@ struct StepReport {
   double energy = 0;  ///< elastic, J, after the step
 };
 
+/// How many nodes' gradients and material points stand on each rung.
+struct RungCounts {
+  std::size_t nodes[3] = {}, points[3] = {}, widened = 0;  ///< by Rung; points whose support had to be widened
+};
+
 class Solid {
  public:
-  /// Shape functions from scratch. Throws InputError for an impossible material.
+  /// From scratch; the discretisation is the material's. Throws InputError for an impossible material.
+  Solid(const Body& body, const Material& material);
+  /// Of nodes and graph alone, by mueller04 whatever the material says: there is no surface to clip cells to.
   Solid(const NodeSet& nodes, const VisibilityGraph& graph, const Material& material);
 
-  /// After a split: new nodes take part, rows of `updated` (ascending) are recomputed; equal to a build from scratch, bit
-  /// for bit. `donors` of the nodes from `first_new` on: a new node moves with its donor's affine map and velocity, so
-  /// linear momentum is what it was.
+  /// After a split: what the cut has changed is recomputed; equal to a build from scratch, bit for bit. New nodes move with
+  /// their donors' affine map and velocity; then each connected part gets the rigid motion that gives it back its linear
+  /// and angular momentum (about the origin). Plastic strain stays with its point.
+  void update(const Body& body, const BodyDelta& delta, State& state);
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);
 
   std::size_t size() const { return mass_.size(); }
   double mass(NodeId i) const { return mass_[i.index()]; }
-  Rung rung(NodeId i) const { return rung_[i.index()]; }
+  Rung rung(NodeId i) const { return rows_.rung(i.index()); }
+  RungCounts rungs() const;
   const Material& material() const { return material_; }
+  const MaterialPoints& points() const { return points_; }
 
   /// ∇u at every node, by moving least squares: exact for linear fields where the rung is full.
-  std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
+  std::vector<Mat3> gradients(const std::vector<Vec3>& u) const { return rows_.gradients(u); }
   /// ∇u at node i is Σ u_j g_jᵀ: appends j and g_j (1/m), the node itself included; the g_j sum to zero.
   void gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) const;
   /// Elastic energy, J, and forces −∂U/∂u, N; forces sum to zero.
   double energy(const std::vector<Vec3>& u) const;
   std::vector<Vec3> forces(const std::vector<Vec3>& u) const;
+  /// −∂²U/∂u² p by the implicit step's own (single precision, positive) stiffness at u.
+  std::vector<Vec3> stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const;
+  /// Cauchy stress, Pa, about material point x: the mean over material points within `radius` (those whose segment to x
+  /// `sees` accepts), weighed by volume and the kernel. Zero where there are none.
+  Mat3 stress_at(const State& state, const Vec3& x, double radius, const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Backward Euler as an incremental potential: Newton, conjugate gradients with 3×3 block Jacobi, line search.
-  StepReport step_implicit(State& state, double dt, const Environment& environment) const;
-  /// Leapfrog (symplectic Euler) with as many substeps as the fastest wave asks for.
+  /// Backward Euler as an incremental potential: Newton, conjugate gradients with 3×3 block Jacobi, line search. Divided in
+  /// two halves, and these again, where Newton does not converge. `accuracy`: of displacements, over the nodes' spacing.
+  StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3) const;
+  /// Leapfrog (symplectic Euler) with as many substeps as the fastest wave asks for; twice as many where the energy rises.
   StepReport step_explicit(State& state, double dt, const Environment& environment) const;
 
-  /// Total linear momentum.
+  /// Total linear momentum, and angular momentum about the origin of the world.
   Vec3 momentum(const State& state) const;
+  Vec3 angular_momentum(const State& state) const;
+  /// Kinetic energy, J.
+  double kinetic_energy(const State& state) const;
 
  private:
-  struct Row {
-    std::vector<std::uint32_t> to;
-    std::vector<Vec3> g, x;           // gradient vectors; material offsets to the neighbour
-    std::vector<double> penalty;      // weights of the mode penalty, 1/m²
-    Vec3 g_self = Vec3::Zero();
-  };
-  void build_row(std::uint32_t i, const NodeSet& nodes, const VisibilityGraph& graph);
-  void transpose();
-  double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force) const;
-  void multiply(const std::vector<Mat9>& h, const std::vector<Vec3>& p, std::vector<Vec3>& out) const;
-  void gather(const std::vector<Mat3>& node_stress, const std::vector<std::vector<Vec3>>& pull, std::vector<Vec3>& out) const;
-  Mat3 gradient(std::uint32_t i, const std::vector<Vec3>& u) const;
+  friend class ImplicitStep;
+  void follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
+                    std::span<const NodeId> updated, State& state);
+  void nodal_points(std::span<const NodeId> updated);
+  void update_plasticity(State& state, double dt) const;
+  std::vector<Mat3> relaxed(const State& state) const;
+  double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Mat3>& relaxed = {}) const;
 
   Material material_;
   std::vector<double> mass_, volume_, spacing_;
-  std::vector<Rung> rung_;
-  std::vector<Row> rows_;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> incoming_;  // per node: rows that hold it, and where
-  std::vector<Vec3> material_position_;
+  std::vector<Vec3> position_;          // material
+  std::vector<std::uint32_t> part_;     // per node: its connected part
+  std::uint32_t parts_ = 0;
+  NodeRows rows_;
+  MaterialPoints points_;
+  std::optional<Galerkin> galerkin_;
+  std::optional<ModePenalty> penalty_;  // of mueller04
 };
 
 }  // namespace geo

@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/ground.h"
+#include "mechanics/solid.h"
+
+namespace geo {
+
+StepReport Solid::step_explicit(State& state, double dt, const Environment& env) const {
+  // No wave crosses a third of the smallest neighbourhood in one substep.
+  const double speed = std::sqrt((material_.lambda() + 2 * material_.mu() + material_.volume_term) / material_.density);
+  const double finest = *std::min_element(spacing_.begin(), spacing_.end());
+  double limit = 0.3 * finest / speed;
+  if (material_.viscosity > 0) limit = std::min(limit, 0.1 * finest * finest * material_.density / material_.viscosity);
+  if (env.ground) limit = std::min(limit, 0.3 / std::sqrt(env.ground_stiffness));
+  StepReport report;
+  report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
+  const std::vector<Mat3> rest = relaxed(state);
+  std::vector<Vec3> force;
+  // Energy may only come from outside: where it rises beyond what loads and ground can have brought, the step was too long.
+  for (int attempt = 0;; ++attempt, report.substeps *= 2) {
+    State s = state;
+    const double h = dt / report.substeps;
+    const auto total = [&] { return report.energy + kinetic_energy(s); };
+    bool rose = false;
+    double brought = 0;
+    report.energy = elastic_force(s.displacement, &force, rest);
+    const double begun = total();
+    for (int k = 0; k < report.substeps && !rose; ++k) {
+      if (k > 0) report.energy = elastic_force(s.displacement, &force, rest);
+      for (std::size_t i = 0; i < size(); ++i) {
+        if (is_fixed(env, i)) {
+          s.velocity[i].setZero();
+          continue;
+        }
+        Vec3& v = s.velocity[i];
+        Vec3 outside = mass_[i] * env.gravity;
+        if (!env.load.empty()) outside += env.load[i];
+        v += h * ((force[i] + outside) / mass_[i] - material_.damping * v);
+        if (env.ground) {
+          const double d = depth(env, i, position_[i] + s.displacement[i]);
+          if (d > 0) {
+            const double normal = env.ground_normal.dot(v);
+            v = normal * env.ground_normal + std::max(0.0, 1 - env.friction * h / 0.01) * (v - normal * env.ground_normal);
+            v += h * env.ground_stiffness * d * env.ground_normal;
+            outside += mass_[i] * env.ground_stiffness * d * env.ground_normal;
+          }
+        }
+        s.displacement[i] += h * v;
+        brought += std::abs(h * outside.dot(v));
+      }
+    }
+    report.energy = elastic_force(s.displacement, nullptr, rest);
+    rose = !(total() <= 1.05 * (begun + brought) + 1e-12 * material_.young * volume_[0]);
+    if (rose && attempt < 8) continue;
+    update_plasticity(s, dt);
+    state = std::move(s);
+    return report;
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,353 @@
+// Backward Euler as an incremental potential (Kane et al. 2000, Li et al. 2020): Newton's method with each point's stiffness
+// made positive, conjugate gradients in single precision with a double residual, line search on the potential.
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "mechanics/ground.h"
+#include "mechanics/plasticity.h"
+#include "mechanics/point_lanes.h"
+#include "mechanics/solid.h"
+
+namespace geo {
+
+class ImplicitStep {
+ public:
+  ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy);
+  /// True where Newton converged: then displacement() is that after the step.
+  bool run(StepReport& report);
+  const std::vector<Vec3>& displacement() const { return u_; }
+  /// The stiffness alone at u times p.
+  std::vector<Vec3> product(const std::vector<Vec3>& u, const std::vector<Vec3>& p);
+
+ private:
+  double evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* force);
+  void linearise();
+  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out);
+  void turn(Columns<float>& columns, std::size_t block) const;
+  void elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const;
+  int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x);
+  void keep_momentum(std::vector<Vec3>& direction) const;
+  Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }
+  static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+  template <class Work>
+  void each_node(const Work& work) const {
+    parallel_for(n_, 512, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i);
+    });
+  }
+
+  const Solid& s_;
+  const State& state_;
+  const Environment& env_;
+  double dt_, accuracy_;
+  std::size_t n_;
+  std::vector<Mat3> relaxed_;
+  std::vector<Vec3> u_, target_;
+  std::vector<double> drag_;
+  std::vector<std::vector<Mat3>> before_;       // per block: F at the start, where there is viscosity
+  std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
+  std::vector<StiffnessModes> modes_;
+  std::vector<std::vector<float>> weight_;
+  std::vector<Mat3> local_, inverse_;
+  std::vector<float> parts_;
+};
+
+ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
+    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), relaxed_(solid.relaxed(state)),
+      u_(n_), target_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_), inverse_(n_) {
+  const double keep = 1 / (1 + s_.material_.damping * dt);
+  for (std::size_t i = 0; i < n_; ++i) {
+    target_[i] = state.displacement[i];
+    if (!is_fixed(env, i)) target_[i] += dt * keep * state.velocity[i] + dt * dt * env.gravity;
+    if (!is_fixed(env, i) && !env.load.empty()) target_[i] += dt * dt / s_.mass_[i] * env.load[i];
+  }
+  u_ = target_;
+  // Drag along the ground: lagged, from where the step began.
+  if (env.ground)
+    for (std::size_t i = 0; i < n_; ++i)
+      if (depth(env, i, s_.position_[i] + state.displacement[i]) > 0) drag_[i] = s_.mass_[i] * env.friction / (0.01 * dt);
+  for (std::size_t b = 0; b < weight_.size(); ++b) {
+    const auto& points = s_.points_.blocks[b].points;
+    weight_[b].assign((points.size() + 7) / 8 * 8, 0);
+    for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
+    if (s_.material_.viscosity > 0) before_.push_back(s_.points_.gradients(b, state.displacement));
+  }
+}
+
+double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* force) {
+  const Material& m = s_.material_;
+  std::vector<double> energy(gradient_.size(), 0);
+  s_.points_.transform(u, [&](std::size_t b, std::span<Mat3> g) {
+    Columns<float>& kept = gradient_[b];
+    kept.resize(g.size());
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      const MaterialPoint& p = s_.points_.blocks[b].points[i];
+      Mat3 f = Mat3::Identity() + g[i];
+      if (!relaxed_.empty()) f = f * relaxed_[s_.points_.first(b) + i];
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) kept.column[c][4 * i + static_cast<std::size_t>(r)] = float(f(r, c) - (r == c));
+      if (p.rung == Rung::rigid) {
+        g[i].setZero();
+        continue;
+      }
+      energy[b] += p.volume * energy_density(m, f);
+      Mat3 pull = stress(m, f);
+      if (!relaxed_.empty()) pull = pull * relaxed_[s_.points_.first(b) + i];
+      if (!before_.empty()) {
+        const Mat3 whole = Mat3::Identity() + g[i], was = Mat3::Identity() + before_[b][i];
+        const Mat3 rate = 0.5 / dt_ * (whole.transpose() * whole - was.transpose() * was);
+        energy[b] += 0.5 * dt_ * p.volume * m.viscosity * rate.squaredNorm();
+        pull += m.viscosity * whole * rate;
+      }
+      g[i] = p.volume * pull;
+    }
+  }, force);
+  double sum = std::accumulate(energy.begin(), energy.end(), 0.0);
+  if (s_.penalty_) sum += s_.penalty_->add(s_.rows_, u, force);
+  if (force)
+    for (Vec3& f : *force) f = -f;
+  if (env_.contact) sum += env_.contact->energy(u);
+  for (std::size_t i = 0; i < n_; ++i) {
+    sum += 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm();
+    if (!env_.ground) continue;
+    const double d = depth(env_, i, s_.position_[i] + u[i]);
+    if (d > 0) sum += 0.5 * s_.mass_[i] * env_.ground_stiffness * d * d;
+    if (drag_[i] > 0) sum += 0.5 * drag_[i] * tangential(u[i] - state_.displacement[i]).squaredNorm();
+  }
+  return sum;
+}
+
+// Stiffness and preconditioner at u_, after evaluate(u_).
+void ImplicitStep::linearise() {
+  const Material& m = s_.material_;
+  const MaterialPoints& points = s_.points_;
+  const StiffnessConstants constants = stiffness_constants(m);
+  std::vector<float> diagonal(6 * points.parts(), 0);
+  const float shear = float(m.mu() + m.viscosity / dt_ / 2), bulk = float(m.lambda() + m.volume_term);
+  parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      stiffness_modes(constants, gradient_[b], weight_[b], modes_[b]);
+      if (m.viscosity > 0) {  // its Gauss-Newton part, at small strain: w η/Δt on the symmetric part of the gradient
+        StiffnessModes& modes = modes_[b];
+        for (std::size_t i = 0; i < modes.stride; ++i) {
+          const float w = weight_[b][i] * float(m.viscosity / dt_);
+          for (std::size_t k : {18, 19, 20}) modes.values[k * modes.stride + i] += w;
+          for (std::size_t k = 24; k < 30; ++k) modes.values[k * modes.stride + i] += 0.5f * w;
+        }
+      }
+      point_diagonal(points.blocks[b], modes_[b], weight_[b], shear, bulk, &diagonal[6 * points.part(b)]);
+    }
+  });
+  points.gather(diagonal.data(), 6, [&](std::size_t j, const double* sum) {
+    local_[j] << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
+  });
+  std::vector<double> modes(s_.penalty_ ? n_ : 0, 0);
+  if (s_.penalty_) s_.penalty_->add_diagonal(s_.rows_, modes);
+  std::vector<Mat3> touching(env_.contact ? n_ : 0, Mat3::Zero());
+  if (env_.contact) env_.contact->blocks(touching);
+  each_node([&](std::size_t i) {
+    Mat3 block = local_[i];
+    local_[i] = s_.mass_[i] / (dt_ * dt_) * Mat3::Identity();
+    if (env_.ground) {
+      const Mat3 nn = env_.ground_normal * env_.ground_normal.transpose();
+      if (depth(env_, i, s_.position_[i] + u_[i]) > 0) local_[i] += s_.mass_[i] * env_.ground_stiffness * nn;
+      if (drag_[i] > 0) local_[i] += drag_[i] * (Mat3::Identity() - nn);
+    }
+    block += local_[i];
+    if (!modes.empty()) block += modes[i] * Mat3::Identity();
+    if (!touching.empty()) block += touching[i];
+    inverse_[i] = block.inverse();
+  });
+}
+
+// Each matrix times the relaxation of its point.
+void ImplicitStep::turn(Columns<float>& columns, std::size_t b) const {
+  for (std::size_t i = 0; i < s_.points_.blocks[b].points.size(); ++i) {
+    using Mat3f = Eigen::Matrix3f;
+    const Mat3f back = relaxed_[s_.points_.first(b) + i].cast<float>();
+    Mat3f m;
+    for (int c = 0; c < 3; ++c) m.col(c) = Eigen::Map<const Eigen::Vector3f>(&columns.column[c][4 * i]);
+    m = (m * back).eval();
+    for (int c = 0; c < 3; ++c) Eigen::Map<Eigen::Vector3f>(&columns.column[c][4 * i]) = m.col(c);
+  }
+}
+
+void ImplicitStep::elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const {
+  const MaterialPoints& points = s_.points_;
+  parts.resize(4 * points.parts());
+  parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> values;
+    Columns<float> columns;
+    for (std::size_t b = begin; b < end; ++b) {
+      const PointBlock& block = points.blocks[b];
+      values.assign(4 * block.nodes.size(), 0);
+      if (block.nodes.empty()) continue;
+      const Vec3& base = p[block.nodes[0]];
+      for (std::size_t k = 0; k < block.nodes.size(); ++k)
+        for (std::size_t c = 0; c < 3; ++c) values[4 * k + c] = float(p[block.nodes[k]][static_cast<Eigen::Index>(c)] - base[static_cast<Eigen::Index>(c)]);
+      point_gradients(block, values.data(), columns);
+      if (!relaxed_.empty()) turn(columns, b);
+      apply_modes(modes_[b], columns);
+      if (!relaxed_.empty()) turn(columns, b);
+      float* const out = &parts[4 * points.part(b)];
+      std::fill(out, out + 4 * block.nodes.size(), 0.0f);
+      point_divergence(block, columns, out);
+    }
+  });
+}
+
+void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) {
+  elastic_product(p, parts_);
+  out.resize(n_);
+  s_.points_.gather(parts_.data(), 4, [&](std::size_t j, const double* sum) { out[j] = Vec3(sum[0], sum[1], sum[2]) + local_[j] * p[j]; });
+  if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
+  if (env_.contact) env_.contact->multiply(p, out);
+  if (!env_.fixed.empty())
+    for (std::size_t i = 0; i < n_; ++i)
+      if (env_.fixed[i]) out[i].setZero();
+}
+
+double ImplicitStep::dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  constexpr std::size_t share = 2048;
+  std::vector<double> sums((a.size() + share - 1) / share, 0);
+  parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t i = k * share; i < std::min(a.size(), (k + 1) * share); ++i) sums[k] += a[i].dot(b[i]);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x) {
+  std::vector<Vec3> r = force, z(n_), p(n_), hp;
+  each_node([&](std::size_t i) { x[i].setZero(), z[i] = inverse_[i] * r[i], p[i] = z[i]; });
+  double rz = dot(r, z);
+  const double enough = 0.01 * rz;  // a tenth in the norm that counts: Newton goes on from there
+  int k = 0;
+  for (; k < 500 && rz > enough; ++k) {
+    multiply(p, hp);
+    const double curvature = dot(p, hp);
+    if (!(curvature > 0)) break;
+    const double alpha = rz / curvature;
+    each_node([&](std::size_t i) { x[i] += alpha * p[i], r[i] -= alpha * hp[i], z[i] = inverse_[i] * r[i]; });
+    const double next = dot(r, z), beta = next / rz;
+    each_node([&](std::size_t i) { p[i] = z[i] + beta * p[i]; });
+    rz = next;
+  }
+  return k;
+}
+
+// Of a part that nothing holds, no internal force changes the mean motion: rounding and unfinished solves must not either.
+void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
+  if (env_.contact) return;
+  std::vector<char> held(s_.parts_, 0);
+  std::vector<Vec3> mean(s_.parts_, Vec3::Zero());
+  std::vector<double> mass(s_.parts_, 0);
+  for (std::size_t i = 0; i < n_; ++i) {
+    const auto part = s_.part_[i];
+    held[part] |= is_fixed(env_, i) || (env_.ground && (drag_[i] > 0 || depth(env_, i, s_.position_[i] + u_[i]) > 0));
+    mean[part] += s_.mass_[i] * direction[i], mass[part] += s_.mass_[i];
+  }
+  for (std::size_t i = 0; i < n_; ++i)
+    if (const auto part = s_.part_[i]; !held[part]) direction[i] -= mean[part] / mass[part];
+}
+
+bool ImplicitStep::run(StepReport& report) {
+  std::vector<Vec3> force, direction(n_), trial(n_), next;
+  double value = evaluate(u_, &force);
+  for (int newton = 0; newton < 20; ++newton, ++report.newton) {
+    if (env_.contact) env_.contact->force(u_, force);
+    linearise();
+    for (std::size_t i = 0; i < n_; ++i) {
+      Vec3& r = force[i];
+      r -= s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
+      if (env_.ground) {
+        const double d = depth(env_, i, s_.position_[i] + u_[i]);
+        if (d > 0) r += s_.mass_[i] * env_.ground_stiffness * d * env_.ground_normal;
+        if (drag_[i] > 0) r -= drag_[i] * tangential(u_[i] - state_.displacement[i]);
+      }
+      if (is_fixed(env_, i)) r.setZero();
+    }
+    report.cg += solve(force, direction);
+    keep_momentum(direction);
+    double most = 0, step = 1, tried = 0;
+    for (std::size_t i = 0; i < n_; ++i) most = std::max(most, direction[i].norm() / s_.spacing_[i]);
+    if (!std::isfinite(most)) return false;
+    // What is left after the direction is a tenth of it, as the solve ends there.
+    const bool last = most < 10 * accuracy_;
+    int halvings = 0;
+    for (;; ++halvings, step *= 0.5) {
+      for (std::size_t i = 0; i < n_; ++i) trial[i] = u_[i] + step * direction[i];
+      if (last) break;  // too small a change for the potential to tell
+      tried = evaluate(trial, &next);
+      if (tried <= value || halvings == 16) break;
+    }
+    if (!last && !(tried <= value)) return most * step < accuracy_;
+    u_.swap(trial);
+    if (last) return ++report.newton, true;
+    value = tried, force.swap(next);
+  }
+  return false;
+}
+
+std::vector<Vec3> ImplicitStep::product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) {
+  evaluate(u, nullptr);
+  linearise();
+  std::vector<Vec3> out(n_);
+  elastic_product(p, parts_);
+  s_.points_.gather(parts_.data(), 4, [&](std::size_t j, const double* sum) { out[j] = Vec3(sum[0], sum[1], sum[2]); });
+  if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
+  return out;
+}
+
+std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const {
+  const State still{u, std::vector<Vec3>(size(), Vec3::Zero()), {}};
+  const Environment nothing;
+  return ImplicitStep(*this, still, 1, nothing, 1).product(u, p);
+}
+
+std::vector<Mat3> Solid::relaxed(const State& state) const {
+  std::vector<Mat3> all(material_.yield > 0 ? state.plastic.size() : 0);
+  parallel_for(all.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) all[i] = relaxation(state.plastic[i]);
+  });
+  return all;
+}
+
+void Solid::update_plasticity(State& state, double dt) const {
+  if (material_.yield == 0) return;
+  state.plastic.resize(points_.size(), Mat3::Zero());
+  parallel_for(points_.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto gradient = points_.gradients(b, state.displacement);
+      for (std::size_t i = 0; i < gradient.size(); ++i) {
+        Mat3& plastic = state.plastic[points_.first(b) + i];
+        if (points_.blocks[b].points[i].rung != Rung::rigid) plastic = flow(material_, plastic, Mat3::Identity() + gradient[i], dt);
+      }
+    }
+  });
+}
+
+StepReport Solid::step_implicit(State& state, double dt, const Environment& env, double accuracy) const {
+  StepReport report;
+  // Time steps in a row, each divided in two where Newton does not converge, down to a thousandth.
+  const auto advance = [&](const auto& self, double h) -> void {
+    ImplicitStep step(*this, state, h, env, accuracy);
+    if (!step.run(report) && h > dt / 1024) {
+      self(self, h / 2);
+      self(self, h / 2);
+      return;
+    }
+    ++report.substeps;
+    for (std::size_t i = 0; i < size(); ++i) state.velocity[i] = (step.displacement()[i] - state.displacement[i]) / h;
+    state.displacement = step.displacement();
+    update_plasticity(state, h);
+  };
+  advance(advance, dt);
+  report.energy = elastic_force(state.displacement, nullptr, relaxed(state));
+  return report;
+}
+
+}  // namespace geo

@@ -1,0 +1,79 @@
+// Points that carry strain, in blocks: each block has its own short list of nodes, so that what one thread works on stays
+// in its cache, and sums are made in an order that no thread or vector width changes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "mechanics/shape_functions.h"
+
+namespace geo {
+
+struct MaterialPoint {
+  Vec3 position = Vec3::Zero();
+  double volume = 0;
+  Rung rung = Rung::rigid;
+  std::uint8_t growth = 0;  ///< how often its support was widened by a fifth
+  double reach = 0;         ///< no node within its support is farther away, seen or not
+};
+
+/// Points near each other and the rows of their shape functions.
+struct PointBlock {
+  std::vector<std::uint32_t> nodes;  ///< of all its points, ascending
+  std::vector<MaterialPoint> points;
+  std::vector<std::uint32_t> first;  ///< per point: its first entry; one more at the end
+  std::vector<std::uint16_t> to;     ///< entries: places in `nodes`
+  std::vector<double> gradient;      ///< three an entry
+  std::vector<float> rounded;        ///< the same
+  Box3 box;                          ///< of the points
+
+  PointBlock() = default;
+  PointBlock(std::vector<MaterialPoint> points, std::span<const ShapeRow> rows);
+  /// The rows that it was made of.
+  std::vector<ShapeRow> rows() const;
+  friend bool operator==(const PointBlock& a, const PointBlock& b);
+};
+
+class MaterialPoints {
+ public:
+  std::vector<PointBlock> blocks;
+
+  /// After blocks have changed.
+  void connect(std::size_t nodes);
+  std::size_t size() const { return first_.empty() ? 0 : first_.back(); }
+  /// Number of a block's first point.
+  std::size_t first(std::size_t block) const { return first_[block]; }
+
+  /// ∇u at the points of a block, in order.
+  std::vector<Mat3> gradients(std::size_t block, const std::vector<Vec3>& u) const;
+  /// Calls work(block, ∇u at its points) for each block, from any thread; work replaces each ∇u by a stress (times volume).
+  /// out, one a node: Σ over points of stress · shape gradient; nothing where `out` is null.
+  void transform(const std::vector<Vec3>& u, const std::function<void(std::size_t, std::span<Mat3>)>& work, std::vector<Vec3>* out) const;
+  /// Sums what blocks have for each node, in the order of blocks: `width` numbers (8 at most) a node of a block, from
+  /// width · part(block) on. Calls take(node, sums), from any thread.
+  template <class Number, class Take>
+  void gather(const Number* parts, std::size_t width, const Take& take) const;
+  std::size_t part(std::size_t block) const { return part_[block]; }
+  std::size_t parts() const { return part_.back(); }
+
+ private:
+  std::vector<std::size_t> first_, part_;        // per block and one more: points, nodes
+  std::vector<std::uint32_t> begin_, incoming_;  // per node: which parts of blocks are its
+};
+
+template <class Number, class Take>
+void MaterialPoints::gather(const Number* parts, std::size_t width, const Take& take) const {
+  parallel_for(begin_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      double sum[8] = {};
+      for (auto k = begin_[j]; k < begin_[j + 1]; ++k)
+        for (std::size_t c = 0; c < width; ++c) sum[c] += double(parts[width * incoming_[k] + c]);
+      take(j, sum);
+    }
+  });
+}
+
+}  // namespace geo

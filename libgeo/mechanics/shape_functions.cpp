@@ -1,0 +1,56 @@
+#include "mechanics/shape_functions.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <limits>
+
+namespace geo {
+
+double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<const double> reach, std::vector<Vec3>& gradient) {
+  using Vec4 = Eigen::Vector4d;
+  using Mat4 = Eigen::Matrix4d;
+  constexpr double singular = std::numeric_limits<double>::infinity();
+  gradient.clear();
+  const std::size_t n = nodes.size();
+  if (n < 4) return singular;
+  double scale = 0;
+  for (const double h : reach) scale += h;
+  scale /= double(n);
+  // In units of the scale and about x: p = (1, x_j − x), so that at x itself p is the first unit vector and ∂p_j = −∂x.
+  std::vector<Vec4> p(n);
+  std::vector<double> w(n);
+  std::vector<Vec3> dw(n);
+  Mat4 m = Mat4::Zero();
+  for (std::size_t j = 0; j < n; ++j) {
+    const Vec3 away = (nodes[j] - x) / scale;
+    const double h = reach[j] / scale, s = 1 - away.squaredNorm() / (h * h);
+    p[j] << 1, away;
+    w[j] = s * s * s, dw[j] = 6 * s * s / (h * h) * away;  // ∂w/∂x
+    m += w[j] * p[j] * p[j].transpose();
+  }
+  const Vec4 spread = Eigen::SelfAdjointEigenSolver<Mat4>(m, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(spread[0] > 1e-12 * spread[3])) return singular;
+  const Mat4 inverse = m.inverse();
+  const Vec4 b = inverse.col(0);
+  // ∂φ_j = bᵀp_j ∂w_j + w_j (bᵀ∂p_j + ∂bᵀp_j), with ∂b = −M⁻¹ ∂M b.
+  Eigen::Matrix<double, 4, 3> mb = Eigen::Matrix<double, 4, 3>::Zero();
+  for (std::size_t j = 0; j < n; ++j) {
+    mb += b.dot(p[j]) * p[j] * dw[j].transpose();
+    for (int a = 0; a < 3; ++a) mb(1 + a, a) -= w[j] * b.dot(p[j]), mb.col(a) -= w[j] * b[1 + a] * p[j];
+  }
+  const Eigen::Matrix<double, 4, 3> db = -(inverse * mb);
+  gradient.resize(n);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t j = 0; j < n; ++j) {
+    gradient[j] = (b.dot(p[j]) * dw[j] + w[j] * (db.transpose() * p[j] - b.tail<3>())) / scale;
+    sum += gradient[j];
+  }
+  // Rounding leaves a sum of a few last places: constants are reproduced exactly.
+  std::size_t heaviest = 0;
+  for (std::size_t j = 1; j < n; ++j)
+    if (w[j] > w[heaviest]) heaviest = j;
+  gradient[heaviest] -= sum;
+  return spread[3] / spread[0];
+}
+
+}  // namespace geo

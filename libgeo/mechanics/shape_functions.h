@@ -1,0 +1,27 @@
+// Moving least squares with a linear basis: gradients of shape functions at a point (Belytschko, Lu and Gu 1994).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace geo {
+
+/// How well the nodes around a point span space. `full`: a well-conditioned moment matrix, if need be with a wider support;
+/// `regularised`: an ill-conditioned one, or, at nodes, with a direction left out; `rigid`: none, the point carries no strain.
+enum class Rung : std::uint8_t { full, regularised, rigid };
+
+/// The nodes of a point and the gradients of their shape functions: ∇u = Σ u_j gᵀ_j, exact where u is linear.
+struct ShapeRow {
+  std::vector<std::uint32_t> to;  ///< ascending
+  std::vector<Vec3> gradient;     ///< 1/model unit; they sum to zero
+};
+
+/// Full derivatives (the weights' and the moment matrix' own included) at x of the functions φ_j = pᵀ M⁻¹ p_j w_j, with
+/// M = Σ w p pᵀ and w = (1 − (d/h)²)³ of the distance d to node j and its support h (`reach`). Returns the condition of
+/// the scaled moment matrix, infinite when there are fewer than four nodes or they are coplanar: then `gradient` is empty.
+double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<const double> reach, std::vector<Vec3>& gradient);
+
+}  // namespace geo

@@ -1,0 +1,84 @@
+// How motion is carried over a cut: to new and moved nodes, with the momentum of every part.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "mechanics/solid.h"
+
+namespace geo {
+namespace {
+
+// Mass, momenta about the origin and inertia of a connected part.
+struct PartMotion {
+  double mass = 0;
+  Vec3 middle = Vec3::Zero(), linear = Vec3::Zero(), angular = Vec3::Zero();  // middle: times mass
+  Mat3 inertia = Mat3::Zero();                                                // about the origin
+  void add(double m, const Vec3& x, const Vec3& v) {
+    mass += m, middle += m * x, linear += m * v, angular += m * x.cross(v);
+    inertia += m * (x.squaredNorm() * Mat3::Identity() - x * x.transpose());
+  }
+};
+
+struct RigidMotion {
+  Vec3 middle, velocity, spin;
+};
+
+// The rigid motion that brings a part's momenta from `now` to what they were. A part on a line or point has no inertia
+// about it, and can have no such momentum.
+RigidMotion correction(const PartMotion& was, const PartMotion& now) {
+  const Vec3 c = now.middle / now.mass, linear = was.linear - now.linear;
+  const Mat3 inertia = now.inertia - now.mass * (c.squaredNorm() * Mat3::Identity() - c * c.transpose());
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
+  const Vec3 spin = eigen.eigenvectors().transpose() * (was.angular - now.angular - c.cross(linear));
+  Vec3 turned = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (eigen.eigenvalues()[k] > 1e-9 * eigen.eigenvalues()[2]) turned[k] = spin[k] / eigen.eigenvalues()[k];
+  return {c, linear / now.mass, eigen.eigenvectors() * turned};
+}
+
+}  // namespace
+
+void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
+                         std::span<const NodeId> updated, State& state) {
+  const std::size_t n = nodes.size(), old = first_new.index();
+  const bool moving = !state.displacement.empty();
+  // Where each node's mass was, and how it moved: a new node's at its donor.
+  std::vector<Vec3> place, velocity;
+  std::vector<std::uint32_t> changed;
+  if (moving) {
+    for (std::size_t i = 0; i < old; ++i) place.push_back(position_[i] + state.displacement[i]), velocity.push_back(state.velocity[i]);
+    for (std::size_t i = old; i < n; ++i) {
+      std::size_t d = donors[i - old].index();
+      while (d >= old) d = donors[d - old].index();
+      place.push_back(Vec3(place[d])), velocity.push_back(Vec3(velocity[d]));
+      const Vec3 away = nodes.position[i] - position_[d];
+      const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
+      const Vec3 displaced = u[d] + rows_.gradient(d, u) * away, moved = v[d] + rows_.gradient(d, v) * away;
+      state.displacement.push_back(displaced), state.velocity.push_back(moved);
+      changed.push_back(static_cast<std::uint32_t>(i));
+    }
+    // A moved node keeps its place in the deformed field.
+    for (const NodeId i : updated)
+      if (i.index() < old && position_[i.index()] != nodes.position[i.index()]) {
+        state.displacement[i.index()] += rows_.gradient(i.index(), state.displacement) * (nodes.position[i.index()] - position_[i.index()]);
+        changed.push_back(i.value);
+      }
+  }
+  volume_ = nodes.volume, spacing_ = nodes.spacing, position_ = nodes.position;
+  mass_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) mass_[i] = material_.density * volume_[i];
+  rows_.update(nodes, graph, updated);
+  parts_ = graph.components(part_);
+  if (changed.empty()) return;
+  std::vector<char> concerned(parts_, 0);
+  for (const auto i : changed) concerned[part_[i]] = 1;
+  std::vector<PartMotion> was(parts_), now(parts_);
+  for (std::size_t i = 0; i < n; ++i)
+    if (concerned[part_[i]]) was[part_[i]].add(mass_[i], place[i], velocity[i]), now[part_[i]].add(mass_[i], position_[i] + state.displacement[i], state.velocity[i]);
+  std::vector<RigidMotion> by(parts_);
+  for (std::uint32_t p = 0; p < parts_; ++p)
+    if (concerned[p]) by[p] = correction(was[p], now[p]);
+  for (std::size_t i = 0; i < n; ++i)
+    if (const auto p = part_[i]; concerned[p]) state.velocity[i] += by[p].velocity + by[p].spin.cross(position_[i] + state.displacement[i] - by[p].middle);
+}
+
+}  // namespace geo

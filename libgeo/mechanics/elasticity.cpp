@@ -30,10 +30,8 @@ Mat3 cofactor_derivative(const Mat3& f, const Mat3& d) {
 
 // The reparametrisation of § 3.4 there, so that small strains see Lamé's constants.
 struct Stable {
-  double mu, lambda, alpha, rest;
-  explicit Stable(const Material& m)
-      : mu(4.0 / 3.0 * m.mu()), lambda(m.lambda() + 5.0 / 6.0 * m.mu()), alpha(1 + mu / lambda - mu / (4 * lambda)),
-        rest(0.5 * lambda * (1 - alpha) * (1 - alpha) - 0.5 * mu * std::log(4.0)) {}
+  double mu, lambda, alpha;
+  explicit Stable(const Material& m) : mu(4.0 / 3.0 * m.mu()), lambda(m.lambda() + 5.0 / 6.0 * m.mu()), alpha(1 + 0.75 * mu / lambda) {}
 };
 
 Mat3 stress_along(const Material& m, const Mat3& f, const Mat3& d) {
@@ -62,17 +60,18 @@ void require_material(const Material& m) {
   if (!(m.yield >= 0) || !(m.creep >= 0) || !(m.most_plastic >= 0)) throw InputError("yield, creep and the most plastic strain must not be negative");
 }
 
+// Of the Green strain's invariants, so that next to nothing is left of the terms of first order where there is no strain:
+// with e = tr E and J² = det(1 + 2 E), e − (J − 1) is of second order.
 double energy_density(const Material& m, const Mat3& f) {
-  const double j = f.determinant();
-  double energy = 0.5 * m.volume_term * (j - 1) * (j - 1);
-  if (m.model == ElasticModel::saint_venant_kirchhoff) {
-    const Mat3 e = 0.5 * (f.transpose() * f - Mat3::Identity());
-    return energy + m.mu() * e.squaredNorm() + 0.5 * m.lambda() * e.trace() * e.trace();
-  }
+  const Mat3 strain = 0.5 * (f.transpose() * f - Mat3::Identity());
+  const double e = strain.trace(), j = f.determinant();
+  const double minors = 0.5 * (e * e - strain.squaredNorm()), cubic = strain.determinant();
+  const double grown = j > 0 ? (2 * e + 4 * minors + 8 * cubic) / (j + 1) : j - 1;
+  double energy = 0.5 * m.volume_term * grown * grown;
+  if (m.model == ElasticModel::saint_venant_kirchhoff) return energy + m.mu() * strain.squaredNorm() + 0.5 * m.lambda() * e * e;
   const Stable p(m);
-  const double i = f.squaredNorm();
-  energy += 0.5 * p.mu * (i - 3) + 0.5 * p.lambda * (j - p.alpha) * (j - p.alpha) - 0.5 * p.mu * std::log(i + 1);
-  return energy - p.rest;
+  const double rest = j > 0 ? (e * grown - 4 * minors - 8 * cubic) / (j + 1) : e - grown;
+  return energy + 0.75 * p.mu * rest + 0.5 * p.lambda * grown * grown + 0.5 * p.mu * (0.5 * e - std::log1p(0.5 * e));
 }
 
 Mat3 stress(const Material& m, const Mat3& f) {

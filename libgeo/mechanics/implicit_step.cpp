@@ -45,7 +45,7 @@ class ImplicitStep {
   double dt_, accuracy_;
   std::size_t n_;
   std::vector<Mat3> relaxed_;
-  std::vector<Vec3> u_, target_;
+  std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;
   std::vector<std::vector<Mat3>> before_;       // per block: F at the start, where there is viscosity
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
@@ -57,14 +57,20 @@ class ImplicitStep {
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
     : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), relaxed_(solid.relaxed(state)),
-      u_(n_), target_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_), inverse_(n_) {
+      u_(n_), target_(n_), load_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_), inverse_(n_) {
   const double keep = 1 / (1 + s_.material_.damping * dt);
   for (std::size_t i = 0; i < n_; ++i) {
     target_[i] = state.displacement[i];
-    if (!is_fixed(env, i)) target_[i] += dt * keep * state.velocity[i] + dt * dt * env.gravity;
-    if (!is_fixed(env, i) && !env.load.empty()) target_[i] += dt * dt / s_.mass_[i] * env.load[i];
+    load_[i] = s_.mass_[i] * env.gravity;
+    if (!env.load.empty()) load_[i] += env.load[i];
+    if (!is_fixed(env, i)) target_[i] += dt * keep * state.velocity[i];
   }
+  // Newton begins where nodes would fly on their own, unless that is too far from anything.
   u_ = target_;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Vec3 fallen = dt * dt / s_.mass_[i] * load_[i];
+    if (!is_fixed(env, i) && fallen.norm() < s_.spacing_[i]) u_[i] += fallen;
+  }
   // Drag along the ground: lagged, from where the step began.
   if (env.ground)
     for (std::size_t i = 0; i < n_; ++i)
@@ -111,7 +117,7 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
     for (Vec3& f : *force) f = -f;
   if (env_.contact) sum += env_.contact->energy(u);
   for (std::size_t i = 0; i < n_; ++i) {
-    sum += 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm();
+    sum += 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm() - load_[i].dot(u[i] - state_.displacement[i]);
     if (!env_.ground) continue;
     const double d = depth(env_, i, s_.position_[i] + u[i]);
     if (d > 0) sum += 0.5 * s_.mass_[i] * env_.ground_stiffness * d * d;
@@ -239,7 +245,8 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x) {
   return k;
 }
 
-// Of a part that nothing holds, no internal force changes the mean motion: rounding and unfinished solves must not either.
+// Internal forces do not change the mean motion of a part that nothing holds: neither must rounding or an unfinished solve.
+// The direction takes such a part to where inertia and loads alone bring its middle.
 void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
   if (env_.contact) return;
   std::vector<char> held(s_.parts_, 0);
@@ -248,7 +255,7 @@ void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
   for (std::size_t i = 0; i < n_; ++i) {
     const auto part = s_.part_[i];
     held[part] |= is_fixed(env_, i) || (env_.ground && (drag_[i] > 0 || depth(env_, i, s_.position_[i] + u_[i]) > 0));
-    mean[part] += s_.mass_[i] * direction[i], mass[part] += s_.mass_[i];
+    mean[part] += s_.mass_[i] * (u_[i] + direction[i] - target_[i]) - dt_ * dt_ * load_[i], mass[part] += s_.mass_[i];
   }
   for (std::size_t i = 0; i < n_; ++i)
     if (const auto part = s_.part_[i]; !held[part]) direction[i] -= mean[part] / mass[part];
@@ -262,7 +269,7 @@ bool ImplicitStep::run(StepReport& report) {
     linearise();
     for (std::size_t i = 0; i < n_; ++i) {
       Vec3& r = force[i];
-      r -= s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
+      r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
       if (env_.ground) {
         const double d = depth(env_, i, s_.position_[i] + u_[i]);
         if (d > 0) r += s_.mass_[i] * env_.ground_stiffness * d * env_.ground_normal;
@@ -277,14 +284,15 @@ bool ImplicitStep::run(StepReport& report) {
     if (!std::isfinite(most)) return false;
     // What is left after the direction is a tenth of it, as the solve ends there.
     const bool last = most < 10 * accuracy_;
+    const double rounding = 1e-14 * std::abs(value);
     int halvings = 0;
     for (;; ++halvings, step *= 0.5) {
       for (std::size_t i = 0; i < n_; ++i) trial[i] = u_[i] + step * direction[i];
       if (last) break;  // too small a change for the potential to tell
       tried = evaluate(trial, &next);
-      if (tried <= value || halvings == 16) break;
+      if (tried <= value + rounding || halvings == 16) break;
     }
-    if (!last && !(tried <= value)) return most * step < accuracy_;
+    if (!last && !(tried <= value + rounding)) return most * step < accuracy_;
     u_.swap(trial);
     if (last) return ++report.newton, true;
     value = tried, force.swap(next);

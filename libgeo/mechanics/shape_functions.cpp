@@ -23,9 +23,9 @@ double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<con
   Mat4 m = Mat4::Zero();
   for (std::size_t j = 0; j < n; ++j) {
     const Vec3 away = (nodes[j] - x) / scale;
-    const double h = reach[j] / scale, s = 1 - away.squaredNorm() / (h * h);
+    const double h = reach[j] / scale, s = away.norm() / h;
     p[j] << 1, away;
-    w[j] = s * s * s, dw[j] = 6 * s * s / (h * h) * away;  // ∂w/∂x
+    w[j] = 1 + s * s * (-6 + s * (8 - 3 * s)), dw[j] = 12 * (1 - s) * (1 - s) / (h * h) * away;  // ∂w/∂x
     m += w[j] * p[j] * p[j].transpose();
   }
   const Vec4 spread = Eigen::SelfAdjointEigenSolver<Mat4>(m, Eigen::EigenvaluesOnly).eigenvalues();

@@ -20,7 +20,7 @@ struct ShapeRow {
 };
 
 /// Full derivatives (the weights' and the moment matrix' own included) at x of the functions φ_j = pᵀ M⁻¹ p_j w_j, with
-/// M = Σ w p pᵀ and w = (1 − (d/h)²)³ of the distance d to node j and its support h (`reach`). Returns the condition of
+/// M = Σ w p pᵀ and w = 1 − 6 s² + 8 s³ − 3 s⁴, s the distance to node j over its support (`reach`). Returns the condition of
 /// the scaled moment matrix, infinite when there are fewer than four nodes or they are coplanar: then `gradient` is empty.
 double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<const double> reach, std::vector<Vec3>& gradient);
 

@@ -46,6 +46,8 @@ int crack(const Options& options);
 int block(const Options& options);
 int graph(const Options& options);
 int concave(const Options& options);
+int mechanics(const Options& options);
+int validate(const Options& options);
 
 /// Figures by name: one JSON object on a line, or a table.
 using Figures = std::map<std::string, double>;

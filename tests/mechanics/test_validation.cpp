@@ -1,0 +1,32 @@
+// What docs/validation.md says, at quick sizes.
+#include <catch2/catch.hpp>
+
+#include "mechanics/validation.h"
+
+namespace {
+
+void check(const std::vector<validation::Finding>& findings) {
+  for (const auto& f : findings) {
+    INFO(f.what << ": " << f.measured << ", expected " << f.expected << ", error " << f.error());
+    CHECK(f.good());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("validation: rigid motion and patch") {
+  check(validation::rigid_motion(0));
+  check(validation::patch(0));
+}
+TEST_CASE("validation: Young's modulus and Poisson's ratio") { check(validation::tension(0)); }
+TEST_CASE("validation: cantilever, converging") {
+  const auto found = validation::cantilever(0);
+  check(found);
+  CHECK(found.back().error() < found.front().error());
+}
+TEST_CASE("validation: first bending frequency") { check(validation::frequency(0)); }
+TEST_CASE("validation: cut bar in free fall") { check(validation::free_fall(0)); }
+TEST_CASE("validation: slit and notched bars") {
+  check(validation::slit_bar(0));
+  check(validation::notched_bar(0));
+}

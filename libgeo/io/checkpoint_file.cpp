@@ -102,6 +102,10 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
                               kerf_array("run/part", std::span(state.part)), kerf_array("run/front_points", flat(places), 3),
                               kerf_array("run/front_at", std::span<const double>(at)), kerf_array("run/front_normals", flat(normals), 3),
                               kerf_array("run/front_owed", flat(owed), 3), kerf_array("run/time", std::span(&state.time, 1))};
+  std::vector<Vec3> plastic;  // columns
+  for (const Mat3& m : state.motion.plastic)
+    for (int c = 0; c < 3; ++c) plastic.push_back(m.col(c));
+  if (!plastic.empty()) more.push_back(kerf_array("run/plastic", flat(plastic), 3));
   more.push_back({"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
   write_body(out, body, more);
 }
@@ -112,6 +116,12 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   RunState& state = c.state;
   state.motion.displacement = points(file, "run/displacement");
   state.motion.velocity = points(file, "run/velocity");
+  if (file.sections().count("run/plastic") != 0) {
+    const auto plastic = points(file, "run/plastic");
+    if (plastic.size() % 3 != 0) file.fail("the plastic strains of the run are incomplete");
+    state.motion.plastic.resize(plastic.size() / 3);
+    for (std::size_t i = 0; i < plastic.size(); ++i) state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
+  }
   state.part = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");
   const std::size_t n = c.body.nodes.size();

@@ -32,7 +32,15 @@ void read_material(TomlTable& t, Material& m) {
   t.get("density", m.density, 1e-9, 1e9);
   t.get("volume_term", m.volume_term, 0, 1e15);
   t.get("damping", m.damping, 0, 1e6);
+  std::string discretisation = m.discretisation == Discretisation::galerkin ? "galerkin" : "mueller04";
+  t.get("discretisation", discretisation);
+  if (discretisation != "galerkin" && discretisation != "mueller04") t.fail(*t.find("discretisation"), "'material.discretisation' must be \"galerkin\" or \"mueller04\"");
+  m.discretisation = discretisation == "galerkin" ? Discretisation::galerkin : Discretisation::mueller04;
+  t.get("viscosity", m.viscosity, 0, 1e15);
   t.get("mode_penalty", m.mode_penalty, 0, 100);
+  t.get("yield", m.yield, 0, 1e6);
+  t.get("creep", m.creep, 0, 1e9);
+  t.get("most_plastic", m.most_plastic, 0, 1e6);
   require_material(m);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "mechanics/ground.h"
 #include "mechanics/plasticity.h"
@@ -317,6 +318,7 @@ std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std
 }
 
 std::vector<Mat3> Solid::relaxed(const State& state) const {
+  if (!state.plastic.empty() && state.plastic.size() != points_.size()) throw InputError("the plastic strains are not those of this solid");
   std::vector<Mat3> all(material_.yield > 0 ? state.plastic.size() : 0);
   parallel_for(all.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) all[i] = relaxation(state.plastic[i]);

@@ -45,13 +45,15 @@ Bent bend_with_bullet(const Beam& beam) {
           for (int c = 0; c < 4; ++c) v[c] = id(i + (t[c] & 1), j + (t[c] >> 1 & 1), k + (t[c] >> 2));
           body->appendTetra(v[0], v[1], v[2], v[3]);
         }
-  body->setTotalDensity(btScalar(beam.density));
-  for (int i = 0; i < int(points.size()); ++i)
-    if (points[std::size_t(i)].x() < 0.1) body->setMass(i, 0);
+  std::vector<double> mass(points.size(), 0);
+  for (int t = 0; t < body->m_tetras.size(); ++t)
+    for (const auto* node : body->m_tetras[t].m_n) mass[std::size_t(node - &body->m_nodes[0])] += beam.density * h * h * h / 24;
+  for (int i = 0; i < int(points.size()); ++i) body->setMass(i, points[std::size_t(i)].x() < 0.1 ? btScalar(0) : btScalar(mass[std::size_t(i)]));
   body->initializeDmInverse();
+  body->m_tetraScratches.resize(body->m_tetras.size()), body->m_tetraScratchesTn.resize(body->m_tetras.size());
   body->m_cfg.drag = 0, body->m_cfg.kDP = 0;
   body->setDampingCoefficient(0);
-  body->m_cfg.collisions = 0;
+  body->m_cfg.collisions = 0, body->m_sleepingThreshold = 0;
   world.addSoftBody(body);
   const double mu = beam.young / (2 * (1 + beam.poisson)), lambda = beam.young * beam.poisson / ((1 + beam.poisson) * (1 - 2 * beam.poisson));
   btDeformableNeoHookeanForce elastic{btScalar(mu), btScalar(lambda), btScalar(0)};

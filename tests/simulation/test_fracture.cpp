@@ -21,6 +21,7 @@ Scene brittle() {
   s.bodies.resize(1);
   Material& m = s.bodies[0].material;
   m.young = 1e6, m.poisson = 0.25, m.density = 1000, m.damping = 20;
+  m.discretisation = Discretisation::mueller04;  // the stresses that fracture reads are those at nodes
   s.fracture.on = true;
   s.fracture.strength = 1e4, s.fracture.variation = 0;
   s.frame_rate = 200, s.dt = 1.0 / 200;

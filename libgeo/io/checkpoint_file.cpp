@@ -102,6 +102,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
                               kerf_array("run/part", std::span(state.part)), kerf_array("run/front_points", flat(places), 3),
                               kerf_array("run/front_at", std::span<const double>(at)), kerf_array("run/front_normals", flat(normals), 3),
                               kerf_array("run/front_owed", flat(owed), 3), kerf_array("run/time", std::span(&state.time, 1))};
+  if (!state.motion.acceleration.empty()) more.push_back(kerf_array("run/acceleration", flat(state.motion.acceleration), 3));
   std::vector<Vec3> plastic;  // columns
   for (const Mat3& m : state.motion.plastic)
     for (int c = 0; c < 3; ++c) plastic.push_back(m.col(c));
@@ -116,6 +117,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   RunState& state = c.state;
   state.motion.displacement = points(file, "run/displacement");
   state.motion.velocity = points(file, "run/velocity");
+  if (file.sections().count("run/acceleration") != 0) state.motion.acceleration = points(file, "run/acceleration");
   if (file.sections().count("run/plastic") != 0) {
     const auto plastic = points(file, "run/plastic");
     if (plastic.size() % 3 != 0) file.fail("the plastic strains of the run are incomplete");

@@ -26,6 +26,7 @@ class ImplicitStep {
  private:
   double evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* force);
   void linearise();
+  void precondition();
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out);
   void turn(Columns<float>& columns, std::size_t block) const;
   void elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const;
@@ -52,13 +53,14 @@ class ImplicitStep {
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
-  std::vector<Mat3> local_, inverse_;
+  std::vector<Mat3> diagonal_, local_, inverse_;
+  double elastic_ = 0;  // energy at the last evaluation
   std::vector<float> parts_;
 };
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
     : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), relaxed_(solid.relaxed(state)),
-      u_(n_), target_(n_), load_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_), inverse_(n_) {
+      u_(n_), target_(n_), load_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), diagonal_(n_), local_(n_), inverse_(n_) {
   const double keep = 1 / (1 + s_.material_.damping * dt);
   for (std::size_t i = 0; i < n_; ++i) {
     target_[i] = state.displacement[i];
@@ -66,11 +68,13 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     if (!env.load.empty()) load_[i] += env.load[i];
     if (!is_fixed(env, i)) target_[i] += dt * keep * state.velocity[i];
   }
-  // Newton begins where nodes would fly on their own, unless that is too far from anything.
+  // Newton begins where nodes come to if they accelerate as in the step before, or, where that is unknown, fly on their own,
+  // unless that is too far from anything.
   u_ = target_;
+  const bool known = state.acceleration.size() == n_;
   for (std::size_t i = 0; i < n_; ++i) {
-    const Vec3 fallen = dt * dt / s_.mass_[i] * load_[i];
-    if (!is_fixed(env, i) && fallen.norm() < s_.spacing_[i]) u_[i] += fallen;
+    const Vec3 more = dt * dt * (known ? state.acceleration[i] : Vec3(load_[i] / s_.mass_[i]));
+    if (!is_fixed(env, i) && more.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i]) u_[i] += more;
   }
   // Drag along the ground: lagged, from where the step began.
   if (env.ground)
@@ -114,6 +118,7 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
   }, force);
   double sum = std::accumulate(energy.begin(), energy.end(), 0.0);
   if (s_.penalty_) sum += s_.penalty_->add(s_.rows_, u, force);
+  elastic_ = sum;
   if (force)
     for (Vec3& f : *force) f = -f;
   if (env_.contact) sum += env_.contact->energy(u);
@@ -127,7 +132,7 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
   return sum;
 }
 
-// Stiffness and preconditioner at u_, after evaluate(u_).
+// The stiffness of points at u_, after evaluate(u_), and its diagonal blocks.
 void ImplicitStep::linearise() {
   const Material& m = s_.material_;
   const MaterialPoints& points = s_.points_;
@@ -149,14 +154,18 @@ void ImplicitStep::linearise() {
     }
   });
   points.gather(diagonal.data(), 6, [&](std::size_t j, const double* sum) {
-    local_[j] << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
+    diagonal_[j] << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
   });
+}
+
+// What nodes have besides, at u_, and the inverse of all blocks.
+void ImplicitStep::precondition() {
   std::vector<double> modes(s_.penalty_ ? n_ : 0, 0);
   if (s_.penalty_) s_.penalty_->add_diagonal(s_.rows_, modes);
   std::vector<Mat3> touching(env_.contact ? n_ : 0, Mat3::Zero());
   if (env_.contact) env_.contact->blocks(touching);
   each_node([&](std::size_t i) {
-    Mat3 block = local_[i];
+    Mat3 block = diagonal_[i];
     local_[i] = s_.mass_[i] / (dt_ * dt_) * Mat3::Identity();
     if (env_.ground) {
       const Mat3 nn = env_.ground_normal * env_.ground_normal.transpose();
@@ -263,11 +272,14 @@ void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
 }
 
 bool ImplicitStep::run(StepReport& report) {
-  std::vector<Vec3> force, direction(n_), trial(n_), next;
-  double value = evaluate(u_, &force);
+  std::vector<Vec3> force, elastic, direction(n_), trial(n_), next;
+  double value = evaluate(u_, &force), moved = 1e300;
   for (int newton = 0; newton < 20; ++newton, ++report.newton) {
+    elastic = force;
     if (env_.contact) env_.contact->force(u_, force);
-    linearise();
+    // The stiffness of points is used again while they have hardly strained since.
+    if (moved > 0.05) linearise(), moved = 0;
+    precondition();
     for (std::size_t i = 0; i < n_; ++i) {
       Vec3& r = force[i];
       r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
@@ -295,7 +307,15 @@ bool ImplicitStep::run(StepReport& report) {
     }
     if (!last && !(tried <= value + rounding)) return most * step < accuracy_;
     u_.swap(trial);
-    if (last) return ++report.newton, true;
+    moved += step * most;
+    if (last) {
+      // To second order: the stiffness times the direction is the force less inertia.
+      double energy = elastic_;
+      for (std::size_t i = 0; i < n_; ++i)
+        energy += direction[i].dot(0.5 * force[i] - elastic[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * direction[i]);
+      report.energy = energy;
+      return ++report.newton, true;
+    }
     value = tried, force.swap(next);
   }
   return false;
@@ -303,6 +323,7 @@ bool ImplicitStep::run(StepReport& report) {
 
 std::vector<Vec3> ImplicitStep::product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) {
   evaluate(u, nullptr);
+  u_ = u;
   linearise();
   std::vector<Vec3> out(n_);
   elastic_product(p, parts_);
@@ -345,18 +366,23 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env,
   // Time steps in a row, each divided in two where Newton does not converge, down to a thousandth.
   const auto advance = [&](const auto& self, double h) -> void {
     ImplicitStep step(*this, state, h, env, accuracy);
-    if (!step.run(report) && h > dt / 1024) {
+    const bool converged = step.run(report);
+    if (!converged && h > dt / 1024) {
       self(self, h / 2);
       self(self, h / 2);
       return;
     }
     ++report.substeps;
-    for (std::size_t i = 0; i < size(); ++i) state.velocity[i] = (step.displacement()[i] - state.displacement[i]) / h;
+    state.acceleration.resize(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Vec3 velocity = (step.displacement()[i] - state.displacement[i]) / h;
+      state.acceleration[i] = (velocity - state.velocity[i]) / h, state.velocity[i] = velocity;
+    }
     state.displacement = step.displacement();
     update_plasticity(state, h);
   };
   advance(advance, dt);
-  report.energy = elastic_force(state.displacement, nullptr, relaxed(state));
+  if (material_.yield > 0) report.energy = elastic_force(state.displacement, nullptr, relaxed(state));
   return report;
 }
 

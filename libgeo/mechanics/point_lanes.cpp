@@ -312,7 +312,7 @@ HWY_EXPORT(Diagonal);
 
 template <class Number>
 void Columns<Number>::resize(std::size_t points) {
-  for (auto& c : column) c.assign(4 * ((points + 7) / 8 * 8), 0);
+  for (auto& c : column) c.resize(4 * ((points + 7) / 8 * 8));
 }
 template struct Columns<double>;
 template struct Columns<float>;

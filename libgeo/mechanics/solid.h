@@ -21,6 +21,7 @@ namespace geo {
 struct State {
   std::vector<Vec3> displacement;  ///< per node, model units
   std::vector<Vec3> velocity;      ///< per node, model units per second
+  std::vector<Vec3> acceleration = {};  ///< per node, of the step before: where Newton begins; empty: not known
   std::vector<Mat3> plastic = {};  ///< per material point: plastic part of the Green strain; empty: none yet
 };
 
@@ -39,7 +40,7 @@ struct Environment {
 
 struct StepReport {
   int newton = 0, cg = 0, substeps = 0;
-  double energy = 0;  ///< elastic, J, after the step
+  double energy = 0;  ///< elastic, J, after the step; of the implicit one to second order of what Newton did last
 };
 
 /// How many nodes' gradients and material points stand on each rung.

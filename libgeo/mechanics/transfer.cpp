@@ -54,6 +54,7 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
       const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
       const Vec3 displaced = u[d] + rows_.gradient(d, u) * away, moved = v[d] + rows_.gradient(d, v) * away;
       state.displacement.push_back(displaced), state.velocity.push_back(moved);
+      if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[d]));
       changed.push_back(static_cast<std::uint32_t>(i));
     }
     // A moved node keeps its place in the deformed field.

@@ -27,6 +27,7 @@ Bent bend_with_bullet(const Beam& beam) {
   world.getWorldInfo().m_gravity = gravity;
   world.setImplicit(true);
   world.setLineSearch(false);
+  world.setUseProjection(true);
   const int nx = beam.across * 4 + 1, ny = beam.across + 1, nz = ny;
   const double h = 1.0 / beam.across;
   const auto id = [&](int i, int j, int k) { return i + nx * (j + ny * k); };

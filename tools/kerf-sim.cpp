@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "base/stopwatch.h"
+#include "contact/crossing.h"
 #include "io/checkpoint_file.h"
 #include "io/run_files.h"
 #include "io/scene_file.h"
@@ -29,13 +30,13 @@ std::string counts(const geo::FrameWork& w) {
   const auto of = [](const char* name, std::size_t n) { return std::string("\"") + name + "\":" + std::to_string(n); };
   return of("steps", w.steps) + "," + of("newton", w.newton) + "," + of("cg", w.cg) + "," + of("fronts", w.fronts) + "," + of("cracks_begun", w.fracture.begun + w.fracture.divided) + "," + of("refused", w.refused) + "," +
          of("triangles_cut", w.split.crack.triangles_cut) + "," + of("edges_cut", w.split.edges_cut) + "," + of("nodes_updated", w.split.nodes_updated) + "," +
-         of("nodes_added", w.split.nodes_added);
+         of("nodes_added", w.split.nodes_added) + "," + of("touching", w.contact.touching) + "," + of("in_zones", w.contact.in_zones) + "," + of("held", w.contact.held);
 }
 
 // What a frame came to, without times: a line of frames.jsonl, the same in every run.
 std::string outcome(const geo::Simulation& sim, const geo::FrameWork& w) {
   std::string line = "{\"frame\":" + std::to_string(sim.state().frame) + ",\"time\":" + tool::number(sim.state().time) + ",\"nodes\":" + std::to_string(sim.body().nodes.size()) +
-                     ",\"faces\":" + std::to_string(sim.body().surface.live_face_count()) + "," + counts(w) + ",\"energy\":" + tool::number(w.energy) + ",\"blade_force\":[";
+                     ",\"faces\":" + std::to_string(sim.body().surface.live_face_count()) + ","  + counts(w) + ",\"crossings\":" + std::to_string(geo::count_crossings(sim.surface())) + ",\"lag\":" + tool::number(w.contact.lag) + ",\"energy\":" + tool::number(w.energy) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < w.blade_force.size(); ++b) {
     const geo::Vec3& f = w.blade_force[b];
     line += std::string(b ? "," : "") + "[" + tool::number(f.x()) + "," + tool::number(f.y()) + "," + tool::number(f.z()) + "]";

@@ -50,7 +50,12 @@ BodyReport check_body(const Body& body) {
   }
   for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
     if (!k.alive(SurfaceVertexId(v))) continue;
-    auto& part = component_of[static_cast<std::size_t>(piece_before(k.corner_of(SurfaceVertexId(v)).first))];
+    const auto piece = piece_before(k.corner_of(SurfaceVertexId(v)).first);
+    if (piece < 0) {
+      note("surface vertex " + std::to_string(v) + " bounds no piece of the material");
+      continue;
+    }
+    auto& part = component_of[static_cast<std::size_t>(piece)];
     if (part != ~0u) continue;
     part = 0, ++report.crumbs;
     if (room_in(k, SurfaceVertexId(v), body.grid.cell(), piece_before)) note("the piece of surface vertex " + std::to_string(v) + " has no node");

@@ -1,6 +1,7 @@
 #include "contact/bounded_motion.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -25,14 +26,14 @@ class Zones {
     parent_[std::max(a, b)] = std::min(a, b);
     return is_new;
   }
-  void place(const Motion& m, std::vector<Vec3>& at) {
+  void place(const SurfaceMotion& m, std::vector<Vec3>& at) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;
     for (std::uint32_t v = 0; v < in_.size(); ++v)
       if (in_[v]) members[root(v)].push_back(v);
     for (const auto& [zone, rows] : members) move_rigidly(m, rows, at);
   }
   /// The rigid motion that is closest to what the rows want (Kabsch 1976).
-  static void move_rigidly(const Motion& m, const std::vector<std::uint32_t>& rows, std::vector<Vec3>& at) {
+  static void move_rigidly(const SurfaceMotion& m, const std::vector<std::uint32_t>& rows, std::vector<Vec3>& at) {
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();
     for (const auto v : rows) from += m.from[v], to += m.to[v];
     from /= double(rows.size()), to /= double(rows.size());
@@ -54,7 +55,7 @@ class Zones {
 };
 
 // Pushes the parts of a pair to either side of the plane in the middle of where they want to be. True when that moved them.
-bool push(const Watched& w, const Motion& m, const Zones& zones, std::vector<Vec3>& at, std::vector<std::uint8_t>& moved) {
+bool push(const Watched& w, const SurfaceMotion& m, const Zones& zones, std::vector<Vec3>& at, std::vector<std::uint8_t>& moved) {
   double a_least = std::numeric_limits<double>::infinity(), b_most = -a_least;
   bool a_free = true, b_free = true;
   for (int k = 0; k < w.a.size; ++k) a_least = std::min(a_least, w.normal.dot(at[w.a.v[k]])), a_free = a_free && !zones.has(w.a.v[k]);
@@ -78,7 +79,7 @@ bool push(const Watched& w, const Motion& m, const Zones& zones, std::vector<Vec
 constexpr std::size_t most_sweeps = 24, most_growths = 10;
 
 // Sweeps through the pairs until all are parted; the rows of those that are not.
-std::vector<std::size_t> part(std::vector<Watched>& watched, const Motion& m, Zones& zones, std::vector<Vec3>& at, BoundedMotion& report) {
+std::vector<std::size_t> part(std::vector<Watched>& watched, const SurfaceMotion& m, Zones& zones, std::vector<Vec3>& at, BoundedMotion& report) {
   std::vector<std::uint8_t> moved(at.size(), 1), moving(at.size(), 0);
   std::vector<std::size_t> failing;
   for (std::size_t sweep = 0; sweep < most_sweeps; ++sweep, ++report.sweeps) {
@@ -113,7 +114,7 @@ std::vector<std::size_t> part(std::vector<Watched>& watched, const Motion& m, Zo
 
 }  // namespace
 
-std::vector<Vec3> move_without_crossing(const Motion& m, bool two_sided, BoundedMotion* told) {
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& m, bool two_sided, BoundedMotion* told) {
   BoundedMotion own, &report = told ? *told : own;
   auto watched = watch(m);
   report.watched = watched.size();
@@ -121,6 +122,12 @@ std::vector<Vec3> move_without_crossing(const Motion& m, bool two_sided, Bounded
   std::vector<Vec3> at = m.to;
   const auto follow = [&] {
     for (std::size_t v = 0; v < at.size(); ++v) at[v] = at[m.together[v]];
+  };
+  // What crosses now and did not at the beginning.
+  const auto made = [&] {
+    auto crossings = find_crossings(m.triangles, at, m.together, two_sided);
+    std::erase_if(crossings, [&](const auto& pair) { return std::binary_search(m.crossing.begin(), m.crossing.end(), pair); });
+    return crossings;
   };
   for (std::size_t growth = 0; growth < most_growths; ++growth) {
     bool grown = false;
@@ -132,7 +139,7 @@ std::vector<Vec3> move_without_crossing(const Motion& m, bool two_sided, Bounded
     }
     if (failing.empty()) {
       follow();
-      const auto crossings = find_crossings(m.triangles, at, m.together, two_sided);
+      const auto crossings = made();
       if (crossings.empty()) {
         report.in_zones = zones.count();
         return at;
@@ -155,7 +162,7 @@ std::vector<Vec3> move_without_crossing(const Motion& m, bool two_sided, Bounded
   at = m.from;
   if (!all.empty()) Zones::move_rigidly(m, all, at);
   follow();
-  if (find_crossings(m.triangles, at, m.together, two_sided).empty()) return at;
+  if (made().empty()) return at;
   report.held = true;
   return m.from;
 }

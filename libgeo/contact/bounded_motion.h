@@ -16,6 +16,6 @@ struct BoundedMotion {
 /// the exact test of crossing.h. First the planes of watched pairs push apart what would meet; what they do not part moves as
 /// rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing crosses; at worst all is one zone, and if
 /// rounding prevents even that, nothing moves.
-std::vector<Vec3> move_without_crossing(const Motion& motion, bool two_sided, BoundedMotion* report = nullptr);
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr);
 
 }  // namespace geo

@@ -17,20 +17,19 @@ struct Row {
 class RowMaker {
  public:
   RowMaker(const SurfaceWeights& weights, const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass)
-      : weights_(weights), stands_for_(stands_for), inverse_mass_(inverse_mass), sum_(inverse_mass.size(), 0) {}
+      : weights_(weights), stands_for_(stands_for), inverse_mass_(inverse_mass), sum_(inverse_mass.size(), 0), taken_(inverse_mass.size(), 0) {}
 
   Row make(const TouchingPlaces& t, double softness) {
     Row row;
     used_.clear();
     add(t.a, 1);
-    const double own = mobility();  // of a alone: what the pair's would be were b held
+    double own = 0;  // the mobility of a alone: what the pair's would be were b held
+    for (const auto j : used_) own += sum_[j] * sum_[j] * inverse_mass_[j];
     add(t.b, -1);
-    std::sort(used_.begin(), used_.end());
-    used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
     for (const auto j : used_) {
       if (sum_[j] != 0) row.entries.push_back({j, sum_[j]});
       row.mobility += sum_[j] * sum_[j] * inverse_mass_[j];
-      sum_[j] = 0;
+      sum_[j] = 0, taken_[j] = 0;
     }
     row.softness = softness * own;
     row.mobility += row.softness;
@@ -43,24 +42,17 @@ class RowMaker {
       const auto& copies = stands_for_[place.vertex[k]];
       for (const auto v : copies)
         for (const auto& e : weights_.row(v)) {
-          used_.push_back(e.node);
+          if (!taken_[e.node]) used_.push_back(e.node), taken_[e.node] = 1;
           sum_[e.node] += sign * place.weight[k] / double(copies.size()) * e.weight;
         }
     }
-  }
-  double mobility() const {
-    double m = 0;
-    std::vector<std::uint32_t> nodes = used_;
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    for (const auto j : nodes) m += sum_[j] * sum_[j] * inverse_mass_[j];
-    return m;
   }
 
   const SurfaceWeights& weights_;
   const std::vector<std::vector<std::uint32_t>>& stands_for_;
   const std::vector<double>& inverse_mass_;
   std::vector<double> sum_;
+  std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> used_;
 };
 
@@ -108,7 +100,7 @@ ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const Touc
       kick(row, impulse);
       change = std::max(change, impulse.norm() * row.mobility), speed = std::max(speed, v.norm());
     }
-    if (change <= 1e-3 * speed || change == 0) break;
+    if (change <= options.tolerance * speed || change == 0) break;
   }
   for (const double p : pressed) report.touching += p > 0;
   return report;

@@ -34,7 +34,8 @@ struct ImpulseReport {
 /// as their average). Projected Gauss-Seidel, in the order given.
 struct ImpulseOptions {
   double friction = 0;
-  int sweeps = 20;
+  int sweeps = 8;          ///< at most
+  double tolerance = 1e-2;  ///< they end when the largest change of a relative velocity is this share of the largest
   double softness = 0.02;  ///< share of the places' own mobility that is added to the pair's: for places that share their nodes
 };
 ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,

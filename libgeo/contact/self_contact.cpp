@@ -10,6 +10,28 @@
 #include "geometry/distance.h"
 
 namespace geo {
+namespace {
+
+// An orthonormal frame on a triangle.
+Mat3 frame_of(const std::array<Vec3, 3>& t) {
+  Mat3 frame;
+  frame.col(0) = (t[1] - t[0]).normalized();
+  frame.col(2) = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+// Where a triangle that moved from `rest` to `now` carries x, which is on it but for last places: these make the difference
+// between slivers that cross and such that do not, so they turn with it.
+Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Vec3, 3>& now) {
+  const Vec3 w = barycentric(x, rest[0], rest[1], rest[2]);
+  const Vec3 off = x - (w[0] * rest[0] + w[1] * rest[1] + w[2] * rest[2]);
+  const Vec3 moved = w[0] * (now[0] - rest[0]) + w[1] * (now[1] - rest[1]) + w[2] * (now[2] - rest[2]);
+  const Vec3 turned = frame_of(now) * (frame_of(rest).transpose() * off) - off;
+  return x + moved + (turned.allFinite() ? turned : Vec3(Vec3::Zero()));
+}
+
+}  // namespace
 
 ContactWork& ContactWork::operator+=(const ContactWork& o) {
   watched += o.watched, touching += o.touching, in_zones += o.in_zones, opened += o.opened, held += o.held;
@@ -19,9 +41,11 @@ ContactWork& ContactWork::operator+=(const ContactWork& o) {
 
 SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOptions& options, std::vector<Vec3> positions)
     : options_(options), surface_(contact_surface(body.surface)), positions_(std::move(positions)) {
-  weights_.update(body, solid, {}, {});
-  if (positions_.size() == surface_.site.size()) return;
-  positions_ = targets(body, std::vector<Vec3>(solid.size(), Vec3::Zero()));
+  weights_.update(body, solid);
+  if (positions_.size() != surface_.site.size())
+    positions_ = targets(body, std::vector<Vec3>(solid.size(), Vec3::Zero()));
+  else
+    crossing_ = find_crossings(surface_.triangles, positions_, vertices_together(surface_.site, positions_), true);
 }
 
 std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>& u) const {
@@ -106,10 +130,13 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   std::vector<std::vector<std::uint32_t>> alone(copies.size());
   for (std::uint32_t v = 0; v < alone.size(); ++v) alone[v] = {v};
   // What touches in the motion to the targets, and the change of velocities that keeps it from approaching.
+  std::vector<Watched> watched;
   const auto respond = [&](const Constraint& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
     const std::vector<Vec3> goal = average();
-    const Motion motion{surface_.triangles, together, positions_, goal, gap, reach};
-    const auto touching = touching_places(watch(motion), motion, constraint);
+    const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach, crossing_};
+    if (watched.empty()) watched = watch(motion);
+    else turn_to_end(watched, motion);
+    const auto touching = touching_places(watched, motion, constraint);
     std::vector<TouchingPlaces> sides;
     touching_copies(copies, to, normals, 0.01 * gap, constraint, sides);
     const std::size_t count = apply_impulses(weights_, touching, copies, inverse_mass, how, change).touching;
@@ -138,7 +165,9 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = copies_together(together);
   const std::vector<Vec3> goal = average();
   BoundedMotion bounded;
-  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, reach}, true, &bounded);
+  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, reach, crossing_}, true, &bounded);
+  if (!crossing_.empty()) crossing_ = find_crossings(surface_.triangles, positions_, vertices_together(surface_.site, positions_), true);
+  work.crossings = crossing_.size();
   work.watched = bounded.watched, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (const auto& t : surface_.triangles)
     for (const auto v : t) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
@@ -156,7 +185,7 @@ void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& 
     old_side[surface_.side[t]] = surface_.side[t] % 2 == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
   }
   surface_ = contact_surface(k);
-  weights_.update(body, solid, delta.updated_nodes, delta.rebound);
+  weights_.update(body, solid);
   positions_.resize(surface_.site.size(), Vec3::Zero());
   const std::vector<Vec3> to = targets(body, state.displacement);
   const std::vector<Vec3> old = positions_;
@@ -191,9 +220,8 @@ void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& 
           const auto v = k.surface_vertex({f, which}, c);
           if (!is_new[v.index()] || placed[v.index()]) continue;
           const auto& own = k.face(g).v;
-          const auto same = std::find(own.begin(), own.end(), k.face(f).v[static_cast<std::size_t>(c)]) - own.begin();
-          const Vec3 w = same < 3 ? Vec3(Vec3::Unit(same)) : barycentric(part[static_cast<std::size_t>(c)], corners[0], corners[1], corners[2]);
-          positions_[v.index()] = w[0] * old[at[0]] + w[1] * old[at[1]] + w[2] * old[at[2]];
+          const auto same = static_cast<std::size_t>(std::find(own.begin(), own.end(), k.face(f).v[static_cast<std::size_t>(c)]) - own.begin());
+          positions_[v.index()] = same < 3 ? old[at[same]] : carried(part[static_cast<std::size_t>(c)], corners, {old[at[0]], old[at[1]], old[at[2]]});
           placed[v.index()] = 1;
         }
       }
@@ -209,8 +237,8 @@ void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& 
     for (j = i; j < inside.size() && inside[j].first == inside[i].first; ++j) sum += to[inside[j].second];
     for (std::size_t c = i; c < j; ++c) positions_[inside[c].second] = sum / double(j - i);
   }
-  const auto crossings = find_crossings(surface_.triangles, positions_, vertices_together(surface_.site, positions_), true);
-  if (told) told->crossings = crossings.size(), told->seconds += clock.lap();
+  crossing_ = find_crossings(surface_.triangles, positions_, vertices_together(surface_.site, positions_), true);
+  if (told) told->crossings = crossing_.size(), told->seconds += clock.lap();
 }
 
 }  // namespace geo

@@ -9,25 +9,11 @@
 #pragma once
 
 #include "contact/bounded_motion.h"
+#include "contact/contact_options.h"
 #include "contact/contact_surface.h"
 #include "contact/surface_weights.h"
 
 namespace geo {
-
-struct ContactOptions {
-  double friction = 0.3;  ///< Coulomb's coefficient between surfaces of the body
-  double gap = 1e-4;      ///< that open sheets keep, in mean edges of the surface
-  double recovery = 0.3;  ///< share of the way back, in a step, for nodes whose surfaces have passed through each other
-  int rounds = 3;         ///< of finding what touches and applying impulses
-};
-
-struct ContactWork {
-  std::size_t watched = 0, touching = 0, in_zones = 0, opened = 0, held = 0;
-  std::size_t crossings = 0;  ///< that a crack was born with and that stay until they come apart; of all else there are none
-  double lag = 0;             ///< largest distance of a vertex from where Eq. 1 has it, model units
-  double seconds = 0;
-  ContactWork& operator+=(const ContactWork& o);
-};
 
 class SelfContact {
  public:
@@ -56,6 +42,7 @@ class SelfContact {
   ContactSurface surface_;
   SurfaceWeights weights_;
   std::vector<Vec3> positions_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_;  // triangles that a crack was born with, until they part
 };
 
 }  // namespace geo

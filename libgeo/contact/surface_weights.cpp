@@ -7,12 +7,9 @@
 
 namespace geo {
 
-void SurfaceWeights::update(const Body& body, const Solid& solid, std::span<const NodeId> updated, std::span<const SurfaceVertexId> rebound) {
-  const std::size_t before = rows_.size(), n = body.surface.surface_vertex_count();
+void SurfaceWeights::update(const Body& body, const Solid& solid) {
+  const std::size_t n = body.surface.surface_vertex_count();
   rows_.resize(n);
-  std::vector<std::uint8_t> changed(solid.size(), 0), again(n, 0);
-  for (const NodeId i : updated) changed[i.index()] = 1;
-  for (const SurfaceVertexId v : rebound) again[v.index()] = 1;
   parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
@@ -20,16 +17,9 @@ void SurfaceWeights::update(const Body& body, const Solid& solid, std::span<cons
     std::vector<std::uint32_t> used;
     for (std::size_t v = begin; v < end; ++v) {
       const SurfaceVertexId id(v);
-      if (!body.surface.alive(id)) {
-        rows_[v].clear();
-        continue;
-      }
-      bound_nodes(body, id, bound);
-      const SurfaceVertexId master = body.binding.master[v];
-      const bool stale = v >= before || again[v] || rows_[v].empty() || (master.valid() && changed[body.binding.master_node[master.index()].index()]) ||
-                         std::any_of(bound.begin(), bound.end(), [&](const auto& b) { return changed[b.first.index()]; });
-      if (!stale) continue;
       rows_[v].clear();
+      if (!body.surface.alive(id)) continue;
+      bound_nodes(body, id, bound);
       if (bound.empty()) continue;
       const Vec3& x = body.surface.point(body.surface.site(id));
       double total = 0;

@@ -19,8 +19,8 @@ class SurfaceWeights {
     double weight;
   };
   /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's gradient, those of its
-  /// neighbours. `updated`: only rows that these nodes (ascending) take part in, and of vertices without a row, are made anew.
-  void update(const Body& body, const Solid& solid, std::span<const NodeId> updated, std::span<const SurfaceVertexId> rebound);
+  /// neighbours. Cost follows the surface.
+  void update(const Body& body, const Solid& solid);
 
   std::size_t size() const { return rows_.size(); }
   std::span<const Entry> row(std::size_t v) const { return rows_[v]; }

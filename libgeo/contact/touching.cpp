@@ -11,7 +11,7 @@ std::vector<std::vector<std::uint32_t>> copies_together(std::span<const std::uin
   return copies;
 }
 
-std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const Motion& m, const Constraint& how) {
+std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m, const Constraint& how) {
   std::vector<TouchingPlaces> result;
   std::vector<std::array<std::uint32_t, 6>> keys;
   for (const Watched& w : watched) {

@@ -18,7 +18,7 @@ struct Constraint {
 };
 
 /// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once.
-std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const Motion& motion, const Constraint& how);
+std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& motion, const Constraint& how);
 
 /// Copies that are together and that their own targets would push through each other: the two sides of a sheet, parted by
 /// the difference of their normals.

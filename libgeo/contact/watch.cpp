@@ -1,5 +1,7 @@
 #include "contact/watch.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "contact/close_pairs.h"
 
@@ -30,7 +32,7 @@ Vec3 middle_of(const Simplex& s, const std::vector<Vec3>& at) {
 }
 
 // True when the pair is to be watched.
-bool examine(const Motion& m, Watched& w, bool adjacent) {
+bool examine(const SurfaceMotion& m, Watched& w, bool adjacent) {
   const auto unit = [](const Vec3& d) {
     const double length = d.norm();
     return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
@@ -48,7 +50,8 @@ bool examine(const Motion& m, Watched& w, bool adjacent) {
   };
   const Vec3 now = apart(m.from);
   const double distance = now.norm();
-  w.first = distance > 0 ? Vec3(now / distance) : quick[0];
+  if (!(distance > 0)) return false;
+  w.first = now / distance;
   double best = parted(w.first, w.a, w.b, m.to);
   if (distance >= m.gap && best >= m.reach) return false;
   // Another direction, if it parts them about as well at the beginning and better at the end.
@@ -67,7 +70,7 @@ bool examine(const Motion& m, Watched& w, bool adjacent) {
 
 }  // namespace
 
-std::vector<Watched> watch(const Motion& m) {
+std::vector<Watched> watch(const SurfaceMotion& m) {
   // All boxes in a frame that moves as the surface does on average.
   Vec3 drift = Vec3::Zero();
   std::vector<std::array<std::uint32_t, 3>> corners(m.triangles.size());
@@ -89,6 +92,7 @@ std::vector<Watched> watch(const Motion& m) {
     std::pair<Simplex, Simplex> parts[2];
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = s * stretch; i < std::min(pairs.size(), (s + 1) * stretch); ++i) {
+        if (std::binary_search(m.crossing.begin(), m.crossing.end(), pairs[i])) continue;
         const int count = parts_apart(corners[pairs[i].first], corners[pairs[i].second], parts);
         for (int k = 0; k < count; ++k) {
           Watched w{parts[k].first, parts[k].second, Vec3::Zero(), Vec3::Zero(), 0};
@@ -99,6 +103,12 @@ std::vector<Watched> watch(const Motion& m) {
   std::vector<Watched> result;
   for (const auto& f : found) result.insert(result.end(), f.begin(), f.end());
   return result;
+}
+
+void turn_to_end(std::vector<Watched>& watched, const SurfaceMotion& m) {
+  parallel_for(watched.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) watched[i].normal = watched[i].first, turn_to_part(watched[i].normal, watched[i].a, watched[i].b, m.to);
+  });
 }
 
 }  // namespace geo

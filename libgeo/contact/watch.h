@@ -6,6 +6,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/simplex.h"
@@ -20,17 +21,20 @@ struct Watched {
 };
 
 /// What a step is about: triangles of rows, for each row the one that stands for it (vertices_together()), and where all are at
-/// its beginning, where no two triangles cross, and want to be at its end.
-struct Motion {
+/// its beginning, where no two triangles cross but those named, and want to be at its end.
+struct SurfaceMotion {
   const std::vector<Triangle>& triangles;
   std::span<const std::uint32_t> together;
   const std::vector<Vec3>&from, &to;
   double gap = 0;    ///< that sheets in contact keep
   double reach = 0;  ///< pairs that come closer than this are watched
+  std::span<const std::pair<std::uint32_t, std::uint32_t>> crossing = {};  ///< pairs that cross at the beginning, ascending
 };
 
 /// Where the plane of a pair comes closest to what the motion wants, it is the one taken. In an order that depends on the
 /// motion alone.
-std::vector<Watched> watch(const Motion& motion);
+std::vector<Watched> watch(const SurfaceMotion& motion);
+/// The same pairs for a motion that begins where theirs did and ends a little elsewhere.
+void turn_to_end(std::vector<Watched>& watched, const SurfaceMotion& motion);
 
 }  // namespace geo

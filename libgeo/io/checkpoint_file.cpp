@@ -25,6 +25,7 @@ void counts(Work& w, const Each& each) {
   each("steps", w.steps), each("newton", w.newton), each("cg", w.cg), each("fronts", w.fronts), each("refused", w.refused);
   each("cracks_begun", w.fracture.begun), each("cracks_divided", w.fracture.divided);
   each("triangles_cut", w.split.crack.triangles_cut), each("edges_cut", w.split.edges_cut);
+  each("touching", w.contact.touching), each("in_zones", w.contact.in_zones), each("held", w.contact.held);
   each("nodes_updated", w.split.nodes_updated), each("nodes_added", w.split.nodes_added);
 }
 
@@ -99,7 +100,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   counts(state.total, [&](const char* name, std::size_t n) { about["counts"][name] = n; });
   const std::string text = about.dump();
   std::vector<KerfArray> more{kerf_array("run/displacement", flat(state.motion.displacement), 3), kerf_array("run/velocity", flat(state.motion.velocity), 3),
-                              kerf_array("run/part", std::span(state.part)), kerf_array("run/front_points", flat(places), 3),
+                              kerf_array("run/part", std::span(state.part)), kerf_array("run/surface", flat(state.surface), 3), kerf_array("run/front_points", flat(places), 3),
                               kerf_array("run/front_at", std::span<const double>(at)), kerf_array("run/front_normals", flat(normals), 3),
                               kerf_array("run/front_owed", flat(owed), 3), kerf_array("run/time", std::span(&state.time, 1))};
   if (!state.motion.acceleration.empty()) more.push_back(kerf_array("run/acceleration", flat(state.motion.acceleration), 3));
@@ -124,6 +125,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
     state.motion.plastic.resize(plastic.size() / 3);
     for (std::size_t i = 0; i < plastic.size(); ++i) state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
   }
+  state.surface = points(file, "run/surface");
   state.part = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");
   const std::size_t n = c.body.nodes.size();

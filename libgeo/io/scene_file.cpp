@@ -142,6 +142,11 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("friction", s.friction, 0, 1);
     if (!(s.ground_normal.norm() > 0)) t.fail("'ground.normal' has no direction");
   });
+  top.section("contact", [&](TomlTable& t) {
+    t.get("self", s.self_contact);
+    t.get("friction", s.contact.friction, 0, 10);
+    t.get("gap", s.contact.gap, 1e-9, 0.1);
+  });
   top.section("time", [&](TomlTable& t) {
     t.get("frames", s.frames, 1, 1000000);
     t.get("frame_rate", s.frame_rate, 1e-6, 1e9);

@@ -121,7 +121,7 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
   elastic_ = sum;
   if (force)
     for (Vec3& f : *force) f = -f;
-  if (env_.contact) sum += env_.contact->energy(u);
+  for (const Potential* p : env_.contact) sum += p->energy(u);
   for (std::size_t i = 0; i < n_; ++i) {
     sum += 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm() - load_[i].dot(u[i] - state_.displacement[i]);
     if (!env_.ground) continue;
@@ -162,8 +162,8 @@ void ImplicitStep::linearise() {
 void ImplicitStep::precondition() {
   std::vector<double> modes(s_.penalty_ ? n_ : 0, 0);
   if (s_.penalty_) s_.penalty_->add_diagonal(s_.rows_, modes);
-  std::vector<Mat3> touching(env_.contact ? n_ : 0, Mat3::Zero());
-  if (env_.contact) env_.contact->blocks(touching);
+  std::vector<Mat3> touching(env_.contact.empty() ? 0 : n_, Mat3::Zero());
+  for (const Potential* p : env_.contact) p->blocks(touching);
   each_node([&](std::size_t i) {
     Mat3 block = diagonal_[i];
     local_[i] = s_.mass_[i] / (dt_ * dt_) * Mat3::Identity();
@@ -220,7 +220,7 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) 
   out.resize(n_);
   s_.points_.gather(parts_.data(), 4, [&](std::size_t j, const double* sum) { out[j] = Vec3(sum[0], sum[1], sum[2]) + local_[j] * p[j]; });
   if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
-  if (env_.contact) env_.contact->multiply(p, out);
+  for (const Potential* c : env_.contact) c->multiply(p, out);
   if (!env_.fixed.empty())
     for (std::size_t i = 0; i < n_; ++i)
       if (env_.fixed[i]) out[i].setZero();
@@ -258,7 +258,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x) {
 // Internal forces do not change the mean motion of a part that nothing holds: neither must rounding or an unfinished solve.
 // The direction takes such a part to where inertia and loads alone bring its middle.
 void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
-  if (env_.contact) return;
+  if (!env_.contact.empty()) return;
   std::vector<char> held(s_.parts_, 0);
   std::vector<Vec3> mean(s_.parts_, Vec3::Zero());
   std::vector<double> mass(s_.parts_, 0);
@@ -276,7 +276,7 @@ bool ImplicitStep::run(StepReport& report) {
   double value = evaluate(u_, &force), moved = 1e300;
   for (int newton = 0; newton < 20; ++newton, ++report.newton) {
     elastic = force;
-    if (env_.contact) env_.contact->force(u_, force);
+    for (Potential* p : env_.contact) p->force(u_, force);
     // The stiffness of points is used again while they have hardly strained since.
     if (moved > 0.05) linearise(), moved = 0;
     precondition();

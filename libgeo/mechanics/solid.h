@@ -35,7 +35,7 @@ struct Environment {
   std::vector<double> clearance;  ///< per node: distance to the skin below it; empty: none
   std::vector<std::uint8_t> fixed;  ///< per node: 1 keeps it where it is; empty: none
   std::vector<Vec3> load;           ///< per node: a force, N; empty: none
-  Potential* contact = nullptr;     ///< of the implicit step; none: nothing touches
+  std::vector<Potential*> contact;  ///< of the implicit step, all of them; none: nothing touches
 };
 
 struct StepReport {
@@ -57,7 +57,7 @@ class Solid {
 
   /// After a split: what the cut has changed is recomputed; equal to a build from scratch, bit for bit. New nodes move with
   /// their donors' affine map and velocity; then each connected part gets the rigid motion that gives it back its linear
-  /// and angular momentum (about the origin). Plastic strain stays with its point.
+  /// momentum, and its angular momentum about its centre of mass. Plastic strain stays with its point.
   void update(const Body& body, const BodyDelta& delta, State& state);
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);

@@ -22,13 +22,15 @@ struct RigidMotion {
   Vec3 middle, velocity, spin;
 };
 
-// The rigid motion that brings a part's momenta from `now` to what they were. A part on a line or point has no inertia
-// about it, and can have no such momentum.
+// The rigid motion that brings a part's momenta from `now` to what they were: the linear one, and the angular one about its
+// centre of mass. (About a fixed point it may change, for mass is shared out anew: were that made good, a part that only
+// travels would begin to turn.) A part on a line or point has no inertia about it, and can have no such momentum.
 RigidMotion correction(const PartMotion& was, const PartMotion& now) {
   const Vec3 c = now.middle / now.mass, linear = was.linear - now.linear;
+  const Vec3 turning = was.angular - (was.middle / was.mass).cross(was.linear) - now.angular + c.cross(now.linear);
   const Mat3 inertia = now.inertia - now.mass * (c.squaredNorm() * Mat3::Identity() - c * c.transpose());
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-  const Vec3 spin = eigen.eigenvectors().transpose() * (was.angular - now.angular - c.cross(linear));
+  const Vec3 spin = eigen.eigenvectors().transpose() * turning;
   Vec3 turned = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
     if (eigen.eigenvalues()[k] > 1e-9 * eigen.eigenvalues()[2]) turned[k] = spin[k] / eigen.eigenvalues()[k];

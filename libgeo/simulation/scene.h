@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contact/contact_options.h"
 #include "crack/front.h"
 #include "mechanics/elasticity.h"
 #include "sampling/sample.h"
@@ -65,6 +66,8 @@ struct Scene {
   std::uint64_t seed = 1;
   std::vector<Blade> blades;
   Fracture fracture;
+  bool self_contact = false;  ///< no two triangles of the surface cross in any frame
+  ContactOptions contact;
   std::uint64_t fingerprint = 0;  ///< of all that decides what the run computes; 0: not from a file
 };
 

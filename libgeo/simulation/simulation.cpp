@@ -16,10 +16,11 @@ Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Prog
 
 Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
     : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_, scene.bodies[0].material) {
-  begin_motion();
   state_.fronts.resize(scene.blades.size());
   score(progress);
+  begin_motion();
   prepare();
+  collisions_.emplace(scene_, body_, solid_, state_.surface);
 }
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
@@ -29,6 +30,7 @@ Simulation::Simulation(const Scene& scene, Body body, RunState state)
   if (state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   prepare();
+  collisions_.emplace(scene_, body_, solid_, state_.surface);
 }
 
 void Simulation::begin_motion() {
@@ -97,6 +99,8 @@ void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
   prepare();
   work.mechanics_seconds += watch.lap();
+  if (collisions_) collisions_->follow(body_, solid_, delta, state_.motion, work.contact);
+  work.contact_seconds += watch.lap();
 }
 
 bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work) {
@@ -193,7 +197,7 @@ void Simulation::push(double dt) {
     for (std::size_t i = mass.size(); i < body_.nodes.size(); ++i) mass.push_back(solid_.mass(NodeId(i)));
     wedge_.add(b, blade, blade.motion.at(state_.time + dt), body_.nodes.position, state_.motion.displacement, environment_.clearance, mass, blade.stiffness);
   }
-  environment_.contact = wedge_.empty() ? nullptr : &wedge_;
+  if (!wedge_.empty()) environment_.contact.push_back(&wedge_);
 }
 
 void Simulation::integrate(double dt, FrameWork& work) {
@@ -213,21 +217,32 @@ void Simulation::integrate(double dt, FrameWork& work) {
   work.mechanics_seconds += watch.lap();
 }
 
+void Simulation::collide(const std::vector<Vec3>& before, double dt, FrameWork& work) {
+  Stopwatch watch;
+  collisions_->resolve(body_, solid_, before, dt, environment_, state_.motion, work.contact);
+  work.contact_seconds += watch.lap();
+}
+
 void Simulation::fracture(double dt, FrameWork& work) {
   if (!scene_.fracture.on || state_.time < scene_.fracture.start) return;
   Stopwatch watch;
-  const double splitting = work.split_seconds() + work.mechanics_seconds;
+  const auto others = [&] { return work.split_seconds() + work.mechanics_seconds + work.contact_seconds; };
+  const double splitting = others();
   step_fracture(scene_.fracture, body_, solid_, state_.motion, dt, state_.fracture,
                 [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, work); }, &work.fracture);
-  work.fracture_seconds += watch.lap() - (work.split_seconds() + work.mechanics_seconds - splitting);
+  work.fracture_seconds += watch.lap() - (others() - splitting);
 }
 
 // One time step, a phase a line.
 void Simulation::step(double dt, FrameWork& work) {
   cut(dt, work);
+  const std::vector<Vec3> before = state_.motion.displacement;
   move_grips(dt);
+  environment_.contact.clear();
   push(dt);
+  collisions_->begin(body_, state_.motion, dt, environment_);
   integrate(dt, work);
+  collide(before, dt, work);
   state_.time += dt;
   fracture(dt, work);
 }
@@ -245,6 +260,7 @@ FrameWork Simulation::advance_frame(const Progress& progress) {
         throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " + std::to_string(state_.time) + "; reduce the time step");
   }
   ++state_.frame;
+  state_.surface = collisions_->rows(body_);
   state_.total += work;
   return work;
 }
@@ -254,6 +270,10 @@ TriangleMesh Simulation::surface(const TriangleMesh* model) const {
   TriangleMesh mesh = body_.surface.two_sided(&rows);
   if (model) carry(*model, mesh);
   mesh.attributes.normal.clear();
+  if (collisions_->on()) {
+    mesh.vertices = collisions_->rows(body_);
+    return mesh;
+  }
   const auto gradient = solid_.gradients(state_.motion.displacement);
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> nodes;

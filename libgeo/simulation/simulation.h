@@ -5,6 +5,7 @@
 
 #include "body/body.h"
 #include "mechanics/solid.h"
+#include "simulation/collide.h"
 #include "simulation/edge_front.h"
 #include "simulation/fracture_step.h"
 #include "simulation/model.h"
@@ -19,6 +20,7 @@ struct RunState {
   State motion;
   std::vector<std::vector<EdgeFront>> fronts;  ///< per blade: a front for each part of the edge that cuts
   FractureState fracture;
+  std::vector<Vec3> surface;  ///< a row a living surface vertex, ascending: where it is; empty without self-contact
   std::vector<std::uint32_t> part;                ///< per node: the body of the scene that it belongs to
   double time = 0;
   int frame = 0;
@@ -39,7 +41,7 @@ class Simulation {
   /// says so. A crack step that is refused is counted, and its front tried again in the next step.
   FrameWork advance_frame(const Progress& progress = {});
 
-  /// The deformed two-sided surface (Eq. 1), patch, site and source included. With the model of the run it also has the
+  /// The deformed two-sided surface (Eq. 1, but for what contact holds back), patch, site and source included. With the model of the run it also has the
   /// model's attributes, except normals: these change with the shape.
   TriangleMesh surface(const TriangleMesh* model = nullptr) const;
   const Body& body() const { return body_; }
@@ -54,6 +56,7 @@ class Simulation {
   void move_grips(double dt);
   void integrate(double dt, FrameWork& work);
   void push(double dt);
+  void collide(const std::vector<Vec3>& before, double dt, FrameWork& work);
   void fracture(double dt, FrameWork& work);
   void adopt(const BodyDelta& delta, FrameWork& work);
   /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
@@ -68,6 +71,7 @@ class Simulation {
   Solid solid_;
   Environment environment_;
   Wedge wedge_;
+  std::optional<Collisions> collisions_;
   std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
 };
 

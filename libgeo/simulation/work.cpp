@@ -11,6 +11,7 @@ FrameWork& FrameWork::operator+=(const FrameWork& o) {
   front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds, contact_seconds += o.contact_seconds, write_seconds += o.write_seconds;
   fracture_seconds += o.fracture_seconds;
   fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided, fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
+  contact += o.contact;
   energy = o.energy, blade_force = o.blade_force;
   return *this;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "body/body.h"
+#include "contact/contact_options.h"
 #include "simulation/fracture_step.h"
 
 namespace geo {
@@ -12,6 +13,7 @@ namespace geo {
 struct FrameWork {
   SplitWork split;  ///< crack: meet and mesh; graph, resample, binding
   FractureWork fracture;
+  ContactWork contact;
   std::size_t refused = 0, fronts = 0, newton = 0, cg = 0, steps = 0;
   double fracture_seconds = 0;  ///< stresses and plans, its splits apart
   double front_seconds = 0, mechanics_seconds = 0, contact_seconds = 0, write_seconds = 0;

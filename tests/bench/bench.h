@@ -37,7 +37,7 @@ double threads_speedup(const std::function<void()>& work);
 struct Options {
   std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles
   std::vector<std::string> models;    ///< closed meshes in files
-  std::vector<std::size_t> nodes;     ///< in the graph
+  std::vector<std::size_t> nodes;     ///< in the graph or the body
   int cuts = 500;                     ///< through the block
   bool json = false;
 };
@@ -46,6 +46,7 @@ int crack(const Options& options);
 int block(const Options& options);
 int graph(const Options& options);
 int concave(const Options& options);
+int contact(const Options& options);
 int mechanics(const Options& options);
 int validate(const Options& options);
 

@@ -150,7 +150,7 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
   CHECK(broken[0] != broken[1]);
 }
 
-TEST_CASE("nothing breaks below the strength, before the start, or where it is off; numbers of cracks are limited", "[fracture]") {
+TEST_CASE("nothing breaks below the strength, before the start, or where it is off, and numbers of cracks are limited", "[fracture]") {
   const auto begun = [](const Scene& scene, int frames) {
     Simulation sim = stretched_bar(scene, 0.02);
     FrameWork work;

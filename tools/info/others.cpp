@@ -30,10 +30,13 @@ std::string twins(const geo::NodeSet& nodes) {
   return {};
 }
 
-// A frame is a surface whose triangles may touch and cross: only its topology is asked for.
+// A frame is a surface that has deformed: sheets have parted, triangles may touch, cross and have no area. Only its topology is asked for.
 std::string check_frame(const std::string& path) {
-  const std::string problem = geo::check_surface(geo::read_surface(path).mesh, false).first_problem;
-  return problem.empty() ? problem : fs::path(path).filename().string() + ": " + problem;
+  geo::TriangleMesh mesh = geo::read_surface(path).mesh;
+  mesh.patch.clear(), mesh.site.clear();
+  const geo::SurfaceReport report = geo::check_surface(mesh, false);
+  if (report.closed && report.manifold && report.oriented) return {};
+  return fs::path(path).filename().string() + ": " + report.first_problem;
 }
 
 }  // namespace

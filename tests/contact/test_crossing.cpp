@@ -1,0 +1,63 @@
+#include <catch2/catch.hpp>
+
+#include "base/random.h"
+#include "cases.h"
+#include "contact/close_pairs.h"
+#include "contact/crossing.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+TEST_CASE("a fresh crack's sheets touch, and cross once one is pushed through the other") {
+  // A strip of four triangles, both sides of it: sites 0..5, the front at 0, 1.
+  TriangleMesh m;
+  for (int copy = 0; copy < 2; ++copy)
+    for (int i = 0; i < 6; ++i)
+      if (copy == 0 || i >= 2) m.vertices.push_back({double(i % 2), double(i / 2), 0}), m.site.push_back(static_cast<std::uint32_t>(i));
+  const auto other = [](std::uint32_t v) { return v < 2 ? v : v + 4; };
+  for (const Triangle t : {Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{2, 3, 4}, Triangle{4, 3, 5}})
+    m.triangles.push_back(t), m.triangles.push_back({other(t[0]), other(t[2]), other(t[1])});
+  CHECK(count_crossings(m) == 0);
+  for (std::size_t v = 6; v < 10; ++v) m.vertices[v].z() = 0.25;  // opened at the far end, joined at the front
+  CHECK(count_crossings(m) == 0);
+  m.vertices[9].z() = -0.25;  // one corner of one side through the other side
+  CHECK(count_crossings(m) > 0);
+  m.vertices[9].z() = 0;  // back where its copy is: together
+  CHECK(count_crossings(m) == 0);
+  m.vertices[9].x() += 1e-15;  // not to the bit, and in the plane of the other side: that crosses
+  m.vertices[8].z() = m.vertices[7].z() = m.vertices[6].z() = 0;
+  CHECK(count_crossings(m) > 0);
+}
+
+TEST_CASE("crossings of a plain mesh are those of the definition") {
+  TriangleMesh two = make_sphere(3);
+  const TriangleMesh other = two;
+  const auto base = static_cast<std::uint32_t>(two.vertices.size());
+  for (const Vec3& p : other.vertices) two.vertices.push_back(p + Vec3(3, 0, 0));
+  for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({a + base, b + base, c + base});
+  CHECK(count_crossings(two) == 0);
+  for (std::size_t v = base; v < two.vertices.size(); ++v) two.vertices[v].x() -= 1.5;
+  CHECK(count_crossings(two) > 10);
+}
+
+TEST_CASE("pairs of boxes are those that a double loop finds") {
+  const auto [first, count] = seeds(60);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    std::vector<Box3> boxes;
+    for (std::uint32_t i = 0; i < 150; ++i) {
+      const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const double size = random.below(10) == 0 ? random.uniform(0, 1) : random.uniform(0, 0.1);
+      boxes.push_back(random.below(20) == 0 ? Box3() : Box3{p, p + size * Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1))});
+      if (random.below(5) == 0 && !boxes.back().empty()) boxes.push_back(boxes.back());
+    }
+    auto pairs = close_pairs(boxes);
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
+        if (!boxes[i].empty() && !boxes[j].empty() && boxes[i].meets(boxes[j])) expected.push_back({i, j});
+    CHECK(pairs == expected);
+  }
+}

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
                "  kerf-sample cloud.vdb --grid density --iso 0.2 --levels 3 --surface cloud.ply -o nodes.pcd");
   std::string model, spacing, pattern = "jitter", grid, iso, surface;
   int levels = 2, count = 0, across = 3;
-  double jitter = 0.15, adaptivity = 0;
+  double jitter = 0.15, support = 1.8, adaptivity = 0;
   t.argument("MODEL", model, "Closed surface (PLY, OBJ, STL, OFF) or OpenVDB volume; - reads standard input");
   t.option("--spacing", spacing, "Spacing at the surface, in model units or as P% of the diagonal (3%)");
   t.option("--levels", levels, "Resolution levels, each twice as coarse as the one before");
@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   t.option("--min-across", across, "Nodes across thin material, which is sampled up to 32 times finer; 0: as the rest");
   t.choice("--pattern", pattern, {"jitter", "blue", "grid"}, "Nodes displaced at random, pushed apart, or in the middle");
   t.option("--jitter", jitter, "Random displacement, as a fraction of a node's cell");
+  t.option("--support", support, "Support radii over the spacing around; enlarged where they would hold too few nodes");
   t.option("--grid", grid, "Of a volume: the grid's name");
   t.option("--iso", iso, "Of a volume: the surface's level (0 of a level set, 0.5 of a fog volume)");
   t.option("--adaptivity", adaptivity, "Of a volume: 0 to 1, larger triangles where its surface is flat");
@@ -64,10 +65,11 @@ int main(int argc, char** argv) {
   t.output("Nodes as PCD (or .ply)");
   return t.run(argc, argv, [&] {
     geo::SampleOptions options;
-    options.levels = levels, options.jitter = jitter, options.seed = t.seed, options.across = across;
+    options.levels = levels, options.jitter = jitter, options.seed = t.seed, options.across = across, options.support = support;
     if (levels < 1 || levels > 10) throw tool::UsageError("--levels must be from 1 to 10");
     if (count < 0 || (count > 0 && !spacing.empty())) throw tool::UsageError("give a positive --count or a --spacing, not both");
     if (!(jitter >= 0 && jitter <= 0.4)) throw tool::UsageError("--jitter must be from 0 to 0.4");
+    if (!(support >= 1 && support <= 10)) throw tool::UsageError("--support must be from 1 to 10");
     if (across < 0 || across > 100) throw tool::UsageError("--min-across must be from 0 to 100");
     if (pattern == "blue") options.pattern = geo::Pattern::blue;
     else if (pattern == "grid") options.pattern = geo::Pattern::grid;

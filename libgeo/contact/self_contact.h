@@ -1,4 +1,5 @@
-// Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and never crosses itself.
+// Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and does not come to cross
+// itself. (Triangles of a crack that is born in a strongly deformed body may cross at once; they are counted until they part.)
 //
 // The surface has positions of its own. At each step the nodes move as if nothing touched; places that would pass through each
 // other are found, and impulses on the nodes take away their approach; then the surface goes where Eq. 1 wants it, but for

@@ -69,7 +69,6 @@ void read_body_table(TomlTable& t, Scene& s, const Material& material) {
   t.get("velocity", body.velocity);
   t.get("spin", body.spin);
   for (const auto& v : t.rows("fixed", 6)) s.grips.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {}, false});
-  t.section("material", [&](TomlTable& inner) { read_material(inner, body.material); });
   s.bodies.push_back(std::move(body));
 }
 

@@ -33,6 +33,7 @@ struct Grip {
   Vec3 lo, hi;    ///< material coordinates
   Motion motion;  ///< of the box's middle, relative to where it was; none: stays
   bool release = false;  ///< lets go after the last key
+  Vec3 middle() const { return 0.5 * (lo + hi); }
 };
 
 /// A rigid edge that cuts where it moves, with what is behind it.

@@ -174,16 +174,25 @@ std::int32_t Simulation::next_crack() const {
   return last + 1;
 }
 
+// A pose for each grip; of one that does not move, none to be asked for.
+std::vector<Pose> Simulation::grip_poses(double time) const {
+  std::vector<Pose> poses(scene_.grips.size());
+  for (std::size_t g = 0; g < poses.size(); ++g)
+    if (!scene_.grips[g].motion.keys.empty()) poses[g] = scene_.grips[g].motion.at(time);
+  return poses;
+}
+
 // Held nodes are put where their grip will be at the end of the step; what they do to the others is the step's business.
 void Simulation::move_grips(double dt) {
   std::fill(environment_.fixed.begin(), environment_.fixed.end(), 0);
   const double end = state_.time + dt;
+  const std::vector<Pose> poses = grip_poses(end);
   for (const auto& [i, g] : gripped_) {
     const Grip& grip = scene_.grips[g];
     if (grip.release && !grip.motion.keys.empty() && end > grip.motion.keys.back().time) continue;
     environment_.fixed[i.index()] = 1;
-    const Vec3 &x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
-    if (!grip.motion.keys.empty()) state_.motion.displacement[i.index()] = middle + grip.motion.at(end) * Vec3(x - middle) - x;
+    const Vec3 &x = body_.nodes.position[i.index()], middle = grip.middle();
+    if (!grip.motion.keys.empty()) state_.motion.displacement[i.index()] = middle + poses[g] * Vec3(x - middle) - x;
   }
 }
 
@@ -203,11 +212,12 @@ void Simulation::push(double dt) {
 void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
   const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
+  const std::vector<Pose> from = grip_poses(state_.time), to = grip_poses(state_.time + dt);
   for (const auto& [i, g] : gripped_) {
     const Grip& grip = scene_.grips[g];
     if (!environment_.fixed[i.index()] || grip.motion.keys.empty()) continue;
-    const Vec3 x = body_.nodes.position[i.index()], middle = 0.5 * (grip.lo + grip.hi);
-    state_.motion.velocity[i.index()] = (grip.motion.at(state_.time + dt) * Vec3(x - middle) - grip.motion.at(state_.time) * Vec3(x - middle)) / dt;
+    const Vec3 arm = body_.nodes.position[i.index()] - grip.middle();
+    state_.motion.velocity[i.index()] = (to[g] * arm - from[g] * arm) / dt;
   }
   work.blade_force.resize(scene_.blades.size(), Vec3::Zero());
   const auto reaction = wedge_.reaction(state_.motion.displacement, scene_.blades.size());

@@ -53,6 +53,7 @@ class Simulation {
   void cut(double dt, FrameWork& work);
   void cut_at(std::size_t blade, double time, FrameWork& work);
   std::int32_t next_crack() const;
+  std::vector<Pose> grip_poses(double time) const;
   void move_grips(double dt);
   void integrate(double dt, FrameWork& work);
   void push(double dt);

@@ -3,28 +3,12 @@
 #   tests/tools/inspect.sh TOOLS_DIR SAMPLES_DIR
 set -u
 here=$(dirname "$(realpath "$0")")
+. "$here/answers.sh"
 PATH=$1:$2:$PATH
 export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-failed=0
-fail() { echo "FAILED: $*"; failed=1; }
-# says PATTERN COMMAND...: exit code 0, and a line of the output has the pattern.
-says() {
-  local pattern=$1 said
-  shift
-  said=$("$@" 2>&1) || fail "$* exits with $?: $said"
-  grep -qE -e "$pattern" <<<"$said" || fail "$* does not say '$pattern' but: $said"
-}
-# refuses CODE PATTERN COMMAND...
-refuses() {
-  local code=$1 pattern=$2 said
-  shift 2
-  said=$("$@" 2>&1 >/dev/null)
-  [ $? = "$code" ] || fail "$* does not exit with $code: $said"
-  grep -qE -e "$pattern" <<<"$said" || fail "$* does not say '$pattern' but: $said"
-}
 
 kerf-model pumpkin --frequency 8 -o p.ply
 kerf-model front --around p.ply --steps 8 -o halve.front

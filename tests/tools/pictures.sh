@@ -2,12 +2,11 @@
 # What kerf-view draws besides pages: pictures of every kind of thing, animations; the same for any number of threads.
 #   tests/tools/pictures.sh TOOLS_DIR SAMPLES_DIR
 set -u
+. "$(dirname "$(realpath "$0")")/answers.sh"
 PATH=$1:$2:$PATH
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-failed=0
-fail() { echo "FAILED: $*"; failed=1; }
 draw() { kerf-view "$@" --size 96x72 --samples 1 -q || fail "kerf-view $*"; }
 
 kerf-model pumpkin --frequency 8 -o p.ply
@@ -49,21 +48,14 @@ draw frames --rate 10 -o run.mp4
 draw frames --frames 2 -o two.webp
 [ "$(grep -ao ANMF two.webp | wc -l)" = 2 ] || fail "--frames"
 # Refused.
-says() {
-  local code=$1 pattern=$2 said
-  shift 2
-  said=$("$@" 2>&1 >/dev/null)
-  [ $? = "$code" ] || fail "$* does not exit with $code: $said"
-  grep -q -e "$pattern" <<<"$said" || fail "$* does not say '$pattern' but: $said"
-}
-says 65 "no field 'colour', but radius" kerf-view half.kerf --nodes --field colour -o x.png
-says 65 "no node 9999" kerf-view half.kerf --node 9999 -o x.png
-says 65 "second file with nodes" kerf-view half.kerf p.kerf -o x.png
-says 65 "more nodes" kerf-view p.kerf --nodes --before half.kerf -o x.png
-says 2 "A:B" kerf-view half.ply halve.front --steps 5:4 -o x.png
-says 2 "one folder" kerf-view frames p.ply -o x.png
-says 2 "give a file" kerf-view -o x.png
-says 73 "ffmpeg is not installed" env PATH="$1:$2" kerf-view whole.ply --size 64x48 -o x.mp4
+refuses 65 "no field 'colour', but radius" kerf-view half.kerf --nodes --field colour -o x.png
+refuses 65 "no node 9999" kerf-view half.kerf --node 9999 -o x.png
+refuses 65 "second file with nodes" kerf-view half.kerf p.kerf -o x.png
+refuses 65 "more nodes" kerf-view p.kerf --nodes --before half.kerf -o x.png
+refuses 2 "A:B" kerf-view half.ply halve.front --steps 5:4 -o x.png
+refuses 2 "one folder" kerf-view frames p.ply -o x.png
+refuses 2 "give a file" kerf-view -o x.png
+refuses 73 "ffmpeg is not installed" env PATH="$1:$2" kerf-view whole.ply --size 64x48 -o x.mp4
 [ ! -e x.png ] && [ ! -e x.mp4 ] || fail "something is left behind"
 ls ./*.tmp >/dev/null 2>&1 && fail "something is left behind: $(ls ./*.tmp)"
 exit $failed

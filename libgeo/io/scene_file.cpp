@@ -44,10 +44,9 @@ void read_material(TomlTable& t, Material& m) {
   require_material(m);
 }
 
-void read_body_table(TomlTable& t, Scene& s, const Material& material) {
+void read_body_table(TomlTable& t, Scene& s) {
   SceneBody body;
   body.name = "body" + std::to_string(s.bodies.size() + 1);
-  body.material = material;
   t.get("name", body.name);
   t.get("mesh", body.mesh);
   if (body.mesh.empty()) t.fail("'body.mesh' is missing: name the model");
@@ -127,12 +126,11 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
 }
 
 void read_top(TomlTable& top, Scene& s, Files& files) {
-  Material material;
-  top.section("material", [&](TomlTable& t) { read_material(t, material); });
+  top.section("material", [&](TomlTable& t) { read_material(t, s.material); });
   const auto* body = top.find("body");
   if (!body) top.fail("'body.mesh' is missing: name the model");
-  if (body->is_table()) top.section("body", [&](TomlTable& t) { read_body_table(t, s, material); });
-  else top.list("body", [&](TomlTable& t) { read_body_table(t, s, material); });
+  if (body->is_table()) top.section("body", [&](TomlTable& t) { read_body_table(t, s); });
+  else top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
   top.section("ground", [&](TomlTable& t) {
     s.ground = true;
     t.get("point", s.ground_point);

@@ -25,7 +25,6 @@ struct SceneBody {
   Pose place;
   Vec3 velocity = Vec3::Zero();  ///< at the start
   Vec3 spin = Vec3::Zero();      ///< angular velocity at the start about the middle of its box, rad/s
-  Material material;
 };
 
 /// Nodes in a box that are held, and moved.
@@ -55,6 +54,7 @@ struct Blade {
 struct Scene {
   std::vector<SceneBody> bodies;  ///< one at least
   int k = 26;
+  Material material;  ///< of all bodies
   std::vector<Front> scores;  ///< cracks made before time 0, in material coordinates
   std::vector<Grip> grips;
   bool ground = false;

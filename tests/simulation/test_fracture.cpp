@@ -19,7 +19,7 @@ Scene brittle() {
   Scene s;
   s.gravity.setZero();
   s.bodies.resize(1);
-  Material& m = s.bodies[0].material;
+  Material& m = s.material;
   m.young = 1e6, m.poisson = 0.25, m.density = 1000, m.damping = 20;
   m.discretisation = Discretisation::mueller04;  // the stresses that fracture reads are those at nodes
   s.fracture.on = true;
@@ -74,13 +74,13 @@ TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fract
   const auto seed = GENERATE(1, 2);
   const double sense = GENERATE(1.0, -1.0), spacing = 0.06, rim = 1.5 * spacing, depth = 0.493, height = 0.507;
   Scene scene = brittle();
-  scene.bodies[0].material.poisson = 0, scene.bodies[0].material.damping = 60;
+  scene.material.poisson = 0, scene.material.damping = 60;
   scene.fracture.cracks = 0, scene.fracture.start = 0.1, scene.fracture.strength = 1e3;
   scene.grips = {{Vec3(-1, -1, -1), Vec3(2, rim, 1), {}, false}, {Vec3(-1, 1 - rim, -1), Vec3(2, 2, 1), {}, false}, {Vec3(-1, -1, -1), Vec3(rim, 2, 1), {}, false}, {Vec3(1 - rim, -1, -1), Vec3(2, 2, 1), {}, false}};
   Notched n = notched_block({1, 1, 0.2}, spacing, depth, height, static_cast<std::uint64_t>(seed));
   RunState state;
   for (const Vec3& x : n.body.nodes.position)
-    state.motion.displacement.push_back(mode_displacement(scene.bodies[0].material, std::hypot(x.x() - depth, x.y() - height), std::atan2(x.y() - height, x.x() - depth)) * Vec3(0, sense * 2e3, 0));
+    state.motion.displacement.push_back(mode_displacement(scene.material, std::hypot(x.x() - depth, x.y() - height), std::atan2(x.y() - height, x.x() - depth)) * Vec3(0, sense * 2e3, 0));
   state.motion.velocity.assign(n.body.nodes.size(), Vec3::Zero());
   state.fracture.fronts.push_back(std::move(n.front)), state.fracture.cracks = 1;
   Simulation sim(scene, std::move(n.body), std::move(state));

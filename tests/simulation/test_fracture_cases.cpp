@@ -32,7 +32,7 @@ RandomCase random_case(std::uint64_t seed) {
   s.bodies.resize(1);
   SceneBody& body = s.bodies[0];
   body.sampling.count = 300 + random.below(100);
-  body.material.young = 1e6, body.material.damping = random.uniform(0.0, 40.0), body.material.poisson = random.uniform(0.0, 0.4);
+  s.material.young = 1e6, s.material.damping = random.uniform(0.0, 40.0), s.material.poisson = random.uniform(0.0, 0.4);
   body.spin = 30 * random.direction();
   s.seed = s.fracture.seed = seed;
   s.frame_rate = 200, s.dt = 1.0 / 200;

@@ -33,7 +33,7 @@ keys = [[0.0, 0.013, 0.507, 1.3, 0, 0, 1, 2], [0.2, 0.013, 0.511, -0.7, 0, 0, 1,
 
 TEST_CASE("a scene is read, overridden, and refused with line and column") {
   const Scene s = parse_scene(scene_text, "s.toml", {{"material.young", "5e4"}, {"time.frames", "3"}});
-  CHECK(s.bodies.at(0).material.young == 5e4);
+  CHECK(s.material.young == 5e4);
   CHECK(s.frames == 3);
   REQUIRE(s.blades.size() == 1);
   CHECK(s.blades[0].points.size() == 7);

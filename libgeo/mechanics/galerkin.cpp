@@ -1,7 +1,7 @@
 #include "mechanics/galerkin.h"
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "body/locate.h"
@@ -14,43 +14,74 @@ constexpr std::size_t few = 8;          // a point with fewer nodes, or a worse 
 constexpr double ill_conditioned = 500;
 constexpr double hopeless = 1e7;        // linear fields would be off by 1e-9 of their size
 constexpr std::array growth{1.0, 1.2, 1.44, 1.728, 2.0736};
+constexpr double widest = growth.back();
 
-// What a point's row is made of: nodes near it, and the faces that may hide them.
-struct Surroundings {
-  const Body& body;
-  const TriangleBvh& faces;
-  double longest;  // no node's support is longer
+// What the rows of points near each other are made of: the nodes that may reach them, and the faces that may hide these.
+class Surroundings {
+ public:
+  Surroundings(const Body& body, const Box3& points) : body_(body), points_(points) {
+    const NodeSet& nodes = body.nodes;
+    const double longest = *std::max_element(nodes.radius.begin(), nodes.radius.end());
+    body.grid.within(nodes.position, points.center(), 0.5 * (points.hi - points.lo).norm() + widest * longest, near_);
+    std::erase_if(near_, [&](auto j) { return !points.grown(widest * nodes.radius[j]).meets({nodes.position[j], nodes.position[j]}); });
+    for (const auto j : near_) longest_ = std::max(longest_, nodes.radius[j]);
+  }
+  const Body& body() const { return body_; }
+  /// Nodes whose support, grown so much, holds x: ascending, and where they are.
+  void nodes(const Vec3& x, double grown, std::vector<std::uint32_t>& near, std::vector<Vec3>& at) const {
+    near.clear(), at.clear();
+    for (const auto j : near_)
+      if (const Vec3& y = body_.nodes.position[j]; (y - x).norm() < grown * body_.nodes.radius[j]) near.push_back(j), at.push_back(y);
+  }
+  /// All faces that may lie between points and such nodes.
+  const TriangleBvh& faces(double grown) {
+    auto& tree = grown > 1 ? all_ : close_;
+    if (tree.empty() && !std::exchange(grown > 1 ? knows_all_ : knows_close_, true)) {
+      std::vector<std::array<Vec3, 3>> found;
+      triangles_near(body_.surface, points_.grown(grown > 1 ? widest * longest_ : longest_), found);
+      tree = TriangleBvh(found);
+    }
+    return tree;
+  }
+
+ private:
+  const Body& body_;
+  Box3 points_;
+  std::vector<std::uint32_t> near_;
+  double longest_ = 0;
+  TriangleBvh close_, all_;
+  bool knows_close_ = false, knows_all_ = false;
 };
 
 // A point that a face passes through is on neither of its sides: it steps aside, towards the nearest node.
-Vec3 off_faces(const Surroundings& around, const Vec3& p) {
-  if (!around.faces.blocks(p, p)) return p;
-  const auto near = around.body.grid.nearest(around.body.nodes.position, p, 1, ~0u, [](auto) { return true; });
+Vec3 off_faces(Surroundings& around, const Vec3& p) {
+  const TriangleBvh& faces = around.faces(1);
+  if (!faces.blocks(p, p)) return p;
+  const Body& body = around.body();
+  const auto near = body.grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; })[0];
+  const Vec3 way = body.nodes.position[near] - p;
+  if (!(way.norm() < widest * body.nodes.radius[near])) return p;
   for (double step = 1e-3; step < 0.5; step *= 4)
-    if (const Vec3 aside = p + step * (around.body.nodes.position[near[0]] - p); !around.faces.blocks(aside, aside)) return aside;
+    if (const Vec3 aside = p + step * way; !faces.blocks(aside, aside)) return aside;
   return p;
 }
 
-ShapeRow build_row(const Surroundings& around, const Vec3& place, MaterialPoint& point) {
-  const NodeSet& nodes = around.body.nodes;
+ShapeRow build_row(Surroundings& around, const Vec3& place, MaterialPoint& point) {
+  const NodeSet& nodes = around.body().nodes;
   const Vec3 x = off_faces(around, place);
   point.position = x, point.reach = (x - place).norm();
   ShapeRow row;
   std::vector<std::uint32_t> near;
-  std::vector<Vec3> at;
+  std::vector<Vec3> ends, at;
   std::vector<double> reach;
   std::vector<std::uint8_t> hidden;
   double condition = 0;
   for (std::size_t t = 0;; ++t) {
     const double grown = growth[t];
-    near.clear(), at.clear(), reach.clear(), row.to.clear();
-    around.body.grid.within(nodes.position, x, grown * around.longest, near);
-    std::vector<Vec3> ends;
-    for (const auto j : near)
-      if ((nodes.position[j] - x).norm() < grown * nodes.radius[j]) near[ends.size()] = j, ends.push_back(nodes.position[j]);
-    near.resize(ends.size());
+    at.clear(), reach.clear(), row.to.clear();
+    around.nodes(x, grown, near, ends);
     hidden.assign(ends.size(), 0);
-    if (!around.faces.empty()) around.faces.blocks(x, ends, hidden.data());
+    if (const TriangleBvh& faces = around.faces(grown); !faces.empty()) faces.blocks(x, ends, hidden.data());
     point.growth = static_cast<std::uint8_t>(t);
     for (std::size_t q = 0; q < near.size(); ++q) {
       point.reach = std::max(point.reach, (ends[q] - x).norm());
@@ -65,97 +96,153 @@ ShapeRow build_row(const Surroundings& around, const Vec3& place, MaterialPoint&
   return row;
 }
 
-double longest_support(const NodeSet& nodes) { return *std::max_element(nodes.radius.begin(), nodes.radius.end()); }
-
-PointBlock build_block(const Surroundings& around, std::span<const QuadratureCell> cells) {
-  std::vector<MaterialPoint> points(4 * cells.size());
-  std::vector<ShapeRow> rows(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].volume = 0.25 * cells[i / 4].volume;
-    rows[i] = build_row(around, cells[i / 4].point[i % 4], points[i]);
+// Faces that came or went, and supports of nodes that came, went or moved.
+class Changes {
+ public:
+  Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports) : faces_(faces), supports_(supports) {
+    for (const auto& [a, b, c] : faces) where_.add(box_of(a, b, c));
+    for (const auto& [x, r] : supports) where_.add(Box3{x, x}.grown(widest * r));
   }
-  return {std::move(points), rows};
+  bool near(const Box3& points, double reach) const { return points.grown(reach).meets(where_); }
+  /// Whether they touch what the row of a point is made of: nodes that support it, the segments to these, the way aside.
+  bool concern(const Surroundings& around, const Vec3& place, const MaterialPoint& p) const {
+    if (std::any_of(supports_.begin(), supports_.end(), [&](const auto& s) { return (s.first - p.position).norm() < growth[p.growth] * s.second; })) return true;
+    std::vector<std::uint32_t> near;
+    faces_.near(Box3{p.position, p.position}.grown(p.reach), near);
+    if (near.empty()) return false;
+    std::vector<Vec3> ends;
+    around.nodes(p.position, growth[p.growth], near, ends);
+    ends.push_back(place);
+    std::vector<std::uint8_t> touched(ends.size(), 0);
+    faces_.blocks(p.position, ends, touched.data());
+    return std::find(touched.begin(), touched.end(), 1) != touched.end();
+  }
+
+ private:
+  TriangleBvh faces_;
+  const std::vector<std::pair<Vec3, double>>& supports_;
+  Box3 where_;
+};
+
+// For each cell the number of the same one before, or ~0u; both lists are in Morton order.
+std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::span<const QuadratureCell> before) {
+  std::vector<std::uint32_t> same;
+  std::size_t o = 0;
+  for (const QuadratureCell& c : now) {
+    while (o < before.size() && morton(before[o].cell.corner) < morton(c.cell.corner)) ++o;
+    const bool found = o < before.size() && before[o].cell.corner == c.cell.corner && before[o].cell.level == c.cell.level;
+    same.push_back(found ? static_cast<std::uint32_t>(o) : ~0u);
+  }
+  return same;
 }
 
 }  // namespace
 
-Galerkin::Galerkin(const Body& body, MaterialPoints& points) : cells_(body), groups_(cells_.groups(cells_a_block)) { build(body, points); }
-
-void Galerkin::build(const Body& body, MaterialPoints& points) const {
-  std::vector<std::array<Vec3, 3>> faces;
-  for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
-    if (body.surface.alive(FaceId(f))) faces.push_back(body.surface.corners(FaceId(f)));
-  const TriangleBvh tree(faces);
-  const Surroundings around{body, tree, longest_support(body.nodes)};
-  points.blocks.assign(groups_.size() - 1, {});
+Galerkin::Galerkin(const Body& body, MaterialPoints& points) : cells_(body), groups_(cells_.groups(cells_a_block)) {
+  points.blocks.resize(groups_.size() - 1);
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      points.blocks[b] = build_block(around, {&cells_.cells()[groups_[b]], groups_[b + 1] - groups_[b]});
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto cells = group(b);
+      std::vector<MaterialPoint> all(4 * cells.size());
+      std::vector<ShapeRow> rows(all.size());
+      std::vector<std::uint32_t> stale(all.size());
+      std::iota(stale.begin(), stale.end(), 0);
+      points.blocks[b] = build(body, cells, std::move(all), rows, stale);
+    }
   });
   points.connect(body.nodes.size());
 }
 
-void Galerkin::update(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position, MaterialPoints& points, std::vector<std::uint32_t>& kept) {
-  const NodeSet& nodes = body.nodes;
-  const bool nodes_changed = delta.first_new_node.index() < nodes.size() || !delta.moved_nodes.empty();
-  const auto key = [](const QuadratureCell& c) { return std::pair(morton(c.cell.corner), c.cell.level); };
-  std::map<std::pair<std::uint64_t, std::int32_t>, std::uint32_t> before;
-  if (nodes_changed) {
-    const auto old = cells_.cells();
-    if (cells_.follow(body)) {
-      for (std::size_t c = 0; c < old.size(); ++c) before[key(old[c])] = static_cast<std::uint32_t>(4 * c);
-      for (const QuadratureCell& c : cells_.cells()) {
-        const auto at = before.find(key(c));
-        for (std::uint32_t k = 0; k < 4; ++k) kept.push_back(at == before.end() ? ~0u : at->second + k);
-      }
-      groups_ = cells_.groups(cells_a_block);
-      build(body, points);
-      return;
-    }
+// A block of points, of which some have their rows made anew.
+PointBlock Galerkin::build(const Body& body, std::span<const QuadratureCell> cells, std::vector<MaterialPoint> points, std::span<ShapeRow> rows,
+                           std::span<const std::uint32_t> stale) const {
+  if (!stale.empty()) {
+    Box3 box;
+    for (const auto i : stale) box.add(cells[i / 4].point[i % 4]);
+    Surroundings around(body, box);
+    for (const auto i : stale) rows[i] = build_row(around, cells[i / 4].point[i % 4], points[i]);
   }
-  // What has changed: faces, and the supports of nodes that came, went or moved.
-  std::vector<std::array<Vec3, 3>> changed;
-  Box3 where;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].volume = 0.25 * cells[i / 4].volume;
+  return {std::move(points), rows};
+}
+
+void Galerkin::note(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position) {
+  const NodeSet& nodes = body.nodes;
   for (const auto* list : {&delta.crack.new_faces, &delta.crack.removed_faces})
-    for (const FaceId f : *list) {
-      changed.push_back(body.surface.corners(f));
-      where.add(box_of(changed.back()[0], changed.back()[1], changed.back()[2]));
-    }
-  const TriangleBvh changed_faces(changed);
-  std::vector<std::pair<Vec3, double>> supports;
-  for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i) supports.push_back({nodes.position[i], nodes.radius[i]});
+    for (const FaceId f : *list) faces_.push_back(body.surface.corners(f));
+  for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i) supports_.push_back({nodes.position[i], nodes.radius[i]});
   for (std::size_t k = 0; k < delta.moved_nodes.size(); ++k) {
     const std::size_t i = delta.moved_nodes[k].index();
-    supports.push_back({old_position[k], nodes.radius[i]}), supports.push_back({nodes.position[i], nodes.radius[i]});
+    supports_.push_back({old_position[k], nodes.radius[i]}), supports_.push_back({nodes.position[i], nodes.radius[i]});
   }
-  for (const auto& [x, r] : supports) where.add(Box3{x, x}.grown(r));
-  const double longest = longest_support(nodes), widest = growth.back() * longest;
+}
+
+void Galerkin::settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept) {
+  if (faces_.empty() && supports_.empty()) return;
+  const auto groups_before = groups_;
+  std::vector<std::uint32_t> was(cells_.cells().size());  // per cell: its number before
+  std::iota(was.begin(), was.end(), 0);
+  if (!supports_.empty()) {
+    const auto before = cells_.cells();
+    if (cells_.follow(body)) {
+      was = same_cells(cells_.cells(), before);
+      groups_ = cells_.groups(cells_a_block);
+      for (const auto c : was)
+        for (std::uint32_t k = 0; k < 4; ++k) kept.push_back(c == ~0u ? c : 4 * c + k);
+    }
+  }
+  const Changes changes(faces_, supports_);
+  const double reach = widest * *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
+  std::vector<PointBlock> old(groups_.size() - 1);
+  old.swap(points.blocks);
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      PointBlock& block = points.blocks[b];
-      if (!block.box.grown(widest).meets(where)) continue;
-      std::vector<std::uint32_t> stale, near;
-      Box3 around;
-      for (std::uint32_t i = 0; i < block.points.size(); ++i) {
-        const MaterialPoint& p = block.points[i];
-        near.clear();
-        changed_faces.near(Box3{p.position, p.position}.grown(p.reach), near);
-        if (near.empty() && std::none_of(supports.begin(), supports.end(), [&](const auto& s) { return (s.first - p.position).norm() < growth[p.growth] * s.second; })) continue;
-        stale.push_back(i);
-        around.add(p.position);
-        around.add(cells_.cells()[groups_[b] + i / 4].point[i % 4]);
+      const auto cells = group(b);
+      const std::span same(&was[groups_[b]], cells.size());
+      const auto block_of = [&](std::uint32_t cell) { return static_cast<std::size_t>(std::upper_bound(groups_before.begin(), groups_before.end(), cell) - groups_before.begin() - 1); };
+      const std::size_t o = same[0] == ~0u ? 0 : block_of(same[0]);
+      bool whole = same[0] == groups_before[o] && groups_before[o + 1] - groups_before[o] == cells.size();
+      for (std::size_t c = 1; c < cells.size() && whole; ++c) whole = same[c] == same[0] + c;
+      if (whole && !changes.near(old[o].box, reach)) {
+        points.blocks[b] = std::move(old[o]);
+        for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) points.blocks[b].points[i].volume = 0.25 * cells[i / 4].volume;
+        continue;
       }
-      if (stale.empty()) continue;
-      std::vector<std::array<Vec3, 3>> faces;
-      triangles_near(body.surface, around.grown(widest), faces);
-      const TriangleBvh tree(faces);
-      auto all = block.points;
-      auto rows = block.rows();
-      for (const auto i : stale) rows[i] = build_row({body, tree, longest}, cells_.cells()[groups_[b] + i / 4].point[i % 4], all[i]);
-      block = PointBlock(std::move(all), rows);
+      std::vector<MaterialPoint> all(4 * cells.size());
+      std::vector<std::uint32_t> stale;
+      Box3 box;
+      for (std::uint32_t i = 0; i < all.size(); ++i) {
+        const auto c = same[i / 4];
+        if (c != ~0u) {
+          const std::size_t from = block_of(c);
+          all[i] = old[from].points[4 * (c - groups_before[from]) + i % 4];
+          box.add(all[i].position);
+        }
+        box.add(cells[i / 4].point[i % 4]);
+      }
+      const Surroundings around(body, box);
+      for (std::uint32_t i = 0; i < all.size(); ++i)
+        if (same[i / 4] == ~0u || changes.concern(around, cells[i / 4].point[i % 4], all[i])) stale.push_back(i);
+      if (whole && stale.empty()) {
+        points.blocks[b] = std::move(old[o]);
+        for (std::size_t i = 0; i < all.size(); ++i) points.blocks[b].points[i].volume = 0.25 * cells[i / 4].volume;
+        continue;
+      }
+      std::vector<ShapeRow> rows(all.size());
+      for (std::uint32_t i = 0, s = 0; i < all.size(); ++i) {
+        if (s < stale.size() && stale[s] == i) {
+          ++s;
+          continue;
+        }
+        const auto c = same[i / 4];
+        const std::size_t from = block_of(c);
+        rows[i] = old[from].row(4 * (c - groups_before[from]) + i % 4);
+      }
+      points.blocks[b] = build(body, cells, std::move(all), rows, stale);
     }
   });
-  points.connect(nodes.size());
+  points.connect(body.nodes.size());
+  faces_.clear(), supports_.clear();
 }
 
 }  // namespace geo

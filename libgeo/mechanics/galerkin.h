@@ -12,15 +12,21 @@ class Galerkin {
   Galerkin() = default;
   /// From scratch.
   Galerkin(const Body& body, MaterialPoints& points);
-  /// After a split: points are looked at again where a face or a node within their support has changed. The result is that
-  /// of a build from scratch, bit for bit. `old_position`: of moved nodes, before they moved. Appends to `kept`, for each
-  /// point there is now, the number of the same point before, or ~0u; nothing where all are the same.
-  void update(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position, MaterialPoints& points, std::vector<std::uint32_t>& kept);
+  /// Takes down what a split has changed, for settle(). `old_position`: of moved nodes, before they moved.
+  void note(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
+  /// After splits: new rows for points of which the cell, a node within the support or the sight of one has changed. The
+  /// result is that of a build from scratch, bit for bit. Appends to `kept`, for each point there is now, the number of the
+  /// same point before, or ~0u; nothing where all are the same.
+  void settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept);
 
  private:
-  void build(const Body& body, MaterialPoints& points) const;
+  std::span<const QuadratureCell> group(std::size_t b) const { return {&cells_.cells()[groups_[b]], groups_[b + 1] - groups_[b]}; }
+  PointBlock build(const Body& body, std::span<const QuadratureCell> cells, std::vector<MaterialPoint> points, std::span<ShapeRow> rows,
+                   std::span<const std::uint32_t> stale) const;
   QuadratureCells cells_;
   std::vector<std::size_t> groups_;
+  std::vector<std::array<Vec3, 3>> faces_;           // changed since the last settle()
+  std::vector<std::pair<Vec3, double>> supports_;    // of nodes that came, went or moved since
 };
 
 }  // namespace geo

@@ -43,14 +43,13 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow>
   for (const MaterialPoint& p : points) box.add(p.position);
 }
 
-std::vector<ShapeRow> PointBlock::rows() const {
-  std::vector<ShapeRow> all(points.size());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t q = first[i]; q < first[i + 1]; ++q) {
-      all[i].to.push_back(nodes[to[q]]);
-      all[i].gradient.push_back(Eigen::Map<const Vec3>(&gradient[3 * q]));
-    }
-  return all;
+ShapeRow PointBlock::row(std::size_t point) const {
+  ShapeRow row;
+  for (std::size_t q = first[point]; q < first[point + 1]; ++q) {
+    row.to.push_back(nodes[to[q]]);
+    row.gradient.push_back(Eigen::Map<const Vec3>(&gradient[3 * q]));
+  }
+  return row;
 }
 
 bool operator==(const PointBlock& a, const PointBlock& b) {

@@ -32,8 +32,8 @@ struct PointBlock {
 
   PointBlock() = default;
   PointBlock(std::vector<MaterialPoint> points, std::span<const ShapeRow> rows);
-  /// The rows that it was made of.
-  std::vector<ShapeRow> rows() const;
+  /// A row that it was made of.
+  ShapeRow row(std::size_t point) const;
   friend bool operator==(const PointBlock& a, const PointBlock& b);
 };
 

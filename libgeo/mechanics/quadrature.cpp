@@ -95,7 +95,18 @@ QuadratureCells::QuadratureCells(const Body& body) {
   lattice_ = {extent.center() - 0.5 * coarse * cells, std::ldexp(coarse, -below)};
   root_ = above + below;
   divided_ = divisions(nodes);
-  clip(body);
+  skin_ = std::make_shared<const RegionTree>(skin_of(body.surface));
+  for (const auto& list : walk<QuadratureCell>(*skin_, lattice_, {{0, 0, 0}, root_}, "quadrature", {}, visit())) placed_.insert(placed_.end(), list.begin(), list.end());
+  share_volume(nodes);
+}
+
+// Goes into cells that are divided, and places points in the others.
+std::function<bool(const Region&, std::vector<QuadratureCell>&)> QuadratureCells::visit() const {
+  return [this](const Region& region, std::vector<QuadratureCell>& found) {
+    if (region.cell.level > 0 && is_divided(divided_, region.cell)) return true;
+    if (const QuadratureCell cell = place(*skin_, lattice_, region); cell.volume > 0) found.push_back(cell);
+    return false;
+  };
 }
 
 Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
@@ -118,19 +129,12 @@ Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
   return divided;
 }
 
-void QuadratureCells::clip(const Body& body) {
-  const RegionTree tree(skin_of(body.surface));
-  const auto lists = walk<QuadratureCell>(tree, lattice_, {{0, 0, 0}, root_}, "quadrature", {}, [&](const Region& region, std::vector<QuadratureCell>& found) {
-    if (region.cell.level > 0 && is_divided(divided_, region.cell)) return true;
-    if (const QuadratureCell cell = place(tree, lattice_, region); cell.volume > 0) found.push_back(cell);
-    return false;
-  });
-  cells_.clear();
-  for (const auto& list : lists) cells_.insert(cells_.end(), list.begin(), list.end());
-  // What cut cells hold is an estimate: all together have the body's volume.
+// What cut cells hold is an estimate: all together have the nodes' volume.
+void QuadratureCells::share_volume(const NodeSet& nodes) {
+  cells_ = placed_;
   double whole = 0, cut = 0;
   for (const auto& c : cells_) (c.whole ? whole : cut) += c.volume;
-  const double volume = sum_of(body.nodes.volume);
+  const double volume = sum_of(nodes.volume);
   const bool cut_only = cut > 0 && whole < volume;
   const double scale = cut_only ? (volume - whole) / cut : volume / (whole + cut);
   for (auto& c : cells_)
@@ -138,10 +142,35 @@ void QuadratureCells::clip(const Body& body) {
 }
 
 bool QuadratureCells::follow(const Body& body) {
-  Divisions now = divisions(body.nodes);
-  if (now == divided_) return false;
-  divided_ = std::move(now);
-  clip(body);
+  const Divisions before = std::exchange(divided_, divisions(body.nodes));
+  if (divided_ == before) return false;
+  // The coarsest cells that are divided now and were not, or the other way round, are looked at again.
+  std::vector<Cell> changed;
+  for (int level = root_; level > 0; --level) {
+    const auto l = static_cast<std::size_t>(level);
+    std::vector<std::uint64_t> codes;
+    std::set_symmetric_difference(before[l].begin(), before[l].end(), divided_[l].begin(), divided_[l].end(), std::back_inserter(codes));
+    for (const auto code : codes)
+      if (std::none_of(changed.begin(), changed.end(), [&](const Cell& c) { return code >> 3 * c.level == morton(c.corner) >> 3 * c.level; })) changed.push_back({corner_of(code), level});
+  }
+  std::sort(changed.begin(), changed.end(), [](const Cell& a, const Cell& b) { return morton(a.corner) < morton(b.corner); });
+  std::vector<QuadratureCell> found;
+  auto old = placed_.begin();
+  const auto up_to = [&](std::uint64_t code, bool keep) {
+    for (; old != placed_.end() && morton(old->cell.corner) < code; ++old)
+      if (keep) found.push_back(*old);
+  };
+  const auto look = visit();
+  const auto descend = [&](const auto& self, const Region& region) -> void {
+    if (look(region, found)) skin_->divide(lattice_, region, [&](Region&& part) { self(self, part); });
+  };
+  for (const Cell& c : changed) {
+    up_to(morton(c.corner), true), up_to(morton(c.corner) + (std::uint64_t(1) << 3 * c.level), false);
+    if (const Region region = skin_->at(lattice_, c); region.cut() || region.inside) descend(descend, region);
+  }
+  up_to(~std::uint64_t(0), true);
+  placed_ = std::move(found);
+  share_volume(body.nodes);
   return true;
 }
 

@@ -1,6 +1,8 @@
 // Where strain energy is summed: four points in each cell of an octree as fine as the nodes, clipped to the material.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "body/body.h"
@@ -34,11 +36,14 @@ class QuadratureCells {
 
  private:
   Divisions divisions(const NodeSet& nodes) const;
-  void clip(const Body& body);
+  std::function<bool(const Region&, std::vector<QuadratureCell>&)> visit() const;
+  void share_volume(const NodeSet& nodes);
 
   Lattice lattice_{Vec3::Zero(), 1};
   int root_ = 0;
   Divisions divided_;
+  std::shared_ptr<const RegionTree> skin_;
+  std::vector<QuadratureCell> placed_;  // with the volumes that were found in them
   std::vector<QuadratureCell> cells_;
 };
 

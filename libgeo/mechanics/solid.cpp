@@ -45,13 +45,18 @@ void Solid::update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId fi
   nodal_points(updated);
 }
 
-void Solid::update(const Body& body, const BodyDelta& delta, State& state) {
+void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
   std::vector<Vec3> before;
   for (const NodeId i : delta.moved_nodes) before.push_back(position_[i.index()]);
   follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
   if (!galerkin_) return nodal_points(delta.updated_nodes);
+  galerkin_->note(body, delta, before);
+}
+
+void Solid::settle(const Body& body, State& state) {
+  if (!galerkin_) return;
   std::vector<std::uint32_t> kept;
-  galerkin_->update(body, delta, before, points_, kept);
+  galerkin_->settle(body, points_, kept);
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < plastic.size(); ++i)

@@ -58,7 +58,11 @@ class Solid {
   /// After a split: what the cut has changed is recomputed; equal to a build from scratch, bit for bit. New nodes move with
   /// their donors' affine map and velocity; then each connected part gets the rigid motion that gives it back its linear
   /// momentum, and its angular momentum about its centre of mass. Plastic strain stays with its point.
-  void update(const Body& body, const BodyDelta& delta, State& state);
+  void update(const Body& body, const BodyDelta& delta, State& state) { follow(body, delta, state), settle(body, state); }
+  /// The two halves of update(): nodes with their motion and gradients, after each split; material points, once after several
+  /// and before anything asks about energy, forces or stress.
+  void follow(const Body& body, const BodyDelta& delta, State& state);
+  void settle(const Body& body, State& state);
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);
 

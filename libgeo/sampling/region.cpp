@@ -1,5 +1,7 @@
 #include "sampling/region.h"
 
+#include <algorithm>
+
 #include "geometry/predicates.h"
 
 namespace geo {
@@ -58,6 +60,16 @@ Region RegionTree::root(const Lattice& lattice, const Cell& cell) const {
   region.inside = tree_.inside(region.probe);
   region.rows.resize(corners_.size());
   for (std::uint32_t i = 0; i < region.rows.size(); ++i) region.rows[i] = i;
+  return region;
+}
+
+Region RegionTree::at(const Lattice& lattice, const Cell& cell) const {
+  Region region{cell, lattice.middle(cell), false, {}};
+  region.inside = tree_.inside(region.probe);
+  const Box3 box = lattice.box(cell);
+  tree_.near(box, region.rows);
+  std::erase_if(region.rows, [&](auto row) { return !may_meet(box, corners_[row][0], corners_[row][1], corners_[row][2]); });
+  std::sort(region.rows.begin(), region.rows.end());
   return region;
 }
 

@@ -29,6 +29,8 @@ class RegionTree {
 
   /// A region for a cell that holds the whole surface.
   Region root(const Lattice& lattice, const Cell& cell) const;
+  /// A region for any cell: as one that is come to from the root.
+  Region at(const Lattice& lattice, const Cell& cell) const;
   /// Calls each(Region&&) for the parts of a region that hold material, in Morton order.
   template <class Each>
   void divide(const Lattice& lattice, const Region& region, const Each& each) const {

@@ -95,7 +95,8 @@ void Simulation::prepare() {
 void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
-  solid_.update(body_, delta, state_.motion);
+  solid_.follow(body_, delta, state_.motion);
+  if (scene_.fracture.on) solid_.settle(body_, state_.motion);
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
   prepare();
   work.mechanics_seconds += watch.lap();
@@ -211,6 +212,7 @@ void Simulation::push(double dt) {
 
 void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
+  solid_.settle(body_, state_.motion);
   const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
   const std::vector<Pose> from = grip_poses(state_.time), to = grip_poses(state_.time + dt);
   for (const auto& [i, g] : gripped_) {

@@ -83,9 +83,8 @@ TEST_CASE("no point takes a node from beyond the crack") {
   for (int k = 1; k <= 3; ++k) split(body, front, blade_at({0.47, -0.2, 1.2}, {0.47, 1.2, 1.2}, {0, 0, -0.5}, k));
   const Solid solid(body, soft());
   for (const auto& b : solid.points().blocks) {
-    const auto rows = b.rows();
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (const auto j : rows[i].to) CHECK((b.points[i].position.x() < 0.47) == (body.nodes.position[j].x() < 0.47));
+    for (std::size_t i = 0; i < b.points.size(); ++i)
+      for (const auto j : b.row(i).to) CHECK((b.points[i].position.x() < 0.47) == (body.nodes.position[j].x() < 0.47));
   }
   const double energy = solid.energy(field(body, [](const Vec3& x) { return x.x() < 0.47 ? Vec3(-1, 0, 0) : Vec3(1, 2, 3); }));
   CHECK(energy < 1e-20 * soft().young);

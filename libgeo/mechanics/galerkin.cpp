@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "base/parallel.h"
-#include "body/locate.h"
+#include "mechanics/bent_paths.h"
 
 namespace geo {
 namespace {
@@ -33,15 +34,21 @@ class Surroundings {
     for (const auto j : near_)
       if (const Vec3& y = body_.nodes.position[j]; (y - x).norm() < grown * body_.nodes.radius[j]) near.push_back(j), at.push_back(y);
   }
-  /// All faces that may lie between points and such nodes.
-  const TriangleBvh& faces(double grown) {
-    auto& tree = grown > 1 ? all_ : close_;
-    if (tree.empty() && !std::exchange(grown > 1 ? knows_all_ : knows_close_, true)) {
-      std::vector<std::array<Vec3, 3>> found;
-      triangles_near(body_.surface, points_.grown(grown > 1 ? widest * longest_ : longest_), found);
-      tree = TriangleBvh(found);
+  /// All faces that may lie on ways from points to such nodes, and the fronts that these may lead round.
+  struct Obstacles {
+    TriangleBvh faces;
+    std::vector<FrontEdge> fronts;
+  };
+  const Obstacles& obstacles(double grown) {
+    auto& found = obstacles_[grown > 1];
+    if (!found) {
+      std::vector<FaceId> ids;
+      body_.surface.near(points_.grown(grown > 1 ? widest * longest_ : longest_), ids);
+      std::vector<std::array<Vec3, 3>> faces;
+      for (const FaceId f : ids) faces.push_back(body_.surface.corners(f));
+      found = Obstacles{TriangleBvh(faces), front_edges(body_.surface, ids)};
     }
-    return tree;
+    return *found;
   }
 
  private:
@@ -49,13 +56,12 @@ class Surroundings {
   Box3 points_;
   std::vector<std::uint32_t> near_;
   double longest_ = 0;
-  TriangleBvh close_, all_;
-  bool knows_close_ = false, knows_all_ = false;
+  std::optional<Obstacles> obstacles_[2];
 };
 
 // A point that a face passes through is on neither of its sides: it steps aside, towards the nearest node.
 Vec3 off_faces(Surroundings& around, const Vec3& p) {
-  const TriangleBvh& faces = around.faces(1);
+  const TriangleBvh& faces = around.obstacles(1).faces;
   if (!faces.blocks(p, p)) return p;
   const Body& body = around.body();
   const auto near = body.grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; })[0];
@@ -72,23 +78,27 @@ ShapeRow build_row(Surroundings& around, const Vec3& place, MaterialPoint& point
   point.position = x, point.reach = (x - place).norm();
   ShapeRow row;
   std::vector<std::uint32_t> near;
-  std::vector<Vec3> ends, at;
-  std::vector<double> reach;
+  std::vector<Vec3> ends;
+  std::vector<Sight> seen;
   std::vector<std::uint8_t> hidden;
   double condition = 0;
   for (std::size_t t = 0;; ++t) {
     const double grown = growth[t];
-    at.clear(), reach.clear(), row.to.clear();
+    seen.clear(), row.to.clear();
     around.nodes(x, grown, near, ends);
     hidden.assign(ends.size(), 0);
-    if (const TriangleBvh& faces = around.faces(grown); !faces.empty()) faces.blocks(x, ends, hidden.data());
+    const auto& [faces, fronts] = around.obstacles(grown);
+    if (!faces.empty()) faces.blocks(x, ends, hidden.data());
     point.growth = static_cast<std::uint8_t>(t);
+    point.blinded = std::find(hidden.begin(), hidden.end(), 1) != hidden.end();
     for (std::size_t q = 0; q < near.size(); ++q) {
-      point.reach = std::max(point.reach, (ends[q] - x).norm());
-      if (hidden[q]) continue;
-      row.to.push_back(near[q]), at.push_back(ends[q]), reach.push_back(grown * nodes.radius[near[q]]);
+      const double reach = grown * nodes.radius[near[q]], straight = (ends[q] - x).norm();
+      // No way to the node that is shorter than its support leads farther off than half of both.
+      point.reach = std::max(point.reach, hidden[q] ? 0.5 * (straight + reach) : straight);
+      const auto node = hidden[q] ? sight_round(x, ends[q], reach, fronts, faces) : sight(x, ends[q], reach);
+      if (node) row.to.push_back(near[q]), seen.push_back(*node);
     }
-    condition = shape_gradients(x, at, reach, row.gradient);
+    condition = shape_gradients(x, seen, row.gradient);
     if ((row.to.size() >= few && condition <= ill_conditioned) || t + 1 == growth.size()) break;
   }
   point.rung = condition <= ill_conditioned ? Rung::full : condition <= hopeless ? Rung::regularised : Rung::rigid;
@@ -104,12 +114,13 @@ class Changes {
     for (const auto& [x, r] : supports) where_.add(Box3{x, x}.grown(widest * r));
   }
   bool near(const Box3& points, double reach) const { return points.grown(reach).meets(where_); }
-  /// Whether they touch what the row of a point is made of: nodes that support it, the segments to these, the way aside.
+  /// Whether they touch what the row of a point is made of: nodes that support it, the segments to these, the way aside. Where
+  /// faces hide a node already, how far it is round a front is decided all about the point.
   bool concern(const Surroundings& around, const Vec3& place, const MaterialPoint& p) const {
     if (std::any_of(supports_.begin(), supports_.end(), [&](const auto& s) { return (s.first - p.position).norm() < growth[p.growth] * s.second; })) return true;
     std::vector<std::uint32_t> near;
     faces_.near(Box3{p.position, p.position}.grown(p.reach), near);
-    if (near.empty()) return false;
+    if (near.empty() || p.blinded) return !near.empty();
     std::vector<Vec3> ends;
     around.nodes(p.position, growth[p.growth], near, ends);
     ends.push_back(place);

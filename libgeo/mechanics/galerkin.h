@@ -1,5 +1,5 @@
-// The element-free Galerkin discretisation: quadrature points, each with the nodes it sees (visibility: Belytschko, Lu and
-// Gu 1994), in blocks that follow cuts.
+// The element-free Galerkin discretisation (Belytschko, Lu and Gu 1994): quadrature points, each with the nodes it sees, round
+// the fronts of cracks too, in blocks that follow cuts.
 #pragma once
 
 #include "mechanics/material_points.h"

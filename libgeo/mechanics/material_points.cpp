@@ -54,7 +54,7 @@ ShapeRow PointBlock::row(std::size_t point) const {
 
 bool operator==(const PointBlock& a, const PointBlock& b) {
   const auto same = [](const MaterialPoint& p, const MaterialPoint& q) {
-    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.reach == q.reach;
+    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.reach == q.reach;
   };
   return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }

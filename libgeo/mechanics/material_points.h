@@ -17,7 +17,8 @@ struct MaterialPoint {
   double volume = 0;
   Rung rung = Rung::rigid;
   std::uint8_t growth = 0;  ///< how often its support was widened by a fifth
-  double reach = 0;         ///< no node within its support is farther away, seen or not
+  bool blinded = false;     ///< a face hides a node within its support
+  double reach = 0;         ///< no node within its support is farther away, nor is any part of a way to one
 };
 
 /// Points near each other and the rows of their shape functions.

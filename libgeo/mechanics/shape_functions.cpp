@@ -6,7 +6,13 @@
 
 namespace geo {
 
-double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<const double> reach, std::vector<Vec3>& gradient) {
+Sight sight(const Vec3& x, const Vec3& node, double reach) {
+  const Vec3 away = x - node;
+  const double distance = away.norm();
+  return {node, distance, distance > 0 ? Vec3(away / distance) : Vec3(Vec3::Zero()), reach};
+}
+
+double shape_gradients(const Vec3& x, std::span<const Sight> nodes, std::vector<Vec3>& gradient) {
   using Vec4 = Eigen::Vector4d;
   using Mat4 = Eigen::Matrix4d;
   constexpr double singular = std::numeric_limits<double>::infinity();
@@ -14,7 +20,7 @@ double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<con
   const std::size_t n = nodes.size();
   if (n < 4) return singular;
   double scale = 0;
-  for (const double h : reach) scale += h;
+  for (const Sight& j : nodes) scale += j.reach;
   scale /= double(n);
   // In units of the scale and about x: p = (1, x_j − x), so that at x itself p is the first unit vector and ∂p_j = −∂x.
   std::vector<Vec4> p(n);
@@ -22,10 +28,9 @@ double shape_gradients(const Vec3& x, std::span<const Vec3> nodes, std::span<con
   std::vector<Vec3> dw(n);
   Mat4 m = Mat4::Zero();
   for (std::size_t j = 0; j < n; ++j) {
-    const Vec3 away = (nodes[j] - x) / scale;
-    const double h = reach[j] / scale, s = away.norm() / h;
-    p[j] << 1, away;
-    w[j] = 1 + s * s * (-6 + s * (8 - 3 * s)), dw[j] = 12 * (1 - s) * (1 - s) / (h * h) * away;  // ∂w/∂x
+    const double h = nodes[j].reach / scale, s = nodes[j].distance / nodes[j].reach;
+    p[j] << 1, (nodes[j].node - x) / scale;
+    w[j] = 1 + s * s * (-6 + s * (8 - 3 * s)), dw[j] = -12 * s * (1 - s) * (1 - s) / h * nodes[j].slope;  // ∂w/∂x
     m += w[j] * p[j] * p[j].transpose();
   }
   const Vec4 spread = Eigen::SelfAdjointEigenSolver<Mat4>(m, Eigen::EigenvaluesOnly).eigenvalues();

@@ -221,27 +221,29 @@ std::vector<Finding> slit_bar(int size) {
   return {{"Bar slit half its length along its middle: tip, m", "two leaves of I / 8 on the foot's end", bar.along_load(bar.rest(Solid(bar.body, m))), expected, 0.1}};
 }
 
-// Cut half through across, at mid-length: how much that adds.
-std::vector<Finding> notched_bar(int size) {
+// Cut half through across, near mid-length: how much that adds. Where the crack lies between nodes changes that, so at four
+// places.
+std::vector<Finding> notched_bar(int) {
   const Material m = steel_like();
-  const int across = size ? 8 : 6;
-  double tip[2] = {}, at = 0;
-  const double force = 1e-5 * m.young, place = 2;
-  for (const bool cut : {false, true}) {
-    Bar bar(4, across);
-    if (cut) {
-      const Vec3 a(bar.foot + place + 0.003, -0.3, 1.25), b(bar.foot + place + 0.003, 1.3, 1.25), step(0, 0, -0.25);
-      auto front = begin_front(blade_at(a, b, step, 0, 4), false, 1);
-      for (int k = 1; k <= 3; ++k) split(bar.body, front, blade_at(a, b, step, k, 4));
-    }
+  const double force = 1e-5 * m.young;
+  std::vector<Finding> found;
+  Bar whole(4, 8);
+  whole.hold();
+  const double at = whole.load_tip({0, 0, -force}), uncut = whole.along_load(whole.rest(Solid(whole.body, m)));
+  for (const double place : {2.0, 2.03, 2.06, 2.09}) {
+    Bar bar(4, 8);
+    const Vec3 a(bar.foot + place + 0.003, -0.3, 1.25), b(bar.foot + place + 0.003, 1.3, 1.25), step(0, 0, -0.25);
+    auto front = begin_front(blade_at(a, b, step, 0, 4), false, 1);
+    for (int k = 1; k <= 3; ++k) split(bar.body, front, blade_at(a, b, step, k, 4));
     bar.hold();
-    at = bar.load_tip({0, 0, -force});
-    tip[cut] = bar.along_load(bar.rest(Solid(bar.body, m)));
+    bar.load_tip({0, 0, -force});
+    // Rotation of an edge crack of half the depth in bending, plane strain to plane stress (Tada, Paris and Irwin 2000, 2.14).
+    const double s = 5.93 - 19.69 * 0.5 + 37.14 * 0.25 - 35.84 * 0.125 + 13.12 * 0.0625, arm = at - place, moment = force * arm;
+    const double rotation = 4 * 6 * moment / m.young * s;
+    found.push_back({"Bar cut half through " + std::to_string(place).substr(0, 4) + " from its foot: what the cut adds to the tip, m", "Δw = (L − x) · 24 M S(½) / E, S(½) = 1.71 (Tada)",
+                     bar.along_load(bar.rest(Solid(bar.body, m))) - uncut, arm * rotation * (1 - 0.5 * m.poisson * m.poisson), 0.1});
   }
-  // Rotation of an edge crack of half the depth in bending, plane strain to plane stress (Tada, Paris and Irwin 2000, 2.14).
-  const double s = 5.93 - 19.69 * 0.5 + 37.14 * 0.25 - 35.84 * 0.125 + 13.12 * 0.0625, arm = at - place, moment = force * arm;
-  const double rotation = 4 * 6 * moment / m.young * s;
-  return {{"Bar cut half through at mid-length: what the cut adds to the tip, m", "Δw = (L − x) · 24 M S(½) / E, S(½) = 1.71 (Tada)", tip[1] - tip[0], arm * rotation * (1 - 0.5 * m.poisson * m.poisson), 0.1}};
+  return found;
 }
 
 }  // namespace validation

@@ -86,8 +86,8 @@ void write(const Command& c, const tool::Tool& t) {
 std::string inspect(const Command& c, info::Report& report) {
   const std::string& path = c.paths[0];
   if (c.diff) {
-    info::report_difference(geo::read_body(path), geo::read_body(c.paths[1]), report);
-    return {};
+    const bool same = info::report_difference(geo::read_body(path), geo::read_body(c.paths[1]), report);
+    return same ? std::string() : "differs from " + c.paths[1];
   }
   if (!c.asks() && std::filesystem::is_directory(path)) return info::report_run(path, c.wishes, report);
   if (!c.asks() && path.ends_with(".toml")) return info::report_scene(path, c.wishes, report);
@@ -111,10 +111,10 @@ int main(int argc, char** argv) {
   t.argument("FILE", c.paths, "Any file of Kerf's, or the folder of a run; - reads standard input; two with --diff");
   t.flag("--check", c.wishes.check, "Verify everything; exit code 1 names the first offending ids");
   t.flag("--histogram", c.wishes.histograms, "Distributions: of radii, edge lengths, neighbours, as far as there are any");
-  t.option("--node", c.node, "Say what is known of this node of a body");
+  t.option("--node", c.node, "Say what is known of this node of a body; the first is 0");
   t.option("--edge", c.edge, "Say what is between these two nodes of a body");
-  t.option("--vertex", c.vertex, "Say what is known of this surface vertex of a body, or vertex of a surface");
-  t.flag("--diff", c.diff, "Say what differs between two bodies");
+  t.option("--vertex", c.vertex, "Say what is known of this surface vertex of a body, or vertex of a surface; the first is 0");
+  t.flag("--diff", c.diff, "Say what differs between two bodies; exit code 1 when anything does");
   t.flag("--compact", c.compact, "Fold what updates appended to a body, in the file itself or into that of --output");
   t.option("--export", c.exported, "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end");
   t.output("Where --compact writes");
@@ -125,6 +125,6 @@ int main(int argc, char** argv) {
     info::Report report;
     const std::string problem = inspect(c, report);
     if (!t.quiet || t.json) report.print(t.json);
-    if (c.wishes.check && !problem.empty()) throw tool::Failure(c.paths[0] + ": " + problem);
+    if ((c.wishes.check || c.diff) && !problem.empty()) throw tool::Failure(c.paths[0] + ": " + problem);
   });
 }

@@ -23,7 +23,6 @@ struct Wishes {
 
 void check(const Wishes& w, const std::string& output) {
   if (output.empty() || output == "-") throw tool::UsageError("give a folder or a .glb with -o");
-  if (w.up != "y" && w.up != "z") throw tool::UsageError("--up must be y or z");
   if (w.hull_corners < 4 || w.hull_corners > 100000) throw tool::UsageError("--hull-corners must be between 4 and 100000");
   if (!(w.tile > 0 && w.tile <= 1e6)) throw tool::UsageError("--tile must be positive and at most 1000000");
   if (!(w.strength >= 0 && w.strength <= 1e100)) throw tool::UsageError("--strength must not be negative");
@@ -67,7 +66,7 @@ int main(int argc, char** argv) {
   t.option("--hull-corners", w.hull_corners, "How many corners a hull has at most");
   t.option("--tile", w.tile, "Size of one texture tile on inner faces, as a fraction of the model's diagonal");
   t.option("--strength", w.strength, "Force that an area of 1 withstands; a bond's strength is this times its area");
-  t.option("--up", w.up, "Of a .glb: which axis of the model is up, y or z");
+  t.choice("--up", w.up, {"y", "z"}, "Of a .glb: which axis of the model is up");
   t.option("--bonds", w.bonds, "Of a .glb: also write what its scene's extras say of pieces and bonds to this JSON file");
   t.output("pieces.glb, or a folder; made when it is not there");
   return t.run(argc, argv, [&] {

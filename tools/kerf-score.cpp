@@ -35,11 +35,7 @@ double percent(const std::string& text) {
 
 geo::ScoreOptions options_of(const Wishes& w, std::uint64_t seed) {
   geo::ScoreOptions o;
-  try {
-    o.pattern.pattern = geo::pattern_named(w.pattern);
-  } catch (const geo::InputError& e) {
-    throw tool::UsageError("--pattern '" + w.pattern + "': " + e.what());
-  }
+  o.pattern.pattern = geo::pattern_named(w.pattern);
   const bool curves = o.pattern.pattern == geo::Pattern::curves, sheets = o.pattern.pattern == geo::Pattern::sheets;
   if (curves == w.curves.empty()) throw tool::UsageError("--pattern curves and --curves FILE go together");
   if (sheets == w.sheets.empty()) throw tool::UsageError("--pattern sheets and --sheets FILE go together");
@@ -78,7 +74,7 @@ int main(int argc, char** argv) {
                "  kerf-score bear.off --pattern curves --curves lines.obj --axis z -o curves.front");
   Wishes w;
   t.argument("MODEL", w.model, "A closed surface, or a cut one from kerf-crack");
-  t.option("--pattern", w.pattern, "planes, crossing, voronoi, radial, glass, wood, bricks, curves or sheets");
+  t.choice("--pattern", w.pattern, {geo::pattern_names.begin(), geo::pattern_names.end()}, "Where the walls are");
   t.option("--pieces", w.pieces, "How many pieces of the model, as nearly as attempts find; curves, sheets: as they come");
   t.option("--attempts", w.attempts, "How many patterns are tried for that");
   t.option("--jagged", w.jagged, "Height of the walls' bumps as a fraction of the model's diagonal; 0: walls are flat");

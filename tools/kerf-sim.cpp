@@ -11,6 +11,7 @@
 #include "io/run_files.h"
 #include "io/scene_file.h"
 #include "io/stream.h"
+#include "mechanics/node_fields.h"
 #include "model.h"
 #include "simulation/simulation.h"
 #include "surface/pieces.h"
@@ -55,6 +56,14 @@ void require_space(const fs::path& folder, double bytes) {
   throw geo::OutputError(folder.string() + ": the run needs about " + megabytes(bytes) + ", but " + megabytes(double(space.available)) + " are free; ask for fewer frames, or give another folder");
 }
 
+// Nodes as a frame has them, in the folder `nodes` beside `frames`.
+geo::FrameNodes nodes_of(const geo::Simulation& sim) {
+  geo::FrameNodes frame{sim.body().nodes, geo::von_mises_stress(sim.solid(), sim.body().nodes, sim.state().motion)};
+  const auto moved = geo::material_displacement(sim.solid(), sim.body().nodes, sim.body().graph, sim.state().motion);
+  for (std::size_t i = 0; i < moved.size(); ++i) frame.nodes.position[i] += moved[i];
+  return frame;
+}
+
 // A frame as PLY and its samples in the USD file, by what there is now and half as much again for cracks.
 double bytes_of_frames(const geo::TriangleMesh& mesh, int frames) {
   return 1.5 * double(frames + 1) * (100.0 * double(mesh.vertices.size()) + 60.0 * double(mesh.triangles.size()));
@@ -83,24 +92,28 @@ class Forecast {
 struct Folder {
   fs::path path;
   fs::path frames() const { return path / "frames"; }
+  fs::path nodes() const { return path / "nodes"; }
   fs::path checkpoint() const { return path / "checkpoint.kerf"; }
   fs::path log() const { return path / "frames.jsonl"; }
-  static std::string frame_name(int i) {
+  static std::string frame_name(int i, const char* what = "frame") {
     char name[32];
-    std::snprintf(name, sizeof name, "frame_%04d.ply", i);
+    std::snprintf(name, sizeof name, "%s_%04d.ply", what, i);
     return name;
   }
   std::string frame(int i) const { return (frames() / frame_name(i)).string(); }
+  std::string nodes(int i) const { return (nodes() / frame_name(i, "nodes")).string(); }
 
   void make() const {
     std::error_code error;
     fs::create_directories(frames(), error);
+    if (!error) fs::create_directories(nodes(), error);
     if (error) throw geo::OutputError(path.string() + ": cannot be made (" + error.message() + ")");
   }
   // Removes what make() made, where nothing came of it.
   void unmake() const {
     std::error_code ignored;
     fs::remove_all(frames(), ignored);
+    fs::remove_all(nodes(), ignored);
     fs::remove(path, ignored);
   }
   void write_text(const fs::path& file, const std::string& text) const {
@@ -207,6 +220,7 @@ int main(int argc, char** argv) {
     const geo::TriangleMesh* carried = plan.model.parts.size() == 1 ? &plan.model.mesh : nullptr;
     const auto write_frame = [&] {
       const auto mesh = sim.surface(carried);
+      geo::write_all(folder.nodes(sim.state().frame), [&](std::ostream& out) { geo::write_frame_nodes(out, nodes_of(sim)); });
       geo::write_all(folder.frame(sim.state().frame), [&](std::ostream& out) { geo::write_ply(out, mesh); });
     };
     // The run goes on from what it wrote, so that one taken up here and one never stopped are the same.
@@ -218,7 +232,7 @@ int main(int argc, char** argv) {
     if (!begun) {
       write_frame();
       checkpoint();
-      require_space(folder.path, bytes_of_frames(plan.model.mesh, last) + 4 * double(fs::file_size(folder.checkpoint())));
+      require_space(folder.path, bytes_of_frames(plan.model.mesh, last) + 28.0 * (last + 1) * double(sim.body().nodes.size()) + 4 * double(fs::file_size(folder.checkpoint())));
     }
     Forecast forecast;
     geo::FrameWork total = sim.state().total;

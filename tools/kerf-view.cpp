@@ -50,9 +50,7 @@ view::Look checked(const Wishes& w, view::Look look) {
   if (!(w.rate > 0 && w.rate <= 1000)) throw tool::UsageError("--rate must be positive and at most 1000");
   if (!(w.megabytes >= 1 && w.megabytes <= 500)) throw tool::UsageError("--megabytes is from 1 to 500");
   if (w.node < -1) throw tool::UsageError("--node must not be negative");
-  if (w.color == "piece") look.coloring = view::Coloring::piece;
-  else if (w.color == "plain") look.coloring = view::Coloring::plain;
-  else if (w.color != "patch") throw tool::UsageError("--color must be patch, piece or plain");
+  look.coloring = w.color == "piece" ? view::Coloring::piece : w.color == "plain" ? view::Coloring::plain : view::Coloring::patch;
   try {
     look.skin = view::parse_color(w.skin);
   } catch (const geo::InputError& e) {
@@ -163,14 +161,14 @@ int main(int argc, char** argv) {
   t.option("--zoom", w.zoom, "1 shows everything; above it the node of --node is in the middle");
   t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
   t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
-  t.option("--color", w.color, "patch (skin and the two sheets of cracks), piece, or plain");
+  t.choice("--color", w.color, {"patch", "piece", "plain"}, "Colours: of skin and the two sheets of cracks, of pieces, or one");
   t.option("--skin", w.skin, "Colour of the skin, #rrggbb");
   t.flag("--nodes", look.nodes, "Draw a body's nodes, coloured by --field");
   t.option("--field", look.field, "radius, spacing, volume, neighbors, component or debris; of a run strain, displacement, speed");
   t.flag("--edges", look.edges, "Draw a body's visibility edges");
   t.flag("--cut-edges", look.cut_edges, "Draw the edges that cracks have cut, in red");
   t.option("--before", w.before, "The body before it was cut: cut edges are those it had, nodes whose neighbours changed are red");
-  t.option("--node", w.node, "Draw the neighbourhood of this node: blue sees it, orange is behind a face");
+  t.option("--node", w.node, "Draw the neighbourhood of this node, from 0: blue sees it, orange is behind a face");
   t.flag("--trees", look.trees, "Draw masters (their nodes' links red) and trees of slaves; with --node those of one node");
   t.flag("--seams", look.seams, "Draw where cracks meet the skin, green, and where they end, red");
   t.option("--steps", w.steps, "Draw fronts from time step A to B, as A:B");

@@ -15,7 +15,11 @@ inline Kind kind_of(const std::string& bytes, const std::string& name) {
   if (geo::looks_like_kerf(bytes)) return Kind::body;
   const auto begins = [&](const char* word, std::size_t at = 0) { return bytes.compare(at, std::string(word).size(), word) == 0; };
   if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return Kind::nodes;
-  if (begins("ply")) return bytes.substr(0, 4096).find("property double radius") != std::string::npos ? Kind::nodes : Kind::surface;
+  if (begins("ply")) {
+    const std::string header = bytes.substr(0, 4096);
+    const bool radius = header.find("property double radius") != std::string::npos || header.find("property float radius") != std::string::npos;
+    return radius ? Kind::nodes : Kind::surface;
+  }
   bool lines = false, faces = false;
   for (std::size_t at = 0, end = 0; at < bytes.size() && !faces; at = end + 1) {
     end = std::min(bytes.find('\n', at), bytes.size());

@@ -1,6 +1,33 @@
 #include "io/run_files.h"
 
+#include <array>
+
+#include "base/error.h"
+#include "io/node_file.h"
+#include "io/ply_internal.h"
+
 namespace geo {
+
+void write_frame_nodes(std::ostream& out, const FrameNodes& frame) {
+  const NodeSet& n = frame.nodes;
+  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << n.size() << '\n';
+  for (const char* field : {"x", "y", "z", "radius", "spacing", "volume", "stress"}) out << "property float " << field << '\n';
+  out << "end_header\n";
+  std::vector<std::array<float, 7>> rows;
+  for (std::size_t i = 0; i < n.size(); ++i)
+    rows.push_back({float(n.position[i].x()), float(n.position[i].y()), float(n.position[i].z()), float(n.radius[i]), float(n.spacing[i]), float(n.volume[i]), float(frame.stress[i])});
+  out.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
+}
+
+FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name) {
+  if (bytes.rfind("ply", 0) != 0) throw InputError(name + ": is no PLY file, which a run's nodes are in");
+  FrameNodes frame{parse_nodes(bytes, name), {}};
+  const Ply ply = parse_ply(bytes, name);
+  const PlyProperty* stress = ply.find("vertex")->find("stress");
+  if (!stress || stress->count_type) throw InputError(name + ": has no field 'stress'; kerf-sim writes it");
+  frame.stress = stress->values;
+  return frame;
+}
 
 void write_pvd(std::ostream& out, const std::vector<std::string>& frames, double frame_rate) {
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";

@@ -14,7 +14,6 @@
 namespace geo {
 namespace {
 
-constexpr const char* names[] = {"planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks", "curves", "sheets"};
 constexpr double turn = 6.283185307179586;
 
 Vec3 axis_of(const Box3& box, const PatternOptions& o) {
@@ -141,9 +140,9 @@ TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
 
 Pattern pattern_named(std::string_view name) {
   std::string all;
-  for (int i = 0; i < int(std::size(names)); ++i) {
-    if (name == names[i]) return Pattern(i);
-    all += std::string(i ? ", " : "") + names[i];
+  for (std::size_t i = 0; i < pattern_names.size(); ++i) {
+    if (name == pattern_names[i]) return Pattern(i);
+    all += std::string(i ? ", " : "") + pattern_names[i];
   }
   throw InputError("there is no pattern of this name; give one of " + all);
 }

@@ -1,6 +1,7 @@
 // Fracture patterns (§ 7): walls that part space into about so many cells.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 namespace geo {
 
 enum class Pattern { planes, crossing, voronoi, radial, glass, wood, bricks, curves, sheets };
+inline constexpr std::array pattern_names{"planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks", "curves", "sheets"};
 
 /// The pattern of this name. Throws InputError, which lists the names, when there is none.
 Pattern pattern_named(std::string_view name);

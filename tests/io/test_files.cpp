@@ -15,6 +15,7 @@
 #include "io/kerf_container.h"
 #include "io/kerf_layout_internal.h"
 #include "io/node_file.h"
+#include "io/run_files.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
 #include "io/volume_file.h"
@@ -119,6 +120,20 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   CHECK(again.surface.two_sided().source == body.surface.two_sided().source);
   CHECK(check_body(again).first_problem == "");
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
+}
+
+TEST_CASE("nodes of a frame are a node file with a stress") {
+  FrameNodes frame{small_body().nodes, {}};
+  for (std::size_t i = 0; i < frame.nodes.size(); ++i) frame.stress.push_back(0.5 * double(i));
+  const std::string ply = bytes_of([&](auto& out) { write_frame_nodes(out, frame); });
+  const FrameNodes again = parse_frame_nodes(ply, "n.ply");
+  CHECK(again.stress == frame.stress);
+  REQUIRE(again.nodes.size() == frame.nodes.size());
+  for (std::size_t i = 0; i < again.nodes.size(); ++i) CHECK((again.nodes.position[i] - frame.nodes.position[i]).norm() < 1e-6);
+  CHECK(parse_nodes(ply, "n.ply").spacing == again.nodes.spacing);
+  CHECK_THROWS_WITH(parse_frame_nodes(bytes_of([&](auto& out) { write_nodes_ply(out, frame.nodes); }), "n.ply"), Catch::Contains("stress"));
+  CHECK_THROWS_WITH(parse_frame_nodes(bytes_of([&](auto& out) { write_pcd(out, frame.nodes); }), "n.pcd"), Catch::Contains("no PLY"));
+  CHECK_THROWS_AS(parse_frame_nodes(ply.substr(0, ply.size() - 1), "n.ply"), InputError);
 }
 
 TEST_CASE("a body of version 1 is read, and written whole when it is updated") {

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "cases.h"
 #include "crack/sheet.h"
-#include "invariants/models.h"
+#include "surface/shapes.h"
 #include "score/score.h"
 #include "surface/check.h"
 #include "surface/pieces.h"
@@ -137,35 +137,4 @@ TEST_CASE("Options without sense are refused", "[score]") {
   refused([](auto& o) { o.pattern.pattern = Pattern::planes, o.pattern.axis = Vec3::Zero(); });
   refused([](auto& o) { o.jagged.amplitude = 0.1, o.jagged.frequency = 0; });
   CHECK_THROWS_WITH(pattern_named("zigzag"), Catch::Contains("voronoi"));
-}
-
-// Real models, each with several patterns; KERF_CASES=7 takes them all.
-TEST_CASE("Real models fall into whole pieces", "[score][models]") {
-  const std::vector<std::string> names{"bear",   "cactus",  "femur",   "elephant", "dino",     "hand",    "pig",    "cow",    "couplingdown", "bull",    "knot1",
-                                       "pinion", "helmet",  "rotor",   "mushroom", "retinal",  "joint",   "itemb",  "spool",  "sphere966",    "homer",   "triceratops",
-                                       "camel",  "fandisk", "b9_mesh", "lion",     "nefertiti", "handle", "anchor", "dragknob"};
-  const std::vector<std::string> five{"voronoi", "planes", "wood", "bricks", "glass"};
-  const int wanted = cases(3);
-  int done = 0;
-  for (const auto& name : names) {
-    if (done == wanted || done == 20) break;
-    const TriangleMesh mesh = invariants::model(name);
-    try {
-      require_solid(mesh);
-    } catch (const InputError&) {
-      continue;  // open, or it crosses itself
-    }
-    ++done;
-    const Complex model = Complex::from_skin(mesh);
-    for (const auto& pattern : five) {
-      ScoreOptions options;
-      options.pattern.pattern = pattern_named(pattern);
-      options.pattern.seed = options.jagged.seed = static_cast<std::uint64_t>(done);
-      options.pieces = 20;
-      options.jagged.amplitude = 0.01;
-      INFO(name << ", " << pattern);
-      check_score(model, options);
-    }
-  }
-  CHECK(done == std::min(wanted, 20));
 }

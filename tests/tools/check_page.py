@@ -1,5 +1,6 @@
 """check_page.py FOLDER: the pages in it, in a browser, as somebody would use them: run.html (a run), body.html (a body, its
-state before and a front), pieces.html (a surface in two pieces), nodes.html (nodes alone), coarse.html (made small). Prints what fails; exit code 1."""
+state before and a front), pieces.html (a surface in two pieces), nodes.html (nodes alone), coarse.html and coarse-run.html (made small),
+or, where there is one, only pumpkin.html (a large run). Prints what fails; exit code 1."""
 import os, sys
 from browser import Browser
 
@@ -144,11 +145,33 @@ def run(page):
     check(f"{page.name}: frame {page.state('frame')} of {last}", page.state("frame") == last)
     page.changes("the frame before", lambda: page.key(","), lambda: page.key("."))
     page.changes("nodes at the last frame", lambda: page.click("nodes"))
+    page.changes("stress", lambda: choose(page, "field", "stress"))
+    legend = b.run('$("legend").textContent')
+    check(f"{page.name}: the legend says {legend}", "Pa" in legend)
     page.changes("strain", lambda: choose(page, "field", "strain"))
+    # Nodes are in the surface of each frame, coloured by its stress; every frame is another picture.
+    choose(page, "field", "stress")
+    pictures, outside, stresses = set(), 0, set()
+    for frame in range(last + 1):
+        b.run(f"showFrame({frame})")
+        pictures.add(page.picture())
+        outside += b.run("""(() => { const p = nodePositions(), s = arrays[about.surfaces[state.frame].position], lo = [9, 9, 9], hi = [-9, -9, -9];
+          for (let i = 0; i < s.length; i++) lo[i % 3] = Math.min(lo[i % 3], s[i]), hi[i % 3] = Math.max(hi[i % 3], s[i]);
+          let out = 0; for (let i = 0; i < p.length; i++) out += !(p[i] > lo[i % 3] - 0.02 && p[i] < hi[i % 3] + 0.02); return out; })()""")
+        stresses.add(b.run('fieldValues("stress").reduce((a, x) => a + x, 0)'))
+    check(f"{page.name}: {len(pictures)} pictures of {last + 1} frames", len(pictures) == last + 1)
+    check(f"{page.name}: {outside} coordinates of nodes are outside", outside == 0)
+    check(f"{page.name}: stress is the same in all frames", len(stresses) > last / 2)
     page.click("frame", 0.005)
-    check(f"{page.name}: nodes are said to be known at the first frame", not b.run('document.getElementById("elsewhere").hidden'))
-    page.click("go")
-    check(f"{page.name}: not gone to the frame with nodes", page.state("frame") == b.run("about.nodes.frame"))
+    b.run('set("skin", 0.25)')
+    for id in ("edges", "cut") if b.run("about.nodes.graph") else ():
+        page.changes(id + " at the first frame", lambda: page.click(id), lambda: page.click(id))
+    if b.run("about.nodes.graph"):
+        page.changes("a node of the first frame", lambda: b.run("select(7)"), lambda: b.run("select(-1)"))
+    b.run('set("skin", 1)')
+    page.click("frame", 0.995)
+    if not b.run('$("explode-label").hidden'):
+        page.changes("explode", lambda: page.click("explode", 0.6), lambda: page.click("explode", 0.005))
     page.changes("at rest", lambda: page.click("rest"), lambda: page.click("rest"))
     page.click("frame", 0.005)
     page.key(" ")
@@ -160,6 +183,10 @@ def run(page):
 browser = Browser(900, 620)
 try:
     folder = sys.argv[1]
+    if os.path.exists(os.path.join(folder, "pumpkin.html")):
+        page = Page(browser, os.path.join(folder, "pumpkin.html"))
+        run(page), page.done()
+        sys.exit(bool(failures))
     page = Page(browser, os.path.join(folder, "body.html"))
     body(page), page.done()
     page = Page(browser, os.path.join(folder, "run.html"))
@@ -178,6 +205,10 @@ try:
     notices = browser.run('document.getElementById("notices").innerText')
     check(f"coarse.html says {notices!r}", "decimated" in notices)
     page.done()
+    page = Page(browser, os.path.join(folder, "coarse-run.html"))
+    notices = browser.run('document.getElementById("notices").innerText')
+    check(f"coarse-run.html says {notices!r}", "decimated" in notices and "One node in" in notices)
+    run(page), page.done()
 finally:
     browser.close()
 sys.exit(bool(failures))

@@ -58,7 +58,7 @@ says '"triangles":\[[0-9,]+\].*"site":7' kerf-info --json half.ply --vertex 7
 # A node behind the crack is behind a face of it.
 python3 - <<'P' || fail "no pair behind a crack"
 import json, subprocess
-told = json.loads(subprocess.run(["kerf-info", "--json", "--diff", "p.kerf", "half.kerf"], check=True, capture_output=True).stdout)
+told = json.loads(subprocess.run(["kerf-info", "--json", "--diff", "p.kerf", "half.kerf"], capture_output=True).stdout)
 assert not told["same"] and told["edges_cut"] > 0 and told["pieces"] == [1, 1] and told["nodes"][1] - told["nodes"][0] == told["nodes_added"]
 assert told["edges"][1] - told["edges"][0] == told["edges_drawn"] - told["edges_cut"]
 pairs = [p for p in told["edges_cut_first"]]
@@ -66,7 +66,10 @@ seen = [json.loads(subprocess.run(["kerf-info", "--json", "half.kerf", "--edge",
 assert any(f["crack"] == 1 for s in seen for f in s["faces"]) and not any(s["edge"] for s in seen)
 P
 says '^The same body' kerf-info --diff half.kerf half.kerf
-says '1 piece → 2' kerf-info --diff half.kerf whole.kerf
+kerf-info --diff half.kerf whole.kerf >told.txt 2>why.txt
+[ $? = 1 ] || fail "bodies that differ do not end --diff with 1"
+grep -q '1 piece → 2' told.txt || fail "--diff says $(cat told.txt)"
+grep -q '^kerf-info: half.kerf: differs from whole.kerf$' why.txt || fail "--diff says $(cat why.txt)"
 # A scene, and the folder of a run.
 printf '[body]\nmesh = "p.ply"\nnodes = 200\n[time]\nframes = 2\nframe_rate = 20\nstep = 0.05\n[[blade]]\nname = "knife"\npoints = [[-1.4,0.02,0],[1.4,0.04,0]]\ndivide = 5\nkeys = [[0.0,0.013,0.021,1.3,0,0,1,8],[0.2,0.017,0.013,-0.3,0,0,1,11]]\n' >s.toml
 says '^A scene: 1 body and 1 blade, 2 frames' kerf-info --check s.toml

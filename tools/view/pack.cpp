@@ -49,9 +49,13 @@ void Pack::whole(const std::string& name, const std::vector<std::uint32_t>& valu
 void Pack::scaled(const std::string& name, const std::vector<double>& values) {
   double lo = 0, hi = 0;
   if (!values.empty()) lo = *std::min_element(values.begin(), values.end()), hi = *std::max_element(values.begin(), values.end());
+  scaled(name, values, lo, hi);
+}
+
+void Pack::scaled(const std::string& name, const std::vector<double>& values, double lo, double hi, const std::string& base) {
   std::vector<std::uint32_t> steps;
   for (const double x : values) steps.push_back(sixteen_bits(x, lo, hi - lo));
-  whole(name, steps, 2, 1);
+  whole(name, steps, 2, 1, base);
   manifest_.back()["lo"] = {lo}, manifest_.back()["step"] = {(hi - lo) / 65535};
 }
 

@@ -15,8 +15,9 @@ class Pack {
   /// Whole numbers under a name, `width` bytes each (1, 2, 4), in rows of `columns`. Differences are taken to the row before,
   /// or, where `base` names an array of the same length that was put before, to that.
   void whole(const std::string& name, const std::vector<std::uint32_t>& values, int width, int columns, const std::string& base = {});
-  /// Numbers as sixteen bits between their smallest and largest.
+  /// Numbers as sixteen bits between their smallest and largest, or between those that are given.
   void scaled(const std::string& name, const std::vector<double>& values);
+  void scaled(const std::string& name, const std::vector<double>& values, double lo, double hi, const std::string& base = {});
   /// Points as sixteen bits an axis within `box`; the page has them moved to the middle of the box, in half diagonals.
   void points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box, const std::string& base = {});
 

@@ -9,6 +9,7 @@
 #include "version.h"
 #include "view/cut_edges.h"
 #include "view/fields.h"
+#include "view/moving_nodes.h"
 #include "view/pack.h"
 #include "view/page_template.h"
 #include "view/pieces.h"
@@ -61,7 +62,7 @@ class Writer {
   }
 
   // Nodes with all that is known of them; `rest`: the surface in material coordinates, `whole`: with all of its rows.
-  void add_nodes(const Subject& subject, int rest, bool whole, const geo::Body* before) {
+  void add_nodes(const Subject& subject, int rest, bool whole, const geo::Body* before, const MovingNodes& moving = {}) {
     const geo::NodeSet& nodes = subject.nodes;
     const std::size_t n = nodes.size();
     if (n == 0) return;
@@ -73,14 +74,20 @@ class Writer {
       for (std::size_t i = 0; i < n; i += step) kept.push_back(values[i]);
       return kept;
     };
-    about = {{"count", (n + step - 1) / step}, {"step", step}, {"rest", rest}, {"frame", subject.frame}, {"moved", false}, {"graph", false}, {"tree", false}, {"fields", json::array()}};
+    about = {{"count", (n + step - 1) / step}, {"step", step}, {"rest", rest}, {"frame", subject.frame}, {"graph", false}, {"tree", false}, {"fields", json::array()}, {"frames", json::array()}};
     pack_.points("nodes/rest", thinned(nodes.position), box_);
-    if (subject.motion) {
-      std::vector<geo::Vec3> moved;
-      for (std::size_t i = 0; i < n; ++i) moved.push_back(nodes.position[i] + subject.motion->displacement[i]);
-      pack_.points("nodes/moved", thinned(moved), box_, "nodes/rest");
-      about["moved"] = true;
+    double most = 0;
+    for (const auto& frame : moving.frames) most = std::max(most, *std::max_element(frame.stress.begin(), frame.stress.end()));
+    std::string position = "nodes/rest", stress;
+    for (std::size_t f = 0; f < moving.frames.size(); ++f) {
+      const auto& frame = moving.frames[f];
+      const std::string number = std::to_string(f);
+      pack_.points("nodes/at" + number, thinned(frame.position), box_, position);
+      pack_.scaled("stress/at" + number, thinned(frame.stress), 0, most, stress);
+      position = "nodes/at" + number, stress = "stress/at" + number;
+      about["frames"].push_back({{"count", (frame.count + step - 1) / step}, {"position", position}, {"stress", stress}, {"pieces", frame.piece_of}});
     }
+    if (!moving.frames.empty()) about["fields"].push_back("stress"), about["stress"] = {0, moving.stress_shown};
     const double unit = std::max(0.5 * box_.diagonal(), 1e-300);
     std::vector<double> size;
     for (const double s : nodes.spacing) size.push_back(s / unit);
@@ -210,10 +217,7 @@ Budget needs_of(const Subject& subject) {
 
 geo::Box3 box_of_points(const Subject& subject) {
   geo::Box3 box = geo::bounding_box(subject.surface);
-  for (std::size_t i = 0; i < subject.nodes.size(); ++i) {
-    box.add(subject.nodes.position[i]);
-    if (subject.motion) box.add(subject.nodes.position[i] + subject.motion->displacement[i]);
-  }
+  for (const auto& p : subject.nodes.position) box.add(p);
   for (const auto& front : subject.fronts)
     for (const auto& step : front.steps)
       for (const auto& p : step) box.add(p);
@@ -246,6 +250,9 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
     box.add(geo::bounding_box(frames.back()));
     needed.triangles = std::max(needed.triangles, double(run.frames.size() + 1) * double(frames.back().triangles.size()));
   }
+  const MovingNodes moving = read_moving_nodes(run, subject, frames, progress);
+  for (const auto& frame : moving.frames)
+    for (const auto& p : frame.position) box.add(p);
   return fitted(options, needed, [&](const Budget& budget) {
     Writer writer(box, budget);
     const double most = budget.triangles / double(frames.size() + 1);
@@ -255,7 +262,7 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
     }
     if (subject.body) {
       const bool whole = writer.add_surface(subject.surface, "at rest", most);
-      writer.add_nodes(subject, static_cast<int>(frames.size()), whole, options.before);
+      writer.add_nodes(subject, static_cast<int>(frames.size()), whole, options.before, moving);
     }
     return writer.page(run.title, options.frame_rate);
   });

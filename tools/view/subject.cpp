@@ -80,12 +80,24 @@ Subject read_subject(const std::vector<std::string>& paths) {
   return subject;
 }
 
+namespace {
+
+std::vector<std::string> ply_files(const fs::path& folder) {
+  std::vector<std::string> paths;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".ply") paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+}  // namespace
+
 Run find_run(const std::string& folder) {
   Run run;
-  const fs::path top(folder), frames = fs::is_directory(top / "frames") ? top / "frames" : top;
-  for (const auto& entry : fs::directory_iterator(frames))
-    if (entry.path().extension() == ".ply") run.frames.push_back(entry.path().string());
-  std::sort(run.frames.begin(), run.frames.end());
+  const fs::path top(folder);
+  run.frames = ply_files(fs::is_directory(top / "frames") ? top / "frames" : top);
+  if (fs::is_directory(top / "nodes")) run.nodes = ply_files(top / "nodes");
+  run.nodes.resize(run.nodes.size() < run.frames.size() ? 0 : run.frames.size());  // a run that was stopped may be one ahead
   if (run.frames.empty()) throw geo::InputError(folder + ": holds no frames; give the folder that kerf-sim wrote");
   if (fs::exists(top / "checkpoint.kerf")) run.body = (top / "checkpoint.kerf").string();
   run.title = fs::absolute(top).lexically_normal().filename().string();

@@ -30,6 +30,7 @@ Subject read_subject(const std::vector<std::string>& paths);
 struct Run {
   std::string title;
   std::vector<std::string> frames;  ///< paths, in order
+  std::vector<std::string> nodes;   ///< paths of each frame's nodes, or empty
   std::string body;                 ///< the checkpoint's path, or empty
 };
 /// Throws InputError when the folder holds no frames.

@@ -16,7 +16,7 @@ class BindingLayer {
     this.all.set(state.tree ? vertices : null, this.pairs ??= this.links_of(parent, (v) => parent[v] !== v));
     this.links.clear(), this.masters.hide(), this.slaves.hide();
     this.own.set(null, []);
-    const mine = fits && state.own && state.selected >= 0 ? this.treeOf(parent, node, state.selected) : null;
+    const mine = fits && state.own && state.selected >= 0 && 3 * state.selected < nodes.length ? this.treeOf(parent, node, state.selected) : null;
     if (mine) {
       this.own.set(vertices, this.links_of(parent, (v) => mine.has(v) && parent[v] !== v));
       const at_node = new THREE.Vector3().fromArray(nodes, 3 * state.selected), size = arrays["nodes/size"][state.selected];

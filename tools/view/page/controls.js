@@ -63,7 +63,6 @@ function listenToControls() {
   }
   $("pick").addEventListener("input", () => select($("pick").value === "" ? -1 : Math.round(Number($("pick").value) / about.nodes.step)));
   $("play").addEventListener("click", () => play(!state.playing));
-  $("go").addEventListener("click", () => (set("rest", false), showFrame(about.nodes.frame)));
   $("home").addEventListener("click", resetView);
   $("keys").addEventListener("click", () => $("help").showModal());
   $("menu").addEventListener("click", () => {
@@ -99,7 +98,6 @@ function dress() {
   if (n) {
     $("field").replaceChildren(...n.fields.map((name) => new Option(name, name)));
     $("pick").max = String(n.count * n.step - 1);
-    $("go").textContent = n.moved && n.frame < frameCount() ? about.surfaces[n.frame].label : "material coordinates";
     if (about.surfaces.length === 0) state.nodes = true;
   }
   $("notices").hidden = about.notices.length === 0;

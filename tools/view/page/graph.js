@@ -35,10 +35,12 @@ class LineLayer {
     this.lines.frustumCulled = false, this.lines.renderOrder = order, this.lines.visible = false;
     scene.add(this.lines);
   }
-  // Pairs of rows of `position`.
-  set(position, pairs) {
-    this.lines.visible = position !== null && pairs.length > 0;
+  // Pairs of rows of `position`; those with a row that it does not have are left out.
+  set(position, all) {
+    this.lines.visible = position !== null && all.length > 0;
     if (!this.lines.visible) return;
+    const rows = position.length / 3, pairs = all.some((row) => row >= rows) ? [] : all;
+    if (pairs !== all) for (let i = 0; i < all.length; i += 2) if (all[i] < rows && all[i + 1] < rows) pairs.push(all[i], all[i + 1]);
     this.lines.geometry.dispose();
     this.lines.geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(new Float32Array(position), 3));
     this.lines.geometry.setIndex(new THREE.BufferAttribute(pairs instanceof Uint32Array ? pairs : new Uint32Array(pairs), 1));
@@ -93,16 +95,17 @@ class GraphLayer {
   neighborhood(position) {
     this.sticks.clear(), this.spots.hide();
     const i = state.selected;
-    if (i < 0 || !position) return;
+    const there = (j) => 3 * j < (position ? position.length : 0);
+    if (i < 0 || !there(i)) return;
     const point = (j) => new THREE.Vector3().fromArray(position, 3 * j), own = arrays["nodes/size"][i];
-    const near = state.near ? rows[i].filter((e) => isNeighbor(e.bits)) : [];
+    const near = state.near ? rows[i].filter((e) => isNeighbor(e.bits) && there(e.to)) : [];
     const reach = near.reduce((most, e) => Math.max(most, e.distance), 1e-9), spots = [[i, [0.86, 0.10, 0.10], 1.9]];
     const from = near.some((e) => isBehind(e.bits)) ? pathsFrom(i, 2 * reach) : null, drawn = new Set();
     for (const e of near) {
       const width = 0.075 * own * (1.15 - e.distance / reach);
       if (!isBehind(e.bits)) this.sticks.add(point(i), point(e.to), width, [0.16, 0.36, 0.75]);
       else
-        for (let j = e.to; from.has(j); j = from.get(j)) {
+        for (let j = e.to; from.has(j) && there(j) && there(from.get(j)); j = from.get(j)) {
           const step = j + "," + from.get(j);
           if (!drawn.has(step)) drawn.add(step), this.sticks.add(point(j), point(from.get(j)), 0.03 * own, [0.95, 0.55, 0.10]);
         }

@@ -12,7 +12,7 @@ class InspectLayer {
     const i = state.selected, facts = [];
     if (document.activeElement !== $("pick") || i >= 0) $("pick").value = i < 0 ? "" : String(i * about.nodes.step);
     if (i >= 0) {
-      for (const name of about.nodes.fields) facts.push([name, short(arrays["field/" + name][i])]);
+      for (const name of about.nodes.fields) facts.push([name, short(fieldValues(name)[i])]);
       if (rows) {
         const near = rows[i].filter((e) => isNeighbor(e.bits));
         facts.push(["edges", rows[i].filter((e) => isEdge(e.bits)).length], ["behind a face", near.filter((e) => isBehind(e.bits)).length]);

@@ -46,10 +46,16 @@ class Spots {
 }
 
 const nodeDiameter = (i) => 0.28 * arrays["nodes/size"][i] * state.size;
+// Stress is that of the frame which is shown (at rest: of the slider's), all else is told once.
+const fieldValues = (name) => arrays[name === "stress" ? about.nodes.frames[state.frame].stress : "field/" + name];
 function fieldRange(name) {
+  if (name === "stress") return about.nodes.stress;
   const e = about.arrays.find((a) => a.name === "field/" + name);
   return [e.lo[0], e.lo[0] + 65535 * e.step[0]];
 }
+const fieldTitles = { stress: "stress (von Mises, Pa)", strain: "strain (von Mises stress / 3G)" };
+// Of the checkpoint, where that is another frame.
+const fieldTitle = (name) => (fieldTitles[name] ?? name) + (["strain", "displacement", "speed"].includes(name) && about.surfaces[about.nodes.frame] && state.frame !== about.nodes.frame ? " in " + about.surfaces[about.nodes.frame].label : "");
 const short = (x) => Number.isInteger(x) ? String(x) : Number(x.toPrecision(4)).toString();
 
 class NodeLayer {
@@ -60,16 +66,16 @@ class NodeLayer {
     $("elsewhere").hidden = !(state.nodes || state.edges || state.cut) || nodePositions() !== null;
     $("legend").hidden = position === null;
     if (!position) return this.spots.hide();
-    const values = arrays["field/" + state.field], [lo, hi] = fieldRange(state.field), color = new Float32Array(position.length), size = new Float32Array(values.length);
+    const values = fieldValues(state.field), [lo, hi] = fieldRange(state.field), color = new Float32Array(position.length), size = new Float32Array(position.length / 3);
     const around = state.selected >= 0 && state.near && rows ? new Set(rows[state.selected].filter((e) => isNeighbor(e.bits)).map((e) => e.to)) : null;
-    for (let i = 0; i < values.length; i++) {
+    for (let i = 0; i < size.length; i++) {
       const red = state.updated && arrays["nodes/updated"][i];
       color.set(red ? [0.86, 0.12, 0.10] : scaleColor(hi > lo ? (values[i] - lo) / (hi - lo) : 0), 3 * i);
       size[i] = nodeDiameter(i) * (around && !around.has(i) ? 0.4 : 1);
     }
     this.spots.set(position, color, size);
-    $("legend-name").textContent = state.field === "strain" ? "strain (von Mises stress / 3G)" : state.field;
-    $("legend-lo").textContent = short(lo), $("legend-hi").textContent = short(hi);
+    $("legend-name").textContent = fieldTitle(state.field);
+    $("legend-lo").textContent = short(lo), $("legend-hi").textContent = (state.field === "stress" ? "≥ " : "") + short(hi);
     $("legend-bar").style.background = `linear-gradient(to right, ${[0, 1, 2, 3, 4].map((i) => `rgb(${scaleColor(i / 4).map((c) => Math.round(255 * c))})`)})`;
   }
   beforeDraw() { this.spots.beforeDraw(); }

@@ -28,16 +28,20 @@ const shownSurface = () => (about.surfaces.length === 0 ? -1 : state.rest && has
 const isRun = () => hasNodes() ? about.nodes.rest > 0 || about.surfaces.length > 1 : about.surfaces.length > 1;
 const frameCount = () => (isRun() && hasNodes() && about.nodes.rest > 0 ? about.surfaces.length - 1 : about.surfaces.length);
 
-// Node positions as they are shown, pieces pulled apart; null where they are not known.
+// What is known of the nodes in the frame that is shown; null at rest, and where frames have none.
+const nodeFrame = () => (shownSurface() === about.nodes.rest ? null : about.nodes.frames[shownSurface()] ?? null);
+// Node positions as they are shown, pieces pulled apart; fewer than there are nodes where some come later, null where they are
+// not known.
 function nodePositions() {
   if (!hasNodes()) return null;
-  const n = about.nodes, at = shownSurface();
-  let base = null;
-  if (at === n.rest || at === -1) base = arrays["nodes/rest"];
-  else if (n.moved && at === n.frame) base = arrays["nodes/moved"];
+  const n = about.nodes, at = shownSurface(), frame = nodeFrame();
+  const base = frame ? arrays[frame.position].subarray(0, 3 * frame.count) : at === n.rest || at === -1 ? arrays["nodes/rest"] : null;
   if (!base || state.explode === 0 || !arrays["nodes/piece"] || at < 0) return base;
   const shift = pieceShifts(at), piece = arrays["nodes/piece"], moved = new Float32Array(base);
-  for (let i = 0; i < piece.length; i++) for (let k = 0; k < 3; k++) moved[3 * i + k] += shift[3 * piece[i] + k];
+  for (let i = 0; 3 * i < moved.length; i++) {
+    const own = frame ? frame.pieces[piece[i]] : piece[i];
+    for (let k = 0; k < 3; k++) moved[3 * i + k] += shift[3 * own + k];
+  }
   return moved;
 }
 

@@ -1,0 +1,63 @@
+#include "view/moving_nodes.h"
+
+#include <algorithm>
+#include <map>
+
+#include "geometry/bvh.h"
+#include "io/run_files.h"
+#include "io/stream.h"
+#include "view/pieces.h"
+
+namespace view {
+namespace {
+
+// Pieces only ever come apart, so a piece of the checkpoint is within one of each frame: the one whose surface is nearest to
+// most of its nodes. `own`: per node, its piece in the checkpoint.
+std::vector<std::uint32_t> whole_of(const geo::TriangleMesh& surface, const std::vector<std::uint32_t>& own, const MovingNodes::Frame& frame) {
+  constexpr std::size_t asked = 64;  // nodes of each piece
+  const PieceMap pieces = pieces_of(surface);
+  const std::uint32_t count = own.empty() ? 0 : *std::max_element(own.begin(), own.end()) + 1;
+  std::vector<std::uint32_t> whole(count, 0);
+  if (pieces.center.size() < 2) return whole;
+  const geo::TriangleBvh tree(geo::corners_of(surface));
+  std::vector<std::vector<std::uint32_t>> nodes(count);
+  for (std::uint32_t i = 0; i < frame.count; ++i) nodes[own[i]].push_back(i);
+  for (std::uint32_t p = 0; p < count; ++p) {
+    std::map<std::uint32_t, std::size_t> votes;
+    for (std::size_t k = 0; k < nodes[p].size(); k += nodes[p].size() / asked + 1)
+      ++votes[pieces.of_row[surface.triangles[tree.closest(frame.position[nodes[p][k]]).row][0]]];
+    std::size_t most = 0;
+    for (const auto& [piece, times] : votes)
+      if (times > most) most = times, whole[p] = piece;
+  }
+  return whole;
+}
+
+}  // namespace
+
+MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const std::vector<geo::TriangleMesh>& surfaces, const geo::Progress& progress) {
+  MovingNodes moving;
+  if (!checkpoint.body) return moving;
+  const auto& rest = checkpoint.nodes.position;
+  const auto own = pieces_of_nodes(checkpoint, pieces_of(checkpoint.surface));
+  std::vector<double> stresses;
+  for (std::size_t f = 0; f < run.nodes.size(); ++f) {
+    geo::report(progress, "nodes", f, run.nodes.size());
+    geo::FrameNodes file = geo::parse_frame_nodes(geo::read_all(run.nodes[f]), run.nodes[f]);
+    MovingNodes::Frame frame{file.nodes.size(), std::move(file.nodes.position), std::move(file.stress), {}};
+    frame.count = std::min(frame.count, rest.size());  // of a run that was stopped behind its checkpoint
+    frame.position.resize(frame.count), frame.stress.resize(frame.count);
+    frame.position.insert(frame.position.end(), rest.begin() + static_cast<std::ptrdiff_t>(frame.count), rest.end());
+    stresses.insert(stresses.end(), frame.stress.begin(), frame.stress.end());
+    frame.stress.resize(rest.size(), 0);
+    frame.piece_of = whole_of(surfaces[f], own, frame);
+    moving.frames.push_back(std::move(frame));
+  }
+  if (stresses.empty()) return moving;
+  const auto mark = stresses.begin() + static_cast<std::ptrdiff_t>(stresses.size() / 100 * 99);
+  std::nth_element(stresses.begin(), mark, stresses.end());
+  moving.stress_shown = *mark;
+  return moving;
+}
+
+}  // namespace view

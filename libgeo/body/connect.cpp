@@ -84,6 +84,17 @@ Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, 
       if (at->second >= 0) divided.insert(origin_of(at->second)), look_at(components, at->second, i, found);
     }
   }
+  // Rounding the parts of a face may take them past a node that stands some last places before it: it is alone in a piece that
+  // nothing was cut off from.
+  for (const auto& [part, piece] : piece_of_part) {
+    if (piece < 0 || !components.whole(part) || std::any_of(offcuts.begin(), offcuts.end(), [&](const Offcut& o) { return o.from == origin_of(piece); })) continue;
+    auto inside = components.inside(part);
+    std::sort(inside.begin(), inside.end());
+    const auto other = body.grid.nearest(body.nodes.position, body.nodes.position[part], 1, ~0u, [&](std::uint32_t i) {
+      return i < first_new.value && !std::binary_search(inside.begin(), inside.end(), i) && piece_of(body, NodeId(i)) == piece;
+    });
+    if (!other.empty()) look_at(components, piece, NodeId(other[0]), found);
+  }
   // Material came apart and the graph did not: its nodes are all in one of the parts.
   for (const Offcut& o : offcuts)
     if (divided.insert(o.from).second)

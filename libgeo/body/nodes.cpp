@@ -55,6 +55,15 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   return count;
 }
 
+namespace {
+
+bool meets(const Complex& k, FaceId f, const Vec3& p, const Vec3& q) {
+  const auto t = k.corners(f);
+  return segment_meets_triangle(p, q, t[0], t[1], t[2]);
+}
+
+}  // namespace
+
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
   std::vector<NodeId> moved;
   std::vector<std::uint32_t> near;
@@ -76,10 +85,15 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
         ways.push_back(-n);
         for (Random random(i); ways.size() < 16;) ways.push_back(random.direction());
       }
-      // As far as there is room, at most a tenth of the spacing.
+      // As far as there is room, at most a tenth of the spacing. The faces that it is on are left behind, no other is passed.
+      std::vector<FaceId> around;
+      body.surface.near(Box3{x, x}.grown(0.1 * spacing), around);
+      const auto on = std::partition(around.begin(), around.end(), [&](FaceId g) { return !meets(body.surface, g, x, x); });
       const auto way = [&](const Vec3& along) {
         for (double step = 0.1 * spacing; step > 1e-6 * spacing; step *= 0.5)
-          if (!is_blocked(body.surface, above == 0 ? Vec3(x + 1e-3 * step * along) : x, x + step * along)) return Vec3(step * along);
+          if (std::none_of(around.begin(), on, [&](FaceId g) { return meets(body.surface, g, x, x + step * along); }) &&
+              std::none_of(on, around.end(), [&](FaceId g) { return meets(body.surface, g, x + 1e-3 * step * along, x + step * along); }))
+            return Vec3(step * along);
         return Vec3(Vec3::Zero());
       };
       for (const Vec3& along : ways) {

@@ -1,158 +1,23 @@
 // Passages too narrow for the sampling, and pieces without a node.
 #include <algorithm>
 #include <deque>
-#include <map>
 #include <set>
 #include <unordered_map>
 
 #include "body/connect.h"
 #include "body/locate.h"
+#include "body/way_along.h"
 #include "geometry/predicates.h"
 
 namespace geo {
 namespace {
 
-/// What one sees from a node in some direction.
-struct Sight {
-  Side side;
-  Vec3 at;  ///< on the face
-};
-
-// The sides that a node sees along the axes and at the middles of near faces. One node may see several shells.
-std::vector<Sight> look_around(const Complex& k, const Vec3& x, double reach) {
-  std::vector<Sight> sights;
-  std::vector<FaceId> faces;
-  // What is seen near an edge is no foothold: the other face there may be in the way.
-  const auto add = [&](Side s, const Vec3& at) {
-    const auto t = k.corners(s.face);
-    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-    for (int e = 0; e < 3; ++e)
-      if (n.dot((t[(e + 1) % 3] - t[e]).cross(at - t[e])) < 0.01 * n.squaredNorm()) return;
-    if (stands_before(k, s, at, x)) sights.push_back({s, at});
-  };
-  const auto look = [&](const Vec3& to) {
-    Box3 box{x, x};
-    box.add(to);
-    faces.clear();
-    k.near(box, faces);
-    double first = 2;
-    Sight sight;
-    for (const FaceId f : faces) {
-      const auto t = k.corners(f);
-      const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-      const double along = n.dot(to - x), at = along != 0 ? n.dot(t[0] - x) / along : 2;
-      if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2])) first = at, sight = {{f, along < 0 ? 1 : 0}, x + at * (to - x)};
-    }
-    if (sight.side.face.valid()) add(sight.side, sight.at);
-  };
-  for (int i = 0; i < 6; ++i) {
-    Vec3 to = x;
-    to[i % 3] = i < 3 ? k.extent().hi[i % 3] + reach : k.extent().lo[i % 3] - reach;
-    look(to);
-  }
-  std::vector<FaceId> targets;
-  k.near(Box3{x, x}.grown(reach), targets);
-  for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 32); ++i) {
-    const auto t = k.corners(targets[i]);
-    add({targets[i], orient3d(t[0], t[1], t[2], x) > 0 ? 1 : 0}, (t[0] + t[1] + t[2]) / 3);
-  }
-  return sights;
-}
-
-/// A place on a face, and the direction in which the material before it is entered.
-struct Foothold {
-  Side side;
-  Vec3 base, up;
-};
-
-// From over one face to over the next, around their common edge, as close to them as it takes to meet nothing.
-bool step_over(const Complex& k, const Foothold& a, const Foothold& b, int edge, double spacing, std::vector<Vec3>& out) {
-  const auto t = k.corners(a.side.face), u = k.corners(b.side.face);
-  const Vec3 p = t[edge], q = t[(edge + 1) % 3], middle = 0.5 * (p + q), along = (q - p).normalized();
-  const auto away = [&](const std::array<Vec3, 3>& c) {  // from the edge into the face
-    const Vec3 w = (c[0] + c[1] + c[2]) / 3 - middle;
-    return Vec3((w - w.dot(along) * along).normalized());
-  };
-  const auto normal = [&](Side s) {
-    const auto c = k.corners(s.face);
-    return Vec3((s.which ? 1.0 : -1.0) * (c[1] - c[0]).cross(c[2] - c[0]).normalized());
-  };
-  const Vec3 from = away(t), to = away(u), rise = normal(a.side), land = normal(b.side);
-  // More than half a turn of material around the edge? A front's own face comes back on its other side.
-  int behind = 0;
-  for (const Vec3& c : u)
-    if (c != p && c != q) behind = orient3d(t[0], t[1], t[2], c) * (a.side.which ? -1 : 1);
-  const bool reflex = a.side.face == b.side.face || behind > 0;
-  // The middle of the material's wedge, from whatever says it best: near half a turn the normals do.
-  const Vec3 turn = (from.dot(to) < 0 ? Vec3(rise + land) : reflex ? Vec3(-(from + to)) : Vec3(from + to)).normalized();
-  for (double height = 0.25 * spacing; height > 1e-16 * k.extent().diagonal(); height *= 0.5) {
-    const double low = 0.25 * height;
-    std::vector<Vec3> way{a.base + height * a.up};
-    // Within less than half a turn of material the straight way may do, and stays clear of the edge.
-    const Vec3 end = b.base + height * b.up;
-    if (!reflex && stands_before(k, a.side, a.base, way.front()) && stands_before(k, b.side, b.base, end) && !is_blocked(k, way.front(), end)) {
-      out.push_back(way.front());
-      out.push_back(end);
-      return true;
-    }
-    if (reflex) way.push_back(middle + low * rise);
-    way.push_back(middle + low * turn);
-    if (reflex) way.push_back(middle + low * land);
-    way.push_back(end);
-    if (!stands_before(k, a.side, a.base, way.front()) || !stands_before(k, b.side, b.base, way.back())) continue;
-    bool open = true;
-    for (std::size_t i = 0; i + 1 < way.size() && open; ++i) open = !is_blocked(k, way[i], way[i + 1]);
-    if (!open) continue;
-    out.insert(out.end(), way.begin(), way.end());
-    return true;
-  }
-  return false;
-}
-
 // Nodes along the surface from where i looks at it to where j does: what the material joins is joined beside its
 // boundary, however narrow it is. False, and no nodes, when the two see different shells only or doubles are too coarse.
 bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
   const Complex& k = body.surface;
-  const Vec3 xi = body.nodes.position[i.index()], xj = body.nodes.position[j.index()];
-  std::map<Side, std::pair<Side, int>> before;
-  std::map<Side, Vec3> starts, ends;
-  std::vector<Side> queue;
-  for (const Sight& s : look_around(k, xi, spacing))
-    if (starts.try_emplace(s.side, s.at).second) before[s.side] = {s.side, 0}, queue.push_back(s.side);
-  for (const Sight& s : look_around(k, xj, spacing)) ends.try_emplace(s.side, s.at);
-  Side to;
-  for (std::size_t q = 0; q < queue.size() && !to.face.valid(); ++q) {
-    if (ends.count(queue[q])) to = queue[q];
-    for (int e = 0; e < 3; ++e)
-      if (const Side n = k.neighbor(queue[q], e); before.try_emplace(n, queue[q], e).second) queue.push_back(n);
-  }
-  if (!to.face.valid()) return false;
-  std::vector<std::pair<Foothold, int>> path;  // backwards; the edge that leads on to the one before in this list
-  int edge = 0;
-  for (Side s = to;; s = before.at(s).first) {
-    const auto t = k.corners(s.face);
-    path.push_back({{s, (t[0] + t[1] + t[2]) / 3, (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized()}, edge});
-    if (before.at(s).first == s) break;
-    edge = before.at(s).second;
-  }
-  std::reverse(path.begin(), path.end());
-  std::vector<Vec3> way{xi};
-  auto& start = path.front().first;
-  start.base = starts.at(start.side), start.up = (xi - start.base).normalized();
-  if (path.size() > 1) path.back().first.base = ends.at(to), path.back().first.up = (xj - ends.at(to)).normalized();
-  for (std::size_t s = 0; s + 1 < path.size(); ++s)
-    if (!step_over(k, path[s].first, path[s + 1].first, path[s].second, spacing, way)) return false;
-  if (path.size() == 1) {
-    // Both see one face: across it, low enough.
-    const Vec3 base = ends.at(to), up = (xj - base).normalized();
-    double height = 0.25 * spacing;
-    while (height > 1e-16 * k.extent().diagonal() && is_blocked(k, start.base + height * start.up, base + height * up)) height *= 0.5;
-    way.push_back(start.base + height * start.up);
-    way.push_back(base + height * up);
-  }
-  way.push_back(xj);
-  for (std::size_t s = 0; s + 1 < way.size(); ++s)
-    if (is_blocked(k, way[s], way[s + 1])) return false;
+  const auto way = way_along(k, body.nodes.position[i.index()], body.nodes.position[j.index()], spacing);
+  if (way.empty()) return false;
   // As few of them as see each other, none farther apart than the nodes are anyway. All give volume in turn.
   std::deque<NodeId> donors{i};
   NodeId last = i;

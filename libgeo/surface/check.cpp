@@ -97,6 +97,12 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
   return triangles_meet(s, t);
 }
 
+bool stand_around(const Vec3& a, const Vec3& b, std::span<const Vec3> through) {
+  for (std::size_t i = 0; i + 1 < through.size(); ++i)
+    if (compare_angle(a, b, through[0], through[i], through[i + 1]) >= 0) return false;
+  return true;
+}
+
 SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   if (mesh.two_sided()) {
     try {
@@ -193,6 +199,17 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
       report.closed = false;
       note(report, error.what());
       continue;
+    }
+    if (ring.size() > 2 && ring[0] == FaceId(f)) {
+      const auto [low, high] = std::minmax(a, b);
+      std::vector<Vec3> apex;
+      for (const FaceId g : ring)
+        for (const VertexId v : k.face(g).v)
+          if (v != a && v != b) apex.push_back(k.point(v));
+      if (!stand_around(k.point(low), k.point(high), apex)) {
+        report.manifold = false;
+        note(report, "the faces around edge " + edge_name(a, b) + " stand otherwise than they are listed");
+      }
     }
     for (int which = 0; which < 2; ++which) {
       const Side s{FaceId(f), which};

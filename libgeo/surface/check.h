@@ -23,7 +23,7 @@ struct SurfaceReport {
 /// intersection: the complex is tested, with each crack face once).
 SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 
-/// Checks K: structure (rings list their edges' faces and material sides agree), derived surface closed, oriented,
+/// Checks K: structure (rings list their edges' faces as they stand, and material sides agree), derived surface closed, oriented,
 /// manifold, no face without area, and with `self_intersections` no two faces crossing or overlapping, exactly.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 
@@ -35,6 +35,10 @@ SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 /// Exact.
 bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
                  const std::array<Vec3, 3>& q);
+
+/// True when the half-planes from line ab through the points stand counter-clockwise about a→b, each strictly after the one
+/// before it. Exact.
+bool stand_around(const Vec3& a, const Vec3& b, std::span<const Vec3> through);
 
 /// Pairs of faces of K that meet other than in shared vertices and edges; only pairs with a face in `only`, where given.
 std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex, const std::vector<FaceId>* only = nullptr);

@@ -11,6 +11,7 @@
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "body/upkeep.h"
+#include "surface/check.h"
 #include "surface/pieces.h"
 
 namespace body_faults {
@@ -97,6 +98,7 @@ inline std::string fault_of(const Body& body, double volume) {
       if (to < id && faces.blocks(body.graph.position(body.nodes, to), body.graph.guides().position(g))) return "an edge of guide " + name(g) + " crosses a face";
   }
 
+  if (const auto report = check_complex(k, false); !report.good()) return report.first_problem;
   const Pieces pieces = find_pieces(k);
   std::vector<std::uint32_t> component;
   const auto components = body.graph.components(component);

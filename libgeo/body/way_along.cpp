@@ -111,8 +111,8 @@ std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, c
   return reflex ? std::vector<Vec3>{rise, turn, land} : std::vector<Vec3>{turn};
 }
 
-// Where a way pulled tight crosses the edges of a path over sides.
-std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end) {
+// Where a way pulled tight crosses the edges of a path over sides, at least the share `clear` of each from its ends.
+std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end, double clear) {
   const std::size_t n = path.size() - 1;
   std::vector<std::array<Vec3, 2>> edges(n);
   std::vector<Vec3> at(n);
@@ -127,17 +127,17 @@ std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, con
       const double ta = a.dot(d) / d.squaredNorm(), tb = b.dot(d) / d.squaredNorm();
       const double ha = (a - ta * d).norm(), hb = (b - tb * d).norm();
       const double t = ha + hb > 0 ? (ta * hb + tb * ha) / (ha + hb) : 0.5 * (ta + tb);
-      at[s] = p + std::clamp(t, 1.0 / 16, 15.0 / 16) * d;
+      at[s] = p + std::clamp(t, clear, 1 - clear) * d;
     }
   return at;
 }
 
 // The way over such a path; where there is none, `blocked` is a step of the path that did not go.
 std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, const Vec3& from, const Vec3& start, const Vec3& to,
-                           const Vec3& end, double reach, std::size_t& blocked) {
+                           const Vec3& end, double reach, double clear, std::size_t& blocked) {
   const double least = 1e-16 * k.extent().diagonal();
   std::vector<Hold> holds{{start, {(from - start).normalized()}, std::min(0.25 * reach, (from - start).norm())}};
-  const auto at = crossings(k, path, start, end);
+  const auto at = crossings(k, path, start, end, clear);
   for (std::size_t s = 0; s < at.size();) {
     // A needle is crossed where its edges all but touch, as if it were not there: its own plane says nothing.
     std::size_t last = s;
@@ -185,8 +185,10 @@ std::vector<Vec3> way_along(const Complex& k, const Vec3& from, const Vec3& to, 
     const auto path = sides_between(k, starts, ends, closed);
     if (path.empty()) return {};
     std::size_t blocked = 0;
-    auto way = way_over(k, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach, blocked);
-    if (!way.empty()) return way;
+    for (const double clear : {1.0 / 16, 1.0 / 4, 1.0 / 2}) {
+      auto way = way_over(k, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach, clear, blocked);
+      if (!way.empty()) return way;
+    }
     if (path.size() == 1) return {};
     closed.insert(path[std::min(blocked, path.size() - 2)]);
   }

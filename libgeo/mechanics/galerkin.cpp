@@ -188,8 +188,8 @@ void Galerkin::note(const Body& body, const BodyDelta& delta, std::span<const Ve
   }
 }
 
-void Galerkin::settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept) {
-  if (faces_.empty() && supports_.empty()) return;
+bool Galerkin::settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept) {
+  if (faces_.empty() && supports_.empty()) return false;
   const auto groups_before = groups_;
   std::vector<std::uint32_t> was(cells_.cells().size());  // per cell: its number before
   std::iota(was.begin(), was.end(), 0);
@@ -254,6 +254,7 @@ void Galerkin::settle(const Body& body, MaterialPoints& points, std::vector<std:
   });
   points.connect(body.nodes.size());
   faces_.clear(), supports_.clear();
+  return true;
 }
 
 }  // namespace geo

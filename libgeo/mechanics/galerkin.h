@@ -16,8 +16,8 @@ class Galerkin {
   void note(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
   /// After splits: new rows for points of which the cell, a node within the support or the sight of one has changed. The
   /// result is that of a build from scratch, bit for bit. Appends to `kept`, for each point there is now, the number of the
-  /// same point before, or ~0u; nothing where all are the same.
-  void settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept);
+  /// same point before, or ~0u; nothing where all are the same. False where no split had been noted.
+  bool settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept);
 
  private:
   std::span<const QuadratureCell> group(std::size_t b) const { return {&cells_.cells()[groups_[b]], groups_[b + 1] - groups_[b]}; }

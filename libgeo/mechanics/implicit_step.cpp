@@ -1,5 +1,6 @@
 // Backward Euler as an incremental potential (Kane et al. 2000, Li et al. 2020): Newton's method with each point's stiffness
-// made positive, conjugate gradients in single precision with a double residual, line search on the potential.
+// made positive, conjugate gradients in single precision with a double residual, preconditioned on two levels, line search on
+// the potential.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "mechanics/coarse_motion.h"
 #include "mechanics/ground.h"
 #include "mechanics/plasticity.h"
 #include "mechanics/point_lanes.h"
@@ -53,9 +55,10 @@ class ImplicitStep {
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
-  std::vector<Mat3> diagonal_, local_, inverse_;
+  std::vector<Mat3> diagonal_, local_, inverse_;  // of points alone; of nodes alone, which act on nothing else; of all, inverted
   double elastic_ = 0;  // energy at the last evaluation
   std::vector<float> parts_;
+  std::optional<CoarseMotion> coarse_;
 };
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
@@ -174,9 +177,18 @@ void ImplicitStep::precondition() {
     }
     block += local_[i];
     if (!modes.empty()) block += modes[i] * Mat3::Identity();
-    if (!touching.empty()) block += touching[i];
-    inverse_[i] = block.inverse();
+    if (touching.empty())
+      inverse_[i] = block.inverse();
+    else
+      inverse_[i] = (block + touching[i]).inverse(), touching[i] += local_[i];
   });
+  if (coarse_) return;  // not much has turned since
+  std::vector<Vec3> at(n_);
+  for (std::size_t i = 0; i < n_; ++i) at[i] = s_.position_[i] + u_[i];
+  coarse_.emplace(s_.groups_, at, env_.fixed);
+  const Material& m = s_.material_;
+  const std::size_t stride = m.discretisation == Discretisation::galerkin ? 2 : 1;  // two of a cell's four points will do
+  coarse_->factor(s_.points_, modes_, weight_, float(m.mu() + m.viscosity / dt_ / 2), float(m.lambda() + m.volume_term), stride, touching.empty() ? local_ : touching);
 }
 
 // Each matrix times the relaxation of its point.
@@ -238,7 +250,9 @@ double ImplicitStep::dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 
 int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x) {
   std::vector<Vec3> r = force, z(n_), p(n_), hp;
-  each_node([&](std::size_t i) { x[i].setZero(), z[i] = inverse_[i] * r[i], p[i] = z[i]; });
+  each_node([&](std::size_t i) { x[i].setZero(), z[i] = inverse_[i] * r[i]; });
+  coarse_->add(r, z);
+  p = z;
   double rz = dot(r, z);
   const double enough = 0.01 * rz;  // a tenth in the norm that counts: Newton goes on from there
   int k = 0;
@@ -248,6 +262,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x) {
     if (!(curvature > 0)) break;
     const double alpha = rz / curvature;
     each_node([&](std::size_t i) { x[i] += alpha * p[i], r[i] -= alpha * hp[i], z[i] = inverse_[i] * r[i]; });
+    coarse_->add(r, z);
     const double next = dot(r, z), beta = next / rz;
     each_node([&](std::size_t i) { p[i] = z[i] + beta * p[i]; });
     rz = next;

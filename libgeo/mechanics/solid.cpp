@@ -27,7 +27,7 @@ Solid::Solid(const Body& body, const Material& material) : material_(material) {
   State none;
   follow_nodes(body.nodes, body.graph, NodeId(body.nodes.size()), {}, all_nodes(body.nodes.size()), none);
   if (material.discretisation == Discretisation::galerkin)
-    galerkin_.emplace(body, points_);
+    galerkin_.emplace(body, points_), group_nodes();
   else
     nodal_points(all_nodes(body.nodes.size()));
 }
@@ -56,7 +56,8 @@ void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
 void Solid::settle(const Body& body, State& state) {
   if (!galerkin_) return;
   std::vector<std::uint32_t> kept;
-  galerkin_->settle(body, points_, kept);
+  if (!galerkin_->settle(body, points_, kept)) return;
+  group_nodes();
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < plastic.size(); ++i)
@@ -84,6 +85,7 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
     }
   });
   points_.connect(n);
+  group_nodes();
   penalty_.emplace(rows_, volume_, material_.mode_penalty * material_.young);
 }
 

@@ -12,6 +12,7 @@
 #include "graph/visibility_graph.h"
 #include "mechanics/elasticity.h"
 #include "mechanics/galerkin.h"
+#include "mechanics/node_groups.h"
 #include "mechanics/node_rows.h"
 #include "mechanics/potential.h"
 #include "sampling/node_set.h"
@@ -102,6 +103,7 @@ class Solid {
   friend class ImplicitStep;
   void follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
                     std::span<const NodeId> updated, State& state);
+  void group_nodes() { groups_ = NodeGroups(position_, rows_, part_, parts_); }
   void nodal_points(std::span<const NodeId> updated);
   void update_plasticity(State& state, double dt) const;
   std::vector<Mat3> relaxed(const State& state) const;
@@ -113,6 +115,7 @@ class Solid {
   std::vector<std::uint32_t> part_;     // per node: its connected part
   std::uint32_t parts_ = 0;
   NodeRows rows_;
+  NodeGroups groups_;
   MaterialPoints points_;
   std::optional<Galerkin> galerkin_;
   std::optional<ModePenalty> penalty_;  // of mueller04

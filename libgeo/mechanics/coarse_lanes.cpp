@@ -1,0 +1,142 @@
+// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mechanics/coarse_lanes.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "hwy/foreach_target.h"
+// After foreach_target.h:
+#include <algorithm>
+
+#include "hwy/highway.h"
+#include "mechanics/coarse_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace geo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const float* weight, float shear, float bulk, std::size_t stride, const std::uint16_t* slot,
+                    std::size_t slots, const float* arm, float* out) {
+  using Four = hn::CappedTag<float, 4>;
+  using Eight = hn::CappedTag<float, 8>;
+  const Four d4;
+  const Eight d8;
+  constexpr std::size_t step = hn::MaxLanes(Eight());
+  const std::size_t n = modes.stride;
+  std::vector<float> moment, strain, stress;  // per slot of a point: three rows of (Σ arm g, Σ g); six rows of eight modes
+  std::vector<std::uint32_t> here;
+  std::vector<std::uint32_t> place(slots, ~0u);
+  for (std::size_t i = 0; i < block.points.size(); i += stride) {
+    const float w = static_cast<float>(stride) * weight[i];
+    if (!(w > 0)) continue;
+    here.clear(), moment.clear();
+    for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
+      const std::uint32_t s = slot[block.to[q]];
+      if (place[s] == ~0u) place[s] = static_cast<std::uint32_t>(here.size()), here.push_back(s), moment.resize(moment.size() + 12, 0.0f);
+      float* const m = &moment[12 * place[s]];
+      const float* const at = arm + 4 * block.to[q];
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t k = 0; k < 4; k += hn::MaxLanes(Four()))
+          hn::StoreU(hn::Add(hn::LoadU(d4, m + 4 * c + k), hn::Mul(hn::Set(d4, block.rounded[3 * q + c]), hn::LoadU(d4, at + k))), d4, m + 4 * c + k);
+    }
+    const auto number = [&](std::size_t k) { return modes.values[k * n + i]; };
+    float r[3][3];  // columns of the rotation U Vᵀ
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 3; ++k) r[c][k] = number(k) * number(9 + c) + number(3 + k) * number(12 + c) + number(6 + k) * number(15 + c);
+    strain.assign(tile * here.size(), 0.0f), stress.assign(tile * here.size(), 0.0f);
+    for (std::size_t s = 0; s < here.size(); ++s) {
+      // Row (a, b) of the gradient in the rotated frame, by modes: translations r_a g_b, rotations m_b × r_a.
+      const float* const m = &moment[12 * s];
+      float* const e = &strain[tile * s];
+      constexpr std::size_t row[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b) {
+          float* const to = e + 8 * row[a][b];
+          const float* const mb = m + 4 * b;
+          for (std::size_t k = 0; k < 3; ++k) to[k] += r[a][k] * mb[3];
+          for (std::size_t k = 0; k < 3; ++k) to[3 + k] += mb[(k + 1) % 3] * r[a][(k + 2) % 3] - mb[(k + 2) % 3] * r[a][(k + 1) % 3];
+        }
+      float* const f = &stress[tile * s];
+      for (std::size_t k = 0; k < 6; ++k) {
+        const float trace = bulk * (e[k] + e[8 + k] + e[16 + k]);
+        for (std::size_t q = 0; q < 3; ++q) f[8 * q + k] = w * (2 * shear * e[8 * q + k] + trace), f[24 + 8 * q + k] = w * shear * e[24 + 8 * q + k];
+      }
+    }
+    for (std::size_t s = 0; s < here.size(); ++s)
+      for (std::size_t t = 0; t < here.size(); ++t) {
+        if (here[t] > here[s]) continue;
+        float* const to = out + tile * (here[s] * (here[s] + 1) / 2 + here[t]);
+        const float *const f = &stress[tile * s], *const e = &strain[tile * t];
+        for (std::size_t k = 0; k < 8; k += step) {
+          const auto e0 = hn::LoadU(d8, e + k), e1 = hn::LoadU(d8, e + 8 + k), e2 = hn::LoadU(d8, e + 16 + k);
+          const auto e3 = hn::LoadU(d8, e + 24 + k), e4 = hn::LoadU(d8, e + 32 + k), e5 = hn::LoadU(d8, e + 40 + k);
+          for (std::size_t m = 0; m < 6; ++m) {
+            auto sum = hn::LoadU(d8, to + 8 * m + k);
+            sum = hn::Add(sum, hn::Add(hn::Mul(hn::Set(d8, f[m]), e0), hn::Mul(hn::Set(d8, f[8 + m]), e1)));
+            sum = hn::Add(sum, hn::Add(hn::Mul(hn::Set(d8, f[16 + m]), e2), hn::Mul(hn::Set(d8, f[24 + m]), e3)));
+            sum = hn::Add(sum, hn::Add(hn::Mul(hn::Set(d8, f[32 + m]), e4), hn::Mul(hn::Set(d8, f[40 + m]), e5)));
+            hn::StoreU(sum, d8, to + 8 * m + k);
+          }
+        }
+      }
+    for (const auto s : here) place[s] = ~0u;
+  }
+}
+
+using Wide = hn::CappedTag<float, 16>;
+constexpr std::size_t wide = hn::MaxLanes(Wide());
+
+void Subtract(std::size_t n, float a, const float* y, float* x) {
+  const Wide d;
+  const auto by = hn::Set(d, a);
+  std::size_t i = 0;
+  for (; i + wide <= n; i += wide) hn::StoreU(hn::Sub(hn::LoadU(d, x + i), hn::Mul(by, hn::LoadU(d, y + i))), d, x + i);
+  for (; i < n; ++i) x[i] -= a * y[i];
+}
+
+void SubtractSix(std::size_t n, const float* a, const float* const* y, float* x) {
+  const Wide d;
+  std::size_t i = 0;
+  for (; i + wide <= n; i += wide) {
+    auto sum = hn::LoadU(d, x + i);
+    for (std::size_t k = 0; k < 6; ++k) sum = hn::Sub(sum, hn::Mul(hn::Set(d, a[k]), hn::LoadU(d, y[k] + i)));
+    hn::StoreU(sum, d, x + i);
+  }
+  for (; i < n; ++i)
+    for (std::size_t k = 0; k < 6; ++k) x[i] -= a[k] * y[k][i];
+}
+
+float Dot(std::size_t n, const float* x, const float* y) {
+  const Wide d;
+  HWY_ALIGN float sums[16] = {};
+  std::size_t i = 0;
+  for (std::size_t at = 0; at < 16; at += wide) {
+    auto sum = hn::Zero(d);
+    for (i = 0; i + 16 <= n; i += 16) sum = hn::Add(sum, hn::Mul(hn::LoadU(d, x + i + at), hn::LoadU(d, y + i + at)));
+    hn::StoreU(sum, d, sums + at);
+  }
+  for (i = n / 16 * 16; i < n; ++i) sums[i % 16] += x[i] * y[i];
+  for (std::size_t half = 8; half > 0; half /= 2)
+    for (std::size_t k = 0; k < half; ++k) sums[k] += sums[k + half];
+  return sums[0];
+}
+
+}  // namespace geo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(RigidStiffness);
+HWY_EXPORT(Subtract);
+HWY_EXPORT(SubtractSix);
+HWY_EXPORT(Dot);
+
+void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, float shear, float bulk, std::size_t stride,
+                     std::span<const std::uint16_t> slot, const float* arm, float* out) {
+  const std::size_t slots = slot.empty() ? 0 : std::size_t(*std::max_element(slot.begin(), slot.end())) + 1;
+  HWY_DYNAMIC_DISPATCH(RigidStiffness)(block, modes, weight.data(), shear, bulk, stride, slot.data(), slots, arm, out);
+}
+void subtract(std::size_t n, float a, const float* y, float* x) { HWY_DYNAMIC_DISPATCH(Subtract)(n, a, y, x); }
+void subtract_six(std::size_t n, const float* a, const float* const* y, float* x) { HWY_DYNAMIC_DISPATCH(SubtractSix)(n, a, y, x); }
+float dot(std::size_t n, const float* x, const float* y) { return HWY_DYNAMIC_DISPATCH(Dot)(n, x, y); }
+
+}  // namespace geo
+#endif

@@ -1,0 +1,35 @@
+// The second level of the preconditioner: groups of nodes move as rigid bodies where they are now. What block Jacobi takes
+// long to find, motions of large parts against each other, is solved for at once (Mandel 1993; unsmoothed aggregation).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mechanics/band_factor.h"
+#include "mechanics/material_points.h"
+#include "mechanics/node_groups.h"
+#include "mechanics/point_lanes.h"
+
+namespace geo {
+
+class CoarseMotion {
+ public:
+  /// `at`: where nodes are; `fixed`: as in Environment.
+  CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at, const std::vector<std::uint8_t>& fixed);
+  /// The stiffness of points, isotropic and corotated (as in point_diagonal), of every `stride`-th as many times, and 3×3
+  /// blocks of nodes, for the groups' six motions each; factored.
+  void factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight, float shear, float bulk,
+              std::size_t stride, const std::vector<Mat3>& blocks);
+  /// z += P (Pᵀ K P)⁻¹ Pᵀ r
+  void add(const std::vector<Vec3>& r, std::vector<Vec3>& z);
+
+ private:
+  const NodeGroups& groups_;
+  std::vector<std::uint32_t> first_, member_;  // per group and one more; nodes that are free, by group
+  std::vector<Vec3> arm_;                      // from the middle of its group's free nodes
+  std::vector<char> free_;
+  BandFactor matrix_;
+  std::vector<float> values_;
+};
+
+}  // namespace geo

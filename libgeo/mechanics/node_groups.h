@@ -1,0 +1,22 @@
+// Nodes that hang together, in groups of some dozens: the coarse bodies of the preconditioner's second level.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mechanics/node_rows.h"
+
+namespace geo {
+
+struct NodeGroups {
+  std::vector<std::uint32_t> of;    ///< per node
+  std::vector<std::uint32_t> part;  ///< per group: the connected part that it belongs to, ascending
+  std::size_t count() const { return part.size(); }
+
+  NodeGroups() = default;
+  /// Boxes of about a hundredth of a connected part, 24 nodes at least, by halves; then what hangs together in a box. Groups of
+  /// a part are numbered along its longest side, so that those which touch have numbers near each other.
+  NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts);
+};
+
+}  // namespace geo

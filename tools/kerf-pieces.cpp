@@ -8,6 +8,7 @@
 #include "io/stream.h"
 #include "model.h"
 #include "surface/chunks.h"
+#include "surface/convex_parts.h"
 #include "tool.h"
 
 namespace {
@@ -17,13 +18,14 @@ namespace fs = std::filesystem;
 struct Wishes {
   std::string model, bonds, up = "y";
   bool obj = false, hulls = false;
-  int hull_corners = 64;
+  int hull_corners = 64, hull_parts = 1;
   double tile = 0.25, strength = 1;
 };
 
 void check(const Wishes& w, const std::string& output) {
   if (output.empty() || output == "-") throw tool::UsageError("give a folder or a .glb with -o");
   if (w.hull_corners < 4 || w.hull_corners > 100000) throw tool::UsageError("--hull-corners must be between 4 and 100000");
+  if (w.hull_parts < 1 || w.hull_parts > 100) throw tool::UsageError("--hull-parts must be between 1 and 100");
   if (!(w.tile > 0 && w.tile <= 1e6)) throw tool::UsageError("--tile must be positive and at most 1000000");
   if (!(w.strength >= 0 && w.strength <= 1e100)) throw tool::UsageError("--strength must not be negative");
 }
@@ -48,7 +50,9 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
   for (std::size_t p = 0; p < chunks.size(); ++p) {
     notes.names.push_back(name_of(p, end));
     write(notes.names.back(), chunks[p].mesh);
-    if (w.hulls) write("hull_" + name_of(p, end).substr(6), geo::hull_of(chunks[p].mesh, static_cast<std::size_t>(w.hull_corners)));
+    if (!w.hulls) continue;
+    const auto hulls = geo::convex_parts(chunks[p].mesh, static_cast<std::size_t>(w.hull_parts), static_cast<std::size_t>(w.hull_corners));
+    for (std::size_t h = 0; h < hulls.size(); ++h) write("hull_" + name_of(p, "").substr(6) + geo::hull_suffix(h, hulls.size()) + end, hulls[h]);
   }
   geo::write_all((aside / "pieces.json").string(), [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
   unfinished.commit(folder.string());  // over the empty folder, if there is one
@@ -58,12 +62,13 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-pieces", "Writes each piece of a cut surface as a closed mesh, with bonds between them: all in one .glb, or as a folder.",
-               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o pieces/");
+               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o pieces/");
   Wishes w;
   t.argument("SURFACE", w.model, "A cut surface from kerf-crack");
   t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");
   t.flag("--hulls", w.hulls, "Also the convex hull of each piece, for a physics engine: nodes UCX_piece_... or files hull_...");
   t.option("--hull-corners", w.hull_corners, "How many corners a hull has at most");
+  t.option("--hull-parts", w.hull_parts, "Into how many convex parts, each with a hull, a piece is divided at most");
   t.option("--tile", w.tile, "Size of one texture tile on inner faces, as a fraction of the model's diagonal");
   t.option("--strength", w.strength, "Force that an area of 1 withstands; a bond's strength is this times its area");
   t.choice("--up", w.up, {"y", "z"}, "Of a .glb: which axis of the model is up");
@@ -88,7 +93,7 @@ int main(int argc, char** argv) {
       write_folder(t.output_path, w, chunks, bonds, notes);
     } else {
       for (std::size_t p = 0; p < chunks.size(); ++p) notes.names.push_back(name_of(p, ""));
-      geo::write_all(t.output_path, [&](std::ostream& out) { geo::write_glb(out, chunks, bonds, notes, {w.hulls ? static_cast<std::size_t>(w.hull_corners) : 0, w.up == "z"}); });
+      geo::write_all(t.output_path, [&](std::ostream& out) { geo::write_glb(out, chunks, bonds, notes, {w.hulls ? static_cast<std::size_t>(w.hull_corners) : 0, static_cast<std::size_t>(w.hull_parts), w.up == "z"}); });
       if (!w.bonds.empty()) geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
     }
     if (t.json) std::printf("{\"pieces\":%u,\"bonds\":%zu}\n", pieces.count, bonds.size());

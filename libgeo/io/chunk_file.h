@@ -20,7 +20,8 @@ struct ChunkNotes {
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes);
 
 struct GlbOptions {
-  std::size_t hull_corners = 0;  ///< of the convex hull below each piece's node, named UCX_ and the piece's name; 0: none
+  std::size_t hull_corners = 0;  ///< of the convex hulls below each piece's node, named UCX_ and the piece's name; 0: none
+  std::size_t hull_parts = 1;    ///< see convex_parts(); where there are several, their names end in _00, _01 …
   bool z_up = false;             ///< the model's z is up; glTF's is y
 };
 
@@ -30,7 +31,7 @@ struct GlbOptions {
 /// write_bonds() says is in the scene's `extras`. Coordinates are single precision about each centroid.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes, const GlbOptions& options = {});
 
-/// The convex hull of a piece as a mesh, of so many corners at most.
-TriangleMesh hull_of(const TriangleMesh& mesh, std::size_t most);
+/// What the name of hull `part` of `parts` ends in: "" for a single one, else _00, _01 …
+std::string hull_suffix(std::size_t part, std::size_t parts);
 
 }  // namespace geo

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "geometry/convex_hull.h"
 #include "io/chunk_file.h"
+#include "surface/convex_parts.h"
 
 namespace geo {
 namespace {
@@ -161,18 +161,9 @@ void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std:
   out << bonds_json(chunks, bonds, notes).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
-TriangleMesh hull_of(const TriangleMesh& mesh, std::size_t most) {
-  TriangleMesh hull;
-  std::map<std::uint32_t, std::uint32_t> rows;
-  for (Triangle t : convex_hull(mesh.vertices, most)) {
-    for (auto& v : t) {
-      const auto [entry, fresh] = rows.try_emplace(v, static_cast<std::uint32_t>(hull.vertices.size()));
-      if (fresh) hull.vertices.push_back(mesh.vertices[v]);
-      v = entry->second;
-    }
-    hull.triangles.push_back(t);
-  }
-  return hull;
+std::string hull_suffix(std::size_t part, std::size_t parts) {
+  if (parts < 2) return {};
+  return (part < 10 ? "_0" : "_") + std::to_string(part);
 }
 
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes, const GlbOptions& options) {
@@ -198,11 +189,11 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
       if (std::find(a.group.begin(), a.group.end(), g) != a.group.end()) primitives.push_back(primitive(glb, chunk, normals, g, material(a.group_names[std::size_t(g)])));
     Json node = {{"name", notes.names[p]}, {"translation", row(chunk.centroid)}, {"mesh", glb.mesh(primitives, notes.names[p])}, {"extras", {{"volume", chunk.volume}}}};
     if (options.hull_corners > 0) {
-      const TriangleMesh hull = hull_of(chunk.mesh, options.hull_corners);
-      if (!hull.triangles.empty()) {
-        const std::string name = "UCX_" + notes.names[p];
-        const Json shape = Json::array({hull_primitive(glb, hull, chunk.centroid)});
-        node["children"] = Json::array({glb.node({{"name", name}, {"mesh", glb.mesh(shape, name)}})});
+      const auto hulls = convex_parts(chunk.mesh, options.hull_parts, options.hull_corners);
+      for (std::size_t h = 0; h < hulls.size(); ++h) {
+        const std::string name = "UCX_" + notes.names[p] + hull_suffix(h, hulls.size());
+        const Json shape = Json::array({hull_primitive(glb, hulls[h], chunk.centroid)});
+        node["children"].push_back(glb.node({{"name", name}, {"mesh", glb.mesh(shape, name)}}));
       }
     }
     children.push_back(glb.node(std::move(node)));

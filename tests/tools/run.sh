@@ -170,6 +170,9 @@ chunks)
   python3 "$here/check_glb.py" pieces.glb bonds.json "$volume" 12 || fail "the .glb"
   quietly kerf-pieces -j1 broken.ply --hulls --strength 2 --up y -o one.glb
   cmp pieces.glb one.glb || fail "threads change bytes"
+  quietly kerf-pieces broken.ply --hulls --hull-parts 3 --strength 2 -o parts.glb
+  python3 "$here/check_glb.py" parts.glb bonds.json "$volume" 12 || fail "the .glb with parts"
+  if command -v blender >/dev/null; then blender -b --python "$here/check_blender.py" -- "$PWD/parts.glb" 12 "$volume" >blender.txt 2>&1 && grep -q "^12 pieces$" blender.txt || fail "Blender: $(tail -n 5 blender.txt)"; fi
   quietly kerf-pieces broken.ply --up z --tile 1 -o turned.glb
   cmp -s pieces.glb turned.glb && fail "options change nothing"
   # An importer that is not ours; and back.
@@ -185,7 +188,7 @@ chunks)
     sed 's/"file":"\(piece_[0-9]*\)\.[a-z]*/"node":"\1/g' folder/pieces.json | cmp - bonds.json || fail "bonds differ"
     rm -r folder
   done
-  for options in "--up x" "--tile 0" "--strength -1" "--hull-corners 3"; do
+  for options in "--up x" "--tile 0" "--strength -1" "--hull-corners 3" "--hull-parts 0"; do
     expect 2 "${options%% *}" kerf-pieces broken.ply $options -o x.glb
   done
   expect 2 "folder has pieces.json" kerf-pieces broken.ply --bonds b.json -o x

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "base/random.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
 
@@ -88,6 +89,7 @@ struct Hold {
   std::vector<Vec3> off;  ///< directions from `at`, one after another
   double height;
   std::size_t step = 0;  ///< of the path over sides: the one that it crosses last
+  Vec3 aim = at;         ///< what `at` is a few last places from
   Vec3 point(std::size_t i) const { return at + height * off[i]; }
 };
 
@@ -148,6 +150,8 @@ std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, cons
     s = last + 1;
   }
   holds.push_back({end, {(to - end).normalized()}, std::min(0.25 * reach, (to - end).norm()), at.size()});
+  int tries = 0;
+  Random random(at.size());
   for (std::size_t h = 0; h < holds.size();) {
     // What is blocked is held lower, at its higher end; then what comes before is asked again.
     bool open = true;
@@ -159,8 +163,13 @@ std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, cons
     Hold& high = open && holds[h + 1].height > holds[h].height ? holds[h + 1] : holds[h];
     high.height *= 0.5;
     if (high.height < least) {
-      blocked = high.step;
-      return {};
+      if (tries++ == 1000) {
+        blocked = high.step;
+        return {};
+      }
+      // Where no point has room a link may have: what is between two points is finer than doubles.
+      for (Hold* hold : {&holds[h], open ? &holds[h + 1] : &holds[h]})
+        hold->at = hold->aim + 4 * least * random.uniform() * random.direction(), hold->height = least * std::exp2(8 * random.uniform());
     }
     h -= h > 0;
   }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <set>
 
+#include "body/agreement.h"
 #include "body/binding.h"
 #include "body/connect.h"
 #include "body/front_guides.h"
@@ -75,6 +76,18 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
                 SplitWork* work) {
   begin_upkeep(body);
   return follow_delta(body, advance(body.surface, front, next, options, work ? &work->crack : nullptr), work);
+}
+
+BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options, SplitWork* work,
+                const Agreement& agree) {
+  if (!agree) return split(body, front, next, options, work);
+  Complex grown = body.surface;
+  FrontState moved = front;
+  CrackDelta crack = advance(grown, moved, next, options, work ? &work->crack : nullptr);
+  if (!crack.empty()) agree(grown, crack);
+  begin_upkeep(body);
+  body.surface = std::move(grown), front = std::move(moved);
+  return follow_delta(body, std::move(crack), work);
 }
 
 BodyDelta follow(Body& body, const Complex& surface, SplitWork* work) {

@@ -1,11 +1,15 @@
 #include "contact/bounded_motion.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <map>
 #include <numeric>
 
+#include "base/parallel.h"
+#include "contact/affine_motion.h"
+#include "contact/close_pairs.h"
 #include "contact/crossing.h"
+#include "contact/dividers.h"
+#include "contact/smooth_field.h"
 
 namespace geo {
 namespace {
@@ -26,25 +30,12 @@ class Zones {
     parent_[std::max(a, b)] = std::min(a, b);
     return is_new;
   }
-  void place(const SurfaceMotion& m, std::vector<Vec3>& at) {
+  void place(const std::vector<Vec3>& from, const std::vector<Vec3>& to, std::vector<Vec3>& at) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;
     for (std::uint32_t v = 0; v < in_.size(); ++v)
       if (in_[v]) members[root(v)].push_back(v);
-    for (const auto& [zone, rows] : members) move_rigidly(m, rows, at);
+    for (const auto& [zone, rows] : members) move_rigidly(rows, from, to, at);
   }
-  /// The rigid motion that is closest to what the rows want (Kabsch 1976).
-  static void move_rigidly(const SurfaceMotion& m, const std::vector<std::uint32_t>& rows, std::vector<Vec3>& at) {
-    Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-    for (const auto v : rows) from += m.from[v], to += m.to[v];
-    from /= double(rows.size()), to /= double(rows.size());
-    Mat3 product = Mat3::Zero();
-    for (const auto v : rows) product += (m.to[v] - to) * (m.from[v] - from).transpose();
-    const Eigen::JacobiSVD<Mat3> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Mat3 flip = Vec3(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1).asDiagonal();
-    const Mat3 turn = svd.matrixU() * flip * svd.matrixV().transpose();
-    for (const auto v : rows) at[v] = to + turn * (m.from[v] - from);
-  }
-
  private:
   std::uint32_t root(std::uint32_t v) {
     while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
@@ -54,117 +45,199 @@ class Zones {
   std::vector<std::uint8_t> in_;
 };
 
-// Pushes the parts of a pair to either side of the plane in the middle of where they want to be. True when that moved them.
-bool push(const Watched& w, const SurfaceMotion& m, const Zones& zones, std::vector<Vec3>& at, std::vector<std::uint8_t>& moved) {
-  double a_least = std::numeric_limits<double>::infinity(), b_most = -a_least;
-  bool a_free = true, b_free = true;
-  for (int k = 0; k < w.a.size; ++k) a_least = std::min(a_least, w.normal.dot(at[w.a.v[k]])), a_free = a_free && !zones.has(w.a.v[k]);
-  for (int k = 0; k < w.b.size; ++k) b_most = std::max(b_most, w.normal.dot(at[w.b.v[k]])), b_free = b_free && !zones.has(w.b.v[k]);
-  const double gap = std::min(1.5 * w.gap, std::max(w.gap, m.gap));
-  double plane = 0.5 * (a_least + b_most);
-  if (!a_free && b_free) plane = a_least - 0.5 * gap;
-  if (!b_free && a_free) plane = b_most + 0.5 * gap;
-  bool far = false;
-  const auto shift = [&](std::uint32_t v, double bound, double sign) {
-    const double lack = sign * (bound - w.normal.dot(at[v]));
-    if (!(lack > 0) || zones.has(v)) return;
-    at[v] += sign * lack * w.normal, moved[v] = 1;
-    far = far || lack > 1e-3 * gap;
-  };
-  for (int k = 0; k < w.a.size; ++k) shift(w.a.v[k], plane + 0.5 * gap, 1);
-  for (int k = 0; k < w.b.size; ++k) shift(w.b.v[k], plane - 0.5 * gap, -1);
-  return far;
-}
-
-constexpr std::size_t most_sweeps = 24, most_growths = 10;
-
-// Sweeps through the pairs until all are parted; the rows of those that are not.
-std::vector<std::size_t> part(std::vector<Watched>& watched, const SurfaceMotion& m, Zones& zones, std::vector<Vec3>& at, BoundedMotion& report) {
-  std::vector<std::uint8_t> moved(at.size(), 1), moving(at.size(), 0);
-  std::vector<std::size_t> failing;
-  for (std::size_t sweep = 0; sweep < most_sweeps; ++sweep, ++report.sweeps) {
-    failing.clear();
-    bool far = false;
-    std::fill(moving.begin(), moving.end(), 0);
-    for (std::size_t i = 0; i < watched.size(); ++i) {
-      Watched& w = watched[i];
-      bool touched = false;
-      for (int k = 0; k < w.a.size; ++k) touched = touched || moved[w.a.v[k]] || moving[w.a.v[k]];
-      for (int k = 0; k < w.b.size; ++k) touched = touched || moved[w.b.v[k]] || moving[w.b.v[k]];
-      if (!touched || parted(w.normal, w.a, w.b, at) >= 0.99 * w.gap) continue;
-      bool rigid = true;  // a zone keeps what is inside it apart
-      for (int k = 0; k < w.a.size; ++k) rigid = rigid && zones.same(w.a.v[0], w.a.v[k]);
-      for (int k = 0; k < w.b.size; ++k) rigid = rigid && zones.same(w.a.v[0], w.b.v[k]);
-      if (rigid) continue;
-      Vec3 turned = w.first;  // the pair may have turned since the beginning
-      if (turn_to_part(turned, w.a, w.b, at) >= 0.99 * w.gap) {
-        w.normal = turned;
-        continue;
-      }
-      failing.push_back(i);
-      far |= push(w, m, zones, at, moving);
-      // A pair that cannot be pushed (zones on both sides) must be met again.
-      for (int k = 0; k < w.a.size; ++k) moving[w.a.v[k]] = 1;
-    }
-    if (failing.empty() || !far) break;
-    moved.swap(moving);
+class Mover {
+ public:
+  Mover(const SurfaceMotion& m, bool two_sided, BoundedMotion& report) : m_(m), two_sided_(two_sided), report_(report), at_(m.from), triangles_(m.triangles) {
+    std::vector<std::uint8_t> used(m.from.size(), 0);
+    for (auto& t : triangles_)
+      for (auto& v : t) v = m.together[v], used[v] = 1;
+    for (std::uint32_t v = 0; v < used.size(); ++v)
+      if (used[v]) rows_.push_back(v);
+    for (const auto& [a, b, c] : triangles_) edge_ += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
+    edge_ /= std::max(1.0, 3 * double(triangles_.size()));
   }
-  return failing;
-}
+
+  std::vector<Vec3> run() {
+    bool whole = false;
+    for (int round = 0; round < most_carries && !whole && wanting() > 0; ++round) {
+      whole = carry(round);
+      settle();
+    }
+    for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.together[v]];
+    return std::move(at_);
+  }
+
+ private:
+  static constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-one
+  static constexpr int most_carries = 8, most_settles = 2, most_growths = 10;
+
+  double wanting() const {
+    double most = 0;
+    for (const auto v : rows_) most = std::max(most, (m_.to[v] - at_[v]).norm());
+    return most;
+  }
+
+  // All as one, then by a smooth field: no further than it is one-to-one all the way. True when that was all of it.
+  bool carry(int round) {
+    std::vector<Vec3> start = at_, by(at_.size(), Vec3::Zero());
+    if (round == 0) move_affinely(rows_, at_, m_.to, start);
+    for (const auto v : rows_) by[v] = m_.to[v] - start[v];
+    const SmoothField field(start, by, rows_, 4 * edge_);
+    const double share = std::min(1.0, steepest / std::max(1e-300, field.slope()));
+    std::vector<Vec3> next = start;
+    parallel_for(rows_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) next[rows_[i]] += share * field(start[rows_[i]]);
+    });
+    std::vector<double> deviation(triangles_.size());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const auto& [a, b, c] = triangles_[t];
+      deviation[t] = share * field.deviation(std::sqrt(std::max({(start[b] - start[a]).squaredNorm(), (start[c] - start[b]).squaredNorm(), (start[a] - start[c]).squaredNorm()})));
+    }
+    near(start, next);
+    if (!mend(start, deviation, next)) {
+      next = start;  // as one body, unless rounding forbids even that
+      near(next, next);
+      report_.held = !find_crossings(pairs_, triangles_, next, m_.together, two_sided_).empty();
+      if (report_.held) next = at_, near(next, next);
+    }
+    at_ = std::move(next);
+    return share == 1;
+  }
+
+  Box3 box(std::size_t t, const std::vector<Vec3>& at) const {
+    const auto& [a, b, c] = triangles_[t];
+    return box_of(at[a], at[b], at[c]);
+  }
+
+  // How far planes may let a row go from where it was carried.
+  double room(std::uint32_t v, const std::vector<Vec3>& next) const { return std::min(0.5 * edge_, (m_.to[v] - next[v]).norm()); }
+
+  // Triangles that may come together from `start` to `next`, and from there on while no row goes further than its room.
+  void near(const std::vector<Vec3>& start, const std::vector<Vec3>& next) {
+    boxes_.resize(triangles_.size());
+    parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const auto& [a, b, c] = triangles_[t];
+        boxes_[t] = box(t, next).grown(std::max({room(a, next), room(b, next), room(c, next)}) + 0.5 * m_.gap);
+        boxes_[t].add(box(t, start));
+      }
+    });
+    pairs_ = close_pairs(boxes_);
+  }
+
+  // Whether the pairs are those of all triangles that meet.
+  bool covered(const std::vector<Vec3>& next) const {
+    for (std::size_t t = 0; t < boxes_.size(); ++t) {
+      const Box3 now = box(t, next);
+      if ((now.lo.array() < boxes_[t].lo.array()).any() || (now.hi.array() > boxes_[t].hi.array()).any()) return false;
+    }
+    return true;
+  }
+
+  // Pairs that may have passed through each other: so near that it matters that triangles are flat, and parted by no direction at
+  // both ends.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> passed(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const std::vector<Vec3>& start,
+                                                              const std::vector<double>& deviation, const std::vector<Vec3>& next) const {
+    std::vector<std::uint8_t> through(pairs.size(), 0);
+    parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto &s = triangles_[pairs[i].first], &t = triangles_[pairs[i].second];
+        const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
+        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) continue;  // neighbours cannot pass without crossing others
+        through[i] = !stay_parted({{s[0], s[1], s[2]}, 3}, {{t[0], t[1], t[2]}, 3}, start, next, (deviation[pairs[i].first] + deviation[pairs[i].second]) / (1 - steepest));
+      }
+    });
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> result;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (through[i]) result.push_back(pairs[i]);
+    return result;
+  }
+
+  static bool stay_parted(const Simplex& a, const Simplex& b, const std::vector<Vec3>& start, const std::vector<Vec3>& next, double enough) {
+    const auto normal = [&](const Simplex& s) { return Vec3((start[s.v[1]] - start[s.v[0]]).cross(start[s.v[2]] - start[s.v[0]])); };
+    const Vec3 across = start[a.v[0]] + start[a.v[1]] + start[a.v[2]] - start[b.v[0]] - start[b.v[1]] - start[b.v[2]];
+    for (Vec3 n : {across, normal(a), normal(b)}) {
+      if (n.dot(across) < 0) n = -n;
+      const double before = parted(n, a, b, start);
+      if (before > enough * n.norm() || (before > 0 && parted(n, a, b, next) > 0)) return true;
+    }
+    for (const auto* at : {&start, &next}) {
+      Vec3 p[3], q[3];
+      for (int k = 0; k < 3; ++k) p[k] = (*at)[a.v[k]], q[k] = (*at)[b.v[k]];
+      const Vec3 apart = closest_places(p, 3, q, 3).apart;
+      if (at == &start && apart.norm() > enough) return true;
+      if (parted(apart, a, b, start) > 0 && parted(apart, a, b, next) > 0) return true;
+    }
+    return false;
+  }
+
+  // Zones for what crosses or passes, until nothing does; false: in vain.
+  bool mend(const std::vector<Vec3>& start, const std::vector<double>& deviation, std::vector<Vec3>& next) {
+    Zones zones(at_.size());
+    std::vector<std::uint8_t> changed(triangles_.size(), 1);
+    std::vector<Box3> ways(triangles_.size());
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> meeting;
+    const std::vector<Vec3> wanted = next;
+    for (int growth = 0;; ++growth) {
+      for (std::size_t t = 0; t < ways.size(); ++t) ways[t] = box(t, next), ways[t].add(box(t, start));
+      meeting.clear();
+      for (const auto& pair : pairs_)
+        if ((changed[pair.first] || changed[pair.second]) && ways[pair.first].meets(ways[pair.second])) meeting.push_back(pair);
+      auto failing = find_crossings(meeting, triangles_, next, m_.together, two_sided_);
+      for (const auto& pair : passed(meeting, start, deviation, next))
+        if (!each_row(pair, [&](std::uint32_t v) { return zones.same(triangles_[pair.first][0], v); })) failing.push_back(pair);  // a zone keeps what is inside it apart
+      if (failing.empty()) break;
+      bool grown = false;
+      for (const auto& pair : failing) each_row(pair, [&](std::uint32_t v) { return grown |= zones.join(triangles_[pair.first][0], v), true; });
+      if (!grown || growth == most_growths) return false;
+      const std::vector<Vec3> before = next;
+      zones.place(start, wanted, next);
+      const bool known = covered(next);
+      if (!known) near(start, next);
+      for (std::size_t t = 0; t < changed.size(); ++t)
+        changed[t] = !known || std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](auto v) { return next[v] != before[v]; });
+    }
+    if (zones.count() > 0) near(next, next);
+    report_.in_zones = std::max(report_.in_zones, zones.count());
+    return true;
+  }
+
+  // True when `test` is of all corners of both triangles.
+  template <class Test>
+  bool each_row(const std::pair<std::uint32_t, std::uint32_t>& pair, const Test& test) const {
+    const auto &s = triangles_[pair.first], &t = triangles_[pair.second];
+    return std::all_of(s.begin(), s.end(), test) && std::all_of(t.begin(), t.end(), test);
+  }
+
+  // Rounds of planes.
+  void settle() {
+    const std::vector<Vec3> start = at_;
+    std::vector<double> rooms(at_.size(), 0), limit(at_.size(), 0);
+    for (const auto v : rows_) rooms[v] = room(v, start);
+    for (int round = 0; round < most_settles; ++round) {
+      for (const auto v : rows_) limit[v] = std::min((m_.to[v] - at_[v]).norm(), std::max(0.0, rooms[v] - (at_[v] - start[v]).norm()));
+      const DividerWork done = move_divided({triangles_, pairs_, m_.to, limit, m_.gap}, at_);
+      report_.planes += done.planes, ++report_.rounds;
+      if (done.farthest < m_.gap) break;
+    }
+  }
+
+  const SurfaceMotion& m_;
+  bool two_sided_;
+  BoundedMotion& report_;
+  std::vector<Vec3> at_;
+  std::vector<Triangle> triangles_;  // of rows that stand for others
+  std::vector<std::uint32_t> rows_;  // those, ascending
+  double edge_ = 0;
+  std::vector<Box3> boxes_;  // that the pairs are of
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+};
 
 }  // namespace
 
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& m, bool two_sided, BoundedMotion* told) {
-  BoundedMotion own, &report = told ? *told : own;
-  auto watched = watch(m);
-  report.watched = watched.size();
-  Zones zones(m.to.size());
-  std::vector<Vec3> at = m.to;
-  const auto follow = [&] {
-    for (std::size_t v = 0; v < at.size(); ++v) at[v] = at[m.together[v]];
-  };
-  // What crosses now and did not at the beginning.
-  const auto made = [&] {
-    auto crossings = find_crossings(m.triangles, at, m.together, two_sided);
-    std::erase_if(crossings, [&](const auto& pair) { return std::binary_search(m.crossing.begin(), m.crossing.end(), pair); });
-    return crossings;
-  };
-  for (std::size_t growth = 0; growth < most_growths; ++growth) {
-    bool grown = false;
-    const auto failing = part(watched, m, zones, at, report);
-    for (const std::size_t i : failing) {
-      const Watched& w = watched[i];
-      for (int k = 0; k < w.a.size; ++k) grown |= zones.join(w.a.v[0], w.a.v[k]);
-      for (int k = 0; k < w.b.size; ++k) grown |= zones.join(w.a.v[0], w.b.v[k]);
-    }
-    if (failing.empty()) {
-      follow();
-      const auto crossings = made();
-      if (crossings.empty()) {
-        report.in_zones = zones.count();
-        return at;
-      }
-      for (const auto& [s, t] : crossings) {
-        const auto first = m.together[m.triangles[s][0]];
-        for (const auto v : m.triangles[s]) grown |= zones.join(first, m.together[v]);
-        for (const auto v : m.triangles[t]) grown |= zones.join(first, m.together[v]);
-      }
-    }
-    if (!grown) break;
-    zones.place(m, at);
-  }
-  std::vector<std::uint32_t> all;
-  for (const auto& t : m.triangles)
-    for (const auto v : t) all.push_back(m.together[v]);
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  report.in_zones = all.size();
-  at = m.from;
-  if (!all.empty()) Zones::move_rigidly(m, all, at);
-  follow();
-  if (made().empty()) return at;
-  report.held = true;
-  return m.from;
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* told) {
+  BoundedMotion own;
+  return Mover(motion, two_sided, told ? *told : own).run();
 }
 
 }  // namespace geo

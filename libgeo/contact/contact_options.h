@@ -14,7 +14,6 @@ struct ContactOptions {
 
 struct ContactWork {
   std::size_t watched = 0, touching = 0, in_zones = 0, opened = 0, held = 0;
-  std::size_t crossings = 0;  ///< that a crack was born with and that stay until they come apart; of all else there are none
   double lag = 0;             ///< largest distance of a vertex from where Eq. 1 has it, model units
   double seconds = 0;
   ContactWork& operator+=(const ContactWork& o);

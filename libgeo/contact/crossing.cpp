@@ -34,7 +34,15 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
   if (only)
     for (Box3& b : boxes)
       if (!b.meets(region)) b = Box3();
-  const auto pairs = close_pairs(boxes);
+  auto result = find_crossings(close_pairs(boxes), triangles, positions, together, two_sided, only);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
+                                                                    const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
+                                                                    std::span<const std::uint32_t> together, bool two_sided,
+                                                                    const std::vector<std::uint8_t>* only) {
   std::vector<std::uint8_t> crosses(pairs.size(), 0);
   parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -47,6 +55,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
         f[k] = together[triangles[s][k]], g[k] = together[triangles[t][k]];
         p[k] = positions[f[k]], q[k] = positions[g[k]];
       }
+      if (!box_of(p[0], p[1], p[2]).meets(box_of(q[0], q[1], q[2]))) continue;
       for (int k = 0; k < 3; ++k) same += f[k] == g[0] || f[k] == g[1] || f[k] == g[2];
       crosses[i] = same == 3 && two_sided ? 0 : faces_cross(f, p, g, q);
     }
@@ -54,7 +63,6 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
   std::vector<std::pair<std::uint32_t, std::uint32_t>> result;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (crosses[i]) result.push_back(pairs[i]);
-  std::sort(result.begin(), result.end());
   return result;
 }
 

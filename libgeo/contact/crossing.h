@@ -23,6 +23,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
                                                                     std::span<const std::uint32_t> together, bool two_sided,
                                                                     const std::vector<std::uint8_t>* only = nullptr);
 
+/// The same among given pairs of triangles, in their order.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
+                                                                    const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
+                                                                    std::span<const std::uint32_t> together, bool two_sided,
+                                                                    const std::vector<std::uint8_t>* only = nullptr);
+
 /// How many pairs of triangles of a surface cross: of a frame, or of a plain mesh.
 std::size_t count_crossings(const TriangleMesh& surface);
 

@@ -1,5 +1,5 @@
 // Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and does not come to cross
-// itself. (Triangles of a crack that is born in a strongly deformed body may cross at once; they are counted until they part.)
+// itself.
 //
 // The surface has positions of its own. At each step the nodes move as if nothing touched; places that would pass through each
 // other are found, and impulses on the nodes take away their approach; then the surface goes where Eq. 1 wants it, but for
@@ -9,6 +9,7 @@
 // along their own normals once Eq. 1 pulls them apart or along each other.
 #pragma once
 
+#include "contact/birth.h"
 #include "contact/bounded_motion.h"
 #include "contact/contact_options.h"
 #include "contact/contact_surface.h"
@@ -21,10 +22,11 @@ class SelfContact {
   /// The surface of a body at rest (no displacement), or at the positions of an earlier one (per surface vertex).
   SelfContact(const Body& body, const Solid& solid, const ContactOptions& options = {}, std::vector<Vec3> positions = {});
 
-  /// After a split: new vertices on old faces take their place in these, copies that of what they copy; those inside the
-  /// material that of Eq. 1, averaged over their copies.
-  void follow(const Body& body, const Solid& solid, const BodyDelta& delta, const State& state, ContactWork* work = nullptr);
-
+  /// Before a crack step is made that will turn the surface into `grown`: where what is new will be (birth.h). Throws
+  /// GeometryError when it would cross itself or what is there; the step must not be made then.
+  void expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack);
+  /// After it was made.
+  void follow(const Body& body, const Solid& solid);
   /// After a step of nodes that began at displacements `before` and took dt: corrects displacements and velocities by
   /// impulses and moves the surface. `fixed` (per node, or empty) as in Environment.
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
@@ -43,7 +45,7 @@ class SelfContact {
   ContactSurface surface_;
   SurfaceWeights weights_;
   std::vector<Vec3> positions_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_;  // triangles that a crack was born with, until they part
+  Birth birth_;  // of the step that was expected last
 };
 
 }  // namespace geo

@@ -30,20 +30,4 @@ double parted(const Vec3& n, const Simplex& a, const Simplex& b, const Points& a
   return least - most;
 }
 
-/// When the points are where a and b do not meet, and a is on the side of b that `normal` points to (within 80°): turns `normal`
-/// into the direction that parts them best, and returns their distance; else returns 0 and leaves it.
-template <class Points>
-double turn_to_part(Vec3& normal, const Simplex& a, const Simplex& b, const Points& at) {
-  Vec3 p[3], q[3];
-  for (int k = 0; k < a.size; ++k) p[k] = at[a.v[k]];
-  for (int k = 0; k < b.size; ++k) q[k] = at[b.v[k]];
-  const Vec3 apart = closest_places(p, a.size, q, b.size).apart;
-  const double distance = apart.norm();
-  if (!(distance > 0) || !(normal.dot(apart) > 0.17 * distance)) return 0;
-  const Vec3 d = apart / distance;
-  if (!(parted(d, a, b, at) > 0.5 * distance)) return 0;  // they meet: what is closest does not part them
-  normal = d;
-  return distance;
-}
-
 }  // namespace geo

@@ -16,17 +16,14 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
   std::vector<std::array<std::uint32_t, 6>> keys;
   for (const Watched& w : watched) {
     if (parted(w.normal, w.a, w.b, m.to) >= w.gap) continue;
-    Vec3 a[3], b[3];
-    for (int k = 0; k < w.a.size; ++k) a[k] = m.from[w.a.v[k]];
-    for (int k = 0; k < w.b.size; ++k) b[k] = m.from[w.b.v[k]];
-    const ClosestPlaces c = closest_places(a, w.a.size, b, w.b.size);
-    TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.first, 0};
+    const ClosestPlaces& c = w.closest;
+    TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0};
     const auto take = [](TouchingPlaces::Place& place, const Simplex& s, const Vec3& weights) {
       for (int k = 0; k < s.size; ++k)
         if (weights[k] > 0) place.vertex[place.size] = s.v[k], place.weight[place.size++] = weights[k];
     };
     take(t.a, w.a, c.from), take(t.b, w.b, c.to);
-    t.approach = std::max(0.0, w.first.dot(c.apart) - w.gap) / how.dt;
+    t.approach = std::max(0.0, w.normal.dot(c.apart) - w.gap) / how.dt;
     if (how.share > 0) {
       Vec3 apart = Vec3::Zero();
       for (int k = 0; k < t.a.size; ++k) apart += t.a.weight[k] * m.to[t.a.vertex[k]];

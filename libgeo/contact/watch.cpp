@@ -3,23 +3,12 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "contact/affine_motion.h"
 #include "contact/close_pairs.h"
+#include "contact/dividers.h"
 
 namespace geo {
 namespace {
-
-// The parts of two triangles that must not meet: none has a corner of the other.
-int parts_apart(const std::array<std::uint32_t, 3>& s, const std::array<std::uint32_t, 3>& t, std::pair<Simplex, Simplex> (&parts)[2]) {
-  Simplex s_own{{}, 0}, t_own{{}, 0};
-  for (int k = 0; k < 3; ++k) {
-    if (s[k] != t[0] && s[k] != t[1] && s[k] != t[2]) s_own.v[s_own.size++] = s[k];
-    if (t[k] != s[0] && t[k] != s[1] && t[k] != s[2]) t_own.v[t_own.size++] = t[k];
-  }
-  if (s_own.size == 0 || t_own.size == 0) return 0;
-  const Simplex s_all{{s[0], s[1], s[2]}, 3}, t_all{{t[0], t[1], t[2]}, 3};
-  parts[0] = {s_own, t_all}, parts[1] = {s_all, t_own};
-  return s_own.size == 3 ? 1 : 2;
-}
 
 Vec3 normal_of(const Simplex& s, const std::vector<Vec3>& at) {
   return s.size < 3 ? Vec3(Vec3::Zero()) : Vec3((at[s.v[1]] - at[s.v[0]]).cross(at[s.v[2]] - at[s.v[0]]));
@@ -32,57 +21,52 @@ Vec3 middle_of(const Simplex& s, const std::vector<Vec3>& at) {
 }
 
 // True when the pair is to be watched.
-bool examine(const SurfaceMotion& m, Watched& w, bool adjacent) {
-  const auto unit = [](const Vec3& d) {
-    const double length = d.norm();
-    return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
-  };
+bool examine(const SurfaceMotion& m, Watched& w) {
   const Vec3 across = middle_of(w.a, m.from) - middle_of(w.b, m.from);
-  const auto oriented = [&](const Vec3& n) { return n.dot(across) < 0 ? unit(-n) : unit(n); };
-  const Vec3 quick[3] = {unit(across), oriented(normal_of(w.a, m.from)), oriented(normal_of(w.b, m.from))};
-  for (const Vec3& d : quick)
+  Vec3 quick[3] = {across, normal_of(w.a, m.from), normal_of(w.b, m.from)};
+  for (Vec3& d : quick) {
+    const double length = d.norm();
+    if (!(length > 0)) continue;
+    d /= d.dot(across) < 0 ? -length : length;
     if (parted(d, w.a, w.b, m.from) >= m.gap && parted(d, w.a, w.b, m.to) >= m.reach) return false;
+  }
   Vec3 a[3], b[3];
-  const auto apart = [&](const std::vector<Vec3>& at) {
+  const auto closest_of = [&](const std::vector<Vec3>& at) {
     for (int k = 0; k < w.a.size; ++k) a[k] = at[w.a.v[k]];
     for (int k = 0; k < w.b.size; ++k) b[k] = at[w.b.v[k]];
-    return closest_places(a, w.a.size, b, w.b.size).apart;
+    return closest_places(a, w.a.size, b, w.b.size);
   };
-  const Vec3 now = apart(m.from);
-  const double distance = now.norm();
+  w.closest = closest_of(m.from);
+  const double distance = w.closest.apart.norm();
   if (!(distance > 0)) return false;
-  w.first = now / distance;
-  double best = parted(w.first, w.a, w.b, m.to);
+  w.normal = w.closest.apart / distance;
+  double best = parted(w.normal, w.a, w.b, m.to);
   if (distance >= m.gap && best >= m.reach) return false;
   // Another direction, if it parts them about as well at the beginning and better at the end.
-  const Vec3 others[4] = {quick[0], quick[1], quick[2], unit(apart(m.to))};
-  for (const Vec3& d : others) {
+  for (const Vec3& d : quick) {
     if (!(parted(d, w.a, w.b, m.from) >= 0.5 * std::min(distance, m.gap))) continue;
-    if (const double after = parted(d, w.a, w.b, m.to); after > best) best = after, w.first = d;
+    if (const double after = parted(d, w.a, w.b, m.to); after > best) best = after, w.normal = d;
   }
-  // Parts of neighbours may become thinner as the body is squeezed, but never flat; sheets in contact keep their distance.
-  w.gap = distance > m.gap ? m.gap : adjacent ? 0.5 * distance : distance;
-  w.gap = std::min(w.gap, std::max(0.0, parted(w.first, w.a, w.b, m.from)));
-  w.normal = w.first;
-  turn_to_part(w.normal, w.a, w.b, m.to);
+  w.gap = std::min({distance, m.gap, std::max(0.0, parted(w.normal, w.a, w.b, m.from))});
   return true;
 }
 
 }  // namespace
 
 std::vector<Watched> watch(const SurfaceMotion& m) {
-  // All boxes in a frame that moves as the surface does on average.
-  Vec3 drift = Vec3::Zero();
+  // All boxes in a frame that moves as the surface does on the whole.
   std::vector<std::array<std::uint32_t, 3>> corners(m.triangles.size());
+  std::vector<std::uint8_t> used(m.from.size(), 0);
   for (std::size_t t = 0; t < m.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto v = corners[t][k] = m.together[m.triangles[t][k]];
-      drift += m.to[v] - m.from[v];
-    }
-  if (!corners.empty()) drift /= 3 * double(corners.size());
+    for (int k = 0; k < 3; ++k) used[corners[t][k] = m.together[m.triangles[t][k]]] = 1;
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t v = 0; v < used.size(); ++v)
+    if (used[v]) rows.push_back(v);
+  std::vector<Vec3> carried = m.from;
+  if (!rows.empty()) move_affinely(rows, m.from, m.to, carried);
   std::vector<Box3> boxes(corners.size());
   for (std::size_t t = 0; t < corners.size(); ++t) {
-    for (const auto v : corners[t]) boxes[t].add(m.from[v] + drift), boxes[t].add(m.to[v]);
+    for (const auto v : corners[t]) boxes[t].add(carried[v]), boxes[t].add(m.to[v]);
     boxes[t] = boxes[t].grown(0.5 * m.reach);
   }
   const auto pairs = close_pairs(boxes);
@@ -92,23 +76,14 @@ std::vector<Watched> watch(const SurfaceMotion& m) {
     std::pair<Simplex, Simplex> parts[2];
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = s * stretch; i < std::min(pairs.size(), (s + 1) * stretch); ++i) {
-        if (std::binary_search(m.crossing.begin(), m.crossing.end(), pairs[i])) continue;
-        const int count = parts_apart(corners[pairs[i].first], corners[pairs[i].second], parts);
-        for (int k = 0; k < count; ++k) {
-          Watched w{parts[k].first, parts[k].second, Vec3::Zero(), Vec3::Zero(), 0};
-          if (examine(m, w, count == 2)) found[s].push_back(w);
-        }
+        if (parts_apart(corners[pairs[i].first], corners[pairs[i].second], parts) != 1) continue;
+        Watched w{parts[0].first, parts[0].second, Vec3::Zero(), {}, 0};
+        if (examine(m, w)) found[s].push_back(w);
       }
   });
   std::vector<Watched> result;
   for (const auto& f : found) result.insert(result.end(), f.begin(), f.end());
   return result;
-}
-
-void turn_to_end(std::vector<Watched>& watched, const SurfaceMotion& m) {
-  parallel_for(watched.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) watched[i].normal = watched[i].first, turn_to_part(watched[i].normal, watched[i].a, watched[i].b, m.to);
-  });
 }
 
 }  // namespace geo

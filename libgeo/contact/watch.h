@@ -15,26 +15,23 @@ namespace geo {
 
 struct Watched {
   Simplex a, b;   ///< rows of vertices; none in both, nor two together
-  Vec3 normal;    ///< unit; from b to a, where the step ends
-  Vec3 first;     ///< the same where it begins
+  Vec3 normal;    ///< unit; from b to a
+  ClosestPlaces closest;  ///< where it begins
   double gap;     ///< least distance along the normal that the step may leave, model units
 };
 
 /// What a step is about: triangles of rows, for each row the one that stands for it (vertices_together()), and where all are at
-/// its beginning, where no two triangles cross but those named, and want to be at its end.
+/// its beginning, where no two triangles cross, and want to be at its end.
 struct SurfaceMotion {
   const std::vector<Triangle>& triangles;
   std::span<const std::uint32_t> together;
   const std::vector<Vec3>&from, &to;
   double gap = 0;    ///< that sheets in contact keep
   double reach = 0;  ///< pairs that come closer than this are watched
-  std::span<const std::pair<std::uint32_t, std::uint32_t>> crossing = {};  ///< pairs that cross at the beginning, ascending
 };
 
-/// Where the plane of a pair comes closest to what the motion wants, it is the one taken. In an order that depends on the
-/// motion alone.
+/// Pairs that share no corner. Where the plane of a pair comes closest to what the motion wants, it is the one taken. In an order
+/// that depends on the motion alone.
 std::vector<Watched> watch(const SurfaceMotion& motion);
-/// The same pairs for a motion that begins where theirs did and ends a little elsewhere.
-void turn_to_end(std::vector<Watched>& watched, const SurfaceMotion& motion);
 
 }  // namespace geo

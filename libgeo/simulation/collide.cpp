@@ -34,8 +34,13 @@ void Collisions::begin(const Body& body, const State& motion, double dt, Environ
   environment.contact.push_back(&*ground_);
 }
 
-void Collisions::follow(const Body& body, const Solid& solid, const BodyDelta& delta, const State& motion, ContactWork& work) {
-  if (surface_) surface_->follow(body, solid, delta, motion, &work);
+Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion) {
+  if (!surface_) return {};
+  return [&](const Complex& grown, const CrackDelta& crack) { surface_->expect(body, solid, motion, grown, crack); };
+}
+
+void Collisions::follow(const Body& body, const Solid& solid) {
+  if (surface_) surface_->follow(body, solid);
 }
 
 void Collisions::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion,

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "body/agreement.h"
 #include "contact/ground.h"
 #include "contact/self_contact.h"
 #include "simulation/scene.h"
@@ -17,8 +18,10 @@ class Collisions {
 
   /// Before a step: puts the ground's penalty on the surface into the environment, in place of that on nodes.
   void begin(const Body& body, const State& motion, double dt, Environment& environment);
-  /// After a split, and after a step of nodes that began at displacements `before`.
-  void follow(const Body& body, const Solid& solid, const BodyDelta& delta, const State& motion, ContactWork& work);
+  /// What has to agree to a crack step; empty: nothing.
+  Agreement agreement(const Body& body, const Solid& solid, const State& motion);
+  /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
+  void follow(const Body& body, const Solid& solid);
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion, ContactWork& work);
 
   /// False: the scene asks for none, and the surface is where Eq. 1 has it.

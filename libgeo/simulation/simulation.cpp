@@ -100,7 +100,7 @@ void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
   prepare();
   work.mechanics_seconds += watch.lap();
-  if (collisions_) collisions_->follow(body_, solid_, delta, state_.motion, work.contact);
+  if (collisions_) collisions_->follow(body_, solid_);
   work.contact_seconds += watch.lap();
 }
 
@@ -108,7 +108,7 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
   CrackOptions options;
   options.seed = scene_.seed;
   try {
-    adopt(split(body_, front, next, options, &work.split), work);
+    adopt(split(body_, front, next, options, &work.split, collisions_ ? collisions_->agreement(body_, solid_, state_.motion) : Agreement()), work);
     return true;
   } catch (const GeometryError&) {
     ++work.refused;

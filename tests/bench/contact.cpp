@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "bench.h"
+#include "body/agreement.h"
 #include "contact/crossing.h"
 #include "contact/self_contact.h"
 #include "sampling/sample.h"
@@ -24,7 +25,6 @@ int contact(const Options& options) {
     geo::SelfContact surface(body, solid);
     geo::Environment environment;
     double following = 0;
-    std::size_t born = 0;
     for (int blade = 0; blade < 3; ++blade) {
       const auto edge = [&](double z) {
         std::vector<geo::Vec3> points;
@@ -33,12 +33,12 @@ int contact(const Options& options) {
       };
       geo::FrontState front = geo::begin_front(edge(1.3), false, blade + 1);
       for (int step = 1; step <= 8; ++step) {
-        const geo::BodyDelta delta = geo::split(body, front, edge(1.3 - 0.14 * step));
+        const geo::BodyDelta delta = geo::split(body, front, edge(1.3 - 0.14 * step), {}, nullptr,
+                                    [&](const geo::Complex& grown, const geo::CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-        geo::ContactWork work;
         const double start = cpu_seconds();
-        surface.follow(body, solid, delta, state, &work);
-        following += cpu_seconds() - start, born += work.crossings;
+        surface.follow(body, solid);
+        following += cpu_seconds() - start;
       }
     }
     environment.gravity = {4, 0, -9};
@@ -61,7 +61,7 @@ int contact(const Options& options) {
     print({{"nodes", double(solid.size())}, {"triangles", double(end.triangles.size())}, {"nodes_ms_a_step", 1e3 * moving / steps}, {"contact_ms_a_step", 1e3 * touching / steps},
            {"contact_ms_worst", 1e3 * worst}, {"share", touching / (touching + moving)}, {"follow_ms_a_cut_step", 1e3 * following / 24}, {"watched_a_step", double(work.watched) / steps},
            {"touching_a_step", double(work.touching) / steps}, {"in_zones_a_step", double(work.in_zones) / steps}, {"opened", double(work.opened)}, {"held", double(work.held)},
-           {"lag_in_spacings", work.lag / spacing}, {"crossings_born", double(born)}, {"crossings", double(geo::count_crossings(end))}},
+           {"lag_in_spacings", work.lag / spacing}, {"crossings", double(geo::count_crossings(end))}},
           options.json);
   }
   return 0;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "body/agreement.h"
 #include "contact/crossing.h"
 #include "contact/self_contact.h"
 #include "sampling/sample.h"
@@ -26,9 +27,10 @@ TEST_CASE("sheets cut in a body at rest are born together") {
     };
     FrontState front = begin_front(edge(1.3), false, blade + 1);
     for (int step = 1; step <= 8; ++step) {
-      const BodyDelta delta = split(body, front, edge(1.3 - 0.14 * step));
+      const BodyDelta delta = split(body, front, edge(1.3 - 0.14 * step), {}, nullptr,
+                                    [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
       solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-      surface.follow(body, solid, delta, state);
+      surface.follow(body, solid);
       const auto& s = surface.surface();
       for (std::size_t v = 0; v < s.site.size(); ++v)
         if (body.surface.alive(SurfaceVertexId(v))) CHECK((surface.positions()[v] - body.surface.point(VertexId(s.site[v]))).norm() < 1e-14);

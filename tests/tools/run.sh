@@ -442,12 +442,15 @@ scene)
   smashed) young=3e5 pieces=12 set="--set body.0.mesh=models/pumpkin.ply --set body.1.mesh=models/pumpkin.ply --set score.0.file=models/smash.front --set score.1.file=models/smash.front --set body.0.nodes=150 --set body.1.nodes=150" ;;
   esac
   kerf-sim -q $file $set -o run --frames 32 || fail "$scene"
+  crossing() { grep -q '^self = true' $file && grep -v '"crossings":0,' $1/frames.jsonl | head -1; }  # in scenes with contact nothing may, in any frame
+  crossing run | grep . && fail "$scene has frames in which triangles cross"
   grep -q "\"pieces\":$pieces," run/summary.json || fail "$scene has not $pieces pieces: $(cat run/summary.json)"
   grep -q '"refused":0' run/summary.json || fail "$scene has refused steps: $(cat run/summary.json)"
   grep -qi "nan\|inf" run/frames.jsonl && fail "$scene has numbers that are none"
   kerf-info --check -q run/checkpoint.kerf || fail "the body of $scene is not sound"
   for other in time.step=0.042 time.step=0.0105 material.young=${young%e*}e$((${young#*e} - 1)) material.young=${young%e*}e$((${young#*e} + 1)); do
     kerf-sim -q $file $set --set $other -o other --frames 12 || fail "$scene with $other"
+    crossing other | grep . && fail "$scene with $other has frames in which triangles cross"
     grep -qi "nan\|inf" other/frames.jsonl && fail "$scene with $other has numbers that are none"
     kerf-info --check -q other/checkpoint.kerf || fail "the body of $scene with $other is not sound"
     rm -rf other

@@ -1,0 +1,225 @@
+#include "contact/birth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "contact/untangle.h"
+#include "geometry/distance.h"
+#include "geometry/predicates.h"
+#include "mechanics/deformation.h"
+
+namespace geo {
+namespace {
+
+// An orthonormal frame on a triangle.
+Mat3 frame_of(const std::array<Vec3, 3>& t) {
+  Mat3 frame;
+  frame.col(0) = (t[1] - t[0]).normalized();
+  frame.col(2) = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+// Where a triangle that moved from `rest` to `now` carries x, which is on it but for last places: these make the difference
+// between slivers that cross and such that do not, so they turn with it.
+Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Vec3, 3>& now) {
+  const Vec3 w = barycentric(x, rest[0], rest[1], rest[2]);
+  const Vec3 off = x - (w[0] * rest[0] + w[1] * rest[1] + w[2] * rest[2]);
+  const Vec3 moved = w[0] * (now[0] - rest[0]) + w[1] * (now[1] - rest[1]) + w[2] * (now[2] - rest[2]);
+  const Vec3 turned = frame_of(now) * (frame_of(rest).transpose() * off) - off;
+  return x + moved + (turned.allFinite() ? turned : Vec3(Vec3::Zero()));
+}
+
+class Midwife {
+ public:
+  Midwife(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions, const Complex& grown)
+      : body_(body), state_(state), old_(positions), k_(grown), gradient_(solid.gradients(state.displacement)), old_side_(2 * grown.face_count(), Triangle{~0u, ~0u, ~0u}) {
+    for (std::size_t t = 0; t < before.triangles.size(); ++t) {
+      const auto& [a, b, c] = before.triangles[t];
+      old_side_[before.side[t]] = before.side[t] % 2 == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
+    }
+    birth_.surface = contact_surface(grown);
+    birth_.positions = positions;
+    birth_.positions.resize(birth_.surface.site.size(), Vec3::Zero());
+    like_.resize(birth_.positions.size());
+    for (std::uint32_t v = 0; v < like_.size(); ++v) like_[v] = v < positions.size() ? SurfaceVertexId(v) : SurfaceVertexId();
+    placed_.assign(birth_.positions.size(), 1);
+  }
+
+  Birth run(const CrackDelta& crack, double gap) {
+    for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
+    on_old_sides();
+    on_parts(crack);
+    inside(crack);
+    part(crack, gap);
+    return std::move(birth_);
+  }
+
+ private:
+  void place(SurfaceVertexId v, const Vec3& at, SurfaceVertexId like) {
+    birth_.positions[v.index()] = at, placed_[v.index()] = 1, like_[v.index()] = like;
+  }
+
+  // A side that is still there has its corners where they were.
+  void on_old_sides() {
+    for (const auto s : birth_.surface.side) {
+      const Triangle& at = old_side_[s];
+      if (at[0] == ~0u) continue;
+      for (int c = 0; c < 3; ++c)
+        if (const auto v = k_.surface_vertex({FaceId(s / 2), static_cast<int>(s % 2)}, c); !placed_[v.index()]) {
+          const auto w = at[static_cast<std::size_t>(c)];
+          place(v, old_[w], SurfaceVertexId(w));
+        }
+    }
+  }
+
+  // On old faces: each part of one gives its new corners their place in it, the lowest face that has one first.
+  void on_parts(const CrackDelta& crack) {
+    std::vector<FaceId> parents = crack.removed_faces, parts;
+    std::sort(parents.begin(), parents.end());
+    std::set_difference(crack.new_faces.begin(), crack.new_faces.end(), crack.new_crack_faces.begin(), crack.new_crack_faces.end(), std::back_inserter(parts));
+    const double size = k_.extent().diagonal();
+    for (const FaceId g : parents) {
+      const auto corners = k_.corners(g);
+      const Box3 box = box_of(corners[0], corners[1], corners[2]).grown(1e-12 * size);
+      for (const FaceId f : parts) {
+        if (k_.face(f).crack != k_.face(g).crack || !box.meets(k_.box(f))) continue;
+        const auto part = k_.corners(f);
+        const Vec3 middle = (part[0] + part[1] + part[2]) / 3;
+        if ((closest_point_on_triangle(middle, corners[0], corners[1], corners[2]) - middle).norm() > 1e-10 * size) continue;
+        for (int which = 0; which < 2; ++which) {
+          if (!k_.has({f, which}) || old_side_[2 * g.index() + static_cast<std::size_t>(which)][0] == ~0u) continue;
+          const Triangle& at = old_side_[2 * g.index() + static_cast<std::size_t>(which)];
+          for (int c = 0; c < 3; ++c) {
+            const auto v = k_.surface_vertex({f, which}, c);
+            if (placed_[v.index()]) continue;
+            const auto& own = k_.face(g).v;
+            const auto same = static_cast<std::size_t>(std::find(own.begin(), own.end(), k_.face(f).v[static_cast<std::size_t>(c)]) - own.begin());
+            place(v, same < 3 ? old_[at[same]] : carried(part[static_cast<std::size_t>(c)], corners, {old_[at[0]], old_[at[1]], old_[at[2]]}),
+                  SurfaceVertexId(at[same < 3 ? same : 0]));
+          }
+        }
+      }
+    }
+  }
+
+  // Places on what is there that x sees, and how far away they are.
+  struct Near {
+    Vec3 rest, now;
+    SurfaceVertexId like;
+    double distance;
+  };
+
+  // Inside, the deformed surface goes on: what is nearest says most.
+  void inside(const CrackDelta& crack) {
+    std::vector<std::uint8_t> is_new(k_.face_count(), 0);
+    for (const FaceId f : crack.new_crack_faces) is_new[f.index()] = 1;
+    std::vector<std::pair<std::uint32_t, SurfaceVertexId>> waiting;
+    for (const auto v : crack.new_surface_vertices)
+      if (k_.alive(v) && !placed_[v.index()]) waiting.push_back({birth_.surface.site[v.index()], v});
+    std::sort(waiting.begin(), waiting.end());
+    std::vector<Vec3> places(waiting.size());
+    std::vector<SurfaceVertexId> likes(waiting.size());
+    for (std::size_t i = 0, j = 0; i < waiting.size(); i = j) {
+      const VertexId site(waiting[i].first);
+      const Vec3& x = k_.point(site);
+      double reach = 0;  // as far as the new faces go
+      for (const FaceId f : k_.faces_at(site))
+        for (const Vec3& c : k_.corners(f)) reach = std::max(reach, (c - x).norm());
+      Vec3 sum = Vec3::Zero();
+      double total = 0, nearest = std::numeric_limits<double>::infinity();
+      for (const Near& n : near(x, 1.01 * reach, is_new)) {
+        const auto nodes = nodes_of(n.like);
+        const double weight = std::pow(n.distance / reach, -4);
+        sum += weight * (n.now + x - n.rest + displacement(x, nodes) - displacement(n.rest, nodes)), total += weight;
+        if (n.distance < nearest) nearest = n.distance, likes[i] = n.like;
+      }
+      places[i] = total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x)));
+      for (j = i; j < waiting.size() && waiting[j].first == waiting[i].first; ++j) places[j] = places[i], likes[j] = likes[i];
+    }
+    for (std::size_t i = 0; i < waiting.size(); ++i) place(waiting[i].second, places[i], likes[i]);
+  }
+
+  std::vector<Near> near(const Vec3& x, double reach, const std::vector<std::uint8_t>& is_new) const {
+    std::vector<FaceId> faces;
+    k_.near(Box3{x, x}.grown(reach), faces);
+    std::erase_if(faces, [&](FaceId f) { return is_new[f.index()]; });
+    std::vector<Near> result;
+    for (const FaceId f : faces) {
+      const auto rest = k_.corners(f);
+      const Vec3 c = closest_point_on_triangle(x, rest[0], rest[1], rest[2]);
+      const double distance = (x - c).norm();
+      if (!(distance < reach) || !(distance > 0)) continue;
+      const Vec3 almost = x + 0.999 * (c - x);
+      if (std::any_of(faces.begin(), faces.end(), [&](FaceId g) {
+            const auto t = k_.corners(g);
+            return g != f && segment_meets_triangle(x, almost, t[0], t[1], t[2]);
+          }))
+        continue;
+      const Side side{f, k_.face(f).crack > 0 && orient3d(rest[0], rest[1], rest[2], x) > 0 ? 1 : 0};  // material is behind side 0
+      const Vec3 w = barycentric(c, rest[0], rest[1], rest[2]);
+      Vec3 by = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) by += w[k] * (birth_.positions[k_.surface_vertex(side, k).index()] - rest[static_cast<std::size_t>(k)]);
+      result.push_back({c, c + by, like_[k_.surface_vertex(side, 0).index()], distance});
+    }
+    return result;
+  }
+
+  void part(const CrackDelta& crack, double gap) {
+    const ContactSurface& s = birth_.surface;
+    std::vector<std::uint8_t> is_new(k_.face_count(), 0), marked;
+    for (const FaceId f : crack.new_faces) is_new[f.index()] = 1;
+    for (const auto side : s.side) marked.push_back(is_new[side / 2]);
+    std::vector<Vec3> rest(s.site.size(), Vec3::Zero());
+    for (std::uint32_t v = 0; v < rest.size(); ++v)
+      if (k_.alive(SurfaceVertexId(v))) rest[v] = k_.point(VertexId(s.site[v]));
+    const auto slope = [&](std::uint32_t v) {
+      const auto nodes = like_[v].valid() ? nodes_of(like_[v]) : nodes_near(rest[v]);
+      return nodes.empty() ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + gradient_[nodes[0].index()]);
+    };
+    if (!untangle(s, rest, slope, gap, birth_.positions, marked).empty()) throw GeometryError("the surface would cross itself where the crack begins to open");
+  }
+
+  std::vector<NodeId> with_neighbors(NodeId m) const {
+    std::vector<NodeId> nodes{m};
+    for (const auto& n : body_.graph.neighbors(body_.nodes, m)) nodes.push_back(n.to);
+    return nodes;
+  }
+  std::vector<NodeId> nodes_near(const Vec3& x) const {
+    const auto nearest = body_.grid.nearest(body_.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; });
+    return nearest.empty() ? std::vector<NodeId>() : with_neighbors(NodeId(nearest[0]));
+  }
+  // Those that carry an old surface vertex.
+  std::vector<NodeId> nodes_of(SurfaceVertexId v) const {
+    const auto master = v.valid() ? body_.binding.master[v.index()] : SurfaceVertexId();
+    return master.valid() ? with_neighbors(body_.binding.master_node[master.index()]) : std::vector<NodeId>();
+  }
+  Vec3 displacement(const Vec3& x, const std::vector<NodeId>& nodes) const {
+    if (nodes.empty()) return Vec3::Zero();
+    std::vector<std::pair<NodeId, double>> bound;
+    for (const NodeId i : nodes)
+      if (const double d = (body_.nodes.position[i.index()] - x).norm(); d < body_.nodes.radius[i.index()]) bound.push_back({i, d});
+    if (bound.empty()) bound.push_back({nodes[0], 0.0});
+    return displacement_at(x, bound, body_.nodes, state_.displacement, gradient_);
+  }
+
+  const Body& body_;
+  const State& state_;
+  const std::vector<Vec3>& old_;
+  const Complex& k_;
+  std::vector<Mat3> gradient_;
+  std::vector<Triangle> old_side_;        // by face and side: where its corners were
+  Birth birth_;
+  std::vector<SurfaceVertexId> like_;     // the old vertex whose nodes say how the material about a vertex moves
+  std::vector<std::uint8_t> placed_;
+};
+
+}  // namespace
+
+Birth give_birth(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions,
+                 const Complex& grown, const CrackDelta& crack, double gap) {
+  return Midwife(body, solid, state, before, positions, grown).run(crack, gap);
+}
+
+}  // namespace geo

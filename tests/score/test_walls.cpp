@@ -9,6 +9,7 @@
 #include "geometry/predicates.h"
 #include "score/jagged.h"
 #include "score/join.h"
+#include "score/partial.h"
 #include "score/voronoi.h"
 #include "score/walls.h"
 #include "surface/check.h"
@@ -163,4 +164,31 @@ TEST_CASE("Jagged walls meet where flat ones did and do not cross", "[jagged]") 
   JaggedOptions wrong;
   wrong.amplitude = -1;
   CHECK_THROWS_AS(roughen_walls(none, TriangleBvh(corners_of(make_sphere(1))), wrong), InputError);
+}
+
+TEST_CASE("A partial score ends in an even line, at the depth wanted", "[partial]") {
+  const TriangleBvh skin(corners_of(make_sphere(12)));
+  TriangleMesh walls;
+  walls.vertices = {{-2, -2, 0.01}, {2, -2, 0.02}, {2, 2, 0}, {-2, 2, 0.01}};
+  walls.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const double longest = 0.1;
+  refine_walls(walls, skin, longest, 0.2);
+  for (const double depth : {0.3, 0.6, 0.9}) {
+    TriangleMesh kept = walls;
+    keep_shallow(kept, skin, depth);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+    for (const auto& t : kept.triangles)
+      for (std::size_t k = 0; k < 3; ++k) ++uses[std::minmax(t[k], t[(k + 1) % 3])];
+    int rim = 0;
+    for (const auto& [edge, times] : uses) {
+      CHECK(times <= 2);
+      if (times == 1 && skin.inside(kept.vertices[edge.first]) && skin.inside(kept.vertices[edge.second])) {
+        ++rim;
+        for (const auto v : {edge.first, edge.second}) CHECK(skin.closest(kept.vertices[v]).distance == Approx(depth).margin(0.06 * longest + 0.02));
+      }
+    }
+    CHECK(rim > 12);
+    CHECK_FALSE(cross_each_other(kept));
+  }
+  CHECK_THROWS_AS(keep_shallow(walls, skin, 1), InputError);
 }

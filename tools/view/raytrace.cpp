@@ -105,7 +105,7 @@ class Tracer {
         at_plane = rate < 0;
       }
     }
-    const Hit thing = trace(things_, eye, d, from);
+    const Hit thing = trace(things_, eye, d, 0);  // whole, where the plane cuts it
     Hit skin = trace(surface_, eye, d, from);
     Color behind = thing.t < 1e29 ? lit(thing, d, noise, occlusion) : background(eye, d, noise, occlusion);
     if (at_plane && stage_.section && winding(eye + from * d, d) > 0 && from <= thing.t) {

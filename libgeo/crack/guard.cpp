@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "crack/ring_order.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "surface/check.h"
@@ -133,40 +134,6 @@ class Inspection {
     return {};
   }
 
-  // Faces around an edge that stand otherwise than they are listed: sheets that have changed places, with nothing between
-  // them where the rings say that there is material.
-  Fault misplaced() const {
-    using Edge = std::pair<VertexId, VertexId>;
-    std::vector<Edge> given;
-    for (const auto& ring : edit_.rings) {
-      given.push_back(std::minmax(ring.a, ring.b));
-      if (Fault fault = misplaced(ring.a, ring.b, ring.faces)) return fault;
-    }
-    std::sort(given.begin(), given.end());
-    // Whole edges of K whose faces are in parts now keep their order.
-    std::vector<std::pair<Edge, std::uint32_t>> kept;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const auto& f = edit_.new_faces[i];
-      if (!f.parent.valid()) continue;
-      for (std::size_t e = 0; e < 3; ++e) {
-        const Edge edge = std::minmax(f.v[e], f.v[(e + 1) % 3]);
-        if (edge.second.value < complex_.vertex_count() && complex_.around(edge.first, edge.second).size() > 2 && !std::binary_search(given.begin(), given.end(), edge))
-          kept.push_back({edge, i});
-      }
-    }
-    for (const auto& [edge, i] : kept) {
-      const auto& [a, b] = edge;
-      std::vector<FaceId> ring;
-      for (const FaceId f : complex_.around(a, b)) {
-        ring.push_back(f);
-        for (const auto& [other, j] : kept)
-          if (other == edge && edit_.new_faces[j].parent == f) ring.back() = FaceId(complex_.face_count() + j);
-      }
-      if (Fault fault = misplaced(a, b, ring)) return fault;
-    }
-    return {};
-  }
-
   // A new face that crosses one that stays.
   Fault crossing_old() const {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
@@ -229,21 +196,6 @@ class Inspection {
   }
 
  private:
-  // Faces listed counter-clockwise about a→b.
-  Fault misplaced(VertexId a, VertexId b, const std::vector<FaceId>& ring) const {
-    bool touched = is_moved(a) || is_moved(b);
-    std::vector<Vec3> apex;
-    Fault fault{"rounding would exchange faces around an edge", {}};
-    for (const FaceId f : ring) {
-      const bool fresh = f.value >= complex_.face_count();
-      const auto& v = fresh ? edit_.new_faces[f.value - complex_.face_count()].v : complex_.face(f).v;
-      if (fresh) fault.faces.push_back(f.value - complex_.face_count());
-      for (const VertexId c : v)
-        if (c != a && c != b) apex.push_back(point(c)), touched |= is_moved(c);
-    }
-    return !touched || stand_around(point(a), point(b), apex) ? Fault{} : fault;
-  }
-
   struct New {
     std::array<Vec3, 3> corners;
     std::array<std::uint32_t, 3> rows;
@@ -280,7 +232,7 @@ Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<cons
   const Inspection inspection(complex, edit, families, moved, clearance);
   Fault fault = inspection.turned();
   if (!fault) fault = inspection.coincident();
-  if (!fault) fault = inspection.misplaced();
+  if (!fault) fault = find_misplaced(complex, edit, moved);
   if (!fault) fault = inspection.crossing_old();
   if (!fault) fault = inspection.crossing_new();
   return fault;

@@ -1,0 +1,81 @@
+#include "crack/ring_order.h"
+
+#include <algorithm>
+
+#include "surface/check.h"
+
+namespace geo {
+namespace {
+
+using Edge = std::pair<VertexId, VertexId>;  ///< first < second
+
+class RingOrder {
+ public:
+  RingOrder(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved) : complex_(complex), edit_(edit), moved_(moved) {}
+
+  Fault first_fault() const {
+    std::vector<Edge> given;
+    for (const auto& ring : edit_.rings) {
+      given.push_back(std::minmax(ring.a, ring.b));
+      if (Fault fault = fault_around(ring.a, ring.b, ring.faces)) return fault;
+    }
+    std::sort(given.begin(), given.end());
+    // Whole edges of K whose faces are in parts now keep their order, and their parts take the faces' places.
+    std::vector<std::pair<Edge, std::uint32_t>> parts;
+    for (std::uint32_t i = 0; i < edit_.new_faces.size(); ++i) {
+      const auto& f = edit_.new_faces[i];
+      if (!f.parent.valid()) continue;
+      for (std::size_t e = 0; e < 3; ++e) {
+        const Edge edge = std::minmax(f.v[e], f.v[(e + 1) % 3]);
+        if (edge.second.value < complex_.vertex_count() && complex_.around(edge.first, edge.second).size() > 2 && !std::binary_search(given.begin(), given.end(), edge))
+          parts.push_back({edge, i});
+      }
+    }
+    std::sort(parts.begin(), parts.end());
+    std::vector<FaceId> ring;
+    for (auto from = parts.begin(), to = from; from != parts.end(); from = to) {
+      const Edge edge = from->first;
+      to = std::find_if(from, parts.end(), [&](const auto& part) { return part.first != edge; });
+      ring.clear();
+      for (const FaceId f : complex_.around(edge.first, edge.second)) {
+        const auto part = std::find_if(from, to, [&](const auto& p) { return edit_.new_faces[p.second].parent == f; });
+        ring.push_back(part == to ? f : FaceId(complex_.face_count() + part->second));
+      }
+      if (Fault fault = fault_around(edge.first, edge.second, ring)) return fault;
+    }
+    return {};
+  }
+
+ private:
+  const Vec3& point(VertexId v) const {
+    return v.value < complex_.vertex_count() ? complex_.point(v) : edit_.new_vertices[v.value - complex_.vertex_count()];
+  }
+  bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
+
+  // Faces listed counter-clockwise about a→b.
+  Fault fault_around(VertexId a, VertexId b, const std::vector<FaceId>& ring) const {
+    bool touched = is_moved(a) || is_moved(b);
+    std::vector<Vec3> apex;
+    Fault fault{"rounding would exchange faces around an edge", {}};
+    for (const FaceId f : ring) {
+      const bool fresh = f.value >= complex_.face_count();
+      const auto& v = fresh ? edit_.new_faces[f.value - complex_.face_count()].v : complex_.face(f).v;
+      if (fresh) fault.faces.push_back(f.value - complex_.face_count());
+      for (const VertexId c : v)
+        if (c != a && c != b) apex.push_back(point(c)), touched |= is_moved(c);
+    }
+    return !touched || stand_around(point(a), point(b), apex) ? Fault{} : fault;
+  }
+
+  const Complex& complex_;
+  const ComplexEdit& edit_;
+  std::span<const std::uint8_t> moved_;
+};
+
+}  // namespace
+
+Fault find_misplaced(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved) {
+  return RingOrder(complex, edit, moved).first_fault();
+}
+
+}  // namespace geo

@@ -19,6 +19,7 @@ struct TouchingPlaces {
   };
   Place a, b;
   Vec3 normal;          ///< unit; from b to a
+  double depth = 0;     ///< how far past each other the motion would bring them, model units
   double approach = 0;  ///< relative velocity along −normal that is still allowed, model units per second; negative: they must part
 };
 

@@ -124,9 +124,11 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
     const std::vector<Vec3> goal = average();
     const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
     if (watched.empty()) watched = watch(motion);
-    const auto touching = touching_places(watched, motion, constraint);
-    std::vector<TouchingPlaces> sides;
-    touching_copies(copies, to, normals, 0.01 * gap, constraint, sides);
+    constexpr std::size_t most = 4;  // between two nodes' surroundings: three places keep planes from meeting
+    const auto touching = deepest(touching_places(watched, motion, constraint), weights_, most);
+    std::vector<TouchingPlaces> all_sides;
+    touching_copies(copies, to, normals, 0.01 * gap, constraint, all_sides);
+    const auto sides = deepest(all_sides, weights_, most);
     const std::size_t count = apply_impulses(weights_, touching, copies, inverse_mass, how, change).touching;
     return count + apply_impulses(weights_, sides, alone, inverse_mass, how, change).touching;
   };

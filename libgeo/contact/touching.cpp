@@ -1,7 +1,10 @@
 #include "contact/touching.h"
 
 #include <algorithm>
-#include <map>
+#include <limits>
+#include <tuple>
+
+#include "base/parallel.h"
 
 namespace geo {
 
@@ -17,19 +20,18 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
   for (const Watched& w : watched) {
     if (parted(w.normal, w.a, w.b, m.to) >= w.gap) continue;
     const ClosestPlaces& c = w.closest;
-    TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0};
+    TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
     const auto take = [](TouchingPlaces::Place& place, const Simplex& s, const Vec3& weights) {
       for (int k = 0; k < s.size; ++k)
         if (weights[k] > 0) place.vertex[place.size] = s.v[k], place.weight[place.size++] = weights[k];
     };
     take(t.a, w.a, c.from), take(t.b, w.b, c.to);
     t.approach = std::max(0.0, w.normal.dot(c.apart) - w.gap) / how.dt;
-    if (how.share > 0) {
-      Vec3 apart = Vec3::Zero();
-      for (int k = 0; k < t.a.size; ++k) apart += t.a.weight[k] * m.to[t.a.vertex[k]];
-      for (int k = 0; k < t.b.size; ++k) apart -= t.b.weight[k] * m.to[t.b.vertex[k]];
-      t.approach = -how.share * std::max(0.0, w.gap - t.normal.dot(apart)) / how.dt;
-    }
+    Vec3 apart = Vec3::Zero();
+    for (int k = 0; k < t.a.size; ++k) apart += t.a.weight[k] * m.to[t.a.vertex[k]];
+    for (int k = 0; k < t.b.size; ++k) apart -= t.b.weight[k] * m.to[t.b.vertex[k]];
+    t.depth = w.gap - t.normal.dot(apart);
+    if (how.share > 0) t.approach = -how.share * std::max(0.0, t.depth) / how.dt;
     // Neighbouring triangles have places in common: they are named by the vertices that carry them.
     std::array<std::uint32_t, 6> key;
     key.fill(~0u);
@@ -57,8 +59,41 @@ void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, cons
         if (!(across.norm() > 0.5)) continue;
         const Vec3 n = across.normalized();
         const double apart = n.dot(targets[a] - targets[b]);
-        if (apart < -tolerance) out.push_back({{{a}, {1}, 1}, {{b}, {1}, 1}, n, how.share * apart / how.dt});
+        if (apart < -tolerance) out.push_back({{{a}, {1}, 1}, {{b}, {1}, 1}, n, -apart, how.share * apart / how.dt});
       }
+}
+
+std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights, std::size_t most) {
+  const auto node = [&](const TouchingPlaces::Place& place) {
+    std::uint32_t best = ~0u;
+    double weight = -std::numeric_limits<double>::infinity();
+    const auto heaviest = std::max_element(place.weight, place.weight + place.size) - place.weight;
+    for (const auto& e : weights.row(place.vertex[heaviest]))
+      if (e.weight > weight) weight = e.weight, best = e.node;
+    return best;
+  };
+  struct Entry {
+    std::uint32_t low, high;  // the two nodes
+    double depth;
+    std::size_t row;
+  };
+  std::vector<Entry> order(touching.size());
+  parallel_for(order.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto a = node(touching[i].a), b = node(touching[i].b);
+      order[i] = {std::min(a, b), std::max(a, b), touching[i].depth, i};
+    }
+  });
+  std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) { return std::tie(p.low, p.high, q.depth, p.row) < std::tie(q.low, q.high, p.depth, q.row); });
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
+    if (order[i].low != order[first].low || order[i].high != order[first].high) first = i;
+    if (i - first < most) kept.push_back(order[i].row);
+  }
+  std::sort(kept.begin(), kept.end());
+  std::vector<TouchingPlaces> result;
+  for (const auto i : kept) result.push_back(touching[i]);
+  return result;
 }
 
 }  // namespace geo

@@ -25,4 +25,8 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
 void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
                      double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out);
 
+/// Of those between the same two neighbourhoods of nodes, the deepest `most`: more say the same, for nodes are farther apart than
+/// vertices. In the order given.
+std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights, std::size_t most);
+
 }  // namespace geo

@@ -1,6 +1,7 @@
 #include "contact/untangle.h"
 
 #include <algorithm>
+#include <set>
 
 #include "contact/crossing.h"
 #include "contact/dividers.h"
@@ -34,20 +35,22 @@ bool push(const Tangle& t, std::vector<Vec3>& at, std::vector<std::uint8_t>& mov
 std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurface& surface, const std::vector<Vec3>& rest,
                                                               const std::function<Mat3(std::uint32_t)>& slope, double gap,
                                                               std::vector<Vec3>& positions, std::vector<std::uint8_t>& marked) {
-  constexpr int most_rounds = 24, most_sweeps = 8;
+  constexpr int most_rounds = 16, most_sweeps = 4;
   const auto together = vertices_together(surface.site, positions);
   std::vector<Triangle> triangles = surface.triangles;
   for (auto& t : triangles)
     for (auto& v : t) v = together[v];
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> known;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> known;
+  std::size_t fewest = ~std::size_t(0);
   std::vector<Tangle> tangles;
   std::vector<std::uint8_t> moved(positions.size(), 0);
   for (int round = 0;; ++round) {
     const auto crossings = find_crossings(surface.triangles, positions, together, true, &marked);
-    if (crossings.empty() || round == most_rounds) return crossings;
+    // In vain, too, when half of the rounds have not helped.
+    fewest = std::min(fewest, crossings.size());
+    if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest)) return crossings;
     for (const auto& pair : crossings) {
-      if (std::find(known.begin(), known.end(), pair) != known.end()) continue;
-      known.push_back(pair);
+      if (!known.insert(pair).second) continue;
       std::pair<Simplex, Simplex> parts[2];
       const int count = parts_apart(triangles[pair.first], triangles[pair.second], parts);
       for (int i = 0; i < count; ++i) {

@@ -17,7 +17,7 @@ class Collisions {
   Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows);
 
   /// Before a step: puts the ground's penalty on the surface into the environment, in place of that on nodes.
-  void begin(const Body& body, const State& motion, double dt, Environment& environment);
+  void begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment);
   /// What has to agree to a crack step; empty: nothing.
   Agreement agreement(const Body& body, const Solid& solid, const State& motion);
   /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
@@ -30,6 +30,7 @@ class Collisions {
 
  private:
   std::optional<SelfContact> surface_;
+  std::optional<GroundOptions> ground_options_;  ///< with an acceleration for each depth, 1/s², in place of the pressure
   std::optional<Ground> ground_;
 };
 

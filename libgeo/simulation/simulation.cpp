@@ -252,7 +252,7 @@ void Simulation::step(double dt, FrameWork& work) {
   move_grips(dt);
   environment_.contact.clear();
   push(dt);
-  collisions_->begin(body_, state_.motion, dt, environment_);
+  collisions_->begin(body_, solid_, state_.motion, dt, environment_);
   integrate(dt, work);
   collide(before, dt, work);
   state_.time += dt;

@@ -35,9 +35,9 @@ std::string counts(const geo::FrameWork& w) {
 }
 
 // What a frame came to, without times: a line of frames.jsonl, the same in every run.
-std::string outcome(const geo::Simulation& sim, const geo::FrameWork& w) {
+std::string outcome(const geo::Simulation& sim, const geo::FrameWork& w, const geo::TriangleMesh& surface) {
   std::string line = "{\"frame\":" + std::to_string(sim.state().frame) + ",\"time\":" + tool::number(sim.state().time) + ",\"nodes\":" + std::to_string(sim.body().nodes.size()) +
-                     ",\"faces\":" + std::to_string(sim.body().surface.live_face_count()) + ","  + counts(w) + ",\"crossings\":" + std::to_string(geo::count_crossings(sim.surface())) + ",\"lag\":" + tool::number(w.contact.lag) + ",\"energy\":" + tool::number(w.energy) + ",\"blade_force\":[";
+                     ",\"faces\":" + std::to_string(sim.body().surface.live_face_count()) + ","  + counts(w) + ",\"crossings\":" + std::to_string(geo::count_crossings(surface)) + ",\"lag\":" + tool::number(w.contact.lag) + ",\"energy\":" + tool::number(w.energy) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < w.blade_force.size(); ++b) {
     const geo::Vec3& f = w.blade_force[b];
     line += std::string(b ? "," : "") + "[" + tool::number(f.x()) + "," + tool::number(f.y()) + "," + tool::number(f.z()) + "]";
@@ -218,8 +218,7 @@ int main(int argc, char** argv) {
     geo::Simulation sim = begun ? take_up(plan, folder) : begin();
     std::string log = folder.read_log(sim.state().frame);
     const geo::TriangleMesh* carried = plan.model.parts.size() == 1 ? &plan.model.mesh : nullptr;
-    const auto write_frame = [&] {
-      const auto mesh = sim.surface(carried);
+    const auto write_frame = [&](const geo::TriangleMesh& mesh) {
       geo::write_all(folder.nodes(sim.state().frame), [&](std::ostream& out) { geo::write_frame_nodes(out, nodes_of(sim)); });
       geo::write_all(folder.frame(sim.state().frame), [&](std::ostream& out) { geo::write_ply(out, mesh); });
     };
@@ -230,7 +229,7 @@ int main(int argc, char** argv) {
       sim = take_up(plan, folder);
     };
     if (!begun) {
-      write_frame();
+      write_frame(sim.surface(carried));
       checkpoint();
       require_space(folder.path, bytes_of_frames(plan.model.mesh, last) + 28.0 * (last + 1) * double(sim.body().nodes.size()) + 4 * double(fs::file_size(folder.checkpoint())));
     }
@@ -244,9 +243,10 @@ int main(int argc, char** argv) {
         return !progress || progress(phase, static_cast<std::size_t>(frame - 1) * steps + step, static_cast<std::size_t>(last) * steps);
       });
       geo::Stopwatch writing;
-      const std::string line = outcome(sim, work);
+      const auto mesh = sim.surface(carried);
+      const std::string line = outcome(sim, work, mesh);
       log += line + "}\n";
-      write_frame();
+      write_frame(mesh);
       if (frame % plan.scene.checkpoint_every == 0 || frame == last) checkpoint();
       work.write_seconds += writing.lap();
       total += work;

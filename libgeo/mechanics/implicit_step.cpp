@@ -32,7 +32,8 @@ class ImplicitStep {
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out);
   void turn(Columns<float>& columns, std::size_t block) const;
   void elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const;
-  int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x);
+  int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small);
+  double most(const std::vector<Vec3>& moved) const;
   void keep_momentum(std::vector<Vec3>& direction) const;
   Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }
   static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
@@ -248,15 +249,23 @@ double ImplicitStep::dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x) {
+// Of the nodes' spacing.
+double ImplicitStep::most(const std::vector<Vec3>& moved) const {
+  double most = 0;
+  for (std::size_t i = 0; i < n_; ++i) most = std::max(most, moved[i].squaredNorm() / (s_.spacing_[i] * s_.spacing_[i]));
+  return std::sqrt(most);
+}
+
+// Until what is left is a tenth in the norm that counts, or what the preconditioner would still add is `small`.
+int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small) {
   std::vector<Vec3> r = force, z(n_), p(n_), hp;
   each_node([&](std::size_t i) { x[i].setZero(), z[i] = inverse_[i] * r[i]; });
   coarse_->add(r, z);
   p = z;
   double rz = dot(r, z);
-  const double enough = 0.01 * rz;  // a tenth in the norm that counts: Newton goes on from there
+  const double enough = 0.01 * rz;
   int k = 0;
-  for (; k < 500 && rz > enough; ++k) {
+  for (; k < 500 && rz > enough && !(k > 0 && small > 0 && most(z) < small); ++k) {
     multiply(p, hp);
     const double curvature = dot(p, hp);
     if (!(curvature > 0)) break;
@@ -305,13 +314,14 @@ bool ImplicitStep::run(StepReport& report) {
       }
       if (is_fixed(env_, i)) r.setZero();
     }
-    report.cg += solve(force, direction);
+    // Once Newton has made a step, no more than the accuracy asks for.
+    report.cg += solve(force, direction, newton > 0 ? 0.2 * accuracy_ : 0);
     keep_momentum(direction);
-    double most = 0, step = 1, tried = 0;
-    for (std::size_t i = 0; i < n_; ++i) most = std::max(most, direction[i].norm() / s_.spacing_[i]);
-    if (!std::isfinite(most)) return false;
-    // What is left after the direction is a tenth of it, as the solve ends there.
-    const bool last = most < 10 * accuracy_;
+    const double longest = most(direction);
+    double step = 1, tried = 0;
+    if (!std::isfinite(longest)) return false;
+    // What is left after the direction is a tenth of it or less than the accuracy, as the solve ends there.
+    const bool last = longest < 10 * accuracy_;
     const double rounding = 1e-14 * std::abs(value);
     int halvings = 0;
     for (;; ++halvings, step *= 0.5) {
@@ -320,9 +330,9 @@ bool ImplicitStep::run(StepReport& report) {
       tried = evaluate(trial, &next);
       if (tried <= value + rounding || halvings == 16) break;
     }
-    if (!last && !(tried <= value + rounding)) return most * step < accuracy_;
+    if (!last && !(tried <= value + rounding)) return longest * step < accuracy_;
     u_.swap(trial);
-    moved += step * most;
+    moved += step * longest;
     if (last) {
       // To second order: the stiffness times the direction is the force less inertia.
       double energy = elastic_;

@@ -40,6 +40,7 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow>
     first.push_back(static_cast<std::uint32_t>(to.size()));
   }
   rounded.assign(gradient.begin(), gradient.end());
+  rounded.push_back(0);  // entries are read by fours
   for (const MaterialPoint& p : points) box.add(p.position);
 }
 

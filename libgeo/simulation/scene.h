@@ -62,6 +62,7 @@ struct Scene {
   double ground_stiffness = 1e5, friction = 0.5;
   Vec3 gravity = {0, 0, -9.81};
   double frame_rate = 24, dt = 1.0 / 96;
+  double accuracy = 1e-3;  ///< of displacements in an implicit step, over the nodes' spacing
   int frames = 24, checkpoint_every = 8;
   bool implicit = true;
   std::uint64_t seed = 1;

@@ -213,7 +213,7 @@ void Simulation::push(double dt) {
 void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
   solid_.settle(body_, state_.motion);
-  const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_) : solid_.step_explicit(state_.motion, dt, environment_);
+  const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_, scene_.accuracy) : solid_.step_explicit(state_.motion, dt, environment_);
   const std::vector<Pose> from = grip_poses(state_.time), to = grip_poses(state_.time + dt);
   for (const auto& [i, g] : gripped_) {
     const Grip& grip = scene_.grips[g];

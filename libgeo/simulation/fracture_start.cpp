@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "geometry/distance.h"
 #include "mechanics/kernel.h"
+#include "mechanics/plasticity.h"
 
 namespace geo {
 namespace {
@@ -23,31 +24,36 @@ bool near_crack(const Complex& complex, const Vec3& x, double reach) {
 
 }  // namespace
 
-std::vector<Mat3> averaged_stress(const Body& body, const std::vector<Mat3>& gradient, const Material& material) {
-  const std::size_t n = body.nodes.size();
-  std::vector<Mat3> own(n), mean(n);
-  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Mat3 f = Mat3::Identity() + gradient[i];
-      const double volume = f.determinant();
-      own[i].setZero();
-      if (!(volume > 0.01) || body.debris[i]) continue;  // inside out, or rigid: nothing to tell
-      const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-      own[i] = rotation.transpose() * stress(material, f) * f.transpose() * rotation / volume;
+std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
+  const MaterialPoints& points = solid.points();
+  constexpr std::size_t width = 7;  // six stresses and their weight
+  std::vector<double> parts(width * points.parts(), 0);
+  parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const PointBlock& block = points.blocks[b];
+      const std::vector<Mat3> gradient = points.gradients(b, motion.displacement);
+      for (std::size_t i = 0; i < block.points.size(); ++i) {
+        const MaterialPoint& p = block.points[i];
+        Mat3 f = Mat3::Identity() + gradient[i];
+        if (p.rung == Rung::rigid || !(f.determinant() > 0.01)) continue;
+        const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+        if (!motion.plastic.empty()) f = f * relaxation(motion.plastic[points.first(b) + i]);
+        const Mat3 s = rotation.transpose() * stress(solid.material(), f) * f.transpose() * rotation / f.determinant();
+        for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
+          const auto node = block.nodes[block.to[q]];
+          const double w = p.volume * kernel((p.position - body.nodes.position[node]).norm() / body.nodes.radius[node], 1.0);
+          double* sum = &parts[width * (points.part(b) + block.to[q])];
+          for (const double c : {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)}) *sum++ += w * c;
+          *sum += w;
+        }
+      }
     }
   });
-  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double total = kernel(0, 1.0);
-      mean[i] = total * own[i];
-      for (const auto& neighbor : body.graph.neighbors(body.nodes, NodeId(i))) {
-        const double w = kernel(neighbor.distance / body.nodes.radius[i], 1.0);
-        total += w;
-        mean[i] += w * own[neighbor.to.index()];
-      }
-      mean[i] /= total;
-    }
+  std::vector<Mat3> mean(body.nodes.size(), Mat3::Zero());
+  points.gather(parts.data(), width, [&](std::size_t i, const double* s) {
+    if (s[6] > 0) mean[i] << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    if (s[6] > 0) mean[i] /= s[6];
   });
   return mean;
 }

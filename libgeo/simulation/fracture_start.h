@@ -14,9 +14,10 @@ struct CrackStart {
   double share;  ///< of that stress in the strength there; > 1
 };
 
-/// Cauchy's stress at each node, turned back by the material's rotation there, averaged over the node's neighbours along the
-/// graph by the kernel: no average reaches across a crack. Pa, in material coordinates.
-std::vector<Mat3> averaged_stress(const Body& body, const std::vector<Mat3>& gradient, const Material& material);
+/// For each node the mean of Cauchy's stress over the material points that take it, weighed by volume and the kernel: no mean
+/// reaches across a crack, and it is the stress that forces come from. Turned back by the material's rotation at the points; Pa, in
+/// material coordinates. Zero where no point takes a node, or all are inside out.
+std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion);
 
 /// Nodes whose averaged stress has passed the strength, where cracks may begin and none is within `fracture.apart`
 /// spacings; the most overstrained first, none within that distance of one before it; at most `most`.

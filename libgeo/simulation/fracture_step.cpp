@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "simulation/fracture_rest.h"
 #include "simulation/fracture_start.h"
 #include "simulation/fracture_tip.h"
 
@@ -16,6 +17,7 @@ namespace {
 struct Drive {
   std::vector<Vec3> direction;  // unit, across the front
   std::vector<double> excess;   // stress over what the toughness asks for; ≤ 1: none
+  std::vector<std::uint8_t> told;  // whether enough nodes see the point for that to be known
 };
 
 double spacing_at(const Body& body, const Vec3& p) {
@@ -32,12 +34,14 @@ Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, cons
   const std::size_t n = g.size();
   std::vector<Mat3> separation(n, Mat3::Zero());
   std::vector<TipFrame> frame(n);
+  std::vector<std::uint8_t> told(n, 0);
   parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       frame[i] = g.frame(i);
       if (!g.live(i) || !may_break(fracture, frame[i].at)) continue;
       const TipField field = tip_field(body, motion.displacement, solid.material(), frame[i]);
-      if (field.nodes < 4) continue;
+      told[i] = field.nodes >= 4;
+      if (!told[i]) continue;
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
       const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
@@ -59,7 +63,7 @@ Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, cons
       separation[i] /= total;
     }
   }
-  Drive d{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0)};
+  Drive d{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0), std::move(told)};
   for (std::size_t i = 0; i < n; ++i) {
     d.direction[i] = frame[i].ahead;
     if (!g.live(i) || separation[i].isZero() || !may_break(fracture, frame[i].at)) continue;
@@ -107,11 +111,15 @@ void step_fracture(const Fracture& fracture, const Body& body, const Solid& soli
   std::vector<GrowingFront> fronts;
   fronts.swap(state.fronts);
   const auto keep = [&](std::vector<GrowingFront> parts) { state.fronts.insert(state.fronts.end(), parts.begin(), parts.end()); };
+  std::vector<std::pair<std::int32_t, Box3>> moves;  // cracks, and where they grew
   const auto make = [&](GrowingFront& g, const Drive& d, std::vector<double>& step, double spacing) {
     const FrontPlan plan = plan_front(body.surface, g, step, d.direction, spacing);
     FrontState moved = depart(g, plan);
     if (split(moved, plan.next)) {
       ++done.advanced;
+      moves.push_back({g.front.crack, {}});
+      for (const auto& p : g.front.points) moves.back().second.add(p.position);
+      for (const Vec3& p : plan.next) moves.back().second.add(p);
       keep(arrive(g, plan, std::move(moved), d.direction));
     } else {
       ++done.refused;
@@ -130,6 +138,7 @@ void step_fracture(const Fracture& fracture, const Body& body, const Solid& soli
       const double here = spacing_at(body, g.front.points[i].position);
       spacing = std::min(spacing, here);
       g.owed[i] = d.excess[i] > 1 ? std::min(here, g.owed[i] + dt * fastest * (1 - 1 / (d.excess[i] * d.excess[i]))) : 0;
+      if (!d.told[i] && may_break(fracture, g.front.points[i].position) && is_ligament(body.surface, g.frame(i), here)) g.owed[i] = std::max(g.owed[i], 0.25 * here);
       most = std::max(most, g.owed[i]);
     }
     if (air) spacing = spacing_at(body, g.front.points[0].position);
@@ -152,9 +161,12 @@ void step_fracture(const Fracture& fracture, const Body& body, const Solid& soli
       make(g, d, step, spacing);
     }
   }
+  for (const auto& [crack, where] : moves)
+    for (FrontState& rest : left_behind(body.surface, crack, where, state.fronts))
+      if (const auto next = across_ligament(body.surface, rest, spacing_at(body, rest.points[0].position)); !next.empty()) ++(split(rest, next) ? done.advanced : done.refused);
   const int most = std::min(fracture.cracks_per_step, fracture.cracks - state.cracks);
   if (most > 0) {
-    const auto stress = averaged_stress(body, solid.gradients(motion.displacement), solid.material());
+    const auto stress = averaged_stress(body, solid, motion);
     for (const CrackStart& s : find_starts(body, stress, fracture, static_cast<std::size_t>(most))) {
       const double spacing = body.nodes.spacing[s.node.index()];
       // Off the node, which would lie in the flaw else.

@@ -87,7 +87,7 @@ class Solid {
   /// `sees` accepts), weighed by volume and the kernel. Zero where there are none.
   Mat3 stress_at(const State& state, const Vec3& x, double radius, const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Backward Euler as an incremental potential: Newton, conjugate gradients with 3×3 block Jacobi, line search. Divided in
+  /// Backward Euler as an incremental potential: Newton, conjugate gradients preconditioned on two levels, line search. Divided in
   /// two halves, and these again, where Newton does not converge. `accuracy`: of displacements, over the nodes' spacing.
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3) const;
   /// Leapfrog (symplectic Euler) with as many substeps as the fastest wave asks for; twice as many where the energy rises.

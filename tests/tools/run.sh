@@ -436,7 +436,12 @@ scene)
   kerf-model apple --frequency 10 -o models/apple.ply
   kerf-model polyp --frequency 8 -o models/polyp.ply
   kerf-score -q models/pumpkin.ply --pattern voronoi --pieces 6 -o models/smash.front
+  kerf-model block --edge 0.16 -o models/jello.ply
+  moves=0  # how far something must have gone at least
   case $scene in
+  apple) young=3e5 pieces=1 moves=0.7 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;          # the peel falls
+  apple-clamped) young=3e5 pieces=1 moves=0.3 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;  # it bends off
+  jello) young=2e5 pieces=4 set="--set body.mesh=models/jello.ply --set body.nodes=300" ;;
   polyp) young=4e5 pieces=2 set="--set body.mesh=models/polyp.ply --set body.nodes=150" ;;
   halve) young=4e4 pieces=2 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
   smashed) young=3e5 pieces=12 set="--set body.0.mesh=models/pumpkin.ply --set body.1.mesh=models/pumpkin.ply --set score.0.file=models/smash.front --set score.1.file=models/smash.front --set body.0.nodes=150 --set body.1.nodes=150" ;;
@@ -445,6 +450,7 @@ scene)
   crossing() { grep -q '^self = true' $file && grep -v '"crossings":0,' $1/frames.jsonl | head -1; }  # in scenes with contact nothing may, in any frame
   crossing run | grep . && fail "$scene has frames in which triangles cross"
   grep -q "\"pieces\":$pieces," run/summary.json || fail "$scene has not $pieces pieces: $(cat run/summary.json)"
+  kerf-info --json run/checkpoint.kerf | grep -o '"displacement_max":[0-9.]*' | awk -F: -v least=$moves '$2 < least { exit 1 }' || fail "nothing of $scene goes as far as $moves"
   grep -q '"refused":0' run/summary.json || fail "$scene has refused steps: $(cat run/summary.json)"
   grep -qi "nan\|inf" run/frames.jsonl && fail "$scene has numbers that are none"
   kerf-info --check -q run/checkpoint.kerf || fail "the body of $scene is not sound"

@@ -6,7 +6,7 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t fewest = 24, most_groups = 192;
+constexpr std::size_t fewest = 24, most_groups = 96;
 
 Eigen::Index longest_side(const Box3& box) {
   Eigen::Index axis;

@@ -14,7 +14,7 @@ struct NodeGroups {
   std::size_t count() const { return part.size(); }
 
   NodeGroups() = default;
-  /// Boxes of about a two-hundredth of a connected part, 24 nodes at least, by halves; then what hangs together in a box. Groups of
+  /// Boxes of about a hundredth of a connected part, 24 nodes at least, by halves; then what hangs together in a box. Groups of
   /// a part are numbered along its longest side, so that those which touch have numbers near each other.
   NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts);
 };

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "graph/block_release.h"
 #include "graph/reference_rows.h"
 #include "graph/row_search.h"
 #include "graph/visibility.h"
@@ -66,13 +67,19 @@ void build_neighborhoods(const NodeSet& nodes, VisibilityGraph& graph, const Tri
   rows.resize(n);
   if (method == NeighborMethod::automatic) {
     constexpr std::size_t grain = 1024;
+    BlockRelease release(nodes, graph, grain, rows);
     parallel_for((n + grain - 1) / grain, 1, [&](std::size_t begin, std::size_t end) {
       thread_local RowSearch search;
       RowStore::Writer writer(rows);
-      std::vector<std::uint32_t> sources(std::min(n, end * grain) - begin * grain);
-      std::iota(sources.begin(), sources.end(), static_cast<std::uint32_t>(begin * grain));
-      search.run(nodes, graph, sources, sight, [&](std::uint32_t i, const RowView& row) { writer.set(i, row); });
+      std::vector<std::uint32_t> sources;
+      for (std::size_t run = begin; run < end; ++run) {
+        sources.resize(std::min(grain, n - run * grain));
+        std::iota(sources.begin(), sources.end(), static_cast<std::uint32_t>(run * grain));
+        search.run(nodes, graph, sources, sight, [&](std::uint32_t i, const RowView& row) { writer.set(i, row); });
+        release.done(run);
+      }
     });
+    rows.drop_spare();
   } else {
     const auto edges = edge_lengths(nodes, graph);
     std::vector<PathRow> all;

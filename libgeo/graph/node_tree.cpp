@@ -111,17 +111,21 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
       for (int axis = 0; axis < 3; ++axis) coordinate_[axis][slot] = positions[node_[slot]][axis];
     }
   });
-  for (std::size_t c = n > 0 ? cells_.size() : 0; c-- > 0;) {
-    Cell& cell = cells_[c];
-    for (int axis = 0; axis < 3; ++axis) {
-      if (cell.leaf()) {
+  if (n == 0) return;
+  parallel_for(cells_.size(), 1024, [&](std::size_t from, std::size_t to) {
+    for (Cell& cell : std::span(cells_).subspan(from, to - from)) {
+      if (!cell.leaf()) continue;
+      for (int axis = 0; axis < 3; ++axis) {
         const auto [lo, hi] = std::minmax_element(along(axis) + cell.begin, along(axis) + cell.end);
         cell.lo[axis] = *lo, cell.hi[axis] = *hi;
-      } else {
-        const Cell &l = cells_[cell.children], &r = cells_[cell.children + 1];
-        cell.lo[axis] = std::min(l.lo[axis], r.lo[axis]), cell.hi[axis] = std::max(l.hi[axis], r.hi[axis]);
       }
     }
+  });
+  for (std::size_t c = cells_.size(); c-- > 0;) {
+    Cell& cell = cells_[c];
+    if (cell.leaf()) continue;
+    const Cell &l = cells_[cell.children], &r = cells_[cell.children + 1];
+    for (int axis = 0; axis < 3; ++axis) cell.lo[axis] = std::min(l.lo[axis], r.lo[axis]), cell.hi[axis] = std::max(l.hi[axis], r.hi[axis]);
   }
 }
 

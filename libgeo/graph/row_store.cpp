@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 
@@ -62,7 +63,9 @@ RowStore::Room RowStore::open_room(std::uint32_t words) {
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(k));
     }
   if (blocks_.size() == std::size_t(1) << (32 - block_shift)) throw InputError("the graph: it needs more than 32 GiB; use fewer nodes");
-  blocks_.emplace_back(word << block_shift);
+  if (spare_.empty()) spare_.emplace_back(word << block_shift);
+  blocks_.push_back(std::move(spare_.back()));
+  spare_.pop_back();
   return {static_cast<std::uint32_t>(blocks_.size() - 1), 0, 1u << block_shift};
 }
 
@@ -99,6 +102,11 @@ void RowStore::set(std::size_t i, const RowView& row) {
     place.words = static_cast<std::uint16_t>(words);
   }
   if (words > 0) copy(row, place, at(place.offset));
+}
+
+void RowStore::give_block(std::uint32_t block, RowStore& to) {
+  const std::lock_guard lock(to.mutex_);
+  to.spare_.push_back(std::exchange(blocks_[block], {}));
 }
 
 std::size_t RowStore::bytes() const {

@@ -59,6 +59,13 @@ class RowStore {
   std::span<std::uint16_t> bits(std::size_t i);
   /// Replaces a row; `row` must not lie in this store. Throws InputError when it has too many entries.
   void set(std::size_t i, const RowView& row);
+  /// Rows lie in blocks, numbered from 0: of a row that is not empty.
+  std::uint32_t block_of(std::size_t i) const { return places_[i].offset >> block_shift; }
+  std::size_t block_count() const { return blocks_.size(); }
+  /// Gives a block to a store that is being filled, as room for rows; those that were in it must not be read any more.
+  void give_block(std::uint32_t block, RowStore& to);
+  /// Frees what was given and not used.
+  void drop_spare() { spare_.clear(); }
   /// Bytes that the store holds, free room included.
   std::size_t bytes() const;
 
@@ -100,7 +107,8 @@ class RowStore {
   std::vector<std::vector<std::byte>> blocks_;
   std::vector<std::vector<std::uint32_t>> free_;  // offsets by words
   std::vector<Room> open_;                        // blocks that are not full yet
-  std::mutex mutex_;                              // of blocks_, free_ and open_, for writers
+  std::vector<std::vector<std::byte>> spare_;     // given and not used yet
+  std::mutex mutex_;                              // of blocks_, free_, open_ and spare_, for writers
 };
 
 }  // namespace geo

@@ -98,6 +98,8 @@ class VisibilityGraph {
   void set_neighbors(NodeId i, const RowView& row) { rows_.set(i.index(), row); }
   /// All rows at once: their edges must be the graph's.
   void replace_rows(RowStore rows) { rows_.swap(rows); }
+  /// See RowStore::give_block(): until replace_rows() the rows of nodes in it are lost.
+  void give_block(std::uint32_t block, RowStore& to) { rows_.give_block(block, to); }
   /// From all rows as flat arrays, in node order, row i with count[i] entries. Throws InputError, which names the first
   /// entry that cannot be: out of order or range, or not the same from both ends. Edges between nodes and guides are in the
   /// nodes' rows, those between guides in `guide_edges`.

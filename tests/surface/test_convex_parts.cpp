@@ -47,7 +47,7 @@ TEST_CASE("Convex parts are closed, cover the mesh and hold less air the more th
   }
 }
 
-TEST_CASE("A letter L is two blocks, nearly; a ball is one part", "[parts]") {
+TEST_CASE("A letter L is two blocks, nearly, and a ball is one part", "[parts]") {
   const TriangleMesh letter = make_letter('L', 0.3, 16);
   const auto one = convex_parts(letter, 1, 64), two = convex_parts(letter, 2, 64);
   REQUIRE((one.size() == 1 && two.size() == 2));

@@ -3,7 +3,7 @@
 #   tests/tools/page.sh TOOLS_DIR SAMPLES_DIR [pumpkin]     pumpkin: the page of a large run instead, which takes long
 set -eu
 here=$(dirname "$(realpath "$0")")
-PATH=$1:$2:$PATH
+PATH=$(realpath "$1"):$(realpath "$2"):$PATH
 export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

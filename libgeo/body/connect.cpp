@@ -6,11 +6,11 @@
 namespace geo {
 namespace {
 
-// The nearest older node whose piece is accepted; invalid when there is none.
+// The nearest older node that is accepted; invalid when there is none.
 template <class Accept>
 NodeId nearest_old(const Body& body, const Vec3& x, NodeId first_new, const Accept& accept) {
   const auto near = body.grid.nearest(body.nodes.position, x, 1, ~0u, [&](std::uint32_t i) {
-    return i < first_new.value && accept(piece_of(body, NodeId(i)));
+    return i < first_new.value && accept(NodeId(i));
   });
   return near.empty() ? NodeId() : NodeId(near[0]);
 }
@@ -90,16 +90,19 @@ Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, 
     if (piece < 0 || !components.whole(part) || std::any_of(offcuts.begin(), offcuts.end(), [&](const Offcut& o) { return o.from == origin_of(piece); })) continue;
     auto inside = components.inside(part);
     std::sort(inside.begin(), inside.end());
-    const auto other = body.grid.nearest(body.nodes.position, body.nodes.position[part], 1, ~0u, [&](std::uint32_t i) {
-      return i < first_new.value && !std::binary_search(inside.begin(), inside.end(), i) && piece_of(body, NodeId(i)) == piece;
+    const NodeId other = nearest_old(body, body.nodes.position[part], first_new, [&](NodeId i) {
+      return !std::binary_search(inside.begin(), inside.end(), i.value) && piece_of(body, i) == piece;
     });
-    if (!other.empty()) look_at(components, piece, NodeId(other[0]), found);
+    if (other.valid()) look_at(components, piece, other, found);
   }
   // Material came apart and the graph did not: its nodes are all in one of the parts.
   for (const Offcut& o : offcuts)
     if (divided.insert(o.from).second)
       if (const NodeId i = nearest_old(body, body.surface.point(body.surface.site(o.at)), first_new,
-                                       [&](std::int32_t piece) { return piece >= 0 && origin_of(piece) == o.from; });
+                                       [&](NodeId n) {
+                                         const auto piece = piece_of(body, n);
+                                         return piece >= 0 && origin_of(piece) == o.from;
+                                       });
           i.valid())
         look_at(components, piece_of(body, i), i, found);
   // Of these pieces all old components are known; new nodes there are partners only for each other.
@@ -126,7 +129,7 @@ void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Dis
     if (components.lowest(i) != i) continue;
     const auto piece = piece_of(body, NodeId(i));
     if (!found.known.count(piece))
-      if (const NodeId old = nearest_old(body, body.nodes.position[i], first_new, [&](std::int32_t p) { return p == piece; }); old.valid())
+      if (const NodeId old = nearest_old(body, body.nodes.position[i], first_new, [&](NodeId n) { return piece_of(body, n) == piece; }); old.valid())
         found.known.emplace(piece, old);
     look_at(components, piece, NodeId(i), found);
   }

@@ -13,15 +13,17 @@ void triangles_near(const Complex& complex, const Box3& box, std::vector<std::ar
   for (const FaceId f : faces) out.push_back(complex.corners(f));
 }
 
+bool touches(const Complex& complex, FaceId f, const Vec3& p, const Vec3& q) {
+  const auto t = complex.corners(f);
+  return segment_meets_triangle(p, q, t[0], t[1], t[2]);
+}
+
 bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId except) {
   Box3 box{p, p};
   box.add(q);
   std::vector<FaceId> faces;
   complex.near(box, faces);
-  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) {
-    const auto t = complex.corners(f);
-    return f != except && segment_meets_triangle(p, q, t[0], t[1], t[2]);
-  });
+  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return f != except && touches(complex, f, p, q); });
 }
 
 bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {

@@ -10,6 +10,9 @@ namespace geo {
 /// The triangles of K whose boxes meet a box, as update_graph asks for them.
 void triangles_near(const Complex& complex, const Box3& box, std::vector<std::array<Vec3, 3>>& out);
 
+/// True when the face touches the closed segment pq: exact.
+bool touches(const Complex& complex, FaceId f, const Vec3& p, const Vec3& q);
+
 /// True when a face, other than `except`, touches the closed segment pq: exact, through the complex's index.
 bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId except = {});
 

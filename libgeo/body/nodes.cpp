@@ -55,15 +55,6 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   return count;
 }
 
-namespace {
-
-bool meets(const Complex& k, FaceId f, const Vec3& p, const Vec3& q) {
-  const auto t = k.corners(f);
-  return segment_meets_triangle(p, q, t[0], t[1], t[2]);
-}
-
-}  // namespace
-
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
   std::vector<NodeId> moved;
   std::vector<std::uint32_t> near;
@@ -88,11 +79,11 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
       // As far as there is room, at most a tenth of the spacing. The faces that it is on are left behind, no other is passed.
       std::vector<FaceId> around;
       body.surface.near(Box3{x, x}.grown(0.1 * spacing), around);
-      const auto on = std::partition(around.begin(), around.end(), [&](FaceId g) { return !meets(body.surface, g, x, x); });
+      const auto on = std::partition(around.begin(), around.end(), [&](FaceId g) { return !touches(body.surface, g, x, x); });
       const auto way = [&](const Vec3& along) {
         for (double step = 0.1 * spacing; step > 1e-6 * spacing; step *= 0.5)
-          if (std::none_of(around.begin(), on, [&](FaceId g) { return meets(body.surface, g, x, x + step * along); }) &&
-              std::none_of(on, around.end(), [&](FaceId g) { return meets(body.surface, g, x + 1e-3 * step * along, x + step * along); }))
+          if (std::none_of(around.begin(), on, [&](FaceId g) { return touches(body.surface, g, x, x + step * along); }) &&
+              std::none_of(on, around.end(), [&](FaceId g) { return touches(body.surface, g, x + 1e-3 * step * along, x + step * along); }))
             return Vec3(step * along);
         return Vec3(Vec3::Zero());
       };

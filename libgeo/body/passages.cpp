@@ -7,7 +7,6 @@
 #include "body/connect.h"
 #include "body/locate.h"
 #include "body/way_along.h"
-#include "geometry/predicates.h"
 
 namespace geo {
 namespace {

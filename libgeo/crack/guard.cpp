@@ -206,9 +206,7 @@ class Inspection {
     bool cracked;          // of a crack, not of the skin
   };
 
-  const Vec3& point(VertexId v) const {
-    return v.value < complex_.vertex_count() ? complex_.point(v) : edit_.new_vertices[v.value - complex_.vertex_count()];
-  }
+  const Vec3& point(VertexId v) const { return point_after(complex_, edit_, v); }
   bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
   const char* fault_between(const New& f, const New& g) const {
     if (f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) || g.plane.clears(g.rows, f.rows, f.corners, f.plane.size)) return nullptr;

@@ -8,6 +8,11 @@
 
 namespace geo {
 
+/// Where a vertex is after an edit of K as it is.
+inline const Vec3& point_after(const Complex& complex, const ComplexEdit& edit, VertexId v) {
+  return v.value < complex.vertex_count() ? complex.point(v) : edit.new_vertices[v.value - complex.vertex_count()];
+}
+
 /// New faces that come from one triangle, which therefore lie in its plane but for rounding.
 struct Family {
   std::array<Vec3, 3> plane;       ///< the triangle's corners

@@ -11,7 +11,7 @@ namespace {
 
 std::array<Vec3, 3> corners_of(const Complex& k, const ComplexEdit& edit, const ComplexEdit::NewFace& f) {
   std::array<Vec3, 3> t;
-  for (int i = 0; i < 3; ++i) t[i] = f.v[i].value < k.vertex_count() ? k.point(f.v[i]) : edit.new_vertices[f.v[i].value - k.vertex_count()];
+  for (int i = 0; i < 3; ++i) t[i] = point_after(k, edit, f.v[i]);
   return t;
 }
 

@@ -47,9 +47,7 @@ class RingOrder {
   }
 
  private:
-  const Vec3& point(VertexId v) const {
-    return v.value < complex_.vertex_count() ? complex_.point(v) : edit_.new_vertices[v.value - complex_.vertex_count()];
-  }
+  const Vec3& point(VertexId v) const { return point_after(complex_, edit_, v); }
   bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
 
   // Faces listed counter-clockwise about a→b.

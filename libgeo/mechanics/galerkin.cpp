@@ -135,6 +135,11 @@ class Changes {
   Box3 where_;
 };
 
+// A quarter of its cell's each.
+void set_volumes(std::span<const QuadratureCell> cells, std::vector<MaterialPoint>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].volume = 0.25 * cells[i / 4].volume;
+}
+
 // For each cell the number of the same one before, or ~0u; both lists are in Morton order.
 std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::span<const QuadratureCell> before) {
   std::vector<std::uint32_t> same;
@@ -173,7 +178,7 @@ PointBlock Galerkin::build(const Body& body, std::span<const QuadratureCell> cel
     Surroundings around(body, box);
     for (const auto i : stale) rows[i] = build_row(around, cells[i / 4].point[i % 4], points[i]);
   }
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].volume = 0.25 * cells[i / 4].volume;
+  set_volumes(cells, points);
   return {std::move(points), rows};
 }
 
@@ -216,7 +221,7 @@ bool Galerkin::settle(const Body& body, MaterialPoints& points, std::vector<std:
       for (std::size_t c = 1; c < cells.size() && whole; ++c) whole = same[c] == same[0] + c;
       if (whole && !changes.near(old[o].box, reach)) {
         points.blocks[b] = std::move(old[o]);
-        for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) points.blocks[b].points[i].volume = 0.25 * cells[i / 4].volume;
+        set_volumes(cells, points.blocks[b].points);
         continue;
       }
       std::vector<MaterialPoint> all(4 * cells.size());
@@ -236,7 +241,7 @@ bool Galerkin::settle(const Body& body, MaterialPoints& points, std::vector<std:
         if (same[i / 4] == ~0u || changes.concern(around, cells[i / 4].point[i % 4], all[i])) stale.push_back(i);
       if (whole && stale.empty()) {
         points.blocks[b] = std::move(old[o]);
-        for (std::size_t i = 0; i < all.size(); ++i) points.blocks[b].points[i].volume = 0.25 * cells[i / 4].volume;
+        set_volumes(cells, points.blocks[b].points);
         continue;
       }
       std::vector<ShapeRow> rows(all.size());

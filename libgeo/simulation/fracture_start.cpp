@@ -4,10 +4,8 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
-#include "base/parallel.h"
 #include "geometry/distance.h"
-#include "mechanics/kernel.h"
-#include "mechanics/plasticity.h"
+#include "mechanics/node_sums.h"
 
 namespace geo {
 namespace {
@@ -25,36 +23,21 @@ bool near_crack(const Complex& complex, const Vec3& x, double reach) {
 }  // namespace
 
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
-  const MaterialPoints& points = solid.points();
-  constexpr std::size_t width = 7;  // six stresses and their weight
-  std::vector<double> parts(width * points.parts(), 0);
-  parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const PointBlock& block = points.blocks[b];
-      const std::vector<Mat3> gradient = points.gradients(b, motion.displacement);
-      for (std::size_t i = 0; i < block.points.size(); ++i) {
-        const MaterialPoint& p = block.points[i];
-        Mat3 f = Mat3::Identity() + gradient[i];
-        if (p.rung == Rung::rigid || !(f.determinant() > 0.01)) continue;
-        const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-        if (!motion.plastic.empty()) f = f * relaxation(motion.plastic[points.first(b) + i]);
-        const Mat3 s = rotation.transpose() * stress(solid.material(), f) * f.transpose() * rotation / f.determinant();
-        for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
-          const auto node = block.nodes[block.to[q]];
-          const double w = p.volume * kernel((p.position - body.nodes.position[node]).norm() / body.nodes.radius[node], 1.0);
-          double* sum = &parts[width * (points.part(b) + block.to[q])];
-          for (const double c : {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)}) *sum++ += w * c;
-          *sum += w;
-        }
-      }
-    }
+  const auto sums = node_sums(solid, body.nodes, motion, [&](const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
+    if (!(all.determinant() > 0.01)) return false;
+    const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+    const Mat3 s = rotation.transpose() * stress(solid.material(), elastic) * elastic.transpose() * rotation / elastic.determinant();
+    out = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+    return true;
   });
   std::vector<Mat3> mean(body.nodes.size(), Mat3::Zero());
-  points.gather(parts.data(), width, [&](std::size_t i, const double* s) {
-    if (s[6] > 0) mean[i] << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-    if (s[6] > 0) mean[i] /= s[6];
-  });
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const StressSums& s = sums[i];
+    if (!(s[6] > 0)) continue;
+    mean[i] << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    mean[i] /= s[6];
+  }
   return mean;
 }
 

@@ -1,6 +1,7 @@
 #include "io/run_files.h"
 
 #include <array>
+#include <charconv>
 
 #include "base/error.h"
 #include "io/node_file.h"
@@ -38,24 +39,42 @@ void write_pvd(std::ostream& out, const std::vector<std::string>& frames, double
 void write_usda(std::ostream& out, std::size_t count, const std::function<TriangleMesh(std::size_t)>& frame, double frame_rate) {
   out << "#usda 1.0\n(\n    defaultPrim = \"body\"\n    upAxis = \"Z\"\n    startTimeCode = 0\n    endTimeCode = " << (count > 0 ? count - 1 : 0)
       << "\n    timeCodesPerSecond = " << frame_rate << "\n)\n\ndef Mesh \"body\"\n{\n    uniform token subdivisionScheme = \"none\"\n";
-  out.precision(9);
-  const auto samples = [&](const char* declaration, const auto& write) {
+  const auto samples = [&](const char* declaration, const auto& add) {
     out << "    " << declaration << ".timeSamples = {\n";
+    std::string text;
     for (std::size_t i = 0; i < count; ++i) {
-      out << "        " << i << ": [";
-      write(frame(i));
-      out << "],\n";
+      text = "        " + std::to_string(i) + ": [";
+      add(frame(i), text);
+      out << text << "],\n";
     }
     out << "    }\n";
   };
-  samples("int[] faceVertexCounts", [&](const TriangleMesh& m) {
-    for (std::size_t t = 0; t < m.triangles.size(); ++t) out << (t ? ", 3" : "3");
+  // In the shortest form that reads back the same.
+  const auto number = [](auto x, std::string& text) {
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  };
+  const auto row = [&](const auto& values, std::string& text) {
+    for (int k = 0; k < 3; ++k) {
+      if (k > 0) text += ", ";
+      number(values[k], text);
+    }
+  };
+  samples("int[] faceVertexCounts", [&](const TriangleMesh& m, std::string& text) {
+    for (std::size_t t = 0; t < m.triangles.size(); ++t) text += t ? ", 3" : "3";
   });
-  samples("int[] faceVertexIndices", [&](const TriangleMesh& m) {
-    for (std::size_t t = 0; t < m.triangles.size(); ++t) out << (t ? ", " : "") << m.triangles[t][0] << ", " << m.triangles[t][1] << ", " << m.triangles[t][2];
+  samples("int[] faceVertexIndices", [&](const TriangleMesh& m, std::string& text) {
+    for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+      if (t > 0) text += ", ";
+      row(m.triangles[t], text);
+    }
   });
-  samples("point3f[] points", [&](const TriangleMesh& m) {
-    for (std::size_t v = 0; v < m.vertices.size(); ++v) out << (v ? ", (" : "(") << float(m.vertices[v].x()) << ", " << float(m.vertices[v].y()) << ", " << float(m.vertices[v].z()) << ")";
+  samples("point3f[] points", [&](const TriangleMesh& m, std::string& text) {
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+      text += v > 0 ? ", (" : "(";
+      row(Eigen::Vector3f(m.vertices[v].cast<float>()), text);
+      text += ')';
+    }
   });
   out << "}\n";
 }

@@ -1,0 +1,31 @@
+#include "sim/frame_line.h"
+
+#include "tool.h"
+
+namespace sim {
+
+std::string seconds(const geo::FrameWork& w) {
+  const auto of = [](const char* name, double s) { return std::string("\"") + name + "\":" + tool::number(s); };
+  return "{" + of("front", w.front_seconds) + "," + of("mesh", w.split.crack.seconds()) + "," + of("graph", w.split.graph_seconds) + "," + of("resample", w.split.resample_seconds) + "," +
+         of("binding", w.split.binding_seconds) + "," + of("fracture", w.fracture_seconds) + "," + of("mechanics", w.mechanics_seconds) + "," + of("contact", w.contact_seconds) + "," +
+         of("write", w.write_seconds) + "}";
+}
+
+std::string counts(const geo::FrameWork& w) {
+  const auto of = [](const char* name, std::size_t n) { return std::string("\"") + name + "\":" + std::to_string(n); };
+  return of("steps", w.steps) + "," + of("newton", w.newton) + "," + of("cg", w.cg) + "," + of("fronts", w.fronts) + "," + of("cracks_begun", w.fracture.begun + w.fracture.divided) + "," + of("refused", w.refused) + "," +
+         of("triangles_cut", w.split.crack.triangles_cut) + "," + of("edges_cut", w.split.edges_cut) + "," + of("nodes_updated", w.split.nodes_updated) + "," +
+         of("nodes_added", w.split.nodes_added) + "," + of("touching", w.contact.touching) + "," + of("in_zones", w.contact.in_zones) + "," + of("held", w.contact.held);
+}
+
+std::string line_of(const FrameOutcome& o, std::size_t crossings) {
+  std::string line = "{\"frame\":" + std::to_string(o.frame) + ",\"time\":" + tool::number(o.time) + ",\"nodes\":" + std::to_string(o.nodes) + ",\"faces\":" + std::to_string(o.faces) + "," +
+                     counts(o.work) + ",\"crossings\":" + std::to_string(crossings) + ",\"lag\":" + tool::number(o.work.contact.lag) + ",\"energy\":" + tool::number(o.work.energy) + ",\"blade_force\":[";
+  for (std::size_t b = 0; b < o.work.blade_force.size(); ++b) {
+    const geo::Vec3& f = o.work.blade_force[b];
+    line += std::string(b ? "," : "") + "[" + tool::number(f.x()) + "," + tool::number(f.y()) + "," + tool::number(f.z()) + "]";
+  }
+  return line + "]";
+}
+
+}  // namespace sim

@@ -1,0 +1,25 @@
+// What a frame came to, as JSON.
+#pragma once
+
+#include <string>
+
+#include "simulation/work.h"
+
+namespace sim {
+
+struct FrameOutcome {
+  int frame = 0;
+  double time = 0;  ///< s
+  std::size_t nodes = 0, faces = 0;
+  geo::FrameWork work;
+};
+
+/// A line of frames.jsonl, the same in every run: without times, and without the brace that ends it. `crossings` of the
+/// surface that is written.
+std::string line_of(const FrameOutcome& outcome, std::size_t crossings);
+/// Counts of a frame or of a run, without braces.
+std::string counts(const geo::FrameWork& work);
+/// Seconds by phase, as an object.
+std::string seconds(const geo::FrameWork& work);
+
+}  // namespace sim

@@ -1,0 +1,72 @@
+#include "sim/frame_writer.h"
+
+#include <iostream>
+
+#include "contact/crossing.h"
+#include "io/stream.h"
+#include "io/surface_file.h"
+
+namespace sim {
+
+FrameWriter::FrameWriter(const RunFolder& folder, std::string log, bool json) : folder_(folder), log_(std::move(log)), json_(json), thread_([this] { run(); }) {}
+
+FrameWriter::~FrameWriter() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void FrameWriter::wait_until_waiting(std::unique_lock<std::mutex>& lock, std::size_t most) {
+  changed_.wait(lock, [&] { return error_ || waiting_.size() + (busy_ ? 1 : 0) <= most; });
+  if (error_) std::rethrow_exception(error_);
+}
+
+void FrameWriter::add(Frame frame) {
+  std::unique_lock lock(mutex_);
+  wait_until_waiting(lock, 2);
+  waiting_.push_back(std::move(frame));
+  changed_.notify_all();
+}
+
+const std::string& FrameWriter::log() {
+  std::unique_lock lock(mutex_);
+  wait_until_waiting(lock, 0);
+  return log_;
+}
+
+void FrameWriter::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return ended_ || !waiting_.empty(); });
+    if (waiting_.empty() || error_) return;
+    const Frame frame = std::move(waiting_.front());
+    waiting_.pop_front();
+    busy_ = true;
+    lock.unlock();
+    std::exception_ptr error;
+    try {
+      write(frame);
+    } catch (...) {
+      error = std::current_exception();
+    }
+    lock.lock();
+    busy_ = false, error_ = error;
+    changed_.notify_all();
+    if (error_) return;
+  }
+}
+
+void FrameWriter::write(const Frame& frame) {
+  const int i = frame.outcome.frame;
+  geo::write_all(folder_.nodes(i), [&](std::ostream& out) { geo::write_frame_nodes(out, frame.nodes); });
+  geo::write_all(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
+  if (i == 0) return;  // nothing has happened yet
+  const std::string line = line_of(frame.outcome, geo::count_crossings(frame.surface));
+  log_ += line + "}\n";
+  if (json_) std::cout << line << ",\"seconds\":" << seconds(frame.outcome.work) << "}\n" << std::flush;
+}
+
+}  // namespace sim

@@ -1,0 +1,36 @@
+// The folder of a run: what is in it, and where.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "surface/triangle_mesh.h"
+
+namespace sim {
+
+struct RunFolder {
+  std::filesystem::path path;
+  std::filesystem::path frames() const { return path / "frames"; }
+  std::filesystem::path nodes() const { return path / "nodes"; }
+  std::filesystem::path checkpoint() const { return path / "checkpoint.kerf"; }
+  std::filesystem::path log() const { return path / "frames.jsonl"; }
+  /// "frames/frame_0007.ply", in the folder.
+  static std::string frame_name(int i);
+  std::string frame(int i) const { return (path / frame_name(i)).string(); }
+  std::string nodes(int i) const;
+
+  /// Throws OutputError.
+  void make() const;
+  /// Removes what make() made, where nothing came of it.
+  void unmake() const;
+  void write_text(const std::filesystem::path& file, const std::string& text) const;
+  /// The first `count` lines of the log, which is never behind the checkpoint. Throws InputError where there are fewer.
+  std::string read_log(int count) const;
+  /// Throws OutputError where `bytes` more do not fit beside the folder, which need not be there.
+  void require_space(double bytes) const;
+};
+
+/// A frame as PLY and its samples in the USD file, by what there is now and half as much again for cracks; bytes of so many.
+double bytes_of_frames(const geo::TriangleMesh& mesh, int frames);
+
+}  // namespace sim

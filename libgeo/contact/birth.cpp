@@ -34,7 +34,7 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
 class Midwife {
  public:
   Midwife(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions, const Complex& grown)
-      : body_(body), state_(state), old_(positions), k_(grown), gradient_(solid.gradients(state.displacement)), old_side_(2 * grown.face_count(), Triangle{~0u, ~0u, ~0u}) {
+      : body_(body), state_(state), old_(positions), k_(grown), gradient_(solid.gradients_when_asked(state.displacement)), old_side_(2 * grown.face_count(), Triangle{~0u, ~0u, ~0u}) {
     for (std::size_t t = 0; t < before.triangles.size(); ++t) {
       const auto& [a, b, c] = before.triangles[t];
       old_side_[before.side[t]] = before.side[t] % 2 == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
@@ -208,7 +208,7 @@ class Midwife {
   const State& state_;
   const std::vector<Vec3>& old_;
   const Complex& k_;
-  std::vector<Mat3> gradient_;
+  NodeGradients gradient_;
   std::vector<Triangle> old_side_;        // by face and side: where its corners were
   Birth birth_;
   std::vector<SurfaceVertexId> like_;     // the old vertex whose nodes say how the material about a vertex moves

@@ -2,6 +2,7 @@
 // the discretisation of that paper, where strain energy is summed.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,6 +37,23 @@ class NodeRows {
 
  private:
   std::vector<Row> rows_;
+};
+
+/// Gradients at nodes, each worked out when it is first asked for: for what concerns a few nodes of a large body. Not to be asked
+/// by several threads at once. Refers to rows and displacements.
+class NodeGradients {
+ public:
+  NodeGradients(const NodeRows& rows, const std::vector<Vec3>& u) : rows_(&rows), u_(&u), gradient_(rows.size()), known_(rows.size(), 0) {}
+  const Mat3& operator[](std::size_t i) const {
+    if (!known_[i]) gradient_[i] = rows_->gradient(i, *u_), known_[i] = 1;
+    return gradient_[i];
+  }
+
+ private:
+  const NodeRows* rows_;
+  const std::vector<Vec3>* u_;
+  mutable std::vector<Mat3> gradient_;
+  mutable std::vector<std::uint8_t> known_;
 };
 
 /// What strains at nodes do not see: ½ α E V_i Σ ŵ_ij |u_j − u_i − ∇u_i x_ij|² / |x_ij|², a quadratic form.

@@ -23,7 +23,7 @@ double fade(double x, double a, double b) {
 
 }  // namespace
 
-PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const std::vector<Mat3>& gradient, const Box3& about)
+PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about)
     : body_(body), u_(u), gradient_(gradient), reach_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())), grid_(body.grid.cell()) {
   const Box3 box = about.grown(2 * reach_);
   for (std::size_t i = 0; i < body.nodes.size(); ++i) world_.push_back(body.nodes.position[i] + u[i]);

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "body/body.h"
+#include "mechanics/node_rows.h"
 #include "sampling/node_grid.h"
 
 namespace geo {
@@ -16,7 +17,7 @@ namespace geo {
 class PointMap {
  public:
   /// For points in `about`, world coordinates. `u`, `gradient`: per node. All must outlive the map.
-  PointMap(const Body& body, const std::vector<Vec3>& u, const std::vector<Mat3>& gradient, const Box3& about);
+  PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about);
 
   struct Place {
     Vec3 material;
@@ -34,7 +35,7 @@ class PointMap {
 
   const Body& body_;
   const std::vector<Vec3>& u_;
-  const std::vector<Mat3>& gradient_;
+  const NodeGradients& gradient_;
   double reach_;             // the largest support radius
   std::vector<Vec3> world_;  // per node
   NodeGrid grid_;            // of those near `about`

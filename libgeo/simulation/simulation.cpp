@@ -141,7 +141,7 @@ void Simulation::cut_at(std::size_t b, double time, FrameWork& work) {
   const Pose pose = blade.motion.at(time);
   Box3 about;
   for (const Vec3& p : blade.points) about.add(pose * p);
-  const auto gradient = solid_.gradients(state_.motion.displacement);
+  const NodeGradients gradient = solid_.gradients_when_asked(state_.motion.displacement);
   const PointMap map(body_, state_.motion.displacement, gradient, about);
   std::vector<std::vector<EdgePoint>> runs;
   if (blade.closed) {

@@ -16,19 +16,21 @@ namespace {
 
 // A block whose upper half is bent over.
 struct Bent {
-  Body body;
+  Body body = block();
+  Solid solid{body.nodes, body.graph, {}};
   std::vector<Vec3> u;
-  std::vector<Mat3> gradient;
+  NodeGradients gradient = solid.gradients_when_asked(u);
   Bent() {
-    const TriangleMesh mesh = make_block({1, 1, 2}, 0.2);
-    SampleOptions sampling;
-    sampling.spacing = 0.2, sampling.levels = 1;
-    body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
     for (const Vec3& x : body.nodes.position) {
       const double a = 0.6 * x.z(), r = 1 / 0.6 - x.x();
       u.push_back(Vec3(1 / 0.6 - r * std::cos(a), x.y(), r * std::sin(a)) - x);
     }
-    gradient = Solid(body.nodes, body.graph, {}).gradients(u);
+  }
+  static Body block() {
+    const TriangleMesh mesh = make_block({1, 1, 2}, 0.2);
+    SampleOptions sampling;
+    sampling.spacing = 0.2, sampling.levels = 1;
+    return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   }
   Vec3 skin(SurfaceVertexId v) const {
     std::vector<std::pair<NodeId, double>> nodes;

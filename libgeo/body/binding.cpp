@@ -67,17 +67,25 @@ SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
 }  // namespace
 
 SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
+  constexpr std::size_t most = 12;
   std::vector<FaceId> faces;
-  k.near(Box3{p, p}.grown(reach), faces);
   std::vector<std::pair<double, VertexId>> near;
-  for (const FaceId f : faces)
-    for (const VertexId v : k.face(f).v)
-      if (const double d = (k.point(v) - p).norm(); d <= reach) near.push_back({d, v});
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 12); ++i)
-    if (sees_vertex(k, p, near[i].second))
-      if (const auto fan = fan_seen(k, p, near[i].second); fan.valid()) return fan;
+  std::size_t asked = 0;
+  // Most see what is nearest, and few faces are there.
+  for (const double part : {0.125, 0.25, 0.5, 1.0}) {
+    const double r = part * reach;
+    faces.clear(), near.clear();
+    k.near(Box3{p, p}.grown(r * (1 + 1e-9)), faces);  // not one is missed by rounding
+    for (const FaceId f : faces)
+      for (const VertexId v : k.face(f).v)
+        if (const double d = (k.point(v) - p).norm(); d <= r) near.push_back({d, v});
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    for (; asked < std::min(near.size(), most); ++asked)
+      if (sees_vertex(k, p, near[asked].second))
+        if (const auto fan = fan_seen(k, p, near[asked].second); fan.valid()) return fan;
+    if (asked == most) break;
+  }
   return {};
 }
 

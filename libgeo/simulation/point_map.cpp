@@ -31,14 +31,23 @@ PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradi
     if (box.meets({world_[i], world_[i]})) grid_.insert(world_, static_cast<std::uint32_t>(i));
 }
 
-bool PointMap::forward(const Vec3& y, const Vec3& x, Vec3& to, Mat3& slope) const {
+// The nodes that may count at y in the world, and half their supports about x in the material.
+void PointMap::look_round(const Vec3& y, const Vec3& x) const {
+  if (round_.world == y && (round_.material - x).norm() < 0.5 * reach_) return;
+  round_ = {y, x, {}, {}};
   std::vector<std::uint32_t> near;
-  body_.grid.within(body_.nodes.position, x, reach_, near);
+  body_.grid.within(body_.nodes.position, x, 1.5 * reach_, near);
+  for (const auto i : near)
+    if (const double share = fade((y - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0) round_.node.push_back(i), round_.share.push_back(share);
+}
+
+bool PointMap::forward(const Vec3& y, const Vec3& x, Vec3& to, Mat3& slope) const {
+  look_round(y, x);
   double total = 0;
   to.setZero(), slope.setZero();
-  for (const auto i : near) {
-    const double r = body_.nodes.radius[i], apart = (y - world_[i]).norm() / r;
-    const double w = kernel((x - body_.nodes.position[i]).norm() / r, 1.0) * fade(apart, 1.5, 3);
+  for (std::size_t k = 0; k < round_.node.size(); ++k) {
+    const auto i = round_.node[k];
+    const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * round_.share[k];
     if (!(w > 0)) continue;
     total += w, slope += w * gradient_[i];
     to += w * (u_[i] + gradient_[i] * (x - body_.nodes.position[i]));

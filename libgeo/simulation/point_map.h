@@ -1,6 +1,7 @@
 // From the world back to the material (§ 3.2).
 #pragma once
 
+#include <limits>
 #include <unordered_map>
 
 #include "body/body.h"
@@ -13,7 +14,8 @@ namespace geo {
 /// both in the material and, as far as 1.5 support radii and less and less up to 3, in the world: what lies close in the
 /// world, but apart in the material, is not mixed, and neither are the two sides of a wide open cut. The first guess blends
 /// the nodes' own affine maps with weights in world coordinates. Near the skin the map goes over into the one that is linear
-/// on each deformed triangle, which is exact there. Continuous but where the material is torn.
+/// on each deformed triangle, which is exact there. Continuous but where the material is torn. Not
+/// to be asked by several threads at once.
 class PointMap {
  public:
   /// For points in `about`, world coordinates. `u`, `gradient`: per node. All must outlive the map.
@@ -27,6 +29,7 @@ class PointMap {
   Place material(const Vec3& world) const;
 
  private:
+  void look_round(const Vec3& world, const Vec3& x) const;
   /// Where Eq. 1 puts x, its slope there; false where no node counts.
   bool forward(const Vec3& world, const Vec3& x, Vec3& to, Mat3& slope) const;
   Vec3 solve(const Vec3& world, Vec3 x, double enough) const;
@@ -40,6 +43,12 @@ class PointMap {
   std::vector<Vec3> world_;  // per node
   NodeGrid grid_;            // of those near `about`
   mutable std::unordered_map<std::uint32_t, Vec3> deformed_;  // surface vertices asked for
+  struct Round {
+    Vec3 world = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), material;
+    std::vector<std::uint32_t> node;
+    std::vector<double> share;  // of their weight, by how near they are in the world
+  };
+  mutable Round round_;  // looked at last
 };
 
 }  // namespace geo

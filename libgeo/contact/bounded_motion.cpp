@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "contact/affine_motion.h"
 #include "contact/close_pairs.h"
 #include "contact/crossing.h"
 #include "contact/dividers.h"
+#include "contact/parting.h"
 #include "contact/smooth_field.h"
+#include "contact/straight_motion.h"
 
 namespace geo {
 namespace {
@@ -59,9 +62,12 @@ class Mover {
 
   std::vector<Vec3> run() {
     bool whole = false;
-    for (int round = 0; round < most_carries && !whole && wanting() > 0; ++round) {
+    double left = wanting();
+    for (int round = 0; round < most_carries && !whole && left > 0; ++round) {
       whole = carry(round);
-      settle();
+      for (int i = 0; i < most_advances; ++i) advance();
+      const double before = std::exchange(left, wanting());
+      if (left > 2 * before / 3) break;  // the rest is blocked
     }
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.together[v]];
     return std::move(at_);
@@ -69,12 +75,12 @@ class Mover {
 
  private:
   static constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-one
-  static constexpr int most_carries = 8, most_settles = 2, most_growths = 10;
+  static constexpr int most_carries = 8, most_advances = 2, most_settles = 2, most_growths = 10;
 
   double wanting() const {
-    double most = 0;
-    for (const auto v : rows_) most = std::max(most, (m_.to[v] - at_[v]).norm());
-    return most;
+    double sum = 0;
+    for (const auto v : rows_) sum += (m_.to[v] - at_[v]).norm();
+    return sum;
   }
 
   // All as one, then by a smooth field: no further than it is one-to-one all the way. True when that was all of it.
@@ -144,31 +150,15 @@ class Mover {
         const auto &s = triangles_[pairs[i].first], &t = triangles_[pairs[i].second];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
         if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) continue;  // neighbours cannot pass without crossing others
-        through[i] = !stay_parted({{s[0], s[1], s[2]}, 3}, {{t[0], t[1], t[2]}, 3}, start, next, (deviation[pairs[i].first] + deviation[pairs[i].second]) / (1 - steepest));
+        const Simplex a{{s[0], s[1], s[2]}, 3}, b{{t[0], t[1], t[2]}, 3};
+        const double enough = (deviation[pairs[i].first] + deviation[pairs[i].second]) / (1 - steepest);
+        through[i] = !some_direction(a, b, start, next, [&](const Vec3& n, double before) { return before > enough * n.norm() || (before > 0 && parted(n, a, b, next) > 0); });
       }
     });
     std::vector<std::pair<std::uint32_t, std::uint32_t>> result;
     for (std::size_t i = 0; i < pairs.size(); ++i)
       if (through[i]) result.push_back(pairs[i]);
     return result;
-  }
-
-  static bool stay_parted(const Simplex& a, const Simplex& b, const std::vector<Vec3>& start, const std::vector<Vec3>& next, double enough) {
-    const auto normal = [&](const Simplex& s) { return Vec3((start[s.v[1]] - start[s.v[0]]).cross(start[s.v[2]] - start[s.v[0]])); };
-    const Vec3 across = start[a.v[0]] + start[a.v[1]] + start[a.v[2]] - start[b.v[0]] - start[b.v[1]] - start[b.v[2]];
-    for (Vec3 n : {across, normal(a), normal(b)}) {
-      if (n.dot(across) < 0) n = -n;
-      const double before = parted(n, a, b, start);
-      if (before > enough * n.norm() || (before > 0 && parted(n, a, b, next) > 0)) return true;
-    }
-    for (const auto* at : {&start, &next}) {
-      Vec3 p[3], q[3];
-      for (int k = 0; k < 3; ++k) p[k] = (*at)[a.v[k]], q[k] = (*at)[b.v[k]];
-      const Vec3 apart = closest_places(p, 3, q, 3).apart;
-      if (at == &start && apart.norm() > enough) return true;
-      if (parted(apart, a, b, start) > 0 && parted(apart, a, b, next) > 0) return true;
-    }
-    return false;
   }
 
   // Zones for what crosses or passes, until nothing does; false: in vain.
@@ -207,6 +197,21 @@ class Mover {
   bool each_row(const std::pair<std::uint32_t, std::uint32_t>& pair, const Test& test) const {
     const auto &s = triangles_[pair.first], &t = triangles_[pair.second];
     return std::all_of(s.begin(), s.end(), test) && std::all_of(t.begin(), t.end(), test);
+  }
+
+  // Each row goes its own way.
+  void advance() {
+    parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const auto& [a, b, c] = triangles_[t];
+        boxes_[t] = box(t, at_);
+        boxes_[t].add(box(t, m_.to));
+        boxes_[t] = boxes_[t].grown(std::max({room(a, at_), room(b, at_), room(c, at_)}) + 0.5 * m_.gap);
+      }
+    });
+    pairs_ = close_pairs(boxes_);
+    move_straight(triangles_, pairs_, m_.to, m_.gap, at_);
+    settle();
   }
 
   // Rounds of planes.

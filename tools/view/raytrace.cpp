@@ -26,7 +26,35 @@ std::uint32_t hash(std::uint32_t x) {
   x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
   return x;
 }
-double unit(std::uint32_t& state) { return (state = hash(state + 0x9e3779b9u)) * 0x1p-32; }
+
+// What is random in one sample of a pixel. Rays to lights are spread over all samples of the pixel, so that few a sample are
+// enough: one coordinate of each is from a layer of its own, the other goes on by the golden ratio.
+class Dice {
+ public:
+  Dice(std::uint32_t pixel, int sample, int samples, int rays) : state_(hash(pixel * 64u + static_cast<std::uint32_t>(sample))), sample_(sample), samples_(samples), rays_(rays) {
+    std::uint32_t turn = hash(pixel);
+    turn_ = unit(turn);
+  }
+  int rays() const { return rays_; }
+  /// The i-th of the rays from a surface, about z, by the cosine of its angle to z.
+  Vec3 ray(int i) {
+    const int k = i * samples_ + sample_;
+    const double u = (k + unit(state_)) / (rays_ * samples_), r = std::sqrt(u), phi = 2 * pi * (turn_ + golden * k);
+    return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)};
+  }
+  /// A direction to the key light, which is so wide.
+  Vec3 key(double wide) {
+    const double u = (sample_ + unit(state_)) / samples_, v = turn_ + golden * sample_;
+    return Vec3(-0.45 + wide * u, -0.55 + wide * (v - std::floor(v)), 0.85).normalized();
+  }
+
+ private:
+  static constexpr double golden = 0.6180339887498949;
+  static double unit(std::uint32_t& state) { return (state = hash(state + 0x9e3779b9u)) * 0x1p-32; }
+  std::uint32_t state_;
+  int sample_, samples_, rays_;
+  double turn_;
+};
 
 // Corner normals, smoothed over faces that meet at less than 40 degrees around the same row.
 std::vector<std::array<Eigen::Vector3f, 3>> smooth_normals(const geo::TriangleMesh& mesh) {
@@ -93,7 +121,7 @@ class Tracer {
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  Color shade(const Vec3& eye, const Vec3& d, std::uint32_t& noise, int occlusion) const {
+  Color shade(const Vec3& eye, const Vec3& d, Dice& dice) const {
     double from = 0;
     bool at_plane = false;
     if (stage_.cutaway) {
@@ -107,19 +135,19 @@ class Tracer {
     }
     const Hit thing = trace(things_, eye, d, 0);  // whole, where the plane cuts it
     Hit skin = trace(surface_, eye, d, from);
-    Color behind = thing.t < 1e29 ? lit(thing, d, noise, occlusion) : background(eye, d, noise, occlusion);
+    Color behind = thing.t < 1e29 ? lit(thing, d, dice) : background(eye, d, dice);
     if (at_plane && stage_.section && winding(eye + from * d, d) > 0 && from <= thing.t) {
       Hit cap;
       cap.t = from, cap.point = eye + from * d, cap.normal = stage_.cutaway->normal, cap.color = {0.93f, 0.70f, 0.42f};
       const double lines = std::abs(std::remainder(cap.point.sum() / scale_ * 60, 1.0));
       if (lines < 0.06) cap.color = scaled(cap.color, 0.93);
-      return lit(cap, d, noise, occlusion);
+      return lit(cap, d, dice);
     }
     // Through the skin as far as something opaque; its layers are laid over each other from behind.
     std::vector<std::pair<Color, double>> layers;
     while (skin.t < thing.t && skin.t < 1e29) {
       const double opacity = stage_.surface_opacity >= 1 || skin.opaque ? 1 : std::min(1.0, stage_.surface_opacity * rim(skin, d));
-      layers.push_back({lit(skin, d, noise, occlusion), opacity});
+      layers.push_back({lit(skin, d, dice), opacity});
       if (opacity >= 1 || layers.size() == 6) break;
       // The first layer only, where nothing opaque of the surface is to be found behind it.
       if (!stage_.sheets_opaque) break;
@@ -259,24 +287,23 @@ class Tracer {
     return false;
   }
 
-  double openness(const Vec3& p, const Vec3& n, std::uint32_t& noise, int rays, double reach) const {
-    if (rays == 0) return 1;
+  double openness(const Vec3& p, const Vec3& n, Dice& dice, double reach) const {
+    if (dice.rays() == 0) return 1;
     const Vec3 t = (std::abs(n.x()) > 0.6 ? Vec3::UnitY() : Vec3::UnitX()).cross(n).normalized(), b = n.cross(t);
     int open = 0;
-    for (int i = 0; i < rays; ++i) {
-      const double u = (i + unit(noise)) / rays, phi = 2 * pi * unit(noise), r = std::sqrt(u);
-      const Vec3 d = (r * std::cos(phi) * t + r * std::sin(phi) * b + std::sqrt(1 - u) * n).normalized();
-      open += !blocked(p + 1e-4 * scale_ * n, d, reach);
+    for (int i = 0; i < dice.rays(); ++i) {
+      const Vec3 local = dice.ray(i);
+      open += !blocked(p + 1e-4 * scale_ * n, local.x() * t + local.y() * b + local.z() * n, reach);
     }
-    return double(open) / rays;
+    return double(open) / dice.rays();
   }
 
-  Color lit(const Hit& hit, const Vec3& d, std::uint32_t& noise, int occlusion) const {
-    const Vec3 key = Vec3(-0.45 + 0.12 * unit(noise), -0.55 + 0.12 * unit(noise), 0.85).normalized();
+  Color lit(const Hit& hit, const Vec3& d, Dice& dice) const {
+    const Vec3 key = dice.key(0.12);
     const Vec3 rim_light = Vec3(0.7, 0.5, 0.25).normalized();
     const double facing = hit.normal.dot(key);
     const double direct = facing > 0 && !blocked(hit.point + 1e-4 * scale_ * hit.normal, key, 1e30) ? facing : 0;
-    const double sky = openness(hit.point, hit.normal, noise, occlusion, 0.35 * scale_) * (0.75 + 0.25 * hit.normal.z());
+    const double sky = openness(hit.point, hit.normal, dice, 0.35 * scale_) * (0.75 + 0.25 * hit.normal.z());
     const Vec3 half = (key - d).normalized();
     const double gloss = direct > 0 ? 0.16 * std::pow(std::max(0.0, hit.normal.dot(half)), 40) : 0;
     const double light = 0.72 * direct + 0.42 * sky + 0.10 * std::max(0.0, hit.normal.dot(rim_light));
@@ -284,14 +311,14 @@ class Tracer {
     return {float(c[0] + gloss), float(c[1] + gloss), float(c[2] + gloss)};
   }
 
-  Color background(const Vec3& eye, const Vec3& d, std::uint32_t& noise, int occlusion) const {
+  Color background(const Vec3& eye, const Vec3& d, Dice& dice) const {
     const Color sky = mixed({0.90f, 0.92f, 0.95f}, {0.72f, 0.78f, 0.86f}, std::clamp(0.5 + d.z(), 0.0, 1.0));
     if (!stage_.ground || d.z() >= -1e-6 || eye.z() <= floor_) return sky;
     const double t = (floor_ - eye.z()) / d.z();
     const Vec3 p = eye + t * d;
-    const Vec3 key = Vec3(-0.45 + 0.25 * unit(noise), -0.55 + 0.25 * unit(noise), 0.85).normalized();
+    const Vec3 key = dice.key(0.25);
     const bool dark = blocked(p, key, 1e30);
-    const double sky_light = openness(p, Vec3::UnitZ(), noise, occlusion, 0.5 * scale_);
+    const double sky_light = openness(p, Vec3::UnitZ(), dice, 0.5 * scale_);
     const Color floor = scaled({0.86f, 0.87f, 0.88f}, (dark ? 0.55 : 0.92) * (0.45 + 0.55 * sky_light) + 0.08);
     const double far = std::clamp((p - Vec3(eye.x(), eye.y(), floor_)).norm() / (9 * scale_), 0.0, 1.0);
     return mixed(floor, sky, far * far);
@@ -317,19 +344,20 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
   const double distance = 1.02 * radius / (field * std::min(1.0, aspect)) / camera.zoom;
   const Vec3 eye = (camera.box.empty() ? Vec3::Zero() : camera.box.center()) - distance * forward;
 
+  const int samples = options.samples * options.samples, rays = (options.occlusion + samples - 1) / samples;
   Picture picture(options.width, options.height);
   geo::parallel_for(static_cast<std::size_t>(options.height), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (int x = 0; x < options.width; ++x) {
         Color sum{};
-        for (int s = 0; s < options.samples * options.samples; ++s) {
-          std::uint32_t noise = hash(static_cast<std::uint32_t>(y * options.width + x) * 64u + static_cast<std::uint32_t>(s));
+        for (int s = 0; s < samples; ++s) {
+          Dice dice(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options.width) + static_cast<std::uint32_t>(x), s, samples, rays);
           const double px = x + (s % options.samples + 0.5) / options.samples, py = double(y) + (s / options.samples + 0.5) / options.samples;
           const Vec3 d = (forward + (2 * px / options.width - 1) * field * aspect * right + (1 - 2 * py / options.height) * field * up).normalized();
-          const Color c = tracer.shade(eye, d, noise, options.occlusion);
+          const Color c = tracer.shade(eye, d, dice);
           for (int k = 0; k < 3; ++k) sum[k] += c[k];
         }
-        picture.at(x, static_cast<int>(y)) = scaled(sum, 1.0 / (options.samples * options.samples));
+        picture.at(x, static_cast<int>(y)) = scaled(sum, 1.0 / samples);
       }
   });
   return picture;

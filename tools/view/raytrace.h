@@ -49,7 +49,7 @@ struct Camera {
 struct RenderOptions {
   int width = 960, height = 720;
   int samples = 3;      ///< rays a pixel and direction: samples² in all
-  int occlusion = 12;   ///< rays a sample for ambient light
+  int occlusion = 36;   ///< rays a pixel for ambient light, one a sample or more
 };
 
 /// The same picture for any number of threads.

@@ -16,7 +16,7 @@ class CoarseMotion {
  public:
   /// `at`: where nodes are; `fixed`: as in Environment.
   CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at, const std::vector<std::uint8_t>& fixed);
-  /// The stiffness of points, isotropic and corotated (as in point_diagonal), of every `stride`-th as many times, and 3×3
+  /// The stiffness of points, isotropic and corotated (Σ w (shear |g|² 1 + shear g gᵀ + bulk g gᵀ), g turned by UVᵀ), of every `stride`-th as many times, and 3×3
   /// blocks of nodes, for the groups' six motions each; factored.
   void factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight, float shear, float bulk,
               std::size_t stride, const std::vector<Mat3>& blocks);

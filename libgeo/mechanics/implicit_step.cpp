@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "mechanics/coarse_motion.h"
 #include "mechanics/ground.h"
+#include "mechanics/patch_motion.h"
 #include "mechanics/plasticity.h"
 #include "mechanics/point_lanes.h"
 #include "mechanics/solid.h"
@@ -56,15 +57,16 @@ class ImplicitStep {
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
-  std::vector<Mat3> diagonal_, local_, inverse_;  // of points alone; of nodes alone, which act on nothing else; of all, inverted
+  std::vector<Mat3> local_;  // what nodes have that acts on nothing else
   double elastic_ = 0;  // energy at the last evaluation
   std::vector<float> parts_;
+  std::optional<PatchMotion> patches_;
   std::optional<CoarseMotion> coarse_;
 };
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
     : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), relaxed_(solid.relaxed(state)),
-      u_(n_), target_(n_), load_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), diagonal_(n_), local_(n_), inverse_(n_) {
+      u_(n_), target_(n_), load_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
   const double keep = 1 / (1 + s_.material_.damping * dt);
   for (std::size_t i = 0; i < n_; ++i) {
     target_[i] = state.displacement[i];
@@ -136,13 +138,10 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
   return sum;
 }
 
-// The stiffness of points at u_, after evaluate(u_), and its diagonal blocks.
+// The stiffness of points at u_, after evaluate(u_).
 void ImplicitStep::linearise() {
   const Material& m = s_.material_;
-  const MaterialPoints& points = s_.points_;
   const StiffnessConstants constants = stiffness_constants(m);
-  std::vector<float> diagonal(6 * points.parts(), 0);
-  const float shear = float(m.mu() + m.viscosity / dt_ / 2), bulk = float(m.lambda() + m.volume_term);
   parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       stiffness_modes(constants, gradient_[b], weight_[b], modes_[b]);
@@ -154,42 +153,37 @@ void ImplicitStep::linearise() {
           for (std::size_t k = 24; k < 30; ++k) modes.values[k * modes.stride + i] += 0.5f * w;
         }
       }
-      point_diagonal(points.blocks[b], modes_[b], weight_[b], shear, bulk, &diagonal[6 * points.part(b)]);
     }
-  });
-  points.gather(diagonal.data(), 6, [&](std::size_t j, const double* sum) {
-    diagonal_[j] << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
   });
 }
 
-// What nodes have besides, at u_, and the inverse of all blocks.
+// What nodes have besides, at u_, and both levels of the preconditioner.
 void ImplicitStep::precondition() {
-  std::vector<double> modes(s_.penalty_ ? n_ : 0, 0);
-  if (s_.penalty_) s_.penalty_->add_diagonal(s_.rows_, modes);
-  std::vector<Mat3> touching(env_.contact.empty() ? 0 : n_, Mat3::Zero());
-  for (const Potential* p : env_.contact) p->blocks(touching);
   each_node([&](std::size_t i) {
-    Mat3 block = diagonal_[i];
     local_[i] = s_.mass_[i] / (dt_ * dt_) * Mat3::Identity();
     if (env_.ground) {
       const Mat3 nn = env_.ground_normal * env_.ground_normal.transpose();
       if (depth(env_, i, s_.position_[i] + u_[i]) > 0) local_[i] += s_.mass_[i] * env_.ground_stiffness * nn;
       if (drag_[i] > 0) local_[i] += drag_[i] * (Mat3::Identity() - nn);
     }
-    block += local_[i];
-    if (!modes.empty()) block += modes[i] * Mat3::Identity();
-    if (touching.empty())
-      inverse_[i] = block.inverse();
-    else
-      inverse_[i] = (block + touching[i]).inverse(), touching[i] += local_[i];
   });
-  if (coarse_) return;  // not much has turned since
-  std::vector<Vec3> at(n_);
-  for (std::size_t i = 0; i < n_; ++i) at[i] = s_.position_[i] + u_[i];
-  coarse_.emplace(s_.groups_, at, env_.fixed);
+  if (coarse_ && env_.contact.empty()) return;  // not much has turned since
   const Material& m = s_.material_;
-  const std::size_t stride = m.discretisation == Discretisation::galerkin ? 2 : 1;  // two of a cell's four points will do
-  coarse_->factor(s_.points_, modes_, weight_, float(m.mu() + m.viscosity / dt_ / 2), float(m.lambda() + m.volume_term), stride, touching.empty() ? local_ : touching);
+  const float shear = float(m.mu() + m.viscosity / dt_ / 2), bulk = float(m.lambda() + m.volume_term);
+  std::vector<Mat3> blocks = local_;
+  for (const Potential* p : env_.contact) p->blocks(blocks);
+  if (!coarse_) {
+    std::vector<Vec3> at(n_);
+    for (std::size_t i = 0; i < n_; ++i) at[i] = s_.position_[i] + u_[i];
+    coarse_.emplace(s_.groups_, at, env_.fixed);
+    coarse_->factor(s_.points_, modes_, weight_, shear, bulk, s_.point_stride(), blocks);
+  }
+  if (s_.penalty_) {
+    std::vector<double> penalty(n_, 0);
+    s_.penalty_->add_diagonal(s_.rows_, penalty);
+    each_node([&](std::size_t i) { blocks[i] += penalty[i] * Mat3::Identity(); });
+  }
+  patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
 }
 
 // Each matrix times the relaxation of its point.
@@ -259,7 +253,8 @@ double ImplicitStep::most(const std::vector<Vec3>& moved) const {
 // Until what is left is a tenth in the norm that counts, or what the preconditioner would still add is `small`.
 int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small) {
   std::vector<Vec3> r = force, z(n_), p(n_), hp;
-  each_node([&](std::size_t i) { x[i].setZero(), z[i] = inverse_[i] * r[i]; });
+  each_node([&](std::size_t i) { x[i].setZero(); });
+  patches_->apply(r, z);
   coarse_->add(r, z);
   p = z;
   double rz = dot(r, z);
@@ -270,7 +265,8 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, do
     const double curvature = dot(p, hp);
     if (!(curvature > 0)) break;
     const double alpha = rz / curvature;
-    each_node([&](std::size_t i) { x[i] += alpha * p[i], r[i] -= alpha * hp[i], z[i] = inverse_[i] * r[i]; });
+    each_node([&](std::size_t i) { x[i] += alpha * p[i], r[i] -= alpha * hp[i]; });
+    patches_->apply(r, z);
     coarse_->add(r, z);
     const double next = dot(r, z), beta = next / rz;
     each_node([&](std::size_t i) { p[i] = z[i] + beta * p[i]; });

@@ -6,8 +6,6 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t fewest = 24, most_groups = 96;
-
 Eigen::Index longest_side(const Box3& box) {
   Eigen::Index axis;
   (box.hi - box.lo).maxCoeff(&axis);
@@ -38,7 +36,9 @@ struct Boxes {
 
 }  // namespace
 
-NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part_of, std::uint32_t parts) : of(position.size(), ~0u) {
+NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part_of, std::uint32_t parts, std::size_t fewest,
+                       std::size_t most_groups)
+    : of(position.size(), ~0u) {
   const std::size_t n = position.size();
   std::vector<std::uint32_t> nodes(n);
   std::iota(nodes.begin(), nodes.end(), 0);

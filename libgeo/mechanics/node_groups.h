@@ -16,7 +16,8 @@ struct NodeGroups {
   NodeGroups() = default;
   /// Boxes of about a hundredth of a connected part, 24 nodes at least, by halves; then what hangs together in a box. Groups of
   /// a part are numbered along its longest side, so that those which touch have numbers near each other.
-  NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts);
+  NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts, std::size_t fewest = 24,
+             std::size_t most_groups = 96);
 };
 
 }  // namespace geo

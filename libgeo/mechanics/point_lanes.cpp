@@ -320,26 +320,6 @@ void Apply(const StiffnessModes& modes, Columns<float>& gradient) {
   }
 }
 
-void Diagonal(const PointBlock& block, const StiffnessModes& modes, const float* weight, float shear, float bulk, float* out) {
-  const std::size_t n = modes.stride;
-  for (std::size_t i = 0; i < block.points.size(); ++i) {
-    const auto number = [&](std::size_t k) { return modes.values[k * n + i]; };
-    float r[3][3];
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < 3; ++k) r[c][k] = number(k) * number(9 + c) + number(3 + k) * number(12 + c) + number(6 + k) * number(15 + c);
-    const float both = weight[i] * (bulk + shear), across = weight[i] * shear;
-    for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
-      const float* const g = &block.rounded[3 * q];
-      float t[3];
-      for (int k = 0; k < 3; ++k) t[k] = r[0][k] * g[0] + r[1][k] * g[1] + r[2][k] * g[2];
-      const float all = across * (t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
-      float* const to = out + 6 * block.to[q];
-      to[0] += all + both * t[0] * t[0], to[1] += all + both * t[1] * t[1], to[2] += all + both * t[2] * t[2];
-      to[3] += both * t[0] * t[1], to[4] += both * t[0] * t[2], to[5] += both * t[1] * t[2];
-    }
-  }
-}
-
 }  // namespace geo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -351,7 +331,6 @@ HWY_EXPORT(DivergenceDouble);
 HWY_EXPORT(DivergenceFloat);
 HWY_EXPORT(Modes);
 HWY_EXPORT(Apply);
-HWY_EXPORT(Diagonal);
 
 template <class Number>
 void Columns<Number>::resize(std::size_t points) {
@@ -377,9 +356,6 @@ void stiffness_modes(const StiffnessConstants& constants, const Columns<float>& 
   HWY_DYNAMIC_DISPATCH(Modes)(constants, gradient, weight.data(), out);
 }
 void apply_modes(const StiffnessModes& modes, Columns<float>& gradient) { HWY_DYNAMIC_DISPATCH(Apply)(modes, gradient); }
-void point_diagonal(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, float shear, float bulk, float* out) {
-  HWY_DYNAMIC_DISPATCH(Diagonal)(block, modes, weight.data(), shear, bulk, out);
-}
 
 }  // namespace geo
 #endif

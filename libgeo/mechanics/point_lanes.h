@@ -35,8 +35,5 @@ struct StiffnessModes {
 void stiffness_modes(const StiffnessConstants& constants, const Columns<float>& gradient, const std::vector<float>& weight, StiffnessModes& out);
 /// Replaces gradients by the stresses that belong to them.
 void apply_modes(const StiffnessModes& modes, Columns<float>& gradient);
-/// Adds the diagonal blocks of a corotated small-strain stiffness, Σ w (shear |g|² 1 + (bulk + shear) R g (R g)ᵀ) with
-/// R = U Vᵀ, to six numbers a node of the block: xx, yy, zz, xy, xz, yz.
-void point_diagonal(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, float shear, float bulk, float* out);
 
 }  // namespace geo

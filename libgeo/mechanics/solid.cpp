@@ -89,6 +89,11 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
   penalty_.emplace(rows_, volume_, material_.mode_penalty * material_.young);
 }
 
+void Solid::group_nodes() {
+  groups_ = NodeGroups(position_, rows_, part_, parts_);
+  patches_ = NodePatches(position_, rows_, part_, parts_, spacing_, points_);
+}
+
 RungCounts Solid::rungs() const {
   RungCounts counts;
   for (std::size_t i = 0; i < rows_.size(); ++i) ++counts.nodes[static_cast<std::size_t>(rows_.rung(i))];

@@ -13,6 +13,7 @@
 #include "mechanics/elasticity.h"
 #include "mechanics/galerkin.h"
 #include "mechanics/node_groups.h"
+#include "mechanics/node_patches.h"
 #include "mechanics/node_rows.h"
 #include "mechanics/potential.h"
 #include "sampling/node_set.h"
@@ -104,7 +105,8 @@ class Solid {
   friend class ImplicitStep;
   void follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
                     std::span<const NodeId> updated, State& state);
-  void group_nodes() { groups_ = NodeGroups(position_, rows_, part_, parts_); }
+  void group_nodes();
+  std::size_t point_stride() const { return galerkin_ ? 2 : 1; }  // two of a cell's four points will do for the preconditioner
   void nodal_points(std::span<const NodeId> updated);
   void update_plasticity(State& state, double dt) const;
   std::vector<Mat3> relaxed(const State& state) const;
@@ -117,6 +119,7 @@ class Solid {
   std::uint32_t parts_ = 0;
   NodeRows rows_;
   NodeGroups groups_;
+  NodePatches patches_;
   MaterialPoints points_;
   std::optional<Galerkin> galerkin_;
   std::optional<ModePenalty> penalty_;  // of mueller04

@@ -1,0 +1,45 @@
+// Small overlapping patches of nodes, and the stiffness at rest between the nodes of each: what the preconditioner's first
+// level is made of.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mechanics/material_points.h"
+#include "mechanics/node_groups.h"
+
+namespace geo {
+
+class NodePatches {
+ public:
+  NodePatches() = default;
+  /// Boxes of half a dozen nodes that hang together (as in NodeGroups), each with the neighbours of its nodes within 0.95 of
+  /// both spacings.
+  NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts,
+              const std::vector<double>& spacing, const MaterialPoints& points);
+
+  struct Incidence {
+    std::uint32_t patch, slot;
+  };
+  std::size_t count() const { return first_.size() - 1; }
+  std::span<const std::uint32_t> nodes(std::size_t patch) const { return {&node_[first_[patch]], first_[patch + 1] - first_[patch]}; }
+  /// Number of a patch's first node in a list of all patches' nodes; that list's length after the last.
+  std::size_t first(std::size_t patch) const { return first_[patch]; }
+  /// Where a node is, in the order of patches.
+  std::span<const Incidence> patches_of(std::size_t node) const { return {&at_[begin_[node]], begin_[node + 1] - begin_[node]}; }
+
+  /// Of slots a ≥ b of a patch twelve numbers at a (a + 1) / 2 + b: rows of Σ w g_a g_bᵀ, each with a fourth of no account.
+  const float* outer(std::size_t patch) const { return &outer_[tiles_[patch]]; }
+  /// The material point that has most of a patch's nodes: block, and place there. ~0u: none has any.
+  std::pair<std::uint32_t, std::uint32_t> point(std::size_t patch) const { return point_[patch]; }
+
+ private:
+  void sum_points(const MaterialPoints& points);
+  std::vector<std::size_t> first_{0}, tiles_;
+  std::vector<std::uint32_t> node_, begin_;
+  std::vector<Incidence> at_;
+  std::vector<float> outer_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> point_;
+};
+
+}  // namespace geo

@@ -1,0 +1,92 @@
+#include "mechanics/patch_motion.h"
+
+#include <bit>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "mechanics/patch_lanes.h"
+
+namespace geo {
+namespace {
+
+using Mat3f = Eigen::Matrix3f;
+
+// The upper half, rounded.
+std::uint16_t half(float x) { return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(x) + 0x8000u) >> 16); }
+
+Mat3f rotation_at(const StiffnessModes& modes, std::size_t point) {
+  Mat3f u, v;
+  for (std::size_t k = 0; k < 9; ++k) u.data()[k] = modes.values[k * modes.stride + point], v.data()[k] = modes.values[(9 + k) * modes.stride + point];
+  return u * v.transpose();
+}
+
+}  // namespace
+
+PatchMotion::PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
+                         const std::vector<std::uint8_t>& fixed)
+    : patches_(patches), rotation_(patches.count(), Mat3f::Identity()), first_(1, 0), parts_(4 * patches.first(patches.count())) {
+  for (std::size_t p = 0; p < patches.count(); ++p) {
+    const std::size_t size = 3 * patches.nodes(p).size();
+    first_.push_back(first_.back() + size * padded(size));
+  }
+  inverse_.resize(first_.back());
+  parallel_for(patches.count(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = rotation_at(modes[block], point);
+      invert(p, shear, bulk, blocks, fixed);
+    }
+  });
+}
+
+void PatchMotion::invert(std::size_t patch, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
+  const auto nodes = patches_.nodes(patch);
+  const std::size_t size = 3 * nodes.size(), row = padded(size);
+  std::vector<float> matrix(size * row, 0.0f), share(nodes.size());
+  const float* tile = patches_.outer(patch);
+  const Mat3f& turn = rotation_[patch];
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const bool held = !fixed.empty() && fixed[nodes[a]];
+    share[a] = held ? 0 : 1 / std::sqrt(static_cast<float>(patches_.patches_of(nodes[a]).size()));
+    for (std::size_t b = 0; b <= a; ++b, tile += 12) {
+      if (held || (!fixed.empty() && fixed[nodes[b]])) continue;
+      const float even = shear * (tile[0] + tile[5] + tile[10]);
+      Mat3f k;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) k(r, c) = bulk * tile[4 * r + c] + shear * tile[4 * c + r] + (r == c ? even : 0);
+      if (a == b) k += turn.transpose() * blocks[nodes[a]].cast<float>() * turn;
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c)
+          matrix[(3 * a + r) * row + 3 * b + c] = matrix[(3 * b + c) * row + 3 * a + r] = k(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c));
+    }
+    if (held)
+      for (std::size_t r = 3 * a; r < 3 * a + 3; ++r) matrix[r * row + r] = 1;
+  }
+  invert_positive(size, matrix.data());
+  std::uint16_t* const to = &inverse_[first_[patch]];
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j <= i; ++j) to[i * row + j] = to[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
+}
+
+void PatchMotion::apply(const std::vector<Vec3>& r, std::vector<Vec3>& z) {
+  parallel_for(patches_.count(), 128, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> x, y;
+    for (std::size_t p = begin; p < end; ++p) {
+      const auto nodes = patches_.nodes(p);
+      const std::size_t size = 3 * nodes.size();
+      x.resize(padded(size)), y.resize(padded(size));
+      const Mat3f &turn = rotation_[p], back = turn.transpose();
+      for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>{&x[3 * a]} = back * r[nodes[a]].cast<float>();
+      multiply_halves(size, &inverse_[first_[p]], x.data(), y.data());
+      float* const out = &parts_[4 * patches_.first(p)];
+      for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>(out + 4 * a) = turn * Eigen::Map<const Eigen::Vector3f>(&y[3 * a]);
+    }
+  });
+  parallel_for(r.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      z[i].setZero();
+      for (const auto& at : patches_.patches_of(i)) z[i] += Eigen::Map<const Eigen::Vector3f>(&parts_[4 * (patches_.first(at.patch) + at.slot)]).cast<double>();
+    }
+  });
+}
+
+}  // namespace geo

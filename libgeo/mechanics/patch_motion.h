@@ -1,0 +1,31 @@
+// The first level of the preconditioner: patches of nodes, each solved for on its own while all others stand still, with the
+// stiffness they have at rest turned to where they are (overlapping Schwarz; each node's share is spread over its patches).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mechanics/node_patches.h"
+#include "mechanics/point_lanes.h"
+
+namespace geo {
+
+class PatchMotion {
+ public:
+  /// `modes`: rotations of points now; `shear`, `bulk` of an isotropic stiffness; `blocks`: what nodes have besides;
+  /// `fixed`: as in Environment.
+  PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
+              const std::vector<std::uint8_t>& fixed);
+  /// z = Σ over patches of their inverses times r
+  void apply(const std::vector<Vec3>& r, std::vector<Vec3>& z);
+
+ private:
+  void invert(std::size_t patch, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
+  const NodePatches& patches_;
+  std::vector<Eigen::Matrix3f> rotation_;   // per patch
+  std::vector<std::size_t> first_;          // per patch and one more
+  std::vector<std::uint16_t> inverse_;      // upper halves of numbers
+  std::vector<float> parts_;                // four numbers a node of a patch
+};
+
+}  // namespace geo

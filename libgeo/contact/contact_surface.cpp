@@ -33,4 +33,16 @@ std::vector<Vec3> vertex_normals(const ContactSurface& surface, const std::vecto
   return normals;
 }
 
+std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together, const std::vector<Vec3>& p) {
+  std::vector<Vec3> normals(p.size(), Vec3::Zero());
+  for (std::size_t t = 1; t < surface.triangles.size(); ++t) {
+    if (surface.side[t] / 2 != surface.side[t - 1] / 2) continue;  // the two sides of a face follow each other
+    const auto &s = surface.triangles[t - 1], &o = surface.triangles[t];
+    if (together[s[0]] != together[o[0]] || together[s[1]] != together[o[2]] || together[s[2]] != together[o[1]]) continue;
+    const Vec3 n = (p[s[1]] - p[s[0]]).cross(p[s[2]] - p[s[0]]);
+    for (int k = 0; k < 3; ++k) normals[s[static_cast<std::size_t>(k)]] += n, normals[o[static_cast<std::size_t>(k)]] -= n;
+  }
+  return normals;
+}
+
 }  // namespace geo

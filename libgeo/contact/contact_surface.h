@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "surface/complex.h"
@@ -20,5 +21,7 @@ ContactSurface contact_surface(const Complex& complex);
 
 /// Per vertex the sum of the normals of its triangles, twice their areas long, at the given positions.
 std::vector<Vec3> vertex_normals(const ContactSurface& surface, const std::vector<Vec3>& positions);
+/// The same of triangles that touch the other side of their face (`together`: vertices_together()); zero where there is none.
+std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together, const std::vector<Vec3>& positions);
 
 }  // namespace geo

@@ -31,8 +31,9 @@ std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>
   return result;
 }
 
-// Copies whose targets come apart, or slide along each other, are moved apart by half a gap each into their own material;
-// where a triangle would cross another for it they stay together.
+// Copies whose targets come apart, or slide along each other, are moved apart by half a gap each into their own material: away
+// from what they share, or along the sum of their normals where that does not help. Where a triangle would cross another for it
+// they stay together.
 std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std::vector<std::uint32_t>>& copies) {
   const double gap = options_.gap * surface_.edge;
   const std::vector<Vec3> normals = vertex_normals(surface_, positions_);
@@ -63,11 +64,15 @@ std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std
     if (!box.meets(region)) box = Box3();
   const auto pairs = close_pairs(boxes);
   // Smaller steps for those that would cross; what is left stays together.
-  for (double step = 0.5 * gap; !opening.empty() && step > 1e-3 * gap; step *= 0.25) {
+  std::vector<Vec3> shared = shared_normals(surface_, vertices_together(surface_.site, positions_), positions_);
+  for (std::size_t v = 0; v < shared.size(); ++v)
+    if (shared[v].isZero(0)) shared[v] = normals[v];
+  for (int trial = 0; !opening.empty() && trial < 10; ++trial) {
+    const double step = std::ldexp(0.5 * gap, -2 * (trial / 2));
     std::vector<std::uint32_t> refused;
     std::vector<std::uint8_t> moved(positions_.size(), 0), marked(surface_.triangles.size(), 0), bad(positions_.size(), 0);
     for (const auto v : opening)
-      for (const auto c : copies[v]) positions_[c] -= step * normals[c].normalized(), moved[c] = 1;
+      for (const auto c : copies[v]) positions_[c] -= step * (trial % 2 == 0 ? shared[c] : normals[c]).normalized(), moved[c] = 1;
     for (;;) {
       for (std::size_t t = 0; t < marked.size(); ++t) marked[t] = std::any_of(surface_.triangles[t].begin(), surface_.triangles[t].end(), [&](auto v) { return moved[v]; });
       const auto crossings = find_crossings(pairs, surface_.triangles, positions_, vertices_together(surface_.site, positions_), true, &marked);
@@ -85,6 +90,26 @@ std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std
     }
     opening.swap(refused);
   }
+  // One after another, as the others' may have been in the way.
+  auto together = vertices_together(surface_.site, positions_);
+  std::erase_if(opening, [&](auto v) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> about;
+    const auto of = [&](std::uint32_t t) { return std::any_of(surface_.triangles[t].begin(), surface_.triangles[t].end(), [&](auto c) { return std::find(copies[v].begin(), copies[v].end(), c) != copies[v].end(); }); };
+    for (const auto& pair : pairs)
+      if (of(pair.first) || of(pair.second)) about.push_back(pair);
+    for (int trial = 0; trial < 20; ++trial) {
+      const double step = std::ldexp(0.5 * gap, -2 * (trial / 4));
+      // Both, or one of them alone.
+      for (const auto c : copies[v]) {
+        const std::vector<Vec3>& along = trial % 4 < 2 ? shared : normals;
+        positions_[c] = trial % 2 == 1 && c == copies[v][0] ? closed[v] : Vec3(closed[v] - step * along[c].normalized());
+        together[c] = c;
+      }
+      if (find_crossings(about, surface_.triangles, positions_, together, true).empty()) return true;
+    }
+    for (const auto c : copies[v]) positions_[c] = closed[v], together[c] = v;
+    return false;
+  });
   return wanted - opening.size();
 }
 

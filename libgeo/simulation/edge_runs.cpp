@@ -60,6 +60,14 @@ bool torn(const Sample& a, const Sample& b) {
   return (b.material - a.material).norm() > 4 * (b.world - a.world).norm() + 0.5 * std::min(a.spacing, b.spacing);
 }
 
+// The first sample from i on that `last` goes on to, where what is between has strayed: the map was lost for less than nodes are
+// apart, which nothing torn is. i where there is none.
+std::size_t after_strays(const std::vector<Sample>& samples, std::size_t i, const Sample& last) {
+  for (std::size_t j = i; j < samples.size() && samples[j].within && (samples[j].world - last.world).norm() < std::min(last.spacing, samples[j].spacing); ++j)
+    if (!torn(last, samples[j])) return j;
+  return i;
+}
+
 // Whether a run goes on from a front: they share a part of the edge, and are near there in the material.
 bool follows(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
@@ -84,11 +92,13 @@ std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& b
   }
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
-  for (const Sample& s : samples) {
-    if (!s.within) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!samples[i].within) {
       last = nullptr;
       continue;
     }
+    if (last) i = after_strays(samples, i, *last);
+    const Sample& s = samples[i];
     if (!last || torn(*last, s)) runs.emplace_back();
     auto& run = runs.back();
     if (run.size() > 1 && (s.material - run.back().material).norm() < 0.05 * s.spacing) run.back() = s.point();

@@ -407,24 +407,27 @@ simulation)
   expect 73 "cannot be made" kerf-sim s.toml -o /proc/x
   ;;
 killed)
-  # Ten kills at random moments, and a few polite ones: the same bytes as a run that nobody disturbed.
+  # Ten kills at random moments, and a few polite ones (143: before it listens), with contact and without: the same bytes as a run that nobody disturbed.
   kerf-model block --edge 0.15 -o cube.ply
-  printf '[body]\nmesh = "cube.ply"\nspacing = 0.15\n[time]\nframes = 20\nframe_rate = 40\nstep = 0.0125\ncheckpoint_every = 1\n[ground]\npoint = [0,0,-0.01]\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.45,1.013,0.011,-0.7,0,0,1,3]]\n' >s.toml
-  kerf-sim -q -j1 s.toml -o whole || fail "kerf-sim"
   RANDOM=${KERF_SEED:-$$}
   echo "KERF_SEED=${KERF_SEED:-$$}"
-  for signal in KILL KILL INT KILL KILL KILL TERM KILL KILL KILL KILL KILL; do
-    setsid kerf-sim -q -j1 s.toml -o killed --resume >/dev/null 2>&1 </dev/null &
-    pid=$!
-    sleep "0.$(printf %03d $((RANDOM % 500)))"
-    kill -$signal $pid 2>/dev/null
-    wait $pid 2>/dev/null
-    status=$?
-    case $signal in KILL) ;; *) [ $status = 130 ] || [ $status = 0 ] || fail "a run told to stop exits with $status" ;; esac
+  for contact in false true; do
+    printf '[contact]\nself = %s\n[body]\nmesh = "cube.ply"\nspacing = 0.15\n[time]\nframes = 20\nframe_rate = 40\nstep = 0.0125\ncheckpoint_every = 1\n[ground]\npoint = [0,0,-0.01]\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.45,1.013,0.011,-0.7,0,0,1,3]]\n' $contact >s.toml
+    rm -rf whole killed
+    kerf-sim -q -j1 s.toml -o whole || fail "kerf-sim"
+    for signal in KILL KILL INT KILL KILL KILL TERM KILL KILL KILL KILL KILL; do
+      setsid kerf-sim -q -j1 s.toml -o killed --resume >/dev/null 2>&1 </dev/null &
+      pid=$!
+      sleep "0.$(printf %03d $((RANDOM % 500)))"
+      kill -$signal $pid 2>/dev/null
+      wait $pid 2>/dev/null
+      status=$?
+      case $signal in KILL) ;; *) [ $status = 130 ] || [ $status = 0 ] || [ $status = 143 ] || fail "a run told to stop exits with $status" ;; esac
+    done
+    kerf-sim -q s.toml -o killed --resume || fail "kerf-sim --resume after twelve stops"
+    find killed -name '*.tmp' -delete  # a killed program leaves what it was writing aside
+    diff -r whole killed || fail "a run that was killed differs, contact $contact"
   done
-  kerf-sim -q s.toml -o killed --resume || fail "kerf-sim --resume after twelve stops"
-  find killed -name '*.tmp' -delete  # a killed program leaves what it was writing aside
-  diff -r whole killed || fail "a run that was killed differs"
   ;;
 scene)
   # A scene of the paper, small: to its end, with the pieces that it must have, sound, at rest or finite; also with the time
@@ -437,15 +440,20 @@ scene)
   kerf-model polyp --frequency 8 -o models/polyp.ply
   kerf-score -q models/pumpkin.ply --pattern voronoi --pieces 6 -o models/smash.front
   kerf-model block --edge 0.16 -o models/jello.ply
-  moves=0  # how far something must have gone at least
+  for letter in K E R F; do kerf-model letter --text $letter --depth 0.25 --resolution 12 -o models/letter-$letter.ply; done
+  moves=0   # how far something must have gone at least
+  # most: elastic energy, J; less than weight times the way that it falls
   case $scene in
-  apple) young=3e5 pieces=1 moves=0.7 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;          # the peel falls
-  apple-clamped) young=3e5 pieces=1 moves=0.3 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;  # it bends off
-  jello) young=2e5 pieces=4 set="--set body.mesh=models/jello.ply --set body.nodes=300" ;;
-  polyp) young=4e5 pieces=2 set="--set body.mesh=models/polyp.ply --set body.nodes=150" ;;
-  halve) young=4e4 pieces=2 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
-  smashed) young=3e5 pieces=12 set="--set body.0.mesh=models/pumpkin.ply --set body.1.mesh=models/pumpkin.ply --set score.0.file=models/smash.front --set score.1.file=models/smash.front --set body.0.nodes=150 --set body.1.nodes=150" ;;
+  apple) young=3e5 pieces=1 most=3e3 moves=0.7 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;          # the peel falls
+  apple-clamped) young=3e5 pieces=1 most=3e3 moves=0.3 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;  # it bends off
+  jello) young=2e5 pieces=4 most=1e3 set="--set body.mesh=models/jello.ply --set body.nodes=300" ;;
+  polyp) young=4e5 pieces=2 most=5e2 set="--set body.mesh=models/polyp.ply --set body.nodes=150" ;;
+  halve) young=4e4 pieces=2 most=1e4 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
+  smashed) young=3e5 pieces=12 most=1e4 set="--set body.0.mesh=models/pumpkin.ply --set body.1.mesh=models/pumpkin.ply --set score.0.file=models/smash.front --set score.1.file=models/smash.front --set body.0.nodes=150 --set body.1.nodes=150" ;;
+  letters) young=4e5 pieces=9 most=1e2 set=$(for i in 0 1 2 3; do printf -- "--set body.$i.mesh=models/letter-$(echo KERF | cut -c $((i + 1))).ply --set body.$i.nodes=200 "; done) ;;
   esac
+  step=$(sed -n 's/^step = \([0-9.]*\).*/\1/p' $file) rate=$(sed -n 's/^frame_rate = //p' $file)
+  times() { awk "BEGIN { printf \"%.9g\", $1 * $2 }"; }
   kerf-sim -q $file $set -o run --frames 32 || fail "$scene"
   crossing() { grep -q '^self = true' $file && grep -v '"crossings":0,' $1/frames.jsonl | head -1; }  # in scenes with contact nothing may, in any frame
   crossing run | grep . && fail "$scene has frames in which triangles cross"
@@ -453,8 +461,12 @@ scene)
   kerf-info --json run/checkpoint.kerf | grep -o '"displacement_max":[0-9.]*' | awk -F: -v least=$moves '$2 < least { exit 1 }' || fail "nothing of $scene goes as far as $moves"
   grep -q '"refused":0' run/summary.json || fail "$scene has refused steps: $(cat run/summary.json)"
   grep -qi "nan\|inf" run/frames.jsonl && fail "$scene has numbers that are none"
+  grep -o '"energy":[-+0-9.e]*' run/frames.jsonl | awk -F: -v most=$most '$2 > most { print "energy", $2; exit 1 }' || fail "$scene has more energy than $most J"
   kerf-info --check -q run/checkpoint.kerf || fail "the body of $scene is not sound"
-  for other in time.step=0.042 time.step=0.0105 material.young=${young%e*}e$((${young#*e} - 1)) material.young=${young%e*}e$((${young#*e} + 1)); do
+  doubled=time.step=$(times $step 2)
+  # A step is a frame at most: where it is one, there are half as many frames a second.
+  awk "BEGIN { exit !(2 * $step * $rate > 1.05) }" && doubled="$doubled --set time.frame_rate=$(times $rate 0.5)"
+  for other in "$doubled" time.step=$(times $step 0.5) material.young=${young%e*}e$((${young#*e} - 1)) material.young=${young%e*}e$((${young#*e} + 1)); do
     kerf-sim -q $file $set --set $other -o other --frames 12 || fail "$scene with $other"
     crossing other | grep . && fail "$scene with $other has frames in which triangles cross"
     grep -qi "nan\|inf" other/frames.jsonl && fail "$scene with $other has numbers that are none"

@@ -24,6 +24,18 @@ ContactSurface contact_surface(const Complex& complex) {
   return s;
 }
 
+double area_about(const Complex& k, SurfaceVertexId v) {
+  double area = 0;
+  for (const FaceId f : k.faces_at(k.site(v)))
+    for (int which = 0; which < 2; ++which)
+      for (int c = 0; c < 3; ++c)
+        if (k.has({f, which}) && k.surface_vertex({f, which}, c) == v) {
+          const auto corners = k.corners(f);
+          area += (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 6;
+        }
+  return area;
+}
+
 std::vector<Vec3> vertex_normals(const ContactSurface& surface, const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
   for (const auto& [a, b, c] : surface.triangles) {

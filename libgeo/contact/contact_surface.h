@@ -19,6 +19,9 @@ struct ContactSurface {
 /// Cost follows the whole surface.
 ContactSurface contact_surface(const Complex& complex);
 
+/// A third of the triangles at rest about a vertex of the derived surface, model units².
+double area_about(const Complex& complex, SurfaceVertexId v);
+
 /// Per vertex the sum of the normals of its triangles, twice their areas long, at the given positions.
 std::vector<Vec3> vertex_normals(const ContactSurface& surface, const std::vector<Vec3>& positions);
 /// The same of triangles that touch the other side of their face (`together`: vertices_together()); zero where there is none.

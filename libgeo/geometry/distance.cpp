@@ -6,26 +6,27 @@
 
 namespace geo {
 
-Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   // Which of the seven regions around the triangle p projects into: three corners, three edges, the inside.
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return a;
+  if (d1 <= 0 && d2 <= 0) return {a, 0};
   const Vec3 bp = p - b;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return b;
+  if (d3 >= 0 && d4 <= d3) return {b, 1};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 > d3 ? d1 / (d1 - d3) : 0.0) * ab;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + (d1 > d3 ? d1 / (d1 - d3) : 0.0) * ab, 3};
   const Vec3 cp = p - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return c;
+  if (d6 >= 0 && d5 <= d6) return {c, 2};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 > d6 ? d2 / (d2 - d6) : 0.0) * ac;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + (d2 > d6 ? d2 / (d2 - d6) : 0.0) * ac, 5};
   const double va = d3 * d6 - d5 * d4;
   const double e = (d4 - d3) + (d5 - d6);
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (e > 0 ? (d4 - d3) / e : 0.0) * (c - b);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return {b + (e > 0 ? (d4 - d3) / e : 0.0) * (c - b), 4};
   const double sum = va + vb + vc;
-  return sum > 0 ? Vec3(a + ab * (vb / sum) + ac * (vc / sum)) : a;
+  if (!(sum > 0)) return {a, 0};
+  return {a + ab * (vb / sum) + ac * (vc / sum), -1};
 }
 
 Ball ball_around(const std::array<Vec3, 3>& t) {

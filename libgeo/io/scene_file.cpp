@@ -6,6 +6,8 @@
 #include "io/front_file.h"
 #include "io/scene_keys_internal.h"
 #include "io/stream.h"
+#include "io/surface_file.h"
+#include "surface/check.h"
 
 namespace geo {
 namespace {
@@ -44,6 +46,16 @@ void read_material(TomlTable& t, Material& m) {
   require_material(m);
 }
 
+// [ax, ay, az, degrees].
+void read_rotation(TomlTable& t, Pose& place, const std::string& what) {
+  const auto* node = t.find("rotation");
+  if (!node) return;
+  const auto v = t.row(*node, 4, "'" + what + "'");
+  const Motion turn{{{0, Vec3::Zero(), {v[0], v[1], v[2]}, v[3]}}};
+  if (const auto wrong = unfit(turn.keys); !wrong.empty()) t.fail(*node, wrong);
+  place.rotation = turn.at(0).rotation;
+}
+
 void read_body_table(TomlTable& t, Scene& s) {
   SceneBody body;
   body.name = "body" + std::to_string(s.bodies.size() + 1);
@@ -60,11 +72,7 @@ void read_body_table(TomlTable& t, Scene& s) {
   t.get("k", s.k, 3, 1000);
   t.get("scale", body.scale, 1e-9, 1e9);
   t.get("position", body.place.position);
-  if (const auto* node = t.find("rotation")) {
-    const auto v = t.row(*node, 4, "'body.rotation'");
-    if (const auto wrong = unfit({{0, Vec3::Zero(), {v[0], v[1], v[2]}, v[3]}}); !wrong.empty()) t.fail(*node, wrong);
-    body.place.rotation = Motion{{{0, Vec3::Zero(), {v[0], v[1], v[2]}, v[3]}}}.at(0).rotation;
-  }
+  read_rotation(t, body.place, "body.rotation");
   t.get("velocity", body.velocity);
   t.get("spin", body.spin);
   for (const auto& v : t.rows("fixed", 6)) s.grips.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {}, false});
@@ -109,6 +117,35 @@ void read_blade(TomlTable& t, Scene& s, Files& files) {
   s.blades.push_back(std::move(blade));
 }
 
+void read_obstacle(TomlTable& t, Scene& s, Files& files) {
+  SceneObstacle o;
+  o.name = "obstacle" + std::to_string(s.obstacles.size() + 1);
+  t.get("name", o.name);
+  std::string mesh;
+  t.get("mesh", mesh);
+  const auto* normal = t.find("normal");
+  if (mesh.empty() == !normal) t.fail("an obstacle is a 'mesh' or the 'normal' of a plane: give one of them");
+  if (normal) {
+    t.get("normal", o.normal);
+    if (!(o.normal.norm() > 0)) t.fail(*normal, "'obstacle.normal' has no direction");
+  } else {
+    o.mesh = parse_surface(files.read(mesh), mesh).mesh;
+    try {
+      if (o.mesh.two_sided()) throw InputError("is cut; an obstacle is whole");
+      require_solid(o.mesh);
+    } catch (const InputError& e) {
+      throw InputError(mesh + ": " + e.what());
+    }
+  }
+  t.get("scale", o.scale, 1e-9, 1e9);
+  t.get("position", o.place.position);
+  read_rotation(t, o.place, "obstacle.rotation");
+  o.motion = read_motion(t, files);
+  t.get("stiffness", o.stiffness, 0, 1e12);
+  t.get("friction", o.friction, 0, 10);
+  s.obstacles.push_back(std::move(o));
+}
+
 void read_score(TomlTable& t, Scene& s, Files& files) {
   std::string file;
   int body = 0;
@@ -143,6 +180,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("self", s.self_contact);
     t.get("friction", s.contact.friction, 0, 10);
     t.get("gap", s.contact.gap, 1e-9, 0.1);
+    t.get("bodies", s.body_contact);
+    t.get("stiffness", s.contact_stiffness, 0, 1e12);
   });
   top.section("time", [&](TomlTable& t) {
     t.get("frames", s.frames, 1, 1000000);
@@ -183,6 +222,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     s.grips.push_back(std::move(grip));
   });
   top.list("blade", [&](TomlTable& t) { read_blade(t, s, files); });
+  top.list("obstacle", [&](TomlTable& t) { read_obstacle(t, s, files); });
   top.list("score", [&](TomlTable& t) { read_score(t, s, files); });
 }
 
@@ -190,8 +230,9 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
 std::uint64_t fingerprint_of(toml::table root, const std::string& contents) {
   if (auto* time = root["time"].as_table()) time->erase("frames");
   if (auto* body = root["body"].as_table()) body->erase("mesh");
-  if (auto* bodies = root["body"].as_array())
-    for (auto& body : *bodies) body.as_table()->erase("mesh");
+  for (const char* list : {"body", "obstacle"})
+    if (auto* rows = root[list].as_array())
+      for (auto& row : *rows) row.as_table()->erase("mesh");
   std::ostringstream text;
   text << root << contents;
   return fingerprint(text.str());

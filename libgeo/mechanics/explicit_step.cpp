@@ -6,6 +6,24 @@
 
 namespace geo {
 
+namespace {
+
+// What contact does from now on for h seconds, the given shares of the step; returns how much energy that can have brought.
+double touch(const Environment& env, State& s, double h, double from, double to, const std::vector<double>& inverse_mass) {
+  if (env.contact.empty()) return 0;
+  const std::vector<Vec3> before = s.velocity;
+  for (Potential* p : env.contact) {
+    p->begin(s.displacement, from, to);
+    p->impulse(s.displacement, h, inverse_mass, s.velocity);
+  }
+  double brought = 0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (inverse_mass[i] > 0) brought += std::abs((s.velocity[i] - before[i]).dot(s.velocity[i] + before[i])) / (2 * inverse_mass[i]);
+  return brought;
+}
+
+}  // namespace
+
 StepReport Solid::step_explicit(State& state, double dt, const Environment& env) const {
   // No wave crosses a third of the smallest neighbourhood in one substep.
   const double speed = std::sqrt((material_.lambda() + 2 * material_.mu() + material_.volume_term) / material_.density);
@@ -13,6 +31,13 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
   double limit = 0.3 * finest / speed;
   if (material_.viscosity > 0) limit = std::min(limit, 0.1 * finest * finest * material_.density / material_.viscosity);
   if (env.ground) limit = std::min(limit, 0.3 / std::sqrt(env.ground_stiffness));
+  std::vector<double> inverse_mass(size(), 0);
+  for (std::size_t i = 0; i < size(); ++i)
+    if (!is_fixed(env, i)) inverse_mass[i] = 1 / mass_[i];
+  for (Potential* p : env.contact) {
+    p->begin(state.displacement, 0, 1);
+    if (const double stiffest = p->stiffest(inverse_mass); stiffest > 0) limit = std::min(limit, 0.3 / std::sqrt(stiffest));
+  }
   StepReport report;
   report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
   const std::vector<Mat3> rest = relaxed(state);
@@ -46,9 +71,10 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
             outside += mass_[i] * env.ground_stiffness * d * env.ground_normal;
           }
         }
-        s.displacement[i] += h * v;
         brought += std::abs(h * outside.dot(v));
       }
+      brought += touch(env, s, h, double(k) / report.substeps, double(k + 1) / report.substeps, inverse_mass);
+      for (std::size_t i = 0; i < size(); ++i) s.displacement[i] += h * s.velocity[i];
     }
     report.energy = elastic_force(s.displacement, nullptr, rest);
     rose = !(total() <= 1.05 * (begun + brought) + 1e-12 * material_.young * volume_[0]);

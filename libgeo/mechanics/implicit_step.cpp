@@ -385,12 +385,13 @@ void Solid::update_plasticity(State& state, double dt) const {
 StepReport Solid::step_implicit(State& state, double dt, const Environment& env, double accuracy) const {
   StepReport report;
   // Time steps in a row, each divided in two where Newton does not converge, down to a thousandth.
-  const auto advance = [&](const auto& self, double h) -> void {
+  const auto advance = [&](const auto& self, double from, double h) -> void {
+    for (Potential* p : env.contact) p->begin(state.displacement, from / dt, (from + h) / dt);
     ImplicitStep step(*this, state, h, env, accuracy);
     const bool converged = step.run(report);
     if (!converged && h > dt / 1024) {
-      self(self, h / 2);
-      self(self, h / 2);
+      self(self, from, h / 2);
+      self(self, from + h / 2, h / 2);
       return;
     }
     ++report.substeps;
@@ -402,7 +403,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env,
     state.displacement = step.displacement();
     update_plasticity(state, h);
   };
-  advance(advance, dt);
+  advance(advance, 0, dt);
   if (material_.yield > 0) report.energy = elastic_force(state.displacement, nullptr, relaxed(state));
   return report;
 }

@@ -1,4 +1,4 @@
-// An energy of node displacements that acts besides elasticity: what contact brings into the implicit step.
+// An energy of node displacements that acts besides elasticity: what contact brings into a time step.
 #pragma once
 
 #include <vector>
@@ -12,6 +12,9 @@ namespace geo {
 class Potential {
  public:
   virtual ~Potential() = default;
+  /// A part of the time step begins at displacements u: from and to in shares of the whole step, 0 to 1. A part that failed is
+  /// begun again, shorter; one from 0 begins the step anew.
+  virtual void begin(const std::vector<Vec3>&, double /*from*/, double /*to*/) {}
   /// J, at displacements u.
   virtual double energy(const std::vector<Vec3>& u) const = 0;
   /// Adds −∂E/∂u, N.
@@ -20,6 +23,12 @@ class Potential {
   virtual void blocks(std::vector<Mat3>& out) const = 0;
   /// Adds ∂²E/∂u² p.
   virtual void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const = 0;
+
+  /// Of the explicit step, where nodes that are held have no inverse mass. No less than the largest eigenvalue of M⁻¹ ∂²E/∂u²,
+  /// 1/s²; 0: it does not act there.
+  virtual double stiffest(const std::vector<double>& /*inverse_mass*/) const { return 0; }
+  /// Changes velocities by what it does in h seconds from displacements u on.
+  virtual void impulse(const std::vector<Vec3>&, double /*h*/, const std::vector<double>& /*inverse_mass*/, std::vector<Vec3>& /*velocity*/) {}
 };
 
 }  // namespace geo

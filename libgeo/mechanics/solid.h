@@ -37,7 +37,7 @@ struct Environment {
   std::vector<double> clearance;  ///< per node: distance to the skin below it; empty: none
   std::vector<std::uint8_t> fixed;  ///< per node: 1 keeps it where it is; empty: none
   std::vector<Vec3> load;           ///< per node: a force, N; empty: none
-  std::vector<Potential*> contact;  ///< of the implicit step, all of them; none: nothing touches
+  std::vector<Potential*> contact;  ///< all of them; none: nothing touches
 };
 
 struct StepReport {

@@ -1,7 +1,5 @@
 #include "simulation/collide.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 
 namespace geo {
@@ -17,24 +15,6 @@ Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid,
     if (next != rows.size()) throw InputError("the checkpoint's surface does not belong to its body");
   }
   surface_.emplace(body, solid, scene.contact, std::move(positions));
-  if (scene.ground && scene.implicit) ground_options_ = GroundOptions{scene.ground_point, scene.ground_normal, scene.ground_stiffness, scene.friction};
-}
-
-void Collisions::begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment) {
-  if (!ground_options_) return;
-  // As stiff as the same penalty on each node of the lowest layer: acceleration times mass over area; by the nodes there are now,
-  // so that a run taken up does the same.
-  double layer = 0;
-  for (std::size_t i = 0; i < solid.size(); ++i) layer += solid.mass(NodeId(i)) / (body.nodes.spacing[i] * body.nodes.spacing[i]);
-  GroundOptions options = *ground_options_;
-  options.pressure *= layer / double(solid.size());
-  ground_.emplace(options);
-  double fastest = 0;
-  for (const Vec3& v : motion.velocity) fastest = std::max(fastest, v.norm());
-  const double fall = dt * environment.gravity.norm();
-  ground_->begin(body, surface_->weights(), motion.displacement, 2 * dt * (fastest + fall) + surface_->surface().edge, 1e-2 * dt * fall + 1e-9 * surface_->surface().edge);
-  environment.ground = false;
-  environment.contact.push_back(&*ground_);
 }
 
 Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion) {

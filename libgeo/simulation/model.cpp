@@ -12,6 +12,13 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+// One more mesh, without attributes.
+void append(TriangleMesh& to, const TriangleMesh& from) {
+  const auto first = static_cast<std::uint32_t>(to.vertices.size());
+  append(to.vertices, from.vertices);
+  for (const Triangle& t : from.triangles) to.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
 }  // namespace
 
 Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes) {
@@ -27,12 +34,18 @@ Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes) {
     model.mesh = model.parts[0];
     return model;
   }
-  for (const TriangleMesh& part : model.parts) {
-    const auto first = static_cast<std::uint32_t>(model.mesh.vertices.size());
-    append(model.mesh.vertices, part.vertices);
-    for (const Triangle& t : part.triangles) model.mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  }
+  for (const TriangleMesh& part : model.parts) append(model.mesh, part);
   return model;
+}
+
+TriangleMesh place_obstacles(const Scene& scene, double time) {
+  TriangleMesh all;
+  for (const SceneObstacle& o : scene.obstacles) {
+    TriangleMesh mesh = o.mesh;
+    for (Vec3& p : mesh.vertices) p = o.pose(time) * (o.scale * p);
+    append(all, mesh);
+  }
+  return all;
 }
 
 Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32_t>& part, const Progress& progress) {

@@ -23,12 +23,19 @@ double fade(double x, double a, double b) {
 
 }  // namespace
 
-PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about)
-    : body_(body), u_(u), gradient_(gradient), reach_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())), grid_(body.grid.cell()) {
+PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about, std::vector<std::uint8_t> counted)
+    : body_(body), u_(u), gradient_(gradient), counted_(std::move(counted)), reach_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())), grid_(body.grid.cell()) {
   const Box3 box = about.grown(2 * reach_);
   for (std::size_t i = 0; i < body.nodes.size(); ++i) world_.push_back(body.nodes.position[i] + u[i]);
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
-    if (box.meets({world_[i], world_[i]})) grid_.insert(world_, static_cast<std::uint32_t>(i));
+    if (counts(i) && box.meets({world_[i], world_[i]})) grid_.insert(world_, static_cast<std::uint32_t>(i));
+}
+
+bool PointMap::counts(FaceId f) const {
+  if (counted_.empty()) return true;
+  std::vector<std::pair<NodeId, double>> nodes;
+  bound_nodes(body_, body_.surface.surface_vertex({f, 0}, 0), nodes);
+  return !nodes.empty() && counted_[nodes[0].first.index()];
 }
 
 // The nodes that may count at y in the world, and half their supports about x in the material.
@@ -38,7 +45,7 @@ void PointMap::look_round(const Vec3& y, const Vec3& x) const {
   std::vector<std::uint32_t> near;
   body_.grid.within(body_.nodes.position, x, 1.5 * reach_, near);
   for (const auto i : near)
-    if (const double share = fade((y - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0) round_.node.push_back(i), round_.share.push_back(share);
+    if (const double share = fade((y - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0 && counts(i)) round_.node.push_back(i), round_.share.push_back(share);
 }
 
 bool PointMap::forward(const Vec3& y, const Vec3& x, Vec3& to, Mat3& slope) const {
@@ -93,7 +100,7 @@ Vec3 PointMap::on_skin(const Vec3& y, const Vec3& x, double reach) const {
   Vec3 sum = Vec3::Zero();
   double total = 0, least = reach;
   for (const FaceId f : faces) {
-    if (body_.surface.face(f).crack != 0) continue;
+    if (body_.surface.face(f).crack != 0 || !counts(f)) continue;
     Vec3 t[3];
     for (int k = 0; k < 3; ++k) t[k] = deformed(body_.surface.surface_vertex({f, 0}, k));
     const Vec3 on = closest_point_on_triangle(y, t[0], t[1], t[2]), b = barycentric(on, t[0], t[1], t[2]);

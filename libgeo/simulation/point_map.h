@@ -18,8 +18,9 @@ namespace geo {
 /// to be asked by several threads at once.
 class PointMap {
  public:
-  /// For points in `about`, world coordinates. `u`, `gradient`: per node. All must outlive the map.
-  PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about);
+  /// For points in `about`, world coordinates. `u`, `gradient`: per node. All must outlive the map. `counted`: per node, 0 where it
+  /// belongs to what is not mapped; empty: all count.
+  PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about, std::vector<std::uint8_t> counted = {});
 
   struct Place {
     Vec3 material;
@@ -30,6 +31,8 @@ class PointMap {
 
  private:
   void look_round(const Vec3& world, const Vec3& x) const;
+  bool counts(std::size_t node) const { return counted_.empty() || counted_[node]; }
+  bool counts(FaceId f) const;
   /// Where Eq. 1 puts x, its slope there; false where no node counts.
   bool forward(const Vec3& world, const Vec3& x, Vec3& to, Mat3& slope) const;
   Vec3 solve(const Vec3& world, Vec3 x, double enough) const;
@@ -39,6 +42,7 @@ class PointMap {
   const Body& body_;
   const std::vector<Vec3>& u_;
   const NodeGradients& gradient_;
+  std::vector<std::uint8_t> counted_;
   double reach_;             // the largest support radius
   std::vector<Vec3> world_;  // per node
   NodeGrid grid_;            // of those near `about`

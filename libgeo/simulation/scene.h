@@ -11,6 +11,7 @@
 #include "sampling/sample.h"
 #include "simulation/fracture.h"
 #include "simulation/motion.h"
+#include "surface/triangle_mesh.h"
 
 namespace geo {
 
@@ -51,6 +52,21 @@ struct Blade {
   std::vector<Vec3> at(double time) const;
 };
 
+/// A rigid thing that bodies lie on and are pressed by: a closed mesh, or all that is behind a plane.
+struct SceneObstacle {
+  std::string name;
+  TriangleMesh mesh;             ///< in its own coordinates; empty: a plane through its origin
+  Vec3 normal = Vec3::UnitZ();   ///< of the plane, where bodies may be
+  double scale = 1;              ///< of the mesh, before it is placed
+  Pose place;
+  Motion motion;                 ///< of what was placed; none: stays
+  double stiffness = 1e5;        ///< of its penalty: acceleration per depth, 1/s²
+  double friction = 0.5;         ///< Coulomb's coefficient
+
+  /// World = pose · scaled. Before its first key and after its last one it stands still.
+  Pose pose(double time) const;
+};
+
 struct Scene {
   std::vector<SceneBody> bodies;  ///< one at least
   int k = 26;
@@ -67,9 +83,12 @@ struct Scene {
   bool implicit = true;
   std::uint64_t seed = 1;
   std::vector<Blade> blades;
+  std::vector<SceneObstacle> obstacles;
   Fracture fracture;
   bool self_contact = false;  ///< no two triangles of the surface cross in any frame
   ContactOptions contact;
+  bool body_contact = true;        ///< where there is no self_contact: bodies push each other apart
+  double contact_stiffness = 1e5;  ///< with this penalty: acceleration per depth, 1/s²
   std::uint64_t fingerprint = 0;  ///< of all that decides what the run computes; 0: not from a file
 };
 

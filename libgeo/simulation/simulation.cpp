@@ -15,7 +15,7 @@ namespace geo {
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress) : Simulation(scene, Model{solid, {solid}}, progress) {}
 
 Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
-    : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_, scene.material) {
+    : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_, scene.material), obstacles_(scene) {
   state_.fronts.resize(scene.blades.size());
   score(progress);
   begin_motion();
@@ -24,7 +24,7 @@ Simulation::Simulation(const Scene& scene, const Model& model, const Progress& p
 }
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_, scene.material) {
+    : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_, scene.material), obstacles_(scene) {
   const std::size_t n = body_.nodes.size();
   if (state_.part.empty()) state_.part.assign(n, 0);
   if (state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene.blades.size())
@@ -101,6 +101,7 @@ void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   prepare();
   work.mechanics_seconds += watch.lap();
   if (collisions_) collisions_->follow(body_, solid_);
+  obstacles_.follow();
   work.contact_seconds += watch.lap();
 }
 
@@ -210,6 +211,12 @@ void Simulation::push(double dt) {
   if (!wedge_.empty()) environment_.contact.push_back(&wedge_);
 }
 
+void Simulation::meet_obstacles(double dt, FrameWork& work) {
+  Stopwatch watch;
+  obstacles_.begin(scene_, body_, solid_, collisions_->weights(), state_.part, state_.motion, state_.time, dt, environment_);
+  work.contact_seconds += watch.lap();
+}
+
 void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
   solid_.settle(body_, state_.motion);
@@ -224,6 +231,7 @@ void Simulation::integrate(double dt, FrameWork& work) {
   work.blade_force.resize(scene_.blades.size(), Vec3::Zero());
   const auto reaction = wedge_.reaction(state_.motion.displacement, scene_.blades.size());
   for (std::size_t b = 0; b < reaction.size(); ++b) work.blade_force[b] += dt * scene_.frame_rate * reaction[b];
+  obstacles_.reaction(state_.motion, dt * scene_.frame_rate, work);
   work.newton += static_cast<std::size_t>(report.newton), work.cg += static_cast<std::size_t>(report.cg), ++work.steps;
   work.energy = report.energy;
   work.mechanics_seconds += watch.lap();
@@ -252,7 +260,7 @@ void Simulation::step(double dt, FrameWork& work) {
   move_grips(dt);
   environment_.contact.clear();
   push(dt);
-  collisions_->begin(body_, solid_, state_.motion, dt, environment_);
+  meet_obstacles(dt, work);
   integrate(dt, work);
   collide(before, dt, work);
   state_.time += dt;

@@ -9,6 +9,7 @@
 #include "simulation/edge_front.h"
 #include "simulation/fracture_step.h"
 #include "simulation/model.h"
+#include "simulation/obstacles.h"
 #include "simulation/scene.h"
 #include "simulation/wedge.h"
 #include "simulation/work.h"
@@ -57,6 +58,7 @@ class Simulation {
   void move_grips(double dt);
   void integrate(double dt, FrameWork& work);
   void push(double dt);
+  void meet_obstacles(double dt, FrameWork& work);
   void collide(const std::vector<Vec3>& before, double dt, FrameWork& work);
   void fracture(double dt, FrameWork& work);
   void adopt(const BodyDelta& delta, FrameWork& work);
@@ -72,6 +74,7 @@ class Simulation {
   Solid solid_;
   Environment environment_;
   Wedge wedge_;
+  Obstacles obstacles_;
   std::optional<Collisions> collisions_;
   std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
 };

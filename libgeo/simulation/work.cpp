@@ -12,7 +12,7 @@ FrameWork& FrameWork::operator+=(const FrameWork& o) {
   fracture_seconds += o.fracture_seconds;
   fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided, fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
   contact += o.contact;
-  energy = o.energy, blade_force = o.blade_force;
+  energy = o.energy, blade_force = o.blade_force, obstacle_force = o.obstacle_force, obstacle_torque = o.obstacle_torque;
   return *this;
 }
 

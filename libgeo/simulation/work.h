@@ -19,6 +19,7 @@ struct FrameWork {
   double front_seconds = 0, mechanics_seconds = 0, contact_seconds = 0, write_seconds = 0;
   double energy = 0;                  ///< elastic, J, at the frame's end
   std::vector<Vec3> blade_force;      ///< per blade: what the material does to it, N, mean over the frame
+  std::vector<Vec3> obstacle_force, obstacle_torque;  ///< per obstacle, then of the ground on surfaces: what bodies do to it, N and N m about its origin, mean over the frame
   FrameWork& operator+=(const FrameWork& o);
   /// Meet and mesh, graph, resample, binding.
   double split_seconds() const;

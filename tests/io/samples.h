@@ -189,7 +189,8 @@ inline std::vector<std::string> sample_scenes() {
           "normal = [0, 0, 1]\nfriction = 0.5\n[time]\nframes = 4\nframe_rate = 24\nstep = 0.01\nintegrator = \"leapfrog\"\nseed = 3\n"
           "[[blade]]\nname = \"knife\"\npoints = [[0, 0, 0], [0, 1, 0]]\ndivide = 4\nkeys = [[0, -1, 0, 0, 0, 0, 1, 0], [1, 1, 0, 0, 0, 0, 1, 45]]\n",
           "[body]\nmesh = 'a.off'\nnodes = 500\n[[blade]]\nclosed = true\npoints = [[0, 0, 0], [0, 1, 0], [1, 1, 0]]\n"
-          "keys = [[0.5, 0, 0, -1, 0, 0, 1, 0], [1.5, 0, 0, 1, 0, 1, 0, 360]] # ring\n"};
+          "keys = [[0.5, 0, 0, -1, 0, 0, 1, 0], [1.5, 0, 0, 1, 0, 1, 0, 360]] # ring\n"
+          "[[obstacle]]\nnormal = [0, 0.1, 1]\nposition = [0, 0, -1]\nfriction = 0.4\nkeys = [[0, 0, 0, 0, 0, 0, 1, 0]]\n[contact]\nbodies = true\nstiffness = 1e4\n"};
 }
 
 inline std::string sample_checkpoint(const geo::Body& body) {

@@ -78,6 +78,8 @@ refusals)
     expect "$1" "$2" kerf-update ok.kerf --surface "$3" -o x.kerf
     printf '[body]\nmesh = "%s"\n' "$3" >scene.toml
     expect "$1" "$2" kerf-sim scene.toml -o x
+    printf '[body]\nmesh = "ok.off"\n[[obstacle]]\nmesh = "%s"\n' "$3" >scene.toml
+    expect "$1" "$2" kerf-sim scene.toml -o x
   done
   for bad in "66 cannot missing" "65 empty empty" "65 truncated short.kerf" "65 newer newer.kerf"; do
     set -- $bad
@@ -386,12 +388,15 @@ stops)
   ;;
 simulation)
   kerf-model block --edge 0.2 -o cube.ply
-  printf '[body]\nmesh = "cube.ply"\nspacing = 0.25\n[time]\nframes = 6\nframe_rate = 20\nstep = 0.05\ncheckpoint_every = 2\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.2,1.013,0.011,-0.7,0,0,1,3]]\n' >s.toml
+  kerf-model sphere --frequency 4 -o ball.ply
+  printf '[body]\nmesh = "cube.ply"\nspacing = 0.25\n[[obstacle]]\nmesh = "ball.ply"\nscale = 0.5\nposition = [1, 0.5, -0.5]\nkeys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, 0.1, 0, 0, 1, 90]]\n[time]\nframes = 6\nframe_rate = 20\nstep = 0.05\ncheckpoint_every = 2\n[[blade]]\npoints = [[0,-0.4,0],[0,1.4,0]]\ndivide = 4\nkeys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.2,1.013,0.011,-0.7,0,0,1,3]]\n' >s.toml
   kerf-sim -q --json s.toml -o whole >frames.json || fail "kerf-sim"
   [ "$(wc -l <frames.json)" = 6 ] || fail "not a line a frame: $(cat frames.json)"
   for phase in front mesh graph resample binding mechanics contact write; do grep -q "\"$phase\":[0-9.e-]*" frames.json || fail "no seconds of $phase"; done
   kerf-sim -q s.toml -o parts --frames 2 && kerf-sim -q s.toml -o parts --frames 4 --resume && kerf-sim -q s.toml -o parts --resume || fail "kerf-sim --resume"
   diff -r whole parts || fail "a run made in three parts differs"
+  [ -s whole/obstacles/obstacles_0006.ply ] || fail "no obstacles of the last frame"
+  grep -q '"obstacles":\[{"force":\[[0-9e.,-]*\],"torque"' whole/frames.jsonl || fail "no forces on the obstacle"
   grep -q '"pieces":2' whole/summary.json || fail "not two pieces: $(cat whole/summary.json)"
   kerf-info --check -q whole/checkpoint.kerf || fail "the body is not sound"
   kerf-view whole --size 80x60 --samples 1 -o sheet.png || fail "contact sheet"

@@ -93,6 +93,7 @@ std::string report_scene(const std::string& path, const Wishes& wishes, Report& 
   report.add("scores", scene.scores.size());
   report.add("grips", scene.grips.size());
   report.add("ground", scene.ground);
+  report.add("obstacles", scene.obstacles.size());
   report.add("frames", static_cast<std::size_t>(scene.frames));
   report.add_number("frame_rate", scene.frame_rate);
   report.add_number("step", scene.dt);

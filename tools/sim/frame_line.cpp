@@ -4,6 +4,12 @@
 
 namespace sim {
 
+namespace {
+
+std::string vector(const geo::Vec3& v) { return "[" + tool::number(v.x()) + "," + tool::number(v.y()) + "," + tool::number(v.z()) + "]"; }
+
+}  // namespace
+
 std::string seconds(const geo::FrameWork& w) {
   const auto of = [](const char* name, double s) { return std::string("\"") + name + "\":" + tool::number(s); };
   return "{" + of("front", w.front_seconds) + "," + of("mesh", w.split.crack.seconds()) + "," + of("graph", w.split.graph_seconds) + "," + of("resample", w.split.resample_seconds) + "," +
@@ -21,10 +27,10 @@ std::string counts(const geo::FrameWork& w) {
 std::string line_of(const FrameOutcome& o, std::size_t crossings) {
   std::string line = "{\"frame\":" + std::to_string(o.frame) + ",\"time\":" + tool::number(o.time) + ",\"nodes\":" + std::to_string(o.nodes) + ",\"faces\":" + std::to_string(o.faces) + "," +
                      counts(o.work) + ",\"crossings\":" + std::to_string(crossings) + ",\"lag\":" + tool::number(o.work.contact.lag) + ",\"energy\":" + tool::number(o.work.energy) + ",\"blade_force\":[";
-  for (std::size_t b = 0; b < o.work.blade_force.size(); ++b) {
-    const geo::Vec3& f = o.work.blade_force[b];
-    line += std::string(b ? "," : "") + "[" + tool::number(f.x()) + "," + tool::number(f.y()) + "," + tool::number(f.z()) + "]";
-  }
+  for (std::size_t b = 0; b < o.work.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.work.blade_force[b]);
+  line += "],\"obstacles\":[";
+  for (std::size_t k = 0; k < o.work.obstacle_force.size(); ++k)
+    line += std::string(k ? "," : "") + "{\"force\":" + vector(o.work.obstacle_force[k]) + ",\"torque\":" + vector(o.work.obstacle_torque[k]) + "}";
   return line + "]";
 }
 

@@ -62,6 +62,7 @@ void FrameWriter::run() {
 void FrameWriter::write(const Frame& frame) {
   const int i = frame.outcome.frame;
   geo::write_all(folder_.nodes(i), [&](std::ostream& out) { geo::write_frame_nodes(out, frame.nodes); });
+  if (!frame.obstacles.triangles.empty()) geo::write_all(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
   geo::write_all(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
   if (i == 0) return;  // nothing has happened yet
   const std::string line = line_of(frame.outcome, geo::count_crossings(frame.surface));

@@ -18,6 +18,7 @@ struct Frame {
   FrameOutcome outcome;
   geo::TriangleMesh surface;
   geo::FrameNodes nodes;
+  geo::TriangleMesh obstacles;  ///< empty: no file
 };
 
 class FrameWriter {

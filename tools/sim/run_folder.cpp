@@ -24,10 +24,13 @@ std::string RunFolder::frame_name(int i) { return numbered("frames/frame_%04d.pl
 
 std::string RunFolder::nodes(int i) const { return (nodes() / numbered("nodes_%04d.ply", i)).string(); }
 
-void RunFolder::make() const {
+std::string RunFolder::obstacles(int i) const { return (obstacles() / numbered("obstacles_%04d.ply", i)).string(); }
+
+void RunFolder::make(bool with_obstacles) const {
   std::error_code error;
   fs::create_directories(frames(), error);
   if (!error) fs::create_directories(nodes(), error);
+  if (!error && with_obstacles) fs::create_directories(obstacles(), error);
   if (error) throw geo::OutputError(path.string() + ": cannot be made (" + error.message() + ")");
 }
 
@@ -35,6 +38,7 @@ void RunFolder::unmake() const {
   std::error_code ignored;
   fs::remove_all(frames(), ignored);
   fs::remove_all(nodes(), ignored);
+  fs::remove_all(obstacles(), ignored);
   fs::remove(path, ignored);
 }
 

@@ -18,9 +18,11 @@ struct RunFolder {
   static std::string frame_name(int i);
   std::string frame(int i) const { return (path / frame_name(i)).string(); }
   std::string nodes(int i) const;
+  std::filesystem::path obstacles() const { return path / "obstacles"; }
+  std::string obstacles(int i) const;
 
-  /// Throws OutputError.
-  void make() const;
+  /// `with_obstacles`: a folder for them, too. Throws OutputError.
+  void make(bool with_obstacles) const;
   /// Removes what make() made, where nothing came of it.
   void unmake() const;
   void write_text(const std::filesystem::path& file, const std::string& text) const;

@@ -26,6 +26,18 @@ Color piece_color(std::uint32_t piece) {
 constexpr Color sheet_plus{0.16f, 0.40f, 0.72f};   // side +c
 constexpr Color sheet_minus{0.86f, 0.66f, 0.20f};  // side -c
 
+constexpr Color rigid{0.42f, 0.43f, 0.45f};
+
+void add_obstacles(Stage& stage, const geo::TriangleMesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(stage.surface.vertices.size());
+  stage.surface.vertices.insert(stage.surface.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  if (!stage.surface.patch.empty()) stage.surface.patch.resize(stage.surface.triangles.size() + mesh.triangles.size(), 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    stage.surface.triangles.push_back({first + a, first + b, first + c});
+    stage.triangle_colors.push_back(rigid), stage.back_colors.push_back(rigid);
+  }
+}
+
 void cut(Stage& stage, const Look& look) {
   if (!look.cutaway) return;
   const geo::Box3 box = box_of(stage);
@@ -86,6 +98,7 @@ Stage stage_of(const Subject& subject, const Look& look) {
   add_nodes(stage, subject, position, look);
   add_trees(stage, subject, position, look);
   if (look.seams) add_seams(stage);
+  add_obstacles(stage, subject.obstacles);
   add_fronts(stage, subject.fronts, look);
   cut(stage, look);
   return stage;

@@ -32,6 +32,14 @@ void add_body(Subject& subject, geo::Input input) {
   subject.nodes = subject.body->nodes;
 }
 
+// The file with the obstacles of a frame: frames/frame_0007.ply has obstacles/obstacles_0007.ply; empty where there is none.
+std::string obstacles_of(const fs::path& frame) {
+  const std::string name = frame.filename().string(), begin = "frame_";
+  if (!name.starts_with(begin)) return {};
+  const fs::path beside = frame.parent_path().parent_path() / "obstacles" / ("obstacles_" + name.substr(begin.size()));
+  return fs::exists(beside) ? beside.string() : std::string();
+}
+
 void add(Subject& subject, const std::string& path) {
   const std::string bytes = geo::read_all(path);
   const auto refuse = [&](const char* what) { throw geo::InputError(path + ": is a second file with " + what + "; give one of them"); };
@@ -65,6 +73,7 @@ void add(Subject& subject, const std::string& path) {
     case tool::Kind::surface:
       if (!subject.surface.triangles.empty()) refuse("a surface");
       subject.surface = geo::parse_surface(bytes, path).mesh;
+      if (const auto beside = obstacles_of(path); !beside.empty()) subject.obstacles = geo::read_surface(beside).mesh;
       break;
   }
 }

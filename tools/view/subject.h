@@ -19,11 +19,13 @@ struct Subject {
   std::vector<std::uint32_t> row_of;      ///< of a body: the row in `surface` of each surface vertex id
   geo::NodeSet nodes;                     ///< a node file's, or a body's
   std::vector<geo::Front> fronts;
+  geo::TriangleMesh obstacles;            ///< of a run, where they are in its frame
   std::optional<geo::State> motion;       ///< of a run's body: a checkpoint
   int frame = 0;                          ///< of the run, at which `motion` holds
 };
 
-/// Reads files of any kind into one subject: at most one with a surface and one with nodes. Throws InputError.
+/// Reads files of any kind into one subject: at most one with a surface and one with nodes; with a frame of a run the obstacles
+/// beside it. Throws InputError.
 Subject read_subject(const std::vector<std::string>& paths);
 
 /// The folder of a run, or one of numbered surfaces.

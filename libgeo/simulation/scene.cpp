@@ -9,4 +9,9 @@ std::vector<Vec3> Blade::at(double time) const {
   return world;
 }
 
+Pose SceneObstacle::pose(double time) const {
+  const Pose moved = motion.at(time);
+  return {moved * place.position, moved.rotation * place.rotation};
+}
+
 }  // namespace geo

@@ -1,0 +1,82 @@
+#include "contact/mutual_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace geo {
+
+void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
+  for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(u);
+}
+
+double MutualContact::energy(const std::vector<Vec3>& u) const {
+  double sum = 0;
+  for (const Row& row : rows_) {
+    sum += 0.5 * row.stiffness * std::pow(row.depth(u), 2);
+    if (!(row.pressed > 0)) continue;
+    const double slid = row.along(row.at(u) - row.start).norm();
+    sum += friction_ * row.pressed * (slid < slow_ ? 0.5 * slid * slid / slow_ : slid - 0.5 * slow_);
+  }
+  return sum;
+}
+
+void MutualContact::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
+  for (Row& row : rows_) {
+    const double depth = row.depth(u);
+    const Mat3 across = row.normal * row.normal.transpose();
+    Vec3 f = row.stiffness * depth * row.normal;
+    row.curvature = depth > 0 ? Mat3(row.stiffness * across) : Mat3(Mat3::Zero());
+    if (row.pressed > 0) {
+      const Vec3 slide = row.along(row.at(u) - row.start);
+      const double drag = friction_ * row.pressed / std::max(slide.norm(), slow_);
+      f -= drag * slide;
+      row.curvature += drag * (Mat3::Identity() - across);
+    }
+    if (f.isZero(0)) continue;
+    for (const auto& e : row.apart) out[e.node] += e.weight * f;
+  }
+}
+
+void MutualContact::blocks(std::vector<Mat3>& out) const {
+  for (const Row& row : rows_)
+    for (const auto& e : row.apart) out[e.node] += e.weight * e.weight * row.curvature;
+}
+
+void MutualContact::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
+  for (const Row& row : rows_) {
+    if (row.curvature.isZero(0)) continue;
+    const Vec3 f = row.curvature * row.at(p);
+    for (const auto& e : row.apart) out[e.node] += e.weight * f;
+  }
+}
+
+double MutualContact::stiffest(const std::vector<double>& inverse_mass) const {
+  std::vector<double> sum(inverse_mass.size(), 0);
+  for (const Row& row : rows_) {
+    double all = 0;
+    for (const auto& e : row.apart) all += std::abs(e.weight);
+    for (const auto& e : row.apart) sum[e.node] += row.stiffness * std::abs(e.weight) * all * inverse_mass[e.node];
+  }
+  return sum.empty() ? 0 : *std::max_element(sum.begin(), sum.end());
+}
+
+void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {
+  for (const Row& row : rows_) {
+    const double push = h * row.stiffness * row.depth(u);
+    double lightness = 0;
+    for (const auto& e : row.apart) lightness += e.weight * e.weight * inverse_mass[e.node];
+    if (!(push > 0 && lightness > 0)) continue;
+    const Vec3 slide = row.along(row.at(velocity));
+    const double speed = slide.norm(), most = friction_ * push;
+    const Vec3 total = push * row.normal - (speed > most * lightness ? most / speed : 1 / lightness) * slide;
+    for (const auto& e : row.apart) velocity[e.node] += inverse_mass[e.node] * e.weight * total;
+  }
+}
+
+double MutualContact::depth(const std::vector<Vec3>& u) const {
+  double most = 0;
+  for (const Row& row : rows_) most = std::max(most, row.depth(u));
+  return most;
+}
+
+}  // namespace geo

@@ -1,0 +1,185 @@
+#include "contact/obstacle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "contact/contact_surface.h"
+
+namespace geo {
+Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
+    : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
+
+template <class Work>
+void Obstacle::each_row(const Work& work) const {
+  parallel_for(rows_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) work(r);
+  });
+}
+
+Eigen::Isometry3d Obstacle::pose(double share) const {
+  if (share <= 0) return from_;
+  if (share >= 1) return to_;
+  Eigen::Isometry3d p = Eigen::Isometry3d::Identity();
+  p.linear() = Eigen::Quaterniond(from_.linear()).slerp(share, Eigen::Quaterniond(to_.linear())).toRotationMatrix();
+  p.translation() = (1 - share) * from_.translation() + share * to_.translation();
+  return p;
+}
+
+void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow) {
+  const Complex& k = body.surface;
+  slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
+  rows_.clear();
+  std::vector<std::uint8_t> near(k.surface_vertex_count(), 0);
+  const Eigen::Isometry3d back = from_.inverse();
+  parallel_for(near.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (const SurfaceVertexId id(v); k.alive(id) && !weights.row(v).empty()) near[v] = shape_->near(back * (k.point(k.site(id)) + weights.at(v, u)), reach);
+  });
+  for (std::size_t v = 0; v < near.size(); ++v)
+    if (near[v]) rows_.push_back({weights.row(v), k.point(k.site(SurfaceVertexId(v))), options_.pressure * area_about(k, SurfaceVertexId(v))});
+}
+
+void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
+  if (from <= 0) sum_ = {}, impulses_ = false;
+  else if (from == ended_ && !impulses_) add_reaction(u, sum_);
+  const Eigen::Isometry3d start = pose(from), back = start.inverse();
+  begun_ = from, ended_ = to, now_ = pose(to);
+  each_row([&](std::size_t r) {
+    Row& row = rows_[r];
+    row.start = row.rest + at(row, u);
+    const Vec3 local = back * row.start;
+    const RigidShape::Field field = shape_->at(local);
+    row.outside = field.distance;
+    row.pressed = row.stiffness * std::max(0.0, -field.distance);
+    row.normal = start.linear() * field.normal;
+    row.stuck = now_ * local;
+  });
+}
+
+RigidShape::Field Obstacle::inside(const Row& row, const Vec3& y) const {
+  // No nearer than it was, less the ways that the vertex and what it would stick to have gone.
+  if (row.outside > 0 && (y - row.stuck).norm() < row.outside) return {};
+  RigidShape::Field field = shape_->at(now_.inverse() * y);
+  if (!(field.distance < 0)) return {};
+  const Mat3 turn = now_.linear();
+  return {field.distance, turn * field.normal, turn * field.square * turn.transpose()};
+}
+
+// Force of friction over its way.
+Vec3 Obstacle::drag(const Row& row, const Vec3& y) const {
+  const Vec3 way = y - row.stuck, slide = way - row.normal.dot(way) * row.normal;
+  return -options_.friction * row.pressed / std::max(slide.norm(), slow_) * slide;
+}
+
+double Obstacle::energy(const std::vector<Vec3>& u) const {
+  std::vector<double> part(rows_.size(), 0);
+  each_row([&](std::size_t r) {
+    const Row& row = rows_[r];
+    const Vec3 y = row.rest + at(row, u);
+    part[r] = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
+    if (!(row.pressed > 0)) return;
+    const Vec3 way = y - row.stuck;
+    const double slid = (way - row.normal.dot(way) * row.normal).norm();
+    part[r] += options_.friction * row.pressed * (slid < slow_ ? 0.5 * slid * slid / slow_ : slid - 0.5 * slow_);
+  });
+  double sum = 0;
+  for (const double p : part) sum += p;
+  return sum;
+}
+
+void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
+  std::vector<Vec3> part(rows_.size(), Vec3::Zero());
+  each_row([&](std::size_t r) {
+    Row& row = rows_[r];
+    const Vec3 y = row.rest + at(row, u);
+    const RigidShape::Field field = inside(row, y);
+    part[r] = -row.stiffness * field.distance * field.normal;
+    row.curvature = row.stiffness * field.square;
+    if (!(row.pressed > 0)) return;
+    part[r] += drag(row, y);
+    const Vec3 way = y - row.stuck, slide = way - row.normal.dot(way) * row.normal;
+    row.curvature += options_.friction * row.pressed / std::max(slide.norm(), slow_) * (Mat3::Identity() - row.normal * row.normal.transpose());
+  });
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    if (!part[r].isZero(0))
+      for (const auto& e : rows_[r].weights) out[e.node] += e.weight * part[r];
+}
+
+void Obstacle::blocks(std::vector<Mat3>& out) const {
+  for (const Row& row : rows_) {
+    if (row.curvature.isZero(0)) continue;
+    for (const auto& e : row.weights) out[e.node] += e.weight * e.weight * row.curvature;
+  }
+}
+
+void Obstacle::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
+  for (const Row& row : rows_) {
+    if (row.curvature.isZero(0)) continue;
+    const Vec3 f = row.curvature * at(row, p);
+    for (const auto& e : row.weights) out[e.node] += e.weight * f;
+  }
+}
+
+// The largest sum of absolute values in a row of M⁻¹ Σ k w wᵀ.
+double Obstacle::stiffest(const std::vector<double>& inverse_mass) const {
+  std::vector<double> sum(inverse_mass.size(), 0);
+  for (const Row& row : rows_) {
+    double all = 0;
+    for (const auto& e : row.weights) all += std::abs(e.weight);
+    for (const auto& e : row.weights) sum[e.node] += row.stiffness * std::abs(e.weight) * all;
+  }
+  double most = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) most = std::max(most, sum[i] * inverse_mass[i]);
+  return most;
+}
+
+void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {
+  const Eigen::Isometry3d start = pose(begun_);
+  std::vector<RigidShape::Field> fields(rows_.size());
+  const double share = ended_ - begun_;
+  impulses_ = true;
+  each_row([&](std::size_t r) { fields[r] = inside(rows_[r], rows_[r].rest + at(rows_[r], u)); });
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
+    if (!(fields[r].distance < 0)) continue;
+    const Vec3 push = -h * row.stiffness * fields[r].distance * fields[r].normal;
+    double lightness = 0;
+    for (const auto& e : row.weights) lightness += e.weight * e.weight * inverse_mass[e.node];
+    if (!(lightness > 0)) continue;
+    const Vec3 y = row.rest + at(row, u), along = (now_ * (start.inverse() * y) - y) / h;  // what it touches moves so
+    Vec3 slide = at(row, velocity) - along;
+    slide -= fields[r].normal.dot(slide) * fields[r].normal;
+    const double speed = slide.norm(), most = options_.friction * push.norm();
+    const Vec3 total = push - (speed * (1 / lightness) > most ? most / speed : 1 / lightness) * slide;
+    for (const auto& e : row.weights) velocity[e.node] += inverse_mass[e.node] * e.weight * total;
+    sum_.force -= share / h * total;
+    sum_.torque -= share / h * (y - now_.translation()).cross(total);
+  }
+}
+
+void Obstacle::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
+  const double share = ended_ - begun_;
+  for (const Row& row : rows_) {
+    const Vec3 y = row.rest + at(row, u);
+    const RigidShape::Field field = inside(row, y);
+    Vec3 f = -row.stiffness * field.distance * field.normal;
+    if (row.pressed > 0) f += drag(row, y);
+    to.force -= share * f;
+    to.torque -= share * (y - now_.translation()).cross(f);
+  }
+}
+
+Obstacle::Reaction Obstacle::reaction(const std::vector<Vec3>& u) const {
+  Reaction all = sum_;
+  if (!impulses_) add_reaction(u, all);
+  return all;
+}
+
+double Obstacle::depth(const std::vector<Vec3>& u) const {
+  double most = 0;
+  for (const Row& row : rows_) most = std::max(most, -inside(row, row.rest + at(row, u)).distance);
+  return most;
+}
+
+}  // namespace geo

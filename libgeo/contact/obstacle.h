@@ -1,0 +1,81 @@
+// A rigid obstacle: a penalty on each vertex of the surface that is inside it, with Coulomb friction (§ 3.3, between objects).
+#pragma once
+
+#include <memory>
+
+#include "contact/rigid_shape.h"
+#include "contact/surface_weights.h"
+#include "mechanics/potential.h"
+
+namespace geo {
+
+struct ObstacleOptions {
+  double pressure = 1e6;  ///< Pa for a metre of depth: a body that presses with p stands p / pressure deep, in model units
+  double friction = 0.5;  ///< Coulomb's coefficient
+};
+
+/// ½ pressure area depth² at each surface vertex, area being a third of its triangles' at rest, depth how far it is inside. Friction
+/// acts on the way beside the obstacle since the step began, with the normal and the normal force of that moment: that is the
+/// derivative of a convex potential (Li et al. 2020, § 5). Vertices act on nodes by the weights of Eq. 1.
+class Obstacle : public Potential {
+ public:
+  /// Moves from one pose to the other during the step, its turn even.
+  Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+  /// For a step that begins at displacements u: which vertices may reach the obstacle (those nearer than `reach`), their weights,
+  /// which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth.
+  void watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow);
+
+  void begin(const std::vector<Vec3>& u, double from, double to) override;
+  double energy(const std::vector<Vec3>& u) const override;
+  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
+  void blocks(std::vector<Mat3>& out) const override;
+  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
+  double stiffest(const std::vector<double>& inverse_mass) const override;
+  /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction can.
+  void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
+
+  struct Reaction {
+    Vec3 force = Vec3::Zero();   ///< N
+    Vec3 torque = Vec3::Zero();  ///< N m, about the obstacle's origin
+  };
+  /// What the body did to the obstacle, mean over the step that ended at displacements u.
+  Reaction reaction(const std::vector<Vec3>& u) const;
+  /// Deepest vertex inside, at displacements u; 0: none.
+  double depth(const std::vector<Vec3>& u) const;
+
+ private:
+  struct Row {
+    std::span<const SurfaceWeights::Entry> weights;
+    Vec3 rest;
+    double stiffness;             // N/m
+    Vec3 start = Vec3::Zero();    // where the vertex was
+    double outside = 0;           // how far outside then
+    double pressed = 0;           // N, then
+    Vec3 normal = Vec3::Zero();   // world, then
+    Vec3 stuck = Vec3::Zero();    // where it would be had it stuck to the obstacle
+    Mat3 curvature = Mat3::Zero();  // of the last force()
+  };
+  static Vec3 at(const Row& row, const std::vector<Vec3>& values) {
+    Vec3 sum = Vec3::Zero();
+    for (const auto& e : row.weights) sum += e.weight * values[e.node];
+    return sum;
+  }
+  Eigen::Isometry3d pose(double share) const;
+  /// In world coordinates; distance 0 where the row is outside.
+  RigidShape::Field inside(const Row& row, const Vec3& y) const;
+  Vec3 drag(const Row& row, const Vec3& y) const;
+  void add_reaction(const std::vector<Vec3>& u, Reaction& to) const;
+  template <class Work>
+  void each_row(const Work& work) const;
+
+  std::shared_ptr<const RigidShape> shape_;
+  ObstacleOptions options_;
+  Eigen::Isometry3d from_, to_, now_;  // now_: at the end of this part of the step
+  double slow_ = 0, begun_ = 0, ended_ = 0;  // shares of the step
+  Reaction sum_;  // of the parts before this one, times their shares
+  bool impulses_ = false;  // sum_ is of impulses, this part's included
+  std::vector<Row> rows_;
+};
+
+}  // namespace geo

@@ -1,0 +1,36 @@
+// Contact of objects in the loop: rigid obstacles, where they are and what bodies do to them; bodies that touch each other.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contact/mutual_contact.h"
+#include "contact/obstacle.h"
+#include "simulation/scene.h"
+#include "simulation/work.h"
+
+namespace geo {
+
+class Obstacles {
+ public:
+  /// The scene's obstacles; the ground, too, where surfaces are kept from crossing.
+  explicit Obstacles(const Scene& scene);
+
+  /// Before a step of dt seconds from `time` on: adds them to what acts on nodes, and bodies that touch each other where nothing
+  /// else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is; none: they are found here.
+  void begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, const std::vector<std::uint32_t>& part, const State& motion,
+             double time, double dt, Environment& environment);
+  /// After a crack step.
+  void follow() { own_.reset(); }
+  /// After a step: adds `share` of what was done to the scene's obstacles.
+  void reaction(const State& motion, double share, FrameWork& work) const;
+
+ private:
+  std::vector<std::shared_ptr<const RigidShape>> shapes_;  // of the scene's obstacles, then that of the ground
+  std::vector<Obstacle> acting_;
+  std::optional<MutualContact> mutual_;
+  std::optional<SurfaceWeights> own_;
+};
+
+}  // namespace geo

@@ -26,6 +26,8 @@ class Obstacle : public Potential {
   /// which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth.
   void watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow);
 
+  bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
+
   void begin(const std::vector<Vec3>& u, double from, double to) override;
   double energy(const std::vector<Vec3>& u) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;

@@ -13,6 +13,27 @@ Eigen::Isometry3d isometry(const Pose& p) {
   return at;
 }
 
+// The surface is within a support radius of nodes. So what is far from obstacles needs no weights of its surface.
+bool any_near(const RigidShape& shape, const Eigen::Isometry3d& back, const NodeSet& nodes, const std::vector<Vec3>& u, double reach) {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (shape.near(back * (nodes.position[i] + u[i]), reach + nodes.radius[i])) return true;
+  return false;
+}
+
+// True when the boxes that bodies may be in during the step meet.
+bool parts_meet(const NodeSet& nodes, const std::vector<std::uint32_t>& part, const State& motion, double dt, double fall) {
+  std::vector<Box3> box;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (part[i] >= box.size()) box.resize(part[i] + 1);
+    const Vec3 x = nodes.position[i] + motion.displacement[i], way = 2 * dt * motion.velocity[i];
+    box[part[i]].add(Box3{x.cwiseMin(x + way), x.cwiseMax(x + way)}.grown(nodes.spacing[i] + 2 * dt * fall));
+  }
+  for (std::size_t a = 0; a < box.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (box[a].meets(box[b])) return true;
+  return false;
+}
+
 }  // namespace
 
 Obstacles::Obstacles(const Scene& scene) {
@@ -24,14 +45,17 @@ Obstacles::Obstacles(const Scene& scene) {
   if (scene.ground && scene.self_contact) shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
 }
 
+const SurfaceWeights& Obstacles::weights_of(const SurfaceWeights* given, const Body& body, const Solid& solid) {
+  if (given) return *given;
+  if (!own_) own_.emplace().update(body, solid);
+  return *own_;
+}
+
 void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, const std::vector<std::uint32_t>& part,
                       const State& motion, double time, double dt, Environment& environment) {
+  acting_.clear();
   const bool mutual = scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
   if (shapes_.empty() && !mutual) return;
-  if (!weights) {
-    if (!own_) own_.emplace().update(body, solid);
-    weights = &*own_;
-  }
   // As stiff as the same penalty on each node of the lowest layer: acceleration times mass over area; by the nodes there are now,
   // so that a run taken up does the same.
   double layer = 0, spacing = 0, fastest = 0;
@@ -39,7 +63,6 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
   layer /= double(solid.size()), spacing /= double(solid.size());
   for (const Vec3& v : motion.velocity) fastest = std::max(fastest, v.norm());
   const double fall = dt * environment.gravity.norm();
-  acting_.clear();
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
     ObstacleOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness, ground ? scene.friction : scene.obstacles[k].friction};
@@ -48,13 +71,16 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
     if (ground) from.translation() = to.translation() = scene.ground_point;
     else from = isometry(scene.obstacles[k].pose(time)), to = isometry(scene.obstacles[k].pose(time + dt));
     const double moved = (to.translation() - from.translation()).norm() + shapes_[k]->extent() * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
+    const double reach = 2 * dt * (fastest + fall) + moved + spacing;
     acting_.emplace_back(shapes_[k], options, from, to);
-    acting_.back().watch(body, *weights, motion.displacement, 2 * dt * (fastest + fall) + moved + spacing, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing);
+    if (any_near(*shapes_[k], from.inverse(), body.nodes, motion.displacement, reach))
+      acting_.back().watch(body, weights_of(weights, body, solid), motion.displacement, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing);
   }
   if (scene.ground && scene.self_contact) environment.ground = false;
-  for (Obstacle& o : acting_) environment.contact.push_back(&o);
-  if (!mutual) return;
-  mutual_ = between_bodies(body, solid, *weights, part, motion.displacement,
+  for (Obstacle& o : acting_)
+    if (!o.empty()) environment.contact.push_back(&o);
+  if (!mutual || !parts_meet(body.nodes, part, motion, dt, fall)) return;
+  mutual_ = between_bodies(body, solid, weights_of(weights, body, solid), part, motion.displacement,
                            {scene.contact_stiffness * layer, scene.contact.friction, 4 * dt * (fastest + fall) + spacing, 1e-2 * dt * fall + 1e-6 * spacing});
   if (!mutual_->empty()) environment.contact.push_back(&*mutual_);
 }

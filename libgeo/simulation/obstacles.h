@@ -27,6 +27,7 @@ class Obstacles {
   void reaction(const State& motion, double share, FrameWork& work) const;
 
  private:
+  const SurfaceWeights& weights_of(const SurfaceWeights* given, const Body& body, const Solid& solid);
   std::vector<std::shared_ptr<const RigidShape>> shapes_;  // of the scene's obstacles, then that of the ground
   std::vector<Obstacle> acting_;
   std::optional<MutualContact> mutual_;

@@ -6,6 +6,7 @@
 #include "cases.h"
 #include "contact/bounded_motion.h"
 #include "contact/crossing.h"
+#include "contact/straight_motion.h"
 #include "geometry/predicates.h"
 #include "surface/shapes.h"
 
@@ -62,6 +63,35 @@ TEST_CASE("what is clear of everything goes where it wants to, to the bit") {
   BoundedMotion report;
   CHECK(s.move(&report) == s.to);
   CHECK(report.in_zones == 0);
+}
+
+TEST_CASE("each goes straight on where nothing is in its way, and nothing goes through") {
+  Soup s;
+  s.add(make_block({1, 1, 1}, 0.5), {0, 0, 0}, 1);
+  const std::size_t second = s.from.size();
+  s.add(make_block({1, 1, 1}, 0.5), {1.25, 0.013, 0.017}, 1);
+  const std::size_t third = s.from.size();
+  s.add(make_block({1, 1, 1}, 0.5), {0, 0, 3}, 1);
+  // The first wants to be beyond the second, which stays; the third is free.
+  for (std::size_t v = 0; v < s.from.size(); ++v) s.to.push_back(s.from[v] + (v < second ? Vec3(2.6, 0, 0) : v < third ? Vec3(0, 0, 0) : Vec3(0.3, 0.1, 0.7)));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t i = 0; i < s.triangles.size(); ++i)
+    for (std::uint32_t j = i + 1; j < s.triangles.size(); ++j) pairs.push_back({i, j});
+  std::vector<Vec3> at = s.from;
+  move_straight(s.triangles, pairs, s.to, 1e-4, at);
+  CHECK(s.crossings(at) == 0);
+  for (std::size_t v = third; v < at.size(); ++v) CHECK(at[v] == s.to[v]);
+  double farthest = 0;
+  for (std::size_t v = 0; v < second; ++v) farthest = std::max(farthest, at[v].x());
+  CHECK(farthest < 1.25);
+  // A quarter of a way that ends before it is gone.
+  for (std::size_t v = 0; v < second; ++v) s.to[v] = s.from[v] + Vec3(0.4, 0, 0);
+  at = s.from;
+  move_straight(s.triangles, pairs, s.to, 1e-4, at);
+  CHECK(s.crossings(at) == 0);
+  double way = 0;
+  for (std::size_t v = 0; v < second; ++v) way = std::max(way, at[v].x() - s.from[v].x());
+  CHECK(way >= 0.1);
 }
 
 TEST_CASE("nothing gets out of a shell however fast it is, nor through a triangle in its own plane") {

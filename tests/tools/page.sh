@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 if [ "${3-}" = pumpkin ]; then  # 10 580 triangles, 8 000 nodes, 100 frames after the first
   kerf-model pumpkin --frequency 23 -o pumpkin.ply
-  kerf-sim "$here/../../samples/scenes/halve.toml" --set body.mesh=pumpkin.ply --set body.nodes=8000 --set time.frame_rate=50 --set time.frames=100 -o run
+  kerf-sim "$here/../../samples/scenes/halve.toml" --set body.mesh=pumpkin.ply --set body.nodes=8000 --set contact.self=false --set time.frame_rate=50 --set time.frames=100 -o run
   kerf-view run -o pumpkin.html 2>said.txt
   [ -s said.txt ] && { echo "FAILED: $(cat said.txt)"; exit 1; }
   [ "$(stat -c %s pumpkin.html)" -lt 20000000 ] || { echo "FAILED: the page has $(stat -c %s pumpkin.html) bytes"; exit 1; }

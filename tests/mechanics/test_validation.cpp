@@ -28,3 +28,10 @@ TEST_CASE("validation: first bending frequency") { check(validation::frequency(0
 TEST_CASE("validation: cut bar in free fall") { check(validation::free_fall(0)); }
 TEST_CASE("validation: slit bar") { check(validation::slit_bar(0)); }
 TEST_CASE("validation: bar cut half through") { check(validation::notched_bar(0)); }
+TEST_CASE("validation: Hertz, converging") {
+  const auto found = validation::hertz(0);
+  check(found);
+  CHECK(found.back().error() < found.front().error());
+}
+TEST_CASE("validation: Brazilian disk") { check(validation::brazilian_disk(0)); }
+TEST_CASE("validation: elastic energy at single cuts") { check(validation::energy_at_cuts(0)); }

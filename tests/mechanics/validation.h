@@ -24,5 +24,8 @@ std::vector<Finding> frequency(int size);
 std::vector<Finding> free_fall(int size);
 std::vector<Finding> slit_bar(int size);
 std::vector<Finding> notched_bar(int size);
+std::vector<Finding> hertz(int size);
+std::vector<Finding> brazilian_disk(int size);
+std::vector<Finding> energy_at_cuts(int size);
 
 }  // namespace validation

@@ -21,11 +21,26 @@ constexpr std::size_t most_segments = 32;
 // Segments from one point, in the frame of the boxes.
 struct Packet {
   float p[3];
+  alignas(64) double exact_end[3][most_segments];  // not in that frame
   alignas(64) float end[3][most_segments], lo[3][most_segments], hi[3][most_segments];
   float all_lo[3], all_hi[3];
   std::size_t count = 0;
   bool near = true;  // within twice the frame, where slabs are valid
 };
+
+// The plane through a point and two others: the sign of an orientation of all three and a fourth, by Shewchuk's A-stage.
+struct Plane {
+  Plane(const Vec3& origin, const Vec3& a, const Vec3& b) : origin(origin) {
+    const Vec3 u = a - origin, v = b - origin;
+    for (int i = 0; i < 3; ++i) {
+      const double x = u[(i + 1) % 3] * v[(i + 2) % 3], y = u[(i + 2) % 3] * v[(i + 1) % 3];
+      normal[i] = x - y, terms[i] = std::abs(x) + std::abs(y);
+    }
+  }
+  Vec3 origin;
+  double normal[3], terms[3];
+};
+constexpr double orientation_error = 0x1p-50;  // more than (7 + 56 ε) ε
 
 using Corners = std::span<const std::array<Vec3, 3>>;
 using Order = std::span<const std::uint32_t>;
@@ -103,7 +118,7 @@ void fill(const TriangleLanes& tree, const Vec3& p, const Vec3* ends, Packet& pa
   const hn::CappedTag<double, TriangleLanes::width> dd;
   const hn::Rebind<float, decltype(dd)> df;
   const std::size_t lanes = hn::Lanes(dd), whole = (packet.count + TriangleLanes::width - 1) / TriangleLanes::width * TriangleLanes::width;
-  alignas(64) double at[3][most_segments];
+  auto& at = packet.exact_end;
   for (std::size_t s = 0; s < whole; ++s) {
     const double* const end = s < packet.count ? ends[s].data() : p.data();
     for (int axis = 0; axis < 3; ++axis) at[axis][s] = end[axis];
@@ -124,6 +139,53 @@ void fill(const TriangleLanes& tree, const Vec3& p, const Vec3* ends, Packet& pa
     packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo)), packet.all_hi[axis] = hn::GetLane(hn::MaxOfLanes(df, all_hi));
     packet.near = packet.near && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
   }
+}
+
+// Of a packet's ends: those clearly on the positive side of a plane, and those clearly on the negative.
+struct Sides {
+  std::uint32_t positive, negative;
+};
+using Doubles = hn::CappedTag<double, 8>;
+template <class V>
+Sides sides(const Plane& plane, const V& x, const V& y, const V& z) {
+  const Doubles d;
+  const auto u = hn::Sub(x, hn::Set(d, plane.origin.x())), v = hn::Sub(y, hn::Set(d, plane.origin.y())), w = hn::Sub(z, hn::Set(d, plane.origin.z()));
+  const auto sum = [&](const double* n, const auto& a, const auto& b, const auto& c) {
+    return hn::Add(hn::Add(hn::Mul(hn::Set(d, n[0]), a), hn::Mul(hn::Set(d, n[1]), b)), hn::Mul(hn::Set(d, n[2]), c));
+  };
+  const auto value = sum(plane.normal, u, v, w), permanent = sum(plane.terms, hn::Abs(u), hn::Abs(v), hn::Abs(w));
+  const auto bound = hn::Mul(permanent, hn::Set(d, orientation_error));
+  const auto valid = hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
+  const auto bits = [&](const auto& mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::And(mask, valid), bytes);
+    return std::uint32_t(bytes[0]);
+  };
+  return {bits(hn::Gt(value, bound)), bits(hn::Lt(value, hn::Neg(bound)))};
+}
+
+// Of some segments of a packet: those that clearly go through a triangle, and those that clearly do not touch it.
+struct Crossing {
+  std::uint32_t through, apart;
+};
+Crossing crossing(const Packet& packet, const Vec3& p, const std::array<Vec3, 3>& t, std::uint32_t segments) {
+  const int side = orient3d_quick(t[0], t[1], t[2], p);
+  if (side == 2) return {0, 0};
+  const Plane own(t[0], t[1], t[2]), edges[3] = {{p, t[0], t[1]}, {p, t[1], t[2]}, {p, t[2], t[0]}};
+  const Doubles d;
+  Crossing result{0, 0};
+  for (std::size_t at = 0; at < packet.count; at += hn::Lanes(d)) {
+    if ((segments >> at & ((1u << hn::Lanes(d)) - 1)) == 0) continue;
+    const auto x = hn::Load(d, packet.exact_end[0] + at), y = hn::Load(d, packet.exact_end[1] + at), z = hn::Load(d, packet.exact_end[2] + at);
+    const Sides end = sides(own, x, y, z);
+    const Sides around[3] = {sides(edges[0], x, y, z), sides(edges[1], x, y, z), sides(edges[2], x, y, z)};
+    const auto across = side > 0 ? end.negative : end.positive, beside = side > 0 ? end.positive : end.negative;
+    const auto all_positive = around[0].positive & around[1].positive & around[2].positive, all_negative = around[0].negative & around[1].negative & around[2].negative;
+    const auto any_positive = around[0].positive | around[1].positive | around[2].positive, any_negative = around[0].negative | around[1].negative | around[2].negative;
+    result.through |= (across & (all_positive | all_negative)) << at;
+    result.apart |= (beside | (across & any_positive & any_negative)) << at;
+  }
+  return {result.through & segments, result.apart & segments};
 }
 
 void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) {
@@ -147,15 +209,26 @@ void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, con
         stack[top++] = {level - 1, child};
         continue;
       }
+      std::uint32_t suspicious[TriangleLanes::width] = {}, triangles = 0;  // segments that may touch each triangle; any do
       for (auto segments = meeting(packet, boxes, lane) & open; segments != 0; segments &= segments - 1) {
         const auto s = static_cast<std::uint32_t>(std::countr_zero(segments));
-        for (auto rest = suspects(levels[0][child], tree.slabs()[child], packet, s); rest != 0; rest &= rest - 1) {
-          const auto& t = corners[order[child * TriangleLanes::width + static_cast<std::uint32_t>(std::countr_zero(rest))]];
-          if (!segment_meets_triangle(p, ends[s], t[0], t[1], t[2])) continue;
-          result[s] = 1;
-          open &= ~(1u << s);
-          break;
+        const auto rest = suspects(levels[0][child], tree.slabs()[child], packet, s);
+        triangles |= rest;
+        for (auto bits = rest; bits != 0; bits &= bits - 1) suspicious[std::countr_zero(bits)] |= 1u << s;
+      }
+      for (; triangles != 0; triangles &= triangles - 1) {
+        const auto k = static_cast<std::uint32_t>(std::countr_zero(triangles));
+        const auto asked = suspicious[k] & open;
+        if (asked == 0) continue;
+        const auto& t = corners[order[child * TriangleLanes::width + k]];
+        const Crossing clear = crossing(packet, p, t, asked);
+        auto blocked = clear.through;
+        for (auto doubt = asked & ~(clear.through | clear.apart); doubt != 0; doubt &= doubt - 1) {
+          const auto s = static_cast<std::uint32_t>(std::countr_zero(doubt));
+          if (segment_meets_triangle(p, ends[s], t[0], t[1], t[2])) blocked |= 1u << s;
         }
+        open &= ~blocked;
+        for (; blocked != 0; blocked &= blocked - 1) result[std::countr_zero(blocked)] = 1;
       }
     }
   }

@@ -71,7 +71,8 @@ VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& 
     graph.reach_ = std::max(graph.reach_, squared_distance(nodes.position[i.index()], nodes.position[j.index()]));
   }
   graph.reach_ = std::sqrt(graph.reach_);
-  for (const double r : nodes.radius) graph.reach_ = std::max(graph.reach_, r);
+  for (const double r : nodes.radius) graph.support_ = std::max(graph.support_, r);
+  graph.reach_ = std::max(graph.reach_, graph.support_);
   for (std::size_t i = 0, sum = 0; i <= n; ++i) sum += ends[i], ends[i] = static_cast<std::uint32_t>(sum);
   std::vector<std::uint32_t> to(2 * pairs.size());
   for (const auto& [i, j] : pairs) to[--ends[i.index()]] = j.value, to[--ends[j.index()]] = i.value;

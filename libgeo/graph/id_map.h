@@ -13,7 +13,7 @@ class IdMap {
   static constexpr std::uint32_t none = ~0u;
   /// Forgets all ids; `expected`: about how many will come.
   void clear(std::size_t expected) {
-    slots_.assign(std::bit_ceil(std::max<std::size_t>(4 * expected, 64)), empty);
+    slots_.assign(std::bit_ceil(std::max<std::size_t>(2 * expected, 64)), empty);
     shift_ = 64 - static_cast<unsigned>(std::countr_zero(slots_.size()));
     ids_.clear();
   }

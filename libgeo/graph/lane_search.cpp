@@ -24,6 +24,36 @@ void Lengths(const double* squared, const double* radius, std::size_t count, std
   }
 }
 
+// Whole vectors only: the last of them begins so early that it ends with the row, without the entries that were taken.
+std::size_t LeadOn(const std::uint32_t* to, const std::uint16_t* bits, std::size_t count, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+  const hn::CappedTag<std::uint32_t, 16> d;
+  const hn::Rebind<std::uint16_t, decltype(d)> dh;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t found = 0;
+  const auto take = [&](std::size_t k) {
+    const auto next = reach + VisibilityGraph::bound(bits[k]);
+    targets[found] = to[k], lengths[found] = next;
+    found += VisibilityGraph::is_edge(bits[k]) & (next < unit_radius);
+  };
+  if (count < lanes) {
+    for (std::size_t k = 0; k < count; ++k) take(k);
+    return found;
+  }
+  const auto edge = hn::Set(d, std::uint32_t(VisibilityGraph::edge_bit)), bound = hn::Set(d, std::uint32_t(VisibilityGraph::bound_bits));
+  const auto from = hn::Set(d, reach), radius = hn::Set(d, unit_radius);
+  for (std::size_t k = 0; k < count; k += lanes) {
+    const auto at = std::min(k, count - lanes);
+    const auto entry = hn::PromoteTo(d, hn::LoadU(dh, bits + at));
+    const auto next = hn::Add(from, hn::ShiftLeft<10>(hn::And(entry, bound)));
+    auto leads = hn::And(hn::Ne(hn::And(entry, edge), hn::Zero(d)), hn::Lt(next, radius));
+    if (at < k) leads = hn::AndNot(hn::FirstN(d, k - at), leads);
+    hn::StoreU(hn::Compress(next, leads), d, lengths + found);  // CompressStore() is slow on some processors
+    hn::StoreU(hn::Compress(hn::LoadU(d, to + at), leads), d, targets + found);
+    found += hn::CountTrue(d, leads);
+  }
+  return found;
+}
+
 void Search(const LocalGraph& graph, LaneSearch::Work& w) {
   using Tag = hn::CappedTag<std::int32_t, LaneSearch::lanes>;
   const Tag d;
@@ -48,7 +78,7 @@ void Search(const LocalGraph& graph, LaneSearch::Work& w) {
       least = hn::Min(least, hn::IfThenElse(hn::Eq(from[p], zero), far, from[p]));
     }
     const auto nearest = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(d, least)));
-    const std::uint32_t end = (((unit_radius - 1 - nearest) >> LocalGraph::class_shift) + 1) << LocalGraph::class_shift;
+    const std::uint32_t end = LocalGraph::end_of_classes(nearest);
     for (const auto edge : graph.edges(u)) {
       if (edge.length >= end) break;
       const auto length = hn::Set(d, std::int32_t(edge.length)), limit = hn::Set(d, std::int32_t(limits[edge.to]));
@@ -110,11 +140,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(Lengths);
+HWY_EXPORT(LeadOn);
 HWY_EXPORT(Search);
 HWY_EXPORT(Collect);
 
 void warped_lengths(const double* squared, const double* radius, std::size_t count, std::uint32_t* lengths) {
   HWY_DYNAMIC_DISPATCH(Lengths)(squared, radius, count, lengths);
+}
+
+std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+  return HWY_DYNAMIC_DISPATCH(LeadOn)(row.to.data(), row.bits.data(), row.to.size(), reach, targets, lengths);
 }
 
 void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sources) {

@@ -13,6 +13,10 @@ namespace geo {
 /// warped_length() of many edges, from squared distances and the larger radius of each.
 void warped_lengths(const double* squared, const double* radius, std::size_t count, std::uint32_t* lengths);
 
+/// The edges of a row whose ends may be within a support radius of something that is `reach` or more from here: where they
+/// lead, and at least how far that is. Writes up to 16 numbers behind the last, which are nothing. Returns how many there are.
+std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths);
+
 class LaneSearch {
  public:
   static constexpr std::size_t lanes = 16;

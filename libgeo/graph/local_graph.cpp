@@ -43,20 +43,19 @@ void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint
     const auto reach = discoveries_[number].reach;
     const auto row = graph.entries(discoveries_[number].id);
     const auto size = row.to.size();
-    if (targets_.size() < used + size) targets_.resize(2 * used + size);
-    if (next_.size() < size) next_.resize(2 * size);
+    constexpr std::size_t vector = 16;
+    if (targets_.size() < used + size + vector) targets_.resize(2 * used + size + vector);
+    if (next_.size() < size + vector) next_.resize(2 * size + vector);
     if (queue_.size() < tail + size) queue_.resize(2 * tail + size);
-    // The edges that lead on, without branches that nobody could predict; then whose they are.
     auto* const targets = targets_.data() + used;
-    std::size_t edges = 0;
-    for (std::size_t k = 0; k < size; ++k) {
-      const auto next = reach + VisibilityGraph::bound(row.bits[k]);
-      targets[edges] = row.to[k] - base, next_[edges] = next;
-      edges += VisibilityGraph::is_edge(row.bits[k]) & (next < unit_radius);
-    }
+    const std::size_t edges = edges_that_lead_on(row, reach, targets, next_.data());
     for (std::size_t k = 0; k < edges; ++k) {
-      if (targets[k] < run_) continue;  // a source: nothing is nearer
-      const auto to = targets[k] = discover(targets[k] + base);
+      const auto in_run = targets[k] - base;
+      if (in_run < run_) {  // a source: nothing is nearer
+        targets[k] = in_run;
+        continue;
+      }
+      const auto to = targets[k] = discover(targets[k]);
       auto& known = discoveries_[to].reach;
       const std::uint8_t enters = (next_[k] < known) & (queued_[to] ^ 1);
       known = std::min(known, next_[k]);

@@ -18,6 +18,8 @@ class LocalGraph {
   };
   /// Edges are in classes by length: those of 2⁻⁴ of a support radius, or of two, and so on.
   static constexpr unsigned class_shift = 20;
+  /// Edges as long as this lead out of the support radius from there (as do some shorter ones).
+  static constexpr std::uint32_t end_of_classes(std::uint32_t distance) { return (((unit_radius - 1 - distance) >> class_shift) + 1) << class_shift; }
 
   /// Everything within a support radius of one of the sources (ascending; best near each other).
   void gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources);

@@ -9,7 +9,7 @@ namespace geo {
 namespace {
 
 // Enough that most of what is near a source belongs to other sources too, and fits into a core's cache.
-constexpr std::size_t block = 1024;
+constexpr std::size_t block = 4096;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ struct RowSearch::Work {
   std::vector<float> paths;
   std::vector<std::uint32_t> distance;  // by local node, of one source; 0 elsewhere
   std::vector<std::uint64_t> plain;     // where distance is known
-  std::vector<LaneSearch::Found> order;
+  std::vector<std::uint64_t> order;     // nodes, their distances in the upper half
 
   void plain_lengths(double unit, std::uint32_t source, std::span<const LaneSearch::Found> found);
 };
@@ -31,16 +31,22 @@ struct RowSearch::Work {
 void RowSearch::Work::plain_lengths(double unit, std::uint32_t source, std::span<const LaneSearch::Found> found) {
   distance.resize(std::max<std::size_t>(distance.size(), local.size()), 0);
   plain.resize(distance.size());
-  order.assign(found.begin(), found.end());
-  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
-  for (const auto& f : order) distance[f.node] = f.distance, plain[f.node] = ~std::uint64_t(0);
+  order.clear();
+  for (const auto& f : found) {
+    distance[f.node] = f.distance, plain[f.node] = ~std::uint64_t(0);
+    order.push_back(std::uint64_t(f.distance) << 32 | f.node);
+  }
+  std::sort(order.begin(), order.end());
   plain[source] = 0;
-  order.insert(order.begin(), {source, 0});
-  for (const auto& f : order) {
-    const Vec3 from = local.position(f.node);
-    for (const auto edge : local.edges(f.node))
-      if (f.distance + edge.length == distance[edge.to])
-        plain[edge.to] = std::min(plain[edge.to], plain[f.node] + plain_length(from, local.position(edge.to), unit));
+  order.insert(order.begin(), source);
+  for (const auto entry : order) {
+    const auto node = static_cast<std::uint32_t>(entry), here = static_cast<std::uint32_t>(entry >> 32);
+    const Vec3 from = local.position(node);
+    const auto end = LocalGraph::end_of_classes(here);
+    for (const auto edge : local.edges(node)) {
+      if (edge.length >= end) break;
+      if (here + edge.length == distance[edge.to]) plain[edge.to] = std::min(plain[edge.to], plain[node] + plain_length(from, local.position(edge.to), unit));
+    }
   }
   for (const auto& f : found) distance[f.node] = 0;
 }

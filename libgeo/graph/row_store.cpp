@@ -48,8 +48,12 @@ void RowStore::copy(const RowView& row, Place& place, std::byte* words) {
   std::memcpy(to + n, row.bits.data(), n * sizeof(std::uint16_t));
   if (!row.paths.empty()) std::memcpy(to + n + (n + 1) / 2, row.paths.data(), row.paths.size() * sizeof(float));
   std::int16_t least = 0x7fff;  // above 14 bits where the uppermost is not set; without a branch, so that it is done in vectors
-  for (const auto bits : row.bits) least = std::min(least, static_cast<std::int16_t>((bits & 0x3fff) | ((~bits & 0x8000) >> 1)));
-  place.count = static_cast<std::uint16_t>(n), place.least = static_cast<std::uint16_t>(least);
+  std::uint16_t bare = 0;
+  for (const auto bits : row.bits) {
+    least = std::min(least, static_cast<std::int16_t>((bits & 0x3fff) | ((~bits & 0x8000) >> 1)));
+    bare |= static_cast<std::uint16_t>(bits & (bits << 1));
+  }
+  place.count = static_cast<std::uint16_t>(n), place.least = static_cast<std::uint16_t>(least | (bare & 0x8000));
 }
 
 RowStore::Room RowStore::open_room(std::uint32_t words) {

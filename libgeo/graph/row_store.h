@@ -46,7 +46,9 @@ class RowStore {
     return {{to, place.count}, {reinterpret_cast<const std::uint16_t*>(to + place.count), place.count}, {}};
   }
   /// At most the lower 14 bits of each entry whose uppermost bit is set.
-  std::uint16_t least(std::size_t i) const { return places_[i].least; }
+  std::uint16_t least(std::size_t i) const { return places_[i].least & 0x7fff; }
+  /// Was a row put here with an entry whose upper two bits are set?
+  bool has_bare_edges(std::size_t i) const { return places_[i].least >> 15; }
   /// Fetches a row's place, and then what is there, ahead of their use.
   void prefetch_place(std::size_t i) const { __builtin_prefetch(&places_[i]); }
   void prefetch(std::size_t i) const {
@@ -88,7 +90,7 @@ class RowStore {
   struct Place {
     std::uint32_t offset = 0;
     std::uint16_t count = 0, words = 0;  // entries, and the room that the row has
-    std::uint16_t least = 0x7fff;
+    std::uint16_t least = 0x7fff;  // the uppermost bit: has_bare_edges()
   };
   struct Room {
     std::uint32_t block, begin, end;

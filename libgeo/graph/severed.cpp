@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/bvh.h"
+#include "graph/id_flags.h"
 #include "graph/id_map.h"
 
 namespace geo {
@@ -38,9 +39,11 @@ class Plane {
 // Which nodes a face may cut something of: those within `reach` of it, and some more.
 struct Surroundings {
   Surroundings(const Corners& t, double reach) : plane(t), around(box_of(t[0], t[1], t[2]).grown(reach)), reach(reach) {}
-  bool holds(const Vec3& x) const {
-    return x.x() >= around.lo.x() && x.x() <= around.hi.x() && x.y() >= around.lo.y() && x.y() <= around.hi.y() && x.z() >= around.lo.z() &&
-           x.z() <= around.hi.z() && plane.within(x, reach);
+  /// False only for what is farther than `distance`, which is `reach` at most.
+  bool holds(const Vec3& x, double distance) const {
+    const double less = reach - distance;
+    return x.x() >= around.lo.x() + less && x.x() <= around.hi.x() - less && x.y() >= around.lo.y() + less && x.y() <= around.hi.y() - less &&
+           x.z() >= around.lo.z() + less && x.z() <= around.hi.z() - less && plane.within(x, distance);
   }
   /// True unless it holds nothing of the cube.
   bool reaches(const Vec3& middle, double half) const {
@@ -83,7 +86,7 @@ struct Near {
 Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new, std::span<const Corners> faces,
                 const TriangleBvh& tree) {
   // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
-  const double reach = graph.reach() * (1 + 1e-6);
+  const double reach = graph.reach() * (1 + 1e-6), support = std::min(graph.support() * (1 + 1e-6), reach);
   Near near;
   if (!(reach > 0)) return near;  // no edge yet
   std::vector<Surroundings> around;
@@ -105,7 +108,9 @@ Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGr
   const auto see = [&](int depth, std::uint32_t id) {
     const Vec3& x = graph.position(nodes, id);
     const auto& here = faces_at[static_cast<std::size_t>(depth) + 1];
-    if (std::none_of(here.begin(), here.end(), [&](std::uint32_t f) { return around[f].holds(x); })) return;
+    const auto within = [&](double length) { return std::any_of(here.begin(), here.end(), [&](std::uint32_t f) { return around[f].holds(x, 0.5 * length); }); };
+    // Only few nodes have edges longer than the support.
+    if (!within(support) && !(reach > support && within(reach) && graph.store(id).has_bare_edges(VisibilityGraph::place(id)))) return;
     if (!has_slab) {
       rows.clear();
       const Vec3 way = Vec3::Constant(cube_size + reach);
@@ -154,9 +159,10 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   const TriangleBvh tree(faces);
   const Near near = near_faces(nodes, graph, grid, first_new, faces, tree);
   if (near.ids.empty()) return {};
-  IdMap number;
+  thread_local IdFlags has_asked;
+  thread_local IdMap number;  // of those that lose something
+  has_asked.clear();
   number.clear(near.ids.size());
-  for (const auto i : near.ids) number.add(i);
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> asked;
   std::vector<Vec3> ends;
@@ -182,13 +188,14 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
     std::size_t kept = 0;
     for (std::size_t a = 0; a < count; ++a) {
       const auto j = row.to[asked[a]];
-      if (number.find(j) < at) continue;  // it has asked
+      if (has_asked.has(j)) continue;
       asked[kept++] = asked[a], ends.push_back(graph.position(nodes, j));
     }
     blocked.assign(kept, 0);
     tree.blocks(graph.position(nodes, i), ends, blocked.data());
     for (std::size_t a = 0; a < kept; ++a)
-      if (blocked[a]) pairs.push_back({at, number.add(row.to[asked[a]]), row.bits[asked[a]]});
+      if (blocked[a]) pairs.push_back({number.add(i), number.add(row.to[asked[a]]), row.bits[asked[a]]});
+    has_asked.add(i);
   }
   return rows_of(pairs, number.ids());
 }

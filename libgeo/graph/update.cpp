@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "geometry/predicates.h"
 #include "graph/guides.h"
-#include "graph/id_map.h"
+#include "graph/id_flags.h"
 #include "graph/row_search.h"
 #include "graph/severed.h"
 
@@ -52,7 +52,7 @@ class PairSight {
 // edge's length. Of several edges at an end the shortest decides.
 class Users {
  public:
-  Users(const NodeSet& nodes, const VisibilityGraph& graph, IdMap& update) : nodes_(nodes), graph_(graph), update_(update) {}
+  Users(const NodeSet& nodes, const VisibilityGraph& graph, IdFlags& update) : nodes_(nodes), graph_(graph), update_(update) {}
   /// An end, and at most the length of its shortest edge that is cut.
   void add(std::uint32_t end, std::uint32_t length) {
     if (VisibilityGraph::is_guide(end)) {
@@ -79,7 +79,7 @@ class Users {
   }
   const NodeSet& nodes_;
   const VisibilityGraph& graph_;
-  IdMap& update_;
+  IdFlags& update_;
   std::vector<std::uint64_t> guides_;  // ids, lengths in the lower half
 };
 
@@ -126,8 +126,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   RowSearch& search = own_search();
   const auto& x = nodes.position;
   graph.resize(nodes.size());
-  IdMap update;
-  update.clear(0);
+  thread_local IdFlags update;
+  update.clear();
 
   // What the faces cut, and all that hangs on the moved nodes.
   const Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
@@ -239,13 +239,12 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
       const auto old = graph.rows().entries(i);
       const bool fresh_i = is_fresh(i);
       for (std::size_t e = 0, o = 0, l = 0; e < to.size(); ++e) {
-        if (VisibilityGraph::is_edge(bits[e])) continue;
         while (o < old.to.size() && old.to[o] < to[e]) ++o;
         while (l < lost.size() && lost[l].to < to[e]) ++l;
-        const bool saw = !fresh_i && o < old.to.size() && old.to[o] == to[e] && VisibilityGraph::is_neighbor(old.bits[o]) &&
-                         !RowStore::has_path(old.bits[o]) && !is_fresh(to[e]);
-        const bool is_hidden = saw ? l < lost.size() && lost[l].to == to[e] : asked.blocked(i, to[e]);
-        if (is_hidden) bits[e] |= VisibilityGraph::path_bit;
+        const bool is_lost = l < lost.size() && lost[l].to == to[e], was_there = o < old.to.size() && old.to[o] == to[e];
+        const bool is_edge = VisibilityGraph::is_edge(bits[e]), saw = was_there & !fresh_i && !(old.bits[o] & VisibilityGraph::path_bit) && !is_fresh(to[e]);
+        if (is_edge | (saw & !is_lost)) continue;  // nearly all
+        if (saw || asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
       }
     };
     own_search().run(nodes, graph, some, mark_hidden, put);

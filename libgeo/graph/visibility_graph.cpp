@@ -52,8 +52,8 @@ bool VisibilityGraph::add(const NodeSet& nodes, NodeId i, NodeId j) {
     store(from.value).set(place(from.value), {ids, bits, paths});
   };
   put(i, j), put(j, i);
-  reach_ = std::max({reach_, radius(nodes, i.value), radius(nodes, j.value),
-                     std::sqrt(squared_distance(position(nodes, i.value), position(nodes, j.value)))});
+  support_ = std::max({support_, radius(nodes, i.value), radius(nodes, j.value)});
+  reach_ = std::max({reach_, support_, std::sqrt(squared_distance(position(nodes, i.value), position(nodes, j.value)))});
   edges_ += !is_guide(i.value) && !is_guide(j.value);
   return true;
 }
@@ -62,7 +62,8 @@ std::uint32_t VisibilityGraph::add_guide(const Guide& guide) {
   const auto id = first_guide + guides_.size();
   guides_.add(guide);
   guide_rows_.resize(guides_.size());
-  reach_ = std::max(reach_, guide.radius);
+  support_ = std::max(support_, guide.radius);
+  reach_ = std::max(reach_, support_);
   return id;
 }
 
@@ -180,12 +181,14 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
       require(back < ends[to[e]] && to[back] == i && bits[back] == bits[e], "is not the same from its other end", e);
       if (!is_edge(bits[e])) continue;
       ++graph.edges_;
-      graph.reach_ = std::max({graph.reach_, nodes.radius[i], std::sqrt(squared_distance(nodes.position[i], nodes.position[to[e]]))});
+      graph.reach_ = std::max(graph.reach_, std::sqrt(squared_distance(nodes.position[i], nodes.position[to[e]])));
     }
+    if (begin < end) graph.support_ = std::max(graph.support_, nodes.radius[i]);
     // All entries to lower nodes must have been met from there.
     require(next[i] == end || to[next[i]] > i, "is not the same from its other end", next[i]);
     rows.set(i, {to.subspan(begin, end - begin), bits.subspan(begin, end - begin), paths.subspan(first_path, path - first_path)});
   }
+  graph.reach_ = std::max(graph.reach_, graph.support_);
   if (path != paths.size()) throw InputError("the graph has more lengths of paths than it uses");
   std::sort(of_guides.begin(), of_guides.end());
   graph.append_guide_edges(nodes, of_guides);

@@ -78,6 +78,8 @@ class VisibilityGraph {
   void set_plain_unit(double unit) { plain_unit_ = unit; }
   /// No edge is longer than this and no two neighbours are farther apart, in model units.
   double reach() const { return reach_; }
+  /// No edge that joins neighbours is longer than this, and no two neighbours are farther apart.
+  double support() const { return support_; }
   /// Component of each node, numbered by lowest node; returns their count.
   std::uint32_t components(std::vector<std::uint32_t>& of) const;
   /// Bytes of all rows and guides.
@@ -121,7 +123,7 @@ class VisibilityGraph {
   RowStore rows_, guide_rows_;
   GuideSet guides_;
   std::size_t edges_ = 0;
-  double plain_unit_ = 1, reach_ = 0;
+  double plain_unit_ = 1, reach_ = 0, support_ = 0;
 };
 
 /// EMST ∪ k nearest, minus every edge that touches a triangle of `obstacles` (closed semantics, exact). Without

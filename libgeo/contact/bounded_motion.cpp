@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <utility>
 
 #include "base/parallel.h"
 #include "contact/affine_motion.h"
@@ -13,6 +12,7 @@
 #include "contact/parting.h"
 #include "contact/smooth_field.h"
 #include "contact/straight_motion.h"
+#include "contact/triangle_planes.h"
 
 namespace geo {
 namespace {
@@ -23,14 +23,14 @@ class Zones {
   explicit Zones(std::size_t vertices) : parent_(vertices), in_(vertices, 0) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
   bool has(std::uint32_t v) const { return in_[v]; }
-  bool same(std::uint32_t v, std::uint32_t w) { return in_[v] && in_[w] && root(v) == root(w); }
+  bool same(std::uint32_t v, std::uint32_t w) const { return in_[v] && in_[w] && root(v) == root(w); }
   std::size_t count() const { return static_cast<std::size_t>(std::count(in_.begin(), in_.end(), 1)); }
   /// Returns true when this is new.
   bool join(std::uint32_t v, std::uint32_t w) {
     const bool is_new = !same(v, w);
     in_[v] = in_[w] = 1;
-    const auto a = root(v), b = root(w);
-    parent_[std::max(a, b)] = std::min(a, b);
+    const auto a = root(v), b = root(w), least = std::min(a, b);
+    parent_[std::max(a, b)] = parent_[v] = parent_[w] = least;
     return is_new;
   }
   void place(const std::vector<Vec3>& from, const std::vector<Vec3>& to, std::vector<Vec3>& at) {
@@ -40,8 +40,8 @@ class Zones {
     for (const auto& [zone, rows] : members) move_rigidly(rows, from, to, at);
   }
  private:
-  std::uint32_t root(std::uint32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+  std::uint32_t root(std::uint32_t v) const {
+    while (parent_[v] != v) v = parent_[v];
     return v;
   }
   std::vector<std::uint32_t> parent_;
@@ -58,56 +58,112 @@ class Mover {
       if (used[v]) rows_.push_back(v);
     for (const auto& [a, b, c] : triangles_) edge_ += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
     edge_ /= std::max(1.0, 3 * double(triangles_.size()));
+    for (const auto v : rows_) size_ = std::max({size_, m.from[v].cwiseAbs().maxCoeff(), m.to[v].cwiseAbs().maxCoeff()});
   }
 
   std::vector<Vec3> run() {
-    bool whole = false;
-    double left = wanting();
-    for (int round = 0; round < most_carries && !whole && left > 0; ++round) {
-      whole = carry(round);
-      for (int i = 0; i < most_advances; ++i) advance();
-      const double before = std::exchange(left, wanting());
-      if (left > 2 * before / 3) break;  // the rest is blocked
+    for (int round = 0; round < most_rounds && wanting(); ++round) {
+      const bool whole = advance(round);
+      settle();
+      if (whole) break;
     }
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.together[v]];
     return std::move(at_);
   }
 
  private:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
   static constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-one
-  static constexpr int most_carries = 8, most_advances = 2, most_settles = 2, most_growths = 10;
+  static constexpr double negligible = 0.01, farthest = 0.1;  // of an edge: not worth a plane, and as far as planes let one go
+  static constexpr int most_rounds = 8, growths_apart = 10, most_growths = 20;
 
-  double wanting() const {
-    double sum = 0;
-    for (const auto v : rows_) sum += (m_.to[v] - at_[v]).norm();
-    return sum;
+  bool wanting() const {
+    return std::any_of(rows_.begin(), rows_.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
-  // All as one, then by a smooth field: no further than it is one-to-one all the way. True when that was all of it.
-  bool carry(int round) {
-    std::vector<Vec3> start = at_, by(at_.size(), Vec3::Zero());
+  // Straight to where all want to be; what would cross or pass something is carried along instead. True when none is left behind
+  // because the field would be too steep.
+  bool advance(int round) {
+    std::vector<Vec3> start = at_;
     if (round == 0) move_affinely(rows_, at_, m_.to, start);
+    std::vector<Vec3> next = start;
+    for (const auto v : rows_) next[v] = m_.to[v];
+    Carried carried(at_.size());
+    near(start, next);
+    std::vector<std::uint8_t> changed(triangles_.size(), 1);
+    for (int growth = 0;; ++growth) {
+      const auto failing = failing_pairs(start, next, carried, changed);
+      if (failing.empty()) break;
+      if (carried.field.empty()) carry(start, carried);
+      bool grown = false;
+      const std::vector<std::uint8_t> was = carried.is;
+      for (const Pair& pair : failing) grown |= carried.add(triangles_[pair.first], triangles_[pair.second], was);
+      if (growth == growths_apart)
+        for (const auto v : rows_) grown |= !carried.is[v], carried.is[v] = 1;
+      if (!grown || growth == most_growths) {
+        together(start, next);
+        break;
+      }
+      const std::vector<Vec3> before = next;
+      for (const auto v : rows_)
+        if (carried.is[v]) next[v] = carried.field[v];
+      carried.zones.place(start, carried.field, next);
+      for (std::size_t t = 0; t < changed.size(); ++t)
+        changed[t] = std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](auto v) { return next[v] != before[v]; });
+      near_again(start, next, changed);
+    }
+    report_.in_zones = std::max(report_.in_zones, carried.zones.count());
+    at_ = std::move(next);
+    return carried.share == 1;
+  }
+
+  // What does not go straight.
+  struct Carried {
+    explicit Carried(std::size_t vertices) : is(vertices, 0), zones(vertices) {}
+    // All corners of a failing pair; in a zone when the field has carried them already. True when that is new.
+    bool add(const Triangle& s, const Triangle& t, const std::vector<std::uint8_t>& was) {
+      bool grown = false, all = true;
+      for (const Triangle* of : {&s, &t})
+        for (const auto v : *of) all &= was[v] != 0;
+      for (const Triangle* of : {&s, &t})
+        for (const auto v : *of) {
+          if (all)
+            grown |= zones.join(s[0], v);
+          else
+            grown |= !is[v], is[v] = 1;
+        }
+      return grown;
+    }
+    std::vector<std::uint8_t> is;
+    std::vector<Vec3> field;        // where it carries each row
+    std::vector<double> deviation;  // per triangle, of its inside
+    double share = 1;
+    Zones zones;
+  };
+
+  // A smooth field of what rows want, no further than it is one-to-one all the way.
+  void carry(const std::vector<Vec3>& start, Carried& c) const {
+    std::vector<Vec3> by(at_.size(), Vec3::Zero());
     for (const auto v : rows_) by[v] = m_.to[v] - start[v];
     const SmoothField field(start, by, rows_, 4 * edge_);
-    const double share = std::min(1.0, steepest / std::max(1e-300, field.slope()));
-    std::vector<Vec3> next = start;
+    c.share = std::min(1.0, steepest / std::max(1e-300, field.slope()));
+    c.field = start;
     parallel_for(rows_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) next[rows_[i]] += share * field(start[rows_[i]]);
+      for (std::size_t i = begin; i < end; ++i) c.field[rows_[i]] += c.share * field(start[rows_[i]]);
     });
-    std::vector<double> deviation(triangles_.size());
+    c.deviation.resize(triangles_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      const auto& [a, b, c] = triangles_[t];
-      deviation[t] = share * field.deviation(std::sqrt(std::max({(start[b] - start[a]).squaredNorm(), (start[c] - start[b]).squaredNorm(), (start[a] - start[c]).squaredNorm()})));
+      const auto& [i, j, k] = triangles_[t];
+      c.deviation[t] = c.share * field.deviation(std::sqrt(std::max({(start[j] - start[i]).squaredNorm(), (start[k] - start[j]).squaredNorm(), (start[i] - start[k]).squaredNorm()})));
     }
-    near(start, next);
-    if (!mend(start, deviation, next)) {
-      next = start;  // as one body, unless rounding forbids even that
-      near(next, next);
-      report_.held = !find_crossings(pairs_, triangles_, next, m_.together, two_sided_).empty();
-      if (report_.held) next = at_, near(next, next);
-    }
-    at_ = std::move(next);
-    return share == 1;
+  }
+
+  // As one body, unless rounding forbids even that.
+  void together(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
+    next = start;
+    near(next, next);
+    report_.held = !find_crossings(pairs_, triangles_, next, m_.together, two_sided_).empty();
+    if (report_.held) next = at_;
   }
 
   Box3 box(std::size_t t, const std::vector<Vec3>& at) const {
@@ -115,116 +171,104 @@ class Mover {
     return box_of(at[a], at[b], at[c]);
   }
 
-  // How far planes may let a row go from where it was carried.
-  double room(std::uint32_t v, const std::vector<Vec3>& next) const { return std::min(0.5 * edge_, (m_.to[v] - next[v]).norm()); }
-
-  // Triangles that may come together from `start` to `next`, and from there on while no row goes further than its room.
+  // Triangles that may come together from `start` to `next`.
   void near(const std::vector<Vec3>& start, const std::vector<Vec3>& next) {
     boxes_.resize(triangles_.size());
     parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const auto& [a, b, c] = triangles_[t];
-        boxes_[t] = box(t, next).grown(std::max({room(a, next), room(b, next), room(c, next)}) + 0.5 * m_.gap);
-        boxes_[t].add(box(t, start));
-      }
+      for (std::size_t t = begin; t < end; ++t) boxes_[t] = box(t, next), boxes_[t].add(box(t, start));
     });
     pairs_ = close_pairs(boxes_);
   }
 
-  // Whether the pairs are those of all triangles that meet.
-  bool covered(const std::vector<Vec3>& next) const {
-    for (std::size_t t = 0; t < boxes_.size(); ++t) {
+  // The same, when only these triangles have another `next`.
+  void near_again(const std::vector<Vec3>& start, const std::vector<Vec3>& next, const std::vector<std::uint8_t>& changed) {
+    std::vector<std::uint8_t> outside(triangles_.size(), 0);
+    bool any = false;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      if (!changed[t]) continue;
       const Box3 now = box(t, next);
-      if ((now.lo.array() < boxes_[t].lo.array()).any() || (now.hi.array() > boxes_[t].hi.array()).any()) return false;
+      if (!(now.lo.array() < boxes_[t].lo.array()).any() && !(now.hi.array() > boxes_[t].hi.array()).any()) continue;
+      outside[t] = 1, any = true;
+      boxes_[t] = now, boxes_[t].add(box(t, start));
     }
-    return true;
+    if (!any) return;
+    std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
+    const auto more = close_pairs(boxes_, &outside);
+    pairs_.insert(pairs_.end(), more.begin(), more.end());
   }
 
-  // Pairs that may have passed through each other: so near that it matters that triangles are flat, and parted by no direction at
-  // both ends.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> passed(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const std::vector<Vec3>& start,
-                                                              const std::vector<double>& deviation, const std::vector<Vec3>& next) const {
-    std::vector<std::uint8_t> through(pairs.size(), 0);
-    parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
+  // Among pairs with a changed triangle, those that cross at the end, or may have passed through each other on the way.
+  std::vector<Pair> failing_pairs(const std::vector<Vec3>& start, const std::vector<Vec3>& next, Carried& carried, const std::vector<std::uint8_t>& changed) const {
+    enum : std::uint8_t { clear, unsure, through };
+    const TrianglePlanes planes(triangles_, start, next);
+    const double rounding = 1e-14 * size_;
+    std::vector<std::uint8_t> found(pairs_.size(), clear);
+    parallel_for(pairs_.size(), 512, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const auto &s = triangles_[pairs[i].first], &t = triangles_[pairs[i].second];
+        const auto& [p, q] = pairs_[i];
+        if (!changed[p] && !changed[q]) continue;
+        const auto &s = triangles_[p], &t = triangles_[q];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) continue;  // neighbours cannot pass without crossing others
-        const Simplex a{{s[0], s[1], s[2]}, 3}, b{{t[0], t[1], t[2]}, 3};
-        const double enough = (deviation[pairs[i].first] + deviation[pairs[i].second]) / (1 - steepest);
-        through[i] = !some_direction(a, b, start, next, [&](const Vec3& n, double before) { return before > enough * n.norm() || (before > 0 && parted(n, a, b, next) > 0); });
+        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) {
+          found[i] = unsure;  // neighbours cannot pass without crossing others
+          continue;
+        }
+        if (planes.part(p, q, rounding, rounding)) continue;
+        const auto each = [&](const auto& test) { return test(s[0]) && test(s[1]) && test(s[2]) && test(t[0]) && test(t[1]) && test(t[2]); };
+        const bool by_field = !carried.field.empty() && each([&](std::uint32_t v) { return carried.is[v] != 0; });
+        const double enough = by_field ? (carried.deviation[p] + carried.deviation[q]) / (1 - steepest) : std::numeric_limits<double>::infinity();
+        const Way way = stay_parted({{s[0], s[1], s[2]}, 3}, {{t[0], t[1], t[2]}, 3}, start, next, enough);
+        found[i] = way == Way::clear ? clear : way == Way::parted || (by_field && in_one_zone(carried.zones, s, t)) ? unsure : through;
       }
     });
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> result;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (through[i]) result.push_back(pairs[i]);
+    std::vector<Pair> result, test;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      if (found[i] == through) result.push_back(pairs_[i]);
+      if (found[i] == unsure) test.push_back(pairs_[i]);
+    }
+    const auto crossing = find_crossings(test, triangles_, next, m_.together, two_sided_);
+    result.insert(result.end(), crossing.begin(), crossing.end());
     return result;
   }
 
-  // Zones for what crosses or passes, until nothing does; false: in vain.
-  bool mend(const std::vector<Vec3>& start, const std::vector<double>& deviation, std::vector<Vec3>& next) {
-    Zones zones(at_.size());
-    std::vector<std::uint8_t> changed(triangles_.size(), 1);
-    std::vector<Box3> ways(triangles_.size());
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> meeting;
-    const std::vector<Vec3> wanted = next;
-    for (int growth = 0;; ++growth) {
-      for (std::size_t t = 0; t < ways.size(); ++t) ways[t] = box(t, next), ways[t].add(box(t, start));
-      meeting.clear();
-      for (const auto& pair : pairs_)
-        if ((changed[pair.first] || changed[pair.second]) && ways[pair.first].meets(ways[pair.second])) meeting.push_back(pair);
-      auto failing = find_crossings(meeting, triangles_, next, m_.together, two_sided_);
-      for (const auto& pair : passed(meeting, start, deviation, next))
-        if (!each_row(pair, [&](std::uint32_t v) { return zones.same(triangles_[pair.first][0], v); })) failing.push_back(pair);  // a zone keeps what is inside it apart
-      if (failing.empty()) break;
-      bool grown = false;
-      for (const auto& pair : failing) each_row(pair, [&](std::uint32_t v) { return grown |= zones.join(triangles_[pair.first][0], v), true; });
-      if (!grown || growth == most_growths) return false;
-      const std::vector<Vec3> before = next;
-      zones.place(start, wanted, next);
-      const bool known = covered(next);
-      if (!known) near(start, next);
-      for (std::size_t t = 0; t < changed.size(); ++t)
-        changed[t] = !known || std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](auto v) { return next[v] != before[v]; });
-    }
-    if (zones.count() > 0) near(next, next);
-    report_.in_zones = std::max(report_.in_zones, zones.count());
-    return true;
+  // A zone keeps what is inside it apart.
+  static bool in_one_zone(const Zones& zones, const Triangle& s, const Triangle& t) {
+    const auto in = [&](std::uint32_t v) { return zones.same(s[0], v); };
+    return in(s[1]) && in(s[2]) && in(t[0]) && in(t[1]) && in(t[2]);
   }
 
-  // True when `test` is of all corners of both triangles.
-  template <class Test>
-  bool each_row(const std::pair<std::uint32_t, std::uint32_t>& pair, const Test& test) const {
-    const auto &s = triangles_[pair.first], &t = triangles_[pair.second];
-    return std::all_of(s.begin(), s.end(), test) && std::all_of(t.begin(), t.end(), test);
-  }
-
-  // Each row goes its own way.
-  void advance() {
-    parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const auto& [a, b, c] = triangles_[t];
-        boxes_[t] = box(t, at_);
-        boxes_[t].add(box(t, m_.to));
-        boxes_[t] = boxes_[t].grown(std::max({room(a, at_), room(b, at_), room(c, at_)}) + 0.5 * m_.gap);
-      }
+  // Clear: one direction parts them at both ends by more than rounding. Parted: the field does not let them pass, as they are
+  // farther from each other than `enough`.
+  enum class Way { clear, parted, unknown };
+  Way stay_parted(const Simplex& a, const Simplex& b, const std::vector<Vec3>& start, const std::vector<Vec3>& next, double enough) const {
+    const double rounding = 1e-14 * size_;
+    bool far = false;
+    const bool clear = some_direction(a, b, start, next, [&](const Vec3& n, double before) {
+      const double length = n.norm();
+      far |= before > enough * length;
+      return before > rounding * length && parted(n, a, b, next) > rounding * length;
     });
-    pairs_ = close_pairs(boxes_);
-    move_straight(triangles_, pairs_, m_.to, m_.gap, at_);
-    settle();
+    return clear ? Way::clear : far ? Way::parted : Way::unknown;
   }
 
-  // Rounds of planes.
+  // For those that are not where they want to be: straight on where nothing is in the way, then as far as planes let them go.
   void settle() {
-    const std::vector<Vec3> start = at_;
-    std::vector<double> rooms(at_.size(), 0), limit(at_.size(), 0);
-    for (const auto v : rows_) rooms[v] = room(v, start);
-    for (int round = 0; round < most_settles; ++round) {
-      for (const auto v : rows_) limit[v] = std::min((m_.to[v] - at_[v]).norm(), std::max(0.0, rooms[v] - (at_[v] - start[v]).norm()));
-      const DividerWork done = move_divided({triangles_, pairs_, m_.to, limit, m_.gap}, at_);
-      report_.planes += done.planes, ++report_.rounds;
-      if (done.farthest < m_.gap) break;
+    std::vector<double> room(at_.size(), 0);
+    for (const auto v : rows_)
+      if (const double way = (m_.to[v] - at_[v]).norm(); way > negligible * edge_) room[v] = std::min(farthest * edge_, way);
+    std::vector<std::uint8_t> moving(triangles_.size(), 0);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      double most = 0;
+      for (const auto v : triangles_[t]) most = std::max(most, room[v]);
+      moving[t] = most > 0, boxes_[t] = box(t, at_);
+      if (moving[t]) boxes_[t].add(box(t, m_.to));
+      boxes_[t] = boxes_[t].grown(most + 0.5 * m_.gap);
     }
+    if (std::count(moving.begin(), moving.end(), 1) == 0) return;
+    pairs_ = close_pairs(boxes_, &moving);
+    move_straight(triangles_, pairs_, m_.to, m_.gap, at_);
+    for (const auto v : rows_) room[v] = std::min(room[v], (m_.to[v] - at_[v]).norm());
+    report_.planes += move_divided({triangles_, pairs_, m_.to, room, m_.gap}, at_);
   }
 
   const SurfaceMotion& m_;
@@ -233,9 +277,9 @@ class Mover {
   std::vector<Vec3> at_;
   std::vector<Triangle> triangles_;  // of rows that stand for others
   std::vector<std::uint32_t> rows_;  // those, ascending
-  double edge_ = 0;
+  double edge_ = 0, size_ = 0;
   std::vector<Box3> boxes_;  // that the pairs are of
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+  std::vector<Pair> pairs_;
 };
 
 }  // namespace

@@ -20,7 +20,8 @@ std::uint64_t key_of(std::int32_t x, std::int32_t y, std::int32_t z) {
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> close_pairs(const std::vector<Box3>& boxes) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> close_pairs(const std::vector<Box3>& boxes, const std::vector<std::uint8_t>* only) {
+  const auto wanted = [only](std::uint32_t i, std::uint32_t j) { return !only || (*only)[i] || (*only)[j]; };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   Box3 all;
   double size = 0;
@@ -77,7 +78,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> close_pairs(const std::vect
         for (std::uint32_t p = first[b]; p < first[b + 1]; ++p)
           for (std::uint32_t q = p + 1; q < first[b + 1]; ++q) {
             const auto i = sorted[p].id, j = sorted[q].id;
-            if (sorted[p].key != sorted[q].key || !boxes[i].meets(boxes[j])) continue;
+            if (sorted[p].key != sorted[q].key || !wanted(i, j) || !boxes[i].meets(boxes[j])) continue;
             const auto &c = cells[i].lo, &d = cells[j].lo;
             if (key_of(std::max(c[0], d[0]), std::max(c[1], d[1]), std::max(c[2], d[2])) == sorted[p].key) found[s].push_back({i, j});
           }
@@ -85,7 +86,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> close_pairs(const std::vect
   for (const auto& f : found) pairs.insert(pairs.end(), f.begin(), f.end());
   for (const auto i : large)
     for (std::uint32_t j = 0; j < boxes.size(); ++j)
-      if (i != j && !(is_large[j] && j < i) && boxes[i].meets(boxes[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
+      if (i != j && !(is_large[j] && j < i) && wanted(i, j) && boxes[i].meets(boxes[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
   return pairs;
 }
 

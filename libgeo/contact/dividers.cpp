@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "contact/triangle_planes.h"
 
 namespace geo {
 namespace {
@@ -100,15 +101,16 @@ int parts_apart(const Triangle& s, const Triangle& t, std::pair<Simplex, Simplex
   return s_own.size == 3 ? 1 : 2;
 }
 
-DividerWork move_divided(const Divided& d, std::vector<Vec3>& at) {
+std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
   constexpr std::size_t stretch = 1024;
   std::vector<std::vector<Divider>> found((d.pairs.size() + stretch - 1) / stretch);
   std::vector<Box3> boxes(d.triangles.size());
+  std::vector<double> way(d.triangles.size(), 0);
+  const TrianglePlanes planes_of(d.triangles, at, at);
   parallel_for(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      double most = 0;
-      for (const auto v : d.triangles[t]) boxes[t].add(at[v]), most = std::max(most, d.limit[v]);
-      boxes[t] = boxes[t].grown(most + 0.5 * d.gap);
+      for (const auto v : d.triangles[t]) boxes[t].add(at[v]), way[t] = std::max(way[t], d.limit[v]);
+      boxes[t] = boxes[t].grown(way[t] + 0.5 * d.gap);
     }
   });
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -116,7 +118,7 @@ DividerWork move_divided(const Divided& d, std::vector<Vec3>& at) {
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = s * stretch; i < std::min(d.pairs.size(), (s + 1) * stretch); ++i) {
         const auto& [t, o] = d.pairs[i];
-        if (!boxes[t].meets(boxes[o])) continue;
+        if (!boxes[t].meets(boxes[o]) || planes_of.part(t, o, way[t] + way[o] + d.gap, way[t] + way[o] + d.gap)) continue;
         const int count = parts_apart(d.triangles[t], d.triangles[o], parts);
         for (int k = 0; k < count; ++k) {
           Divider one{parts[k].first, parts[k].second, Vec3::Zero(), 0, 0};
@@ -124,7 +126,6 @@ DividerWork move_divided(const Divided& d, std::vector<Vec3>& at) {
         }
       }
   });
-  DividerWork work;
   std::vector<std::size_t> first(at.size() + 1, 0);
   const auto each = [&](const auto& take) {
     for (const auto& some : found)
@@ -138,17 +139,15 @@ DividerWork move_divided(const Divided& d, std::vector<Vec3>& at) {
   std::vector<std::pair<const Divider*, double>> planes(first.back());
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
   each([&](std::uint32_t v, const Divider& p, double side) { planes[next[v]++] = {&p, side}; });
-  for (const auto& some : found) work.planes += some.size();
-  std::vector<double> way(at.size(), 0);
   parallel_for(at.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (!(d.limit[v] > 0)) continue;
-      const Vec3 x = moved(at[v], d.to[v], d.limit[v], {planes.data() + first[v], first[v + 1] - first[v]}, at[v].cwiseAbs().maxCoeff());
-      way[v] = (x - at[v]).norm(), at[v] = x;
+      at[v] = moved(at[v], d.to[v], d.limit[v], {planes.data() + first[v], first[v + 1] - first[v]}, at[v].cwiseAbs().maxCoeff());
     }
   });
-  for (const double w : way) work.farthest = std::max(work.farthest, w);
-  return work;
+  std::size_t planes_found = 0;
+  for (const auto& some : found) planes_found += some.size();
+  return planes_found;
 }
 
 }  // namespace geo

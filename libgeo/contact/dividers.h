@@ -19,16 +19,11 @@ struct Divided {
   double gap = 0;                    ///< that sheets in contact keep
 };
 
-struct DividerWork {
-  std::size_t planes = 0;  ///< between parts that would be near each other
-  double farthest = 0;     ///< way that a row went
-};
-
 /// Moves rows of `at`, where no two triangles cross, towards where they want to be: each as far as all planes between it and
 /// what is near let it, sliding along them. A plane stands across the closest places of two parts, where both want it most. What
 /// comes out crosses nowhere: a vertex's planes do not depend on where others go. Floating point, with half the gap to spare;
-/// parts that are so near that rounding counts stay where they are.
-DividerWork move_divided(const Divided& d, std::vector<Vec3>& at);
+/// parts that are so near that rounding counts stay where they are. Returns the number of planes.
+std::size_t move_divided(const Divided& d, std::vector<Vec3>& at);
 
 /// The parts of two triangles that must not meet: none has a corner of the other. Returns how many couples, at most 2.
 int parts_apart(const Triangle& s, const Triangle& t, std::pair<Simplex, Simplex> (&parts)[2]);

@@ -1,23 +1,17 @@
 // Velocity constraints between places of surfaces, and the impulses on nodes that keep them (§ 3.3).
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "base/vec.h"
-#include "contact/surface_weights.h"
+#include "contact/relative_row.h"
 
 namespace geo {
 
-/// Two places that may not come closer along a normal. A place is up to three surface vertices with weights that sum to 1.
+/// Two places that may not come closer along a normal.
 struct TouchingPlaces {
-  struct Place {
-    std::uint32_t vertex[3];
-    double weight[3];
-    int size;
-  };
-  Place a, b;
+  SurfacePlace a, b;
   Vec3 normal;          ///< unit; from b to a
   double depth = 0;     ///< how far past each other the motion would bring them, model units
   double approach = 0;  ///< relative velocity along −normal that is still allowed, model units per second; negative: they must part

@@ -10,6 +10,33 @@
 #include "contact/touching.h"
 
 namespace geo {
+namespace {
+
+using Copies = std::vector<std::vector<std::uint32_t>>;
+
+// Copies that are together go to their average.
+std::vector<Vec3> averaged(const std::vector<Vec3>& to, const std::vector<std::uint32_t>& together, const Copies& copies) {
+  std::vector<Vec3> result = to;
+  for (std::size_t v = 0; v < copies.size(); ++v)
+    if (copies[v].size() > 1) {
+      Vec3 sum = Vec3::Zero();
+      for (const auto c : copies[v]) sum += to[c];
+      result[v] = sum / double(copies[v].size());
+    }
+  for (std::size_t v = 0; v < copies.size(); ++v) result[v] = result[together[v]];
+  return result;
+}
+
+Copies each_alone(std::size_t count) {
+  Copies alone(count);
+  for (std::uint32_t v = 0; v < count; ++v) alone[v] = {v};
+  return alone;
+}
+
+constexpr std::size_t most_between = 4;  // couples of places between two nodes' surroundings: three keep planes from meeting
+
+}  // namespace
+
 ContactWork& ContactWork::operator+=(const ContactWork& o) {
   watched += o.watched, touching += o.touching, in_zones += o.in_zones, opened += o.opened, held += o.held;
   lag = std::max(lag, o.lag), seconds += o.seconds;
@@ -113,6 +140,47 @@ std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std
   return wanted - opening.size();
 }
 
+Potential* SelfContact::begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
+  constexpr double clear = 0.02, watched_from = 0.05;  // of a mean edge: what places are kept apart, and from where on they are looked at
+  constexpr double recovered = 0.5;                    // share of what they lack that a step is to make good
+  constexpr double firmness = 4;                       // of a couple, beside that of the material about it
+  const std::size_t n = solid.size();
+  const double gap = options_.gap * surface_.edge, reach = watched_from * surface_.edge;
+  std::vector<double> inverse_mass(n);
+  std::vector<Vec3> u = state.displacement;
+  double spacing = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    inverse_mass[i] = 1 / solid.mass(NodeId(i)), spacing += body.nodes.spacing[i] / double(n);
+    if (fixed.empty() || !fixed[i]) u[i] += dt * state.velocity[i] + dt * dt * gravity;
+  }
+  const auto together = vertices_together(surface_.site, positions_);
+  const auto copies = copies_together(together);
+  const auto now = targets(body, state.displacement), free = targets(body, u);
+  const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
+  const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
+  touch_ = TouchPenalty({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
+  const double stiffness = firmness * solid.material().young / (solid.material().density * spacing * spacing) + 1 / (dt * dt);  // 1/s²
+  const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for, const std::vector<Vec3>& at, double distance) {
+    std::vector<RelativeRow> rows(touching.size());
+    parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
+      RelativeRows maker(weights_, stands_for, inverse_mass);
+      for (std::size_t i = begin; i < end; ++i) rows[i] = maker.make(touching[i].a, touching[i].b);
+    });
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double alone = rows[i].of_a + rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
+      if (!(alone > 0)) continue;
+      const double lack = distance - touching[i].normal.dot(place(touching[i].a, at) - place(touching[i].b, at));
+      touch_.add(rows[i], touching[i].normal, lack > 0 ? recovered * lack : lack, stiffness / alone, state.displacement);
+    }
+  };
+  add(deepest(touching_places(watch(motion, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);
+  std::vector<TouchingPlaces> sides;
+  touching_copies(copies, free, vertex_normals(surface_, positions_), -reach, {dt}, sides);
+  add(deepest(sides, weights_, most_between), each_alone(copies.size()), now, 0);
+  begun_ = true;
+  return touch_.size() > 0 ? &touch_ : nullptr;
+}
+
 void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                           State& state, ContactWork* told) {
   Stopwatch clock;
@@ -129,44 +197,32 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   auto together = vertices_together(surface_.site, positions_);
   auto copies = copies_together(together);
   auto to = targets(body, state.displacement);
-  const auto average = [&] {
-    std::vector<Vec3> result = to;
-    for (std::size_t v = 0; v < copies.size(); ++v)
-      if (copies[v].size() > 1) {
-        Vec3 sum = Vec3::Zero();
-        for (const auto c : copies[v]) sum += to[c];
-        result[v] = sum / double(copies[v].size());
-      }
-    for (std::size_t v = 0; v < copies.size(); ++v) result[v] = result[together[v]];
-    return result;
-  };
   const std::vector<Vec3> normals = vertex_normals(surface_, positions_);
-  std::vector<std::vector<std::uint32_t>> alone(copies.size());
-  for (std::uint32_t v = 0; v < alone.size(); ++v) alone[v] = {v};
+  const auto alone = each_alone(copies.size());
   // What touches in the motion to the targets, and the change of velocities that keeps it from approaching.
   std::vector<Watched> watched;
   const auto respond = [&](const Constraint& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
-    const std::vector<Vec3> goal = average();
+    const std::vector<Vec3> goal = averaged(to, together, copies);
     const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
     if (watched.empty()) watched = watch(motion);
-    constexpr std::size_t most = 4;  // between two nodes' surroundings: three places keep planes from meeting
-    const auto touching = deepest(touching_places(watched, motion, constraint), weights_, most);
+    const auto touching = deepest(touching_places(watched, motion, constraint), weights_, most_between);
     std::vector<TouchingPlaces> all_sides;
     touching_copies(copies, to, normals, 0.01 * gap, constraint, all_sides);
-    const auto sides = deepest(all_sides, weights_, most);
+    const auto sides = deepest(all_sides, weights_, most_between);
     const std::size_t count = apply_impulses(weights_, touching, copies, inverse_mass, how, change).touching;
     return count + apply_impulses(weights_, sides, alone, inverse_mass, how, change).touching;
   };
   ImpulseOptions how;
   how.friction = options_.friction;
-  for (int round = 0; round < options_.rounds; ++round) {
+  if (begun_) work.touching = touch_.pressing();
+  for (int round = 0; round < options_.rounds && !begun_; ++round) {
     const std::size_t count = respond({dt}, how, velocity);
     work.touching += count;
     if (count == 0) break;
     for (std::size_t i = 0; i < n; ++i) u[i] = state.displacement[i] + dt * (velocity[i] - free[i]);
     to = targets(body, u);
   }
-  if (work.touching > 0) {
+  if (work.touching > 0 && !begun_) {
     // Where nodes have let their surfaces pass through each other all the same, they are brought back without velocity.
     std::vector<Vec3> back(n, Vec3::Zero());
     how.friction = 0;
@@ -178,13 +234,14 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
     to = targets(body, state.displacement);
   }
   if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = copies_together(together);
-  const std::vector<Vec3> goal = average();
+  const std::vector<Vec3> goal = averaged(to, together, copies);
   BoundedMotion bounded;
   positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, reach}, true, &bounded);
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (const auto& t : surface_.triangles)
     for (const auto v : t) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
+  begun_ = false;
   if (told) *told += work;
 }
 

@@ -14,6 +14,7 @@
 #include "contact/contact_options.h"
 #include "contact/contact_surface.h"
 #include "contact/surface_weights.h"
+#include "contact/touch_penalty.h"
 
 namespace geo {
 
@@ -27,8 +28,11 @@ class SelfContact {
   void expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack);
   /// After it was made.
   void follow(const Body& body, const Solid& solid);
-  /// After a step of nodes that began at displacements `before` and took dt: corrects displacements and velocities by
-  /// impulses and moves the surface. `fixed` (per node, or empty) as in Environment.
+  /// Before an implicit step of dt, at whose beginning state is: what parts of the surface that may come together in it do to each
+  /// other (touch_penalty.h); null: nothing. It is valid until the next call. resolve() then leaves the nodes as they are.
+  Potential* begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity, const std::vector<std::uint8_t>& fixed);
+  /// After a step of nodes that began at displacements `before` and took dt: moves the surface; displacements and velocities
+  /// are corrected by impulses before, unless begin() was called. `fixed` (per node, or empty) as in Environment.
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                State& state, ContactWork* work = nullptr);
 
@@ -45,6 +49,8 @@ class SelfContact {
   ContactSurface surface_;
   SurfaceWeights weights_;
   std::vector<Vec3> positions_;
+  TouchPenalty touch_{TouchPenaltyOptions{}};
+  bool begun_ = false;  // a step that touch_ acts in
   Birth birth_;  // of the step that was expected last
 };
 

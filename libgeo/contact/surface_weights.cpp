@@ -10,6 +10,7 @@ namespace geo {
 void SurfaceWeights::update(const Body& body, const Solid& solid) {
   const std::size_t n = body.surface.surface_vertex_count();
   rows_.resize(n);
+  heaviest_.assign(n, ~0u);
   parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
@@ -41,6 +42,8 @@ void SurfaceWeights::update(const Body& body, const Solid& solid) {
         if (weight[j] != 0) rows_[v].push_back({j, weight[j]});
         weight[j] = 0;
       }
+      const auto most = std::max_element(rows_[v].begin(), rows_[v].end(), [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
+      if (most != rows_[v].end()) heaviest_[v] = most->node;
     }
   });
 }

@@ -24,6 +24,8 @@ class SurfaceWeights {
 
   std::size_t size() const { return rows_.size(); }
   std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
+  /// Per surface vertex the node that weighs most, the lowest of several; ~0u: none carries it.
+  const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
   /// Σ weight × value: what the nodes' values are at surface vertex v; zero for a vertex that no node carries.
   Vec3 at(std::size_t v, const std::vector<Vec3>& values) const {
     Vec3 sum = Vec3::Zero();
@@ -33,6 +35,7 @@ class SurfaceWeights {
 
  private:
   std::vector<std::vector<Entry>> rows_;
+  std::vector<std::uint32_t> heaviest_;
 };
 
 }  // namespace geo

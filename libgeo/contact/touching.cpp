@@ -18,10 +18,10 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
   std::vector<TouchingPlaces> result;
   std::vector<std::array<std::uint32_t, 6>> keys;
   for (const Watched& w : watched) {
-    if (parted(w.normal, w.a, w.b, m.to) >= w.gap) continue;
+    if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) continue;
     const ClosestPlaces& c = w.closest;
     TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
-    const auto take = [](TouchingPlaces::Place& place, const Simplex& s, const Vec3& weights) {
+    const auto take = [](SurfacePlace& place, const Simplex& s, const Vec3& weights) {
       for (int k = 0; k < s.size; ++k)
         if (weights[k] > 0) place.vertex[place.size] = s.v[k], place.weight[place.size++] = weights[k];
     };
@@ -64,13 +64,8 @@ void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, cons
 }
 
 std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights, std::size_t most) {
-  const auto node = [&](const TouchingPlaces::Place& place) {
-    std::uint32_t best = ~0u;
-    double weight = -std::numeric_limits<double>::infinity();
-    const auto heaviest = std::max_element(place.weight, place.weight + place.size) - place.weight;
-    for (const auto& e : weights.row(place.vertex[heaviest]))
-      if (e.weight > weight) weight = e.weight, best = e.node;
-    return best;
+  const auto node = [&](const SurfacePlace& place) {
+    return weights.heaviest()[place.vertex[std::max_element(place.weight, place.weight + place.size) - place.weight]];
   };
   struct Entry {
     std::uint32_t low, high;  // the two nodes

@@ -15,6 +15,7 @@ std::vector<std::vector<std::uint32_t>> copies_together(std::span<const std::uin
 struct Constraint {
   double dt;
   double share = 0;  ///< 0: on velocities
+  double reach = 0;  ///< model units: what the motion brings nearer to its gap than that counts, too
 };
 
 /// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once.

@@ -1,11 +1,12 @@
 #include "contact/watch.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "contact/affine_motion.h"
 #include "contact/close_pairs.h"
-#include "contact/dividers.h"
+#include "contact/triangle_planes.h"
 
 namespace geo {
 namespace {
@@ -51,11 +52,39 @@ bool examine(const SurfaceMotion& m, Watched& w) {
   return true;
 }
 
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs closest_between(const Pairs& pairs, const std::vector<Triangle>& corners, std::span<const std::uint32_t> owner, const TrianglePlanes& planes, std::size_t most) {
+  struct Entry {
+    std::uint64_t owners;
+    double left;
+    std::uint32_t pair;
+  };
+  std::vector<Entry> order(pairs.size());
+  parallel_for(order.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [s, t] = pairs[i];
+      const std::uint64_t a = owner[corners[s][0]], b = owner[corners[t][0]];
+      order[i] = {std::min(a, b) << 32 | std::max(a, b), planes.left(s, t), static_cast<std::uint32_t>(i)};
+    }
+  });
+  std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) { return std::tie(p.owners, p.left, p.pair) < std::tie(q.owners, q.left, q.pair); });
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
+    if (order[i].owners != order[first].owners) first = i;
+    if (i - first < most) kept.push_back(order[i].pair);
+  }
+  std::sort(kept.begin(), kept.end());
+  Pairs result;
+  for (const auto i : kept) result.push_back(pairs[i]);
+  return result;
+}
+
 }  // namespace
 
-std::vector<Watched> watch(const SurfaceMotion& m) {
+std::vector<Watched> watch(const SurfaceMotion& m, std::span<const std::uint32_t> owner, std::size_t most) {
   // All boxes in a frame that moves as the surface does on the whole.
-  std::vector<std::array<std::uint32_t, 3>> corners(m.triangles.size());
+  std::vector<Triangle> corners(m.triangles.size());
   std::vector<std::uint8_t> used(m.from.size(), 0);
   for (std::size_t t = 0; t < m.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) used[corners[t][k] = m.together[m.triangles[t][k]]] = 1;
@@ -69,15 +98,28 @@ std::vector<Watched> watch(const SurfaceMotion& m) {
     for (const auto v : corners[t]) boxes[t].add(carried[v]), boxes[t].add(m.to[v]);
     boxes[t] = boxes[t].grown(0.5 * m.reach);
   }
-  const auto pairs = close_pairs(boxes);
-  constexpr std::size_t stretch = 1024;
+  const TrianglePlanes planes(corners, m.from, m.to);
+  auto pairs = close_pairs(boxes);
+  std::vector<std::uint8_t> near(pairs.size(), 0);
+  parallel_for(pairs.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto &s = corners[pairs[i].first], &t = corners[pairs[i].second];
+      const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
+      near[i] = !in_t(s[0]) && !in_t(s[1]) && !in_t(s[2]) && !planes.part(pairs[i].first, pairs[i].second, m.gap, m.reach);
+    }
+  });
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (near[i]) pairs[count++] = pairs[i];
+  pairs.resize(count);
+  if (!owner.empty()) pairs = closest_between(pairs, corners, owner, planes, most);
+  constexpr std::size_t stretch = 256;
   std::vector<std::vector<Watched>> found((pairs.size() + stretch - 1) / stretch);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::pair<Simplex, Simplex> parts[2];
+    const auto simplex = [](const Triangle& t) { return Simplex{{t[0], t[1], t[2]}, 3}; };
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = s * stretch; i < std::min(pairs.size(), (s + 1) * stretch); ++i) {
-        if (parts_apart(corners[pairs[i].first], corners[pairs[i].second], parts) != 1) continue;
-        Watched w{parts[0].first, parts[0].second, Vec3::Zero(), {}, 0};
+        Watched w{simplex(corners[pairs[i].first]), simplex(corners[pairs[i].second]), Vec3::Zero(), {}, 0};
         if (examine(m, w)) found[s].push_back(w);
       }
   });

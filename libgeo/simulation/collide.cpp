@@ -4,7 +4,7 @@
 
 namespace geo {
 
-Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows) {
+Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows) : implicit_(scene.implicit) {
   if (!scene.self_contact) return;
   std::vector<Vec3> positions;
   if (!rows.empty()) {
@@ -15,6 +15,11 @@ Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid,
     if (next != rows.size()) throw InputError("the checkpoint's surface does not belong to its body");
   }
   surface_.emplace(body, solid, scene.contact, std::move(positions));
+}
+
+void Collisions::begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment) {
+  if (!surface_ || !implicit_) return;
+  if (Potential* touch = surface_->begin(body, solid, motion, dt, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
 }
 
 Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion) {

@@ -15,6 +15,8 @@ class Collisions {
   /// InputError when there are as many as the body does not have.
   Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows);
 
+  /// Before a step: puts what the surface does to itself into the environment, where the step is implicit.
+  void begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment);
   /// What has to agree to a crack step; empty: nothing.
   Agreement agreement(const Body& body, const Solid& solid, const State& motion);
   /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
@@ -29,6 +31,7 @@ class Collisions {
 
  private:
   std::optional<SelfContact> surface_;
+  bool implicit_;
 };
 
 }  // namespace geo

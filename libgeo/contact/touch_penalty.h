@@ -1,0 +1,53 @@
+// What surfaces of one body that touch do to each other within an implicit step: a penalty on how far places pass each other,
+// with Coulomb friction (§ 3.3).
+#pragma once
+
+#include "contact/impulses.h"
+#include "mechanics/potential.h"
+
+namespace geo {
+
+struct TouchPenaltyOptions {
+  double friction = 0.3;  ///< Coulomb's coefficient
+  double slow = 0;        ///< way along each other, model units, below which friction is smooth
+};
+
+/// ½ stiffness depth² for each couple of places that passes its normal's limit. Friction acts on the way since the step began,
+/// with the normal force of that moment, as ground.h has it.
+class TouchPenalty : public Potential {
+ public:
+  explicit TouchPenalty(const TouchPenaltyOptions& options) : options_(options) {}
+
+  /// A couple whose places, along its normal, have passed the limit by `depth` (negative: not yet) at displacements u.
+  void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u);
+  std::size_t size() const { return rows_.size(); }
+  /// How many press on each other, at the displacements of the last force() call.
+  std::size_t pressing() const;
+
+  double energy(const std::vector<Vec3>& u) const override;
+  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
+  void blocks(std::vector<Mat3>& out) const override;
+  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
+
+ private:
+  struct Row {
+    std::size_t first, end;  // of its entries
+    Vec3 normal;
+    double depth;            // when the step began
+    double stiffness;        // N/m
+    Vec3 start;              // relative displacement then
+    Mat3 curvature;          // of the last force()
+    bool pressing;           // then
+  };
+  Vec3 at(const Row& row, const std::vector<Vec3>& values) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = row.first; i < row.end; ++i) sum += entries_[i].weight * values[entries_[i].node];
+    return sum;
+  }
+
+  TouchPenaltyOptions options_;
+  std::vector<Row> rows_;
+  std::vector<SurfaceWeights::Entry> entries_;
+};
+
+}  // namespace geo

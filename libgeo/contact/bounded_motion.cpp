@@ -254,21 +254,22 @@ class Mover {
   // For those that are not where they want to be: straight on where nothing is in the way, then as far as planes let them go.
   void settle() {
     std::vector<double> room(at_.size(), 0);
+    std::vector<Vec3> to = at_;
     for (const auto v : rows_)
-      if (const double way = (m_.to[v] - at_[v]).norm(); way > negligible * edge_) room[v] = std::min(farthest * edge_, way);
+      if (const double way = (m_.to[v] - at_[v]).norm(); way > negligible * edge_) room[v] = std::min(farthest * edge_, way), to[v] = m_.to[v];
     std::vector<std::uint8_t> moving(triangles_.size(), 0);
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       double most = 0;
       for (const auto v : triangles_[t]) most = std::max(most, room[v]);
       moving[t] = most > 0, boxes_[t] = box(t, at_);
-      if (moving[t]) boxes_[t].add(box(t, m_.to));
+      if (moving[t]) boxes_[t].add(box(t, to));
       boxes_[t] = boxes_[t].grown(most + 0.5 * m_.gap);
     }
     if (std::count(moving.begin(), moving.end(), 1) == 0) return;
     pairs_ = close_pairs(boxes_, &moving);
-    move_straight(triangles_, pairs_, m_.to, m_.gap, at_);
-    for (const auto v : rows_) room[v] = std::min(room[v], (m_.to[v] - at_[v]).norm());
-    report_.planes += move_divided({triangles_, pairs_, m_.to, room, m_.gap}, at_);
+    move_straight(triangles_, pairs_, to, m_.gap, at_);
+    for (const auto v : rows_) room[v] = std::min(room[v], (to[v] - at_[v]).norm());
+    report_.planes += move_divided({triangles_, pairs_, to, room, m_.gap}, at_);
   }
 
   const SurfaceMotion& m_;

@@ -1,0 +1,137 @@
+#include <catch2/catch.hpp>
+
+#include "base/random.h"
+#include "body/agreement.h"
+#include "cases.h"
+#include "contact/crossing.h"
+#include "contact/self_contact.h"
+#include "contact/touch_penalty.h"
+#include "contact/triangle_planes.h"
+#include "sampling/sample.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+TEST_CASE("the touch penalty's force is the energy's slope, its product the force's, and it moves no middle") {
+  const auto [first, count] = seeds(20);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    constexpr std::size_t n = 9;
+    const auto vectors = [&](double size) {
+      std::vector<Vec3> v;
+      for (std::size_t i = 0; i < n; ++i) v.push_back(size * random.direction());
+      return v;
+    };
+    const std::vector<Vec3> u = vectors(1);
+    TouchPenalty penalty({0.4, 0.05});
+    for (int i = 0; i < 6; ++i) {
+      RelativeRow row;
+      double left = 0;
+      for (std::uint32_t node = 0; node < n; ++node) {
+        const double w = node + 1 < n ? random.uniform(-0.5, 0.5) : -left;
+        row.entries.push_back({node, w}), left += w;
+      }
+      penalty.add(row, random.direction(), random.uniform(-0.2, 0.5), random.uniform(1, 5), u);
+    }
+    std::vector<Vec3> at = u, way = vectors(1);
+    for (std::size_t i = 0; i < n; ++i) at[i] += 0.2 * random.direction();
+    const auto moved = [&](double s) {
+      std::vector<Vec3> x = at;
+      for (std::size_t i = 0; i < n; ++i) x[i] += s * way[i];
+      return x;
+    };
+    const auto along = [&](const std::vector<Vec3>& f) {
+      double sum = 0;
+      for (std::size_t i = 0; i < n; ++i) sum += f[i].dot(way[i]);
+      return sum;
+    };
+    const auto force_at = [&](const std::vector<Vec3>& x) {
+      std::vector<Vec3> f(n, Vec3::Zero());
+      penalty.force(x, f);
+      return f;
+    };
+    const std::vector<Vec3> force = force_at(at);
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& f : force) sum += f;
+    CHECK(sum.norm() < 1e-12);
+    const double step = 1e-6;
+    CHECK((penalty.energy(moved(step)) - penalty.energy(moved(-step))) / (2 * step) == Approx(-along(force)).epsilon(1e-4).margin(1e-5));
+    std::vector<Vec3> product(n, Vec3::Zero());
+    penalty.multiply(way, product);
+    CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
+    std::vector<Mat3> blocks(n, Mat3::Zero());
+    penalty.blocks(blocks);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::vector<Vec3> unit(n, Vec3::Zero()), column(n, Vec3::Zero());
+      unit[i] = Vec3::UnitY();
+      penalty.multiply(unit, column);
+      CHECK((column[i] - blocks[i].col(1)).norm() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("what a triangle's plane parts at both ends does not meet in between") {
+  // Against a slow oracle: the motion in 500 steps, exactly.
+  const auto [first, count] = seeds(300);
+  std::size_t parted = 0, met = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
+    const std::vector<std::uint32_t> together = {0, 1, 2, 3, 4, 5};
+    std::vector<Vec3> from, to;
+    for (int v = 0; v < 6; ++v) from.push_back(Vec3(v < 3 ? 0 : 0.4, 0, 0) + random.uniform(0.2, 0.6) * random.direction());
+    for (int v = 0; v < 6; ++v) to.push_back(from[static_cast<std::size_t>(v)] + random.uniform(0, 0.8) * random.direction());
+    const TrianglePlanes planes(triangles, from, to);
+    bool meets = false;
+    for (int step = 0; step <= 500 && !meets; ++step) {
+      std::vector<Vec3> at;
+      for (std::size_t v = 0; v < 6; ++v) at.push_back(from[v] + step / 500.0 * (to[v] - from[v]));
+      meets = !find_crossings(triangles, at, together, false).empty();
+    }
+    const bool part = planes.part(0, 1, 1e-12, 1e-12);
+    if (meets) CHECK_FALSE(part);
+    met += meets, parted += part;
+    CHECK(planes.part(0, 1, 1e-12, 1e-12) == planes.part(1, 0, 1e-12, 1e-12));
+  }
+  CHECK(met > 20);
+  CHECK(parted > 20);
+}
+
+TEST_CASE("what lies on a cut presses on it and does not sink in") {
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+  SampleOptions sampling;
+  sampling.spacing = 0.25;
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), {26, NeighborMethod::automatic});
+  Material material;
+  material.young = 1e5, material.damping = 2;
+  Solid solid(body.nodes, body.graph, material);
+  State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
+  SelfContact contact(body, solid);
+  auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 0.5, 0.53}, {-0.3, 1.3, 0.52}}, false, 1);
+  const auto delta = split(body, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}}, {}, nullptr,
+                           [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
+  solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
+  contact.follow(body, solid);
+  Environment environment;
+  environment.gravity = {0, 0, -9.81};
+  environment.fixed.assign(solid.size(), 0);
+  for (std::size_t i = 0; i < solid.size(); ++i) environment.fixed[i] = body.nodes.position[i].z() < 0.2;
+  ContactWork last;
+  for (int step = 0; step < 40; ++step) {
+    environment.contact.clear();
+    if (Potential* touch = contact.begin(body, solid, state, 0.02, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
+    const std::vector<Vec3> before = state.displacement;
+    solid.step_implicit(state, 0.02, environment);
+    const std::vector<Vec3> after = state.displacement;
+    last = {};
+    contact.resolve(body, solid, before, 0.02, environment.fixed, state, &last);
+    CHECK(state.displacement == after);  // the nodes have met in the step
+    TriangleMesh surface;
+    surface.vertices = contact.positions(), surface.triangles = contact.surface().triangles, surface.site = contact.surface().site;
+    CHECK(count_crossings(surface) == 0);
+  }
+  CHECK(last.touching > 10);
+  CHECK(last.lag < 0.1 * contact.surface().edge);
+}

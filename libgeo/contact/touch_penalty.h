@@ -45,9 +45,18 @@ class TouchPenalty : public Potential {
     return sum;
   }
 
+  void gather_by_node(std::size_t nodes);
+
   TouchPenaltyOptions options_;
   std::vector<Row> rows_;
   std::vector<SurfaceWeights::Entry> entries_;
+  // Of the last force(): rows with a curvature, and their entries by node, so that threads need not wait for each other.
+  struct Share {
+    std::uint32_t active;
+    double weight;
+  };
+  std::vector<std::uint32_t> active_, first_share_;
+  std::vector<Share> shares_;
 };
 
 }  // namespace geo

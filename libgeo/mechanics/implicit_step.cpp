@@ -31,7 +31,7 @@ class ImplicitStep {
   void linearise();
   void precondition();
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out);
-  void turn(Columns<float>& columns, std::size_t block) const;
+  void turn(StiffnessModes& modes, std::size_t block) const;
   void elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const;
   int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small);
   double most(const std::vector<Vec3>& moved) const;
@@ -138,6 +138,17 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
   return sum;
 }
 
+// Gradients of points are times their relaxation before and after: V has it in it then, for both are symmetric together.
+void ImplicitStep::turn(StiffnessModes& modes, std::size_t b) const {
+  for (std::size_t i = 0; i < s_.points_.blocks[b].points.size(); ++i) {
+    const Eigen::Matrix3f back = relaxed_[s_.points_.first(b) + i].cast<float>();
+    Eigen::Matrix3f v;
+    for (std::size_t k = 0; k < 9; ++k) v.data()[k] = modes.values[(9 + k) * modes.stride + i];
+    v = (back * v).eval();
+    for (std::size_t k = 0; k < 9; ++k) modes.values[(9 + k) * modes.stride + i] = v.data()[k];
+  }
+}
+
 // The stiffness of points at u_, after evaluate(u_).
 void ImplicitStep::linearise() {
   const Material& m = s_.material_;
@@ -145,6 +156,7 @@ void ImplicitStep::linearise() {
   parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       stiffness_modes(constants, gradient_[b], weight_[b], modes_[b]);
+      if (!relaxed_.empty()) turn(modes_[b], b);
       if (m.viscosity > 0) {  // its Gauss-Newton part, at small strain: w η/Δt on the symmetric part of the gradient
         StiffnessModes& modes = modes_[b];
         for (std::size_t i = 0; i < modes.stride; ++i) {
@@ -186,38 +198,23 @@ void ImplicitStep::precondition() {
   patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
 }
 
-// Each matrix times the relaxation of its point.
-void ImplicitStep::turn(Columns<float>& columns, std::size_t b) const {
-  for (std::size_t i = 0; i < s_.points_.blocks[b].points.size(); ++i) {
-    using Mat3f = Eigen::Matrix3f;
-    const Mat3f back = relaxed_[s_.points_.first(b) + i].cast<float>();
-    Mat3f m;
-    for (int c = 0; c < 3; ++c) m.col(c) = Eigen::Map<const Eigen::Vector3f>(&columns.column[c][4 * i]);
-    m = (m * back).eval();
-    for (int c = 0; c < 3; ++c) Eigen::Map<Eigen::Vector3f>(&columns.column[c][4 * i]) = m.col(c);
-  }
-}
-
 void ImplicitStep::elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const {
   const MaterialPoints& points = s_.points_;
   parts.resize(4 * points.parts());
   parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<float> values;
-    Columns<float> columns;
     for (std::size_t b = begin; b < end; ++b) {
       const PointBlock& block = points.blocks[b];
-      values.assign(4 * block.nodes.size(), 0);
       if (block.nodes.empty()) continue;
-      const Vec3& base = p[block.nodes[0]];
-      for (std::size_t k = 0; k < block.nodes.size(); ++k)
-        for (std::size_t c = 0; c < 3; ++c) values[4 * k + c] = float(p[block.nodes[k]][static_cast<Eigen::Index>(c)] - base[static_cast<Eigen::Index>(c)]);
-      point_gradients(block, values.data(), columns);
-      if (!relaxed_.empty()) turn(columns, b);
-      apply_modes(modes_[b], columns);
-      if (!relaxed_.empty()) turn(columns, b);
+      values.resize(4 * block.nodes.size());
+      const Vec3 base = p[block.nodes[0]];
+      for (std::size_t k = 0; k < block.nodes.size(); ++k) {
+        const Vec3 from = p[block.nodes[k]] - base;
+        for (std::size_t c = 0; c < 3; ++c) values[4 * k + c] = float(from[static_cast<Eigen::Index>(c)]);
+      }
       float* const out = &parts[4 * points.part(b)];
       std::fill(out, out + 4 * block.nodes.size(), 0.0f);
-      point_divergence(block, columns, out);
+      multiply_stiffness(block, modes_[b], values.data(), out);
     }
   });
 }
@@ -250,7 +247,7 @@ double ImplicitStep::most(const std::vector<Vec3>& moved) const {
   return std::sqrt(most);
 }
 
-// Until what is left is a tenth in the norm that counts, or what the preconditioner would still add is `small`.
+// Until what is left is a seventh in the norm that counts, or what the preconditioner would still add is `small`.
 int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small) {
   std::vector<Vec3> r = force, z(n_), p(n_), hp;
   each_node([&](std::size_t i) { x[i].setZero(); });
@@ -258,7 +255,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, do
   coarse_->add(r, z);
   p = z;
   double rz = dot(r, z);
-  const double enough = 0.01 * rz;
+  const double enough = 0.02 * rz;
   int k = 0;
   for (; k < 500 && rz > enough && !(k > 0 && small > 0 && most(z) < small); ++k) {
     multiply(p, hp);
@@ -298,7 +295,7 @@ bool ImplicitStep::run(StepReport& report) {
     elastic = force;
     for (Potential* p : env_.contact) p->force(u_, force);
     // The stiffness of points is used again while they have hardly strained since.
-    if (moved > 0.05) linearise(), moved = 0;
+    if (moved > 0.15) linearise(), moved = 0;
     precondition();
     for (std::size_t i = 0; i < n_; ++i) {
       Vec3& r = force[i];
@@ -311,12 +308,12 @@ bool ImplicitStep::run(StepReport& report) {
       if (is_fixed(env_, i)) r.setZero();
     }
     // Once Newton has made a step, no more than the accuracy asks for.
-    report.cg += solve(force, direction, newton > 0 ? 0.2 * accuracy_ : 0);
+    report.cg += solve(force, direction, newton > 0 ? 0.5 * accuracy_ : 0);
     keep_momentum(direction);
     const double longest = most(direction);
     double step = 1, tried = 0;
     if (!std::isfinite(longest)) return false;
-    // What is left after the direction is a tenth of it or less than the accuracy, as the solve ends there.
+    // What is left after the direction is a fraction of it or less than the accuracy, as the solve ends there.
     const bool last = longest < 10 * accuracy_;
     const double rounding = 1e-14 * std::abs(value);
     int halvings = 0;

@@ -14,10 +14,10 @@ struct NodeGroups {
   std::size_t count() const { return part.size(); }
 
   NodeGroups() = default;
-  /// Boxes of about a hundredth of a connected part, 24 nodes at least, by halves; then what hangs together in a box. Groups of
+  /// Boxes of so many nodes at least, and no more of a connected part than `most_groups` or twice that, by halves; then what hangs together in a box. Groups of
   /// a part are numbered along its longest side, so that those which touch have numbers near each other.
-  NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts, std::size_t fewest = 24,
-             std::size_t most_groups = 96);
+  NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts, std::size_t fewest = 36,
+             std::size_t most_groups = 72);
 };
 
 }  // namespace geo

@@ -9,7 +9,7 @@ namespace geo {
 namespace {
 
 constexpr std::size_t most_inside = 6;
-constexpr double overlap = 0.95;  // of spacings
+constexpr double overlap = 0.9;  // of spacings
 
 std::size_t tiles(std::size_t nodes) { return 12 * (nodes * (nodes + 1) / 2); }
 

@@ -13,7 +13,7 @@ namespace geo {
 class NodePatches {
  public:
   NodePatches() = default;
-  /// Boxes of half a dozen nodes that hang together (as in NodeGroups), each with the neighbours of its nodes within 0.95 of
+  /// Boxes of half a dozen nodes that hang together (as in NodeGroups), each with the neighbours of its nodes within 0.9 of
   /// both spacings.
   NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts,
               const std::vector<double>& spacing, const MaterialPoints& points);

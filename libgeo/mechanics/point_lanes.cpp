@@ -25,14 +25,15 @@ HWY_INLINE const float* entries<float>(const PointBlock& block) {
   return block.rounded.data();
 }
 
+// Of points from `from` on, into columns that begin with it.
 template <class Number>
-HWY_INLINE void gradients_of(const PointBlock& block, const Number* values, Columns<Number>& out) {
+HWY_INLINE void gradients_of(const PointBlock& block, std::size_t from, std::size_t end_point, const Number* values, Number* const* out) {
   using Tag = hn::CappedTag<Number, 4>;
   const Tag d;
   constexpr std::size_t step = hn::MaxLanes(Tag());
   const std::uint16_t* to = block.to.data();
   const Number* g = entries<Number>(block);
-  for (std::size_t i = 0; i < block.points.size(); ++i) {
+  for (std::size_t i = from; i < end_point; ++i) {
     const std::size_t begin = block.first[i], end = block.first[i + 1];
     for (std::size_t at = 0; at < 4; at += step) {
       auto x = hn::Zero(d), y = x, z = x;
@@ -42,24 +43,24 @@ HWY_INLINE void gradients_of(const PointBlock& block, const Number* values, Colu
         y = hn::Add(y, hn::Mul(u, hn::Set(d, g[3 * q + 1])));
         z = hn::Add(z, hn::Mul(u, hn::Set(d, g[3 * q + 2])));
       }
-      hn::StoreU(x, d, &out.column[0][4 * i + at]);
-      hn::StoreU(y, d, &out.column[1][4 * i + at]);
-      hn::StoreU(z, d, &out.column[2][4 * i + at]);
+      hn::StoreU(x, d, out[0] + 4 * (i - from) + at);
+      hn::StoreU(y, d, out[1] + 4 * (i - from) + at);
+      hn::StoreU(z, d, out[2] + 4 * (i - from) + at);
     }
   }
 }
 
 template <class Number>
-HWY_INLINE void divergence_of(const PointBlock& block, const Columns<Number>& stress, Number* out) {
+HWY_INLINE void divergence_of(const PointBlock& block, std::size_t from, std::size_t end_point, const Number* const* stress, Number* out) {
   using Tag = hn::CappedTag<Number, 4>;
   const Tag d;
   constexpr std::size_t step = hn::MaxLanes(Tag());
   const std::uint16_t* to = block.to.data();
   const Number* g = entries<Number>(block);
-  for (std::size_t i = 0; i < block.points.size(); ++i) {
-    const std::size_t begin = block.first[i], end = block.first[i + 1];
+  for (std::size_t i = from; i < end_point; ++i) {
+    const std::size_t begin = block.first[i], end = block.first[i + 1], place = 4 * (i - from);
     for (std::size_t at = 0; at < 4; at += step) {
-      const auto x = hn::LoadU(d, &stress.column[0][4 * i + at]), y = hn::LoadU(d, &stress.column[1][4 * i + at]), z = hn::LoadU(d, &stress.column[2][4 * i + at]);
+      const auto x = hn::LoadU(d, stress[0] + place + at), y = hn::LoadU(d, stress[1] + place + at), z = hn::LoadU(d, stress[2] + place + at);
       for (std::size_t q = begin; q < end; ++q) {
         Number* const f = out + 4 * to[q] + at;
         const auto sum = hn::Add(hn::Add(hn::Mul(x, hn::Set(d, g[3 * q])), hn::Mul(y, hn::Set(d, g[3 * q + 1]))), hn::Mul(z, hn::Set(d, g[3 * q + 2])));
@@ -69,17 +70,27 @@ HWY_INLINE void divergence_of(const PointBlock& block, const Columns<Number>& st
   }
 }
 
-void GradientsDouble(const PointBlock& block, const double* values, Columns<double>& out) { gradients_of(block, values, out); }
+void GradientsDouble(const PointBlock& block, const double* values, Columns<double>& out) {
+  double* const columns[3] = {out.column[0].data(), out.column[1].data(), out.column[2].data()};
+  gradients_of(block, 0, block.points.size(), values, columns);
+}
+void DivergenceDouble(const PointBlock& block, const Columns<double>& stress, double* out) {
+  const double* const columns[3] = {stress.column[0].data(), stress.column[1].data(), stress.column[2].data()};
+  divergence_of(block, 0, block.points.size(), columns, out);
+}
+
 #if HWY_TARGET == HWY_SCALAR
-void GradientsFloat(const PointBlock& block, const float* values, Columns<float>& out) { gradients_of(block, values, out); }
+HWY_INLINE void gradients_wide(const PointBlock& block, std::size_t from, std::size_t to_point, const float* values, float* const* out) {
+  gradients_of(block, from, to_point, values, out);
+}
 #else
 // As gradients_of, with all three columns of a point side by side, and two points at once: each sum waits for the one before.
-void GradientsFloat(const PointBlock& block, const float* values, Columns<float>& out) {
+HWY_INLINE void gradients_wide(const PointBlock& block, std::size_t from, std::size_t end_point, const float* values, float* const* out) {
   using Tag = hn::CappedTag<float, 16>;
   const Tag d;
   const hn::Repartition<std::uint8_t, Tag> bytes;
   constexpr std::size_t lanes = hn::MaxLanes(Tag()), vectors = (12 + lanes - 1) / lanes;
-  if constexpr (lanes < 8) return gradients_of(block, values, out);
+  if constexpr (lanes < 8) return gradients_of(block, from, end_point, values, out);
   // Byte 4 l + k of the pattern: where in a block of four numbers that of lane l, column l / 4, has its k-th byte.
   HWY_ALIGN std::uint8_t order[64];
   for (std::size_t l = 0; l < 16; ++l)
@@ -96,24 +107,21 @@ void GradientsFloat(const PointBlock& block, const float* values, Columns<float>
   const auto store = [&](const hn::Vec<Tag>* sum, std::size_t i) HWY_ATTR {
     HWY_ALIGN float numbers[16];
     for (std::size_t v = 0; v < vectors; ++v) hn::StoreU(sum[v], d, numbers + lanes * v);
-    for (std::size_t c = 0; c < 3; ++c) std::copy_n(numbers + 4 * c, 4, &out.column[c][4 * i]);
+    for (std::size_t c = 0; c < 3; ++c) std::copy_n(numbers + 4 * c, 4, out[c] + 4 * (i - from));
   };
-  const std::size_t count = block.points.size();
-  for (std::size_t i = 0; i < count; i += 2) {
+  for (std::size_t i = from; i < end_point; i += 2) {
     hn::Vec<Tag> even[vectors], odd[vectors];
     for (std::size_t v = 0; v < vectors; ++v) even[v] = odd[v] = hn::Zero(d);
     std::size_t a = block.first[i], b = block.first[i + 1];
-    const std::size_t a_end = b, b_end = i + 1 < count ? block.first[i + 2] : b;
+    const std::size_t a_end = b, b_end = i + 1 < end_point ? block.first[i + 2] : b;
     for (; a < a_end && b < b_end; ++a, ++b) add(even, a), add(odd, b);
     for (; a < a_end; ++a) add(even, a);
     for (; b < b_end; ++b) add(odd, b);
     store(even, i);
-    if (i + 1 < count) store(odd, i + 1);
+    if (i + 1 < end_point) store(odd, i + 1);
   }
 }
 #endif
-void DivergenceDouble(const PointBlock& block, const Columns<double>& stress, double* out) { divergence_of(block, stress, out); }
-void DivergenceFloat(const PointBlock& block, const Columns<float>& stress, float* out) { divergence_of(block, stress, out); }
 
 using Lanes = hn::CappedTag<float, 8>;
 using V = hn::Vec<Lanes>;
@@ -125,14 +133,14 @@ struct Matrix {
 
 HWY_INLINE V dot3(const V* a, const V* b) { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); }
 
-HWY_INLINE Matrix load(const Columns<float>& columns, std::size_t i) {
+HWY_INLINE Matrix load(const float* const* columns, std::size_t i) {
   Matrix m;
   V unused;
-  for (std::size_t c = 0; c < 3; ++c) hn::LoadInterleaved4(Lanes(), &columns.column[c][4 * i], m.at[c][0], m.at[c][1], m.at[c][2], unused);
+  for (std::size_t c = 0; c < 3; ++c) hn::LoadInterleaved4(Lanes(), columns[c] + 4 * i, m.at[c][0], m.at[c][1], m.at[c][2], unused);
   return m;
 }
-HWY_INLINE void store(const Matrix& m, Columns<float>& columns, std::size_t i) {
-  for (std::size_t c = 0; c < 3; ++c) hn::StoreInterleaved4(m.at[c][0], m.at[c][1], m.at[c][2], hn::Zero(Lanes()), Lanes(), &columns.column[c][4 * i]);
+HWY_INLINE void store(const Matrix& m, float* const* columns, std::size_t i) {
+  for (std::size_t c = 0; c < 3; ++c) hn::StoreInterleaved4(m.at[c][0], m.at[c][1], m.at[c][2], hn::Zero(Lanes()), Lanes(), columns[c] + 4 * i);
 }
 
 // Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v.
@@ -253,8 +261,9 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const V (&s)[3]) {
 
 void Modes(const StiffnessConstants& material, const Columns<float>& gradient, const float* weight, StiffnessModes& out) {
   const Lanes d;
+  const float* const columns[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
   for (std::size_t i = 0; i < out.stride; i += width) {
-    Matrix f = load(gradient, i), u, v;
+    Matrix f = load(columns, i), u, v;
     for (int c = 0; c < 3; ++c) f.at[c][c] = hn::Add(f.at[c][c], hn::Set(d, 1.0f));
     V sigma[3];
     decompose(f, u, sigma, v);
@@ -297,11 +306,12 @@ HWY_INLINE Matrix transposed(const Matrix& m) {
   return t;
 }
 
-void Apply(const StiffnessModes& modes, Columns<float>& gradient) {
+// Gradients of points from `first` on become the stresses that belong to them.
+HWY_INLINE void apply_modes(const StiffnessModes& modes, std::size_t first, std::size_t count, float* const* gradient) {
   const Lanes d;
   const std::size_t n = modes.stride;
-  for (std::size_t i = 0; i < n; i += width) {
-    const float* const from = modes.values.data() + i;
+  for (std::size_t i = 0; i < count; i += width) {
+    const float* const from = modes.values.data() + first + i;
     const auto number = [&](std::size_t k) { return hn::LoadU(d, from + k * n); };
     Matrix u, v;
     for (std::size_t c = 0; c < 3; ++c)
@@ -320,17 +330,28 @@ void Apply(const StiffnessModes& modes, Columns<float>& gradient) {
   }
 }
 
+// A few points at a time, so that what is between the three steps stays at hand.
+void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out) {
+  constexpr std::size_t batch = 16;
+  HWY_ALIGN float numbers[3][4 * batch] = {};
+  float* const columns[3] = {numbers[0], numbers[1], numbers[2]};
+  for (std::size_t i = 0; i < block.points.size(); i += batch) {
+    const std::size_t end = std::min(i + batch, block.points.size());
+    gradients_wide(block, i, end, values, columns);
+    apply_modes(modes, i, std::min(batch, modes.stride - i), columns);
+    divergence_of<float>(block, i, end, columns, out);
+  }
+}
+
 }  // namespace geo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(GradientsDouble);
-HWY_EXPORT(GradientsFloat);
 HWY_EXPORT(DivergenceDouble);
-HWY_EXPORT(DivergenceFloat);
 HWY_EXPORT(Modes);
-HWY_EXPORT(Apply);
+HWY_EXPORT(Stiffness);
 
 template <class Number>
 void Columns<Number>::resize(std::size_t points) {
@@ -343,19 +364,14 @@ void point_gradients(const PointBlock& block, const double* values, Columns<doub
   out.resize(block.points.size());
   HWY_DYNAMIC_DISPATCH(GradientsDouble)(block, values, out);
 }
-void point_gradients(const PointBlock& block, const float* values, Columns<float>& out) {
-  out.resize(block.points.size());
-  HWY_DYNAMIC_DISPATCH(GradientsFloat)(block, values, out);
-}
 void point_divergence(const PointBlock& block, const Columns<double>& stress, double* out) { HWY_DYNAMIC_DISPATCH(DivergenceDouble)(block, stress, out); }
-void point_divergence(const PointBlock& block, const Columns<float>& stress, float* out) { HWY_DYNAMIC_DISPATCH(DivergenceFloat)(block, stress, out); }
 
 void stiffness_modes(const StiffnessConstants& constants, const Columns<float>& gradient, const std::vector<float>& weight, StiffnessModes& out) {
   out.stride = weight.size();
   out.values.resize(StiffnessModes::numbers * out.stride);
   HWY_DYNAMIC_DISPATCH(Modes)(constants, gradient, weight.data(), out);
 }
-void apply_modes(const StiffnessModes& modes, Columns<float>& gradient) { HWY_DYNAMIC_DISPATCH(Apply)(modes, gradient); }
+void multiply_stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out) { HWY_DYNAMIC_DISPATCH(Stiffness)(block, modes, values, out); }
 
 }  // namespace geo
 #endif

@@ -18,10 +18,8 @@ struct Columns {
 
 /// ∇ of a nodal field at the points of a block; `values`: four numbers a node of the block, the last of no account.
 void point_gradients(const PointBlock& block, const double* values, Columns<double>& out);
-void point_gradients(const PointBlock& block, const float* values, Columns<float>& out);
 /// Adds Σ stress · shape gradient of the block's points to four numbers a node of the block.
 void point_divergence(const PointBlock& block, const Columns<double>& stress, double* out);
-void point_divergence(const PointBlock& block, const Columns<float>& stress, float* out);
 
 /// ∂²Ψ/∂F² at points, made positive, by the singular value decomposition F = U Σ Vᵀ (both rotations): in that frame a
 /// stress S' = Uᵀ S V depends on G' = Uᵀ ∂F V by a 3 × 3 matrix between the diagonals and three 2 × 2 ones between (i, j)
@@ -33,7 +31,7 @@ struct StiffnessModes {
 };
 /// `gradient`: ∇u; stiffness is times `weight`, one a point, a multiple of eight of them.
 void stiffness_modes(const StiffnessConstants& constants, const Columns<float>& gradient, const std::vector<float>& weight, StiffnessModes& out);
-/// Replaces gradients by the stresses that belong to them.
-void apply_modes(const StiffnessModes& modes, Columns<float>& gradient);
+/// Adds the stiffness times a nodal field: `values` as for point_gradients, `out` as for point_divergence.
+void multiply_stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out);
 
 }  // namespace geo

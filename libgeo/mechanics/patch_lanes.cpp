@@ -5,6 +5,7 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>
+#include <cmath>
 
 #include "hwy/highway.h"
 #include "mechanics/patch_lanes.h"
@@ -55,24 +56,36 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const No
 using Wide = hn::CappedTag<float, 16>;
 constexpr std::size_t wide = hn::MaxLanes(Wide());
 
+// With ones on the diagonal to begin with. Row k, divided by its pivot, has one more than the pivot's inverse at k while it is
+// taken off the others: what these have there becomes what the inverse has, and no vector is read where a number was just written.
 void InvertPositive(std::size_t size, float* matrix) {
   const Wide d;
   const std::size_t row = padded(size);
-  std::vector<float> diagonal(size);
-  for (std::size_t k = 0; k < size; ++k) diagonal[k] = matrix[k * row + k];
+  std::vector<float> scale(row, 0.0f), by(size);
+  for (std::size_t i = 0; i < size; ++i) scale[i] = 1 / std::sqrt(matrix[i * row + i]);
+  const auto scale_all = [&]() HWY_ATTR {
+    for (std::size_t i = 0; i < size; ++i)
+      for (std::size_t j = 0; j < row; j += wide) hn::StoreU(hn::Mul(hn::Mul(hn::LoadU(d, &matrix[i * row + j]), hn::LoadU(d, &scale[j])), hn::Set(d, scale[i])), d, &matrix[i * row + j]);
+  };
+  scale_all();
   for (std::size_t k = 0; k < size; ++k) {
     float* const own = matrix + k * row;
-    const float inverse = own[k] > 1e-5f * diagonal[k] ? 1 / own[k] : 0;
-    own[k] = 1;
+    const float inverse = own[k] > 1e-5f ? 1 / own[k] : 0;
+    for (std::size_t i = 0; i < size; ++i) by[i] = matrix[i * row + k];
     for (std::size_t j = 0; j < row; j += wide) hn::StoreU(hn::Mul(hn::LoadU(d, own + j), hn::Set(d, inverse)), d, own + j);
-    for (std::size_t i = 0; i < size; ++i) {
-      if (i == k) continue;
-      float* const other = matrix + i * row;
-      const auto by = hn::Set(d, other[k]);
-      other[k] = 0;
-      for (std::size_t j = 0; j < row; j += wide) hn::StoreU(hn::Sub(hn::LoadU(d, other + j), hn::Mul(by, hn::LoadU(d, own + j))), d, other + j);
+    own[k] = 1 + inverse;
+    for (std::size_t j = 0; j < row; j += wide) {
+      const auto of_row = hn::LoadU(d, own + j);
+      const auto take = [&](std::size_t i) HWY_ATTR {
+        float* const to = matrix + i * row + j;
+        hn::StoreU(hn::Sub(hn::LoadU(d, to), hn::Mul(hn::Set(d, by[i]), of_row)), d, to);
+      };
+      for (std::size_t i = 0; i < k; ++i) take(i);
+      for (std::size_t i = k + 1; i < size; ++i) take(i);
     }
+    own[k] = inverse;
   }
+  scale_all();
 }
 
 void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {

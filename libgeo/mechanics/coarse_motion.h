@@ -1,4 +1,4 @@
-// The second level of the preconditioner: groups of nodes move as rigid bodies where they are now. What block Jacobi takes
+// The second level of the preconditioner: groups of nodes move as rigid bodies where they are now. What patches take
 // long to find, motions of large parts against each other, is solved for at once (Mandel 1993; unsmoothed aggregation).
 #pragma once
 

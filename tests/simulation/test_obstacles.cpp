@@ -108,8 +108,10 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     Simulation sim(scene, model);
     FrameWork work;
     std::string half;
+    double lifted = 0;  // the second obstacle: it comes down about as fast as the body sinks
     for (int i = 0; i < 8; ++i) {
       work = sim.advance_frame();
+      lifted = std::max(lifted, work.obstacle_force.at(1).z());
       if (i == 3) {
         half = bytes(sim);
         Checkpoint c = read_checkpoint(KerfFile(Input(half, "checkpoint")));
@@ -118,7 +120,7 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     }
     CHECK(work.obstacle_force.size() == (contact.empty() ? 2 : 3));
     CHECK(work.obstacle_force[0].z() < -10);
-    CHECK(work.obstacle_force[1].z() > 0.1);
+    CHECK(lifted > 10);
     CHECK(sim.body().surface.crack_count() == 1);
     set_threads(1);
     Checkpoint c = read_checkpoint(KerfFile(Input(half, "checkpoint")));

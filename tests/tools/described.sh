@@ -38,7 +38,7 @@ if command -v zsh >/dev/null; then
   made=$(timeout 60 zsh -f "$(dirname "$0")/completes.zsh" "$build/share/zsh/vendor-completions" "kerf-score --jag")
   [ "$made" = "kerf-score --jagged " ] || fail "zsh makes '$made' of 'kerf-score --jag'"
 fi
-    sed -n '/^\.SH DESCRIPTION/,/^\.SH OPTIONS/p' "$page" | grep -q '^[A-Z][a-z]' || fail "$page: DESCRIPTION is empty"
+    sed -n '/^\.SH DESCRIPTION/,/^\.SH OPTIONS/p' "$page" | grep '^[A-Z][a-z]' >/dev/null || fail "$page: DESCRIPTION is empty"
     ! grep -q '^@' "$page" || fail "$page has a place left open"
   fi
   code=0; "$tool" --describe fish 2>/dev/null >&2 || code=$?

@@ -34,7 +34,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
   if (only)
     for (Box3& b : boxes)
       if (!b.meets(region)) b = Box3();
-  auto result = find_crossings(close_pairs(boxes), triangles, positions, together, two_sided, only);
+  auto result = find_crossings(close_pairs(boxes, only), triangles, positions, together, two_sided, only);
   std::sort(result.begin(), result.end());
   return result;
 }

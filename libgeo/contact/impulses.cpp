@@ -7,22 +7,23 @@
 
 namespace geo {
 
-ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
-                             const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass,
-                             const ImpulseOptions& options, std::vector<Vec3>& velocity) {
-  ImpulseReport report;
+std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const std::vector<std::vector<std::uint32_t>>& stands_for,
+                                       const std::vector<double>& inverse_mass) {
   std::vector<RelativeRow> rows(touching.size());
   parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
     RelativeRows maker(weights, stands_for, inverse_mass);
     for (std::size_t i = begin; i < end; ++i) rows[i] = maker.make(touching[i].a, touching[i].b);
   });
+  return rows;
+}
+
+ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
+                             const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass,
+                             const ImpulseOptions& options, std::vector<Vec3>& velocity) {
+  ImpulseReport report;
+  const std::vector<RelativeRow> rows = relative_rows(weights, touching, stands_for, inverse_mass);
   std::vector<double> pressed(touching.size(), 0);
   std::vector<Vec3> rubbed(touching.size(), Vec3::Zero());
-  const auto relative = [&](const RelativeRow& row) {
-    Vec3 v = Vec3::Zero();
-    for (const auto& e : row.entries) v += e.weight * velocity[e.node];
-    return v;
-  };
   const auto kick = [&](const RelativeRow& row, const Vec3& impulse) {
     for (const auto& e : row.entries) velocity[e.node] += e.weight * inverse_mass[e.node] * impulse;
   };
@@ -33,7 +34,7 @@ ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const Touc
       const Vec3& n = touching[i].normal;
       const double softness = options.softness * row.of_a, mobility = row.mobility + softness;
       if (!(mobility > 0)) continue;
-      Vec3 v = relative(row);
+      Vec3 v = weighed(row.entries, velocity);
       const double lack = -touching[i].approach - n.dot(v) - softness * pressed[i];
       const double before = pressed[i];
       if (lack <= 0 && before == 0) continue;

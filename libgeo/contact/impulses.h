@@ -17,6 +17,11 @@ struct TouchingPlaces {
   double approach = 0;  ///< relative velocity along −normal that is still allowed, model units per second; negative: they must part
 };
 
+/// Their rows (relative_row.h), in the order given. `stands_for`: which surface vertices carry one vertex of the places (together,
+/// they move as their average). Made by all threads.
+std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const std::vector<std::vector<std::uint32_t>>& stands_for,
+                                       const std::vector<double>& inverse_mass);
+
 struct ImpulseReport {
   std::size_t touching = 0;  ///< constraints with an impulse
   int sweeps = 0;
@@ -25,8 +30,7 @@ struct ImpulseReport {
 /// Changes the velocities of nodes as little as possible (in the kinetic energy's norm) so that no two places approach each
 /// other, by impulses along the normals that are spread over the nodes by the weights, and by friction at most `friction` times
 /// as large. Pairs of equal and opposite impulses: momentum is what it was, but for nodes of infinite mass (inverse mass 0).
-/// Kinetic energy does not grow unless they must part. `stands_for`: which surface vertices carry one vertex of the constraints (together, they move
-/// as their average). Projected Gauss-Seidel, in the order given.
+/// Kinetic energy does not grow unless they must part. `stands_for` as in relative_rows(). Projected Gauss-Seidel, in the order given.
 struct ImpulseOptions {
   double friction = 0;
   int sweeps = 8;          ///< at most

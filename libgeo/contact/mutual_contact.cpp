@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/friction.h"
+
 namespace geo {
 
 void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
@@ -13,9 +15,7 @@ double MutualContact::energy(const std::vector<Vec3>& u) const {
   double sum = 0;
   for (const Row& row : rows_) {
     sum += 0.5 * row.stiffness * std::pow(row.depth(u), 2);
-    if (!(row.pressed > 0)) continue;
-    const double slid = row.along(row.at(u) - row.start).norm();
-    sum += friction_ * row.pressed * (slid < slow_ ? 0.5 * slid * slid / slow_ : slid - 0.5 * slow_);
+    if (row.pressed > 0) sum += friction_energy(friction_ * row.pressed, row.along(row.at(u) - row.start).norm(), slow_);
   }
   return sum;
 }
@@ -28,7 +28,7 @@ void MutualContact::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
     row.curvature = depth > 0 ? Mat3(row.stiffness * across) : Mat3(Mat3::Zero());
     if (row.pressed > 0) {
       const Vec3 slide = row.along(row.at(u) - row.start);
-      const double drag = friction_ * row.pressed / std::max(slide.norm(), slow_);
+      const double drag = friction_drag(friction_ * row.pressed, slide.norm(), slow_);
       f -= drag * slide;
       row.curvature += drag * (Mat3::Identity() - across);
     }

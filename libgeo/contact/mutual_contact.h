@@ -36,11 +36,7 @@ class MutualContact : public Potential {
     double pressed = 0;             // N, when this part of the step began
     Vec3 start = Vec3::Zero();      // how far apart then
     Mat3 curvature = Mat3::Zero();  // of the last force()
-    Vec3 at(const std::vector<Vec3>& values) const {
-      Vec3 sum = Vec3::Zero();
-      for (const auto& e : apart) sum += e.weight * values[e.node];
-      return sum;
-    }
+    Vec3 at(const std::vector<Vec3>& values) const { return weighed(apart, values); }
     double depth(const std::vector<Vec3>& u) const { return std::max(0.0, -normal.dot(way + at(u))); }
     Vec3 along(const Vec3& v) const { return v - normal.dot(v) * normal; }
   };

@@ -5,8 +5,10 @@
 
 #include "base/parallel.h"
 #include "contact/contact_surface.h"
+#include "contact/friction.h"
 
 namespace geo {
+
 Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
@@ -66,11 +68,12 @@ RigidShape::Field Obstacle::inside(const Row& row, const Vec3& y) const {
   return {field.distance, turn * field.normal, turn * field.square * turn.transpose()};
 }
 
-// Force of friction over its way.
-Vec3 Obstacle::drag(const Row& row, const Vec3& y) const {
-  const Vec3 way = y - row.stuck, slide = way - row.normal.dot(way) * row.normal;
-  return -options_.friction * row.pressed / std::max(slide.norm(), slow_) * slide;
+Vec3 Obstacle::slide(const Row& row, const Vec3& y) {
+  const Vec3 way = y - row.stuck;
+  return way - row.normal.dot(way) * row.normal;
 }
+
+double Obstacle::drag(const Row& row, const Vec3& slide) const { return friction_drag(options_.friction * row.pressed, slide.norm(), slow_); }
 
 double Obstacle::energy(const std::vector<Vec3>& u) const {
   std::vector<double> part(rows_.size(), 0);
@@ -78,10 +81,7 @@ double Obstacle::energy(const std::vector<Vec3>& u) const {
     const Row& row = rows_[r];
     const Vec3 y = row.rest + at(row, u);
     part[r] = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
-    if (!(row.pressed > 0)) return;
-    const Vec3 way = y - row.stuck;
-    const double slid = (way - row.normal.dot(way) * row.normal).norm();
-    part[r] += options_.friction * row.pressed * (slid < slow_ ? 0.5 * slid * slid / slow_ : slid - 0.5 * slow_);
+    if (row.pressed > 0) part[r] += friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_);
   });
   double sum = 0;
   for (const double p : part) sum += p;
@@ -97,9 +97,10 @@ void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
     part[r] = -row.stiffness * field.distance * field.normal;
     row.curvature = row.stiffness * field.square;
     if (!(row.pressed > 0)) return;
-    part[r] += drag(row, y);
-    const Vec3 way = y - row.stuck, slide = way - row.normal.dot(way) * row.normal;
-    row.curvature += options_.friction * row.pressed / std::max(slide.norm(), slow_) * (Mat3::Identity() - row.normal * row.normal.transpose());
+    const Vec3 slid = slide(row, y);
+    const double rub = drag(row, slid);
+    part[r] -= rub * slid;
+    row.curvature += rub * (Mat3::Identity() - row.normal * row.normal.transpose());
   });
   for (std::size_t r = 0; r < rows_.size(); ++r)
     if (!part[r].isZero(0))
@@ -164,7 +165,7 @@ void Obstacle::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
     const Vec3 y = row.rest + at(row, u);
     const RigidShape::Field field = inside(row, y);
     Vec3 f = -row.stiffness * field.distance * field.normal;
-    if (row.pressed > 0) f += drag(row, y);
+    if (const Vec3 slid = slide(row, y); row.pressed > 0) f -= drag(row, slid) * slid;
     to.force -= share * f;
     to.torque -= share * (y - now_.translation()).cross(f);
   }

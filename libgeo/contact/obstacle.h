@@ -58,15 +58,13 @@ class Obstacle : public Potential {
     Vec3 stuck = Vec3::Zero();    // where it would be had it stuck to the obstacle
     Mat3 curvature = Mat3::Zero();  // of the last force()
   };
-  static Vec3 at(const Row& row, const std::vector<Vec3>& values) {
-    Vec3 sum = Vec3::Zero();
-    for (const auto& e : row.weights) sum += e.weight * values[e.node];
-    return sum;
-  }
+  static Vec3 at(const Row& row, const std::vector<Vec3>& values) { return weighed(row.weights, values); }
   Eigen::Isometry3d pose(double share) const;
   /// In world coordinates; distance 0 where the row is outside.
   RigidShape::Field inside(const Row& row, const Vec3& y) const;
-  Vec3 drag(const Row& row, const Vec3& y) const;
+  /// The way beside the obstacle of a vertex that is at y now, and the force of friction over it, N/m.
+  static Vec3 slide(const Row& row, const Vec3& y);
+  double drag(const Row& row, const Vec3& slide) const;
   void add_reaction(const std::vector<Vec3>& u, Reaction& to) const;
   template <class Work>
   void each_row(const Work& work) const;

@@ -161,11 +161,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   touch_ = TouchPenalty({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
   const double stiffness = firmness * solid.material().young / (solid.material().density * spacing * spacing) + 1 / (dt * dt);  // 1/s²
   const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for, const std::vector<Vec3>& at, double distance) {
-    std::vector<RelativeRow> rows(touching.size());
-    parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
-      RelativeRows maker(weights_, stands_for, inverse_mass);
-      for (std::size_t i = begin; i < end; ++i) rows[i] = maker.make(touching[i].a, touching[i].b);
-    });
+    const std::vector<RelativeRow> rows = relative_rows(weights_, touching, stands_for, inverse_mass);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double alone = rows[i].of_a + rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
       if (!(alone > 0)) continue;

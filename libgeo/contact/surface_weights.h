@@ -10,14 +10,23 @@
 
 namespace geo {
 
+/// A node, and by how much it counts.
+struct NodeWeight {
+  std::uint32_t node;
+  double weight;
+};
+/// Σ weight × value: what the nodes' values come to.
+inline Vec3 weighed(std::span<const NodeWeight> entries, const std::vector<Vec3>& values) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& e : entries) sum += e.weight * values[e.node];
+  return sum;
+}
+
 /// A row per surface vertex: nodes, and weights that sum to 1. A vertex's velocity follows from the nodes' by the same weights,
 /// and an impulse on it is spread over the nodes by them (§ 3.3).
 class SurfaceWeights {
  public:
-  struct Entry {
-    std::uint32_t node;
-    double weight;
-  };
+  using Entry = NodeWeight;
   /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's gradient, those of its
   /// neighbours. Cost follows the surface.
   void update(const Body& body, const Solid& solid);
@@ -26,12 +35,8 @@ class SurfaceWeights {
   std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
   /// Per surface vertex the node that weighs most, the lowest of several; ~0u: none carries it.
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
-  /// Σ weight × value: what the nodes' values are at surface vertex v; zero for a vertex that no node carries.
-  Vec3 at(std::size_t v, const std::vector<Vec3>& values) const {
-    Vec3 sum = Vec3::Zero();
-    for (const Entry& e : rows_[v]) sum += e.weight * values[e.node];
-    return sum;
-  }
+  /// What the nodes' values are at surface vertex v; zero for a vertex that no node carries.
+  Vec3 at(std::size_t v, const std::vector<Vec3>& values) const { return weighed(rows_[v], values); }
 
  private:
   std::vector<std::vector<Entry>> rows_;

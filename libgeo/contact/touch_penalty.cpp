@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "contact/friction.h"
 
 namespace geo {
 
@@ -19,9 +20,7 @@ double TouchPenalty::energy(const std::vector<Vec3>& u) const {
     const Vec3 way = at(row, u) - row.start;
     const double along = row.normal.dot(way), depth = std::max(0.0, row.depth - along);
     sum += 0.5 * row.stiffness * depth * depth;
-    if (!(row.depth > 0) || !(options_.friction > 0)) continue;
-    const double slid = (way - along * row.normal).norm(), slow = options_.slow;
-    sum += options_.friction * row.stiffness * row.depth * (slid < slow ? 0.5 * slid * slid / slow : slid - 0.5 * slow);
+    if (row.depth > 0 && options_.friction > 0) sum += friction_energy(most_friction(row), (way - along * row.normal).norm(), options_.slow);
   }
   return sum;
 }
@@ -40,7 +39,7 @@ void TouchPenalty::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
     row.curvature = depth > 0 ? Mat3(row.stiffness * n * n.transpose()) : Mat3(Mat3::Zero());
     if (row.depth > 0 && options_.friction > 0) {
       const Vec3 slide = way - along * n;
-      const double drag = options_.friction * row.stiffness * row.depth / std::max(slide.norm(), options_.slow);
+      const double drag = friction_drag(most_friction(row), slide.norm(), options_.slow);
       f -= drag * slide;
       row.curvature += drag * (Mat3::Identity() - n * n.transpose());
     }

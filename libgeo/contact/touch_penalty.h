@@ -13,7 +13,7 @@ struct TouchPenaltyOptions {
 };
 
 /// ½ stiffness depth² for each couple of places that passes its normal's limit. Friction acts on the way since the step began,
-/// with the normal force of that moment, as ground.h has it.
+/// with the normal force of that moment, as friction.h has it.
 class TouchPenalty : public Potential {
  public:
   explicit TouchPenalty(const TouchPenaltyOptions& options) : options_(options) {}
@@ -39,11 +39,8 @@ class TouchPenalty : public Potential {
     Mat3 curvature;          // of the last force()
     bool pressing;           // then
   };
-  Vec3 at(const Row& row, const std::vector<Vec3>& values) const {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = row.first; i < row.end; ++i) sum += entries_[i].weight * values[entries_[i].node];
-    return sum;
-  }
+  Vec3 at(const Row& row, const std::vector<Vec3>& values) const { return weighed({entries_.data() + row.first, entries_.data() + row.end}, values); }
+  double most_friction(const Row& row) const { return options_.friction * row.stiffness * row.depth; }
 
   void gather_by_node(std::size_t nodes);
 

@@ -1,12 +1,10 @@
 // Deforming bodies of one scene that meet each other, without self-contact.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <sstream>
 
 #include "base/parallel.h"
-#include "io/checkpoint_file.h"
 #include "io/scene_file.h"
-#include "simulation/simulation.h"
+#include "simulation/kept_run.h"
 #include "surface/shapes.h"
 
 using namespace geo;
@@ -32,14 +30,6 @@ Middle middle_of(const Simulation& sim, int part) {
 
 std::string two_bodies(const std::string& first, const std::string& second) {
   return "[[body]]\nmesh = 'a'\nspacing = 0.25\n" + first + "[[body]]\nmesh = 'b'\nspacing = 0.25\n" + second;
-}
-
-std::string bytes(const Simulation& sim) {
-  std::ostringstream out;
-  RunState state = sim.state();
-  state.total = {};  // has seconds
-  write_checkpoint(out, sim.body(), state, 0);
-  return out.str();
 }
 
 }  // namespace
@@ -92,14 +82,12 @@ TEST_CASE("a body that lies on another is cut, and that one with it: the same wi
     sim.advance_frame();
     if (i != 3) continue;
     half = bytes(sim);
-    Checkpoint c = read_checkpoint(KerfFile(Input(half, "checkpoint")));
-    sim = Simulation(scene, std::move(c.body), std::move(c.state));
+    sim = read_back(scene, half);
   }
   CHECK(sim.body().surface.crack_count() >= 1);
   CHECK(middle_of(sim, 1).place.z() - middle_of(sim, 0).place.z() > 0.4);
   set_threads(1);
-  Checkpoint c = read_checkpoint(KerfFile(Input(half, "checkpoint")));
-  Simulation again(scene, std::move(c.body), std::move(c.state));
+  Simulation again = read_back(scene, half);
   for (int i = 4; i < 8; ++i) again.advance_frame();
   CHECK(bytes(again) == bytes(sim));
   set_threads(0);

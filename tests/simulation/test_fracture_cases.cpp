@@ -1,13 +1,11 @@
 // Random bodies that break: every invariant after every frame, and the same bytes with other threads and after a checkpoint.
 #include <catch2/catch.hpp>
 
-#include <sstream>
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "cases.h"
-#include "io/checkpoint_file.h"
-#include "simulation/simulation.h"
+#include "simulation/kept_run.h"
 #include "surface/check.h"
 #include "surface/shapes.h"
 
@@ -53,19 +51,6 @@ Simulation begin(const RandomCase& c) {
     state.motion.displacement[i] = c.gradient * x * (1 + x.x());
   }
   return Simulation(c.scene, fresh.body(), state);
-}
-
-std::string bytes(const Simulation& sim) {
-  std::ostringstream out;
-  RunState state = sim.state();
-  state.total = {};  // has seconds
-  write_checkpoint(out, sim.body(), state, 0);
-  return out.str();
-}
-
-Simulation read_back(const Scene& scene, const std::string& bytes) {
-  Checkpoint c = read_checkpoint(KerfFile(Input(bytes, "checkpoint")));
-  return Simulation(scene, std::move(c.body), std::move(c.state));
 }
 
 }  // namespace

@@ -2,27 +2,17 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "io/checkpoint_file.h"
 #include "io/kerf_reader.h"
 #include "io/scene_file.h"
-#include "simulation/simulation.h"
+#include "simulation/kept_run.h"
 #include "surface/shapes.h"
 
 using namespace geo;
 
 namespace {
-
-std::string bytes(const Simulation& sim) {
-  std::ostringstream out;
-  RunState state = sim.state();
-  state.total = {};  // has seconds
-  write_checkpoint(out, sim.body(), state, 0);
-  return out.str();
-}
 
 // A scene of one body, with obstacles of these meshes.
 Scene scene_of(const std::string& text, const std::vector<TriangleMesh>& meshes = {}) {
@@ -114,8 +104,7 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
       lifted = std::max(lifted, work.obstacle_force.at(1).z());
       if (i == 3) {
         half = bytes(sim);
-        Checkpoint c = read_checkpoint(KerfFile(Input(half, "checkpoint")));
-        sim = Simulation(scene, std::move(c.body), std::move(c.state));
+        sim = read_back(scene, half);
       }
     }
     CHECK(work.obstacle_force.size() == (contact.empty() ? 2 : 3));
@@ -123,8 +112,7 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     CHECK(lifted > 10);
     CHECK(sim.body().surface.crack_count() == 1);
     set_threads(1);
-    Checkpoint c = read_checkpoint(KerfFile(Input(half, "checkpoint")));
-    Simulation again(scene, std::move(c.body), std::move(c.state));
+    Simulation again = read_back(scene, half);
     for (int i = 4; i < 8; ++i) again.advance_frame();
     CHECK(bytes(again) == bytes(sim));
     set_threads(0);

@@ -144,6 +144,14 @@ def run(page):
     page.changes("the last frame", lambda: page.click("frame", 0.995))
     check(f"{page.name}: frame {page.state('frame')} of {last}", page.state("frame") == last)
     page.changes("the frame before", lambda: page.key(","), lambda: page.key("."))
+    if not b.run('$("obstacles-label").hidden'):
+        page.toggles("obstacles")
+        page.changes("key k", lambda: page.key("k"), lambda: page.key("k"))
+        # A ball of radius 0.3 is drawn in every frame, where the scene has it.
+        check(f"{page.name}: the obstacle is not where it should be", b.run("""(() => { const far = about.obstacles.map((name) => { let z = -9; const p = arrays[name]; for (let i = 2; i < p.length; i += 3) z = Math.max(z, p[i]); return z * about.unit; });
+          return far.length === about.surfaces.length - 1 && far.every((z, i) => i === 0 || z < far[i - 1]) && Math.abs(far[0] - far[far.length - 1] - 0.2) < 1e-3; })()"""))
+    else:
+        check(f"{page.name}: its obstacle is missing", page.name == "pumpkin.html")
     page.changes("nodes at the last frame", lambda: page.click("nodes"))
     page.changes("stress", lambda: choose(page, "field", "stress"))
     legend = b.run('$("legend").textContent')

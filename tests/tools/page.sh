@@ -27,6 +27,7 @@ kerf-view nodes.pcd -o nodes.html
 kerf-crack p.ply --front '<script>.front' -o whole.ply
 kerf-view whole.ply -o pieces.html
 kerf-model block --edge 0.1 -o cube.ply
+kerf-model sphere --frequency 6 -o ball.ply
 cat >s.toml <<'T'
 [body]
 mesh = "cube.ply"
@@ -35,6 +36,10 @@ spacing = 0.12
 frames = 6
 frame_rate = 20
 step = 0.05
+[[obstacle]]
+mesh = "ball.ply"
+scale = 0.3
+keys = [[0.0, 0.3,0.5,1.4, 0,0,1,0],[0.3, 0.3,0.5,1.2, 0,0,1,0]]
 [[blade]]
 points = [[0,-0.4,0],[0,1.4,0]]
 divide = 4

@@ -60,14 +60,18 @@ void Pack::scaled(const std::string& name, const std::vector<double>& values, do
 }
 
 void Pack::points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box, const std::string& base) {
+  points(name, values, box, box, base);
+}
+
+void Pack::points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box, const geo::Box3& around, const std::string& base) {
   std::vector<std::uint32_t> steps;
-  const geo::Vec3 size = box.hi - box.lo;
+  const geo::Vec3 size = around.hi - around.lo, begin = around.lo - box.center();
   for (const auto& p : values)
-    for (int k = 0; k < 3; ++k) steps.push_back(sixteen_bits(p[k], box.lo[k], size[k]));
+    for (int k = 0; k < 3; ++k) steps.push_back(sixteen_bits(p[k], around.lo[k], size[k]));
   whole(name, steps, 2, 3, base);
   auto lo = nlohmann::ordered_json::array(), step = nlohmann::ordered_json::array();
   const double unit = 0.5 * box.diagonal();
-  for (int k = 0; k < 3; ++k) lo.push_back(unit > 0 ? -0.5 * size[k] / unit : 0), step.push_back(unit > 0 ? size[k] / unit / 65535 : 0);
+  for (int k = 0; k < 3; ++k) lo.push_back(unit > 0 ? begin[k] / unit : 0), step.push_back(unit > 0 ? size[k] / unit / 65535 : 0);
   manifest_.back()["lo"] = lo, manifest_.back()["step"] = step;
 }
 

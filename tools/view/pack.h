@@ -20,6 +20,8 @@ class Pack {
   void scaled(const std::string& name, const std::vector<double>& values, double lo, double hi, const std::string& base = {});
   /// Points as sixteen bits an axis within `box`; the page has them moved to the middle of the box, in half diagonals.
   void points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box, const std::string& base = {});
+  /// Points that may be outside the box: the sixteen bits are within `around`.
+  void points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box, const geo::Box3& around, const std::string& base);
 
   bool has(const std::string& name) const { return values_.count(name) > 0; }
   /// True when an array of that name was put and holds just this.

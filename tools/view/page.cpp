@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <numeric>
 
 #include "io/surface_file.h"
 #include "version.h"
@@ -59,6 +60,26 @@ class Writer {
     pack_.points(name + "position", shown.vertices, box_, !last.empty() && pack_.length(last) == 3 * shown.vertices.size() ? last : "");
     last_["position"] = name + "position";
     return !coarse;
+  }
+
+  // What bodies lie on and are pressed by, a mesh per frame that differ in position alone.
+  void add_obstacles(const std::vector<geo::TriangleMesh>& frames, double most) {
+    if (frames.empty()) return;
+    geo::Box3 around;
+    for (const auto& mesh : frames) around.add(geo::bounding_box(mesh));
+    Numbers kept, corners;
+    const geo::TriangleMesh shown = double(frames[0].triangles.size()) > most ? shrink(frames[0], Numbers(frames[0].vertices.size(), 0), static_cast<std::size_t>(most), kept) : frames[0];
+    if (kept.empty()) kept.resize(shown.vertices.size()), std::iota(kept.begin(), kept.end(), 0u);
+    for (const auto& t : shown.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    pack_.whole("obstacles/triangles", corners, 4, 3);
+    std::string last;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      std::vector<geo::Vec3> at;
+      for (const auto v : kept) at.push_back(frames[f].vertices[v]);
+      const std::string name = "obstacles/at" + std::to_string(f);
+      pack_.points(name, at, box_, around, last);
+      about_["obstacles"].push_back(last = name);
+    }
   }
 
   // Nodes with all that is known of them; `rest`: the surface in material coordinates, `whole`: with all of its rows.
@@ -191,7 +212,7 @@ class Writer {
   geo::Box3 box_;
   Budget budget_;
   Pack pack_;
-  json about_ = {{"surfaces", json::array()}, {"fronts", json::array()}, {"nodes", nullptr}};
+  json about_ = {{"surfaces", json::array()}, {"obstacles", json::array()}, {"fronts", json::array()}, {"nodes", nullptr}};
   std::map<std::string, std::string> notice_of_;
   std::map<std::string, std::string> last_;
 };
@@ -250,6 +271,7 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
     box.add(geo::bounding_box(frames.back()));
     needed.triangles = std::max(needed.triangles, double(run.frames.size() + 1) * double(frames.back().triangles.size()));
   }
+  const std::vector<geo::TriangleMesh> obstacles = read_obstacles(run);
   const MovingNodes moving = read_moving_nodes(run, subject, frames, progress);
   for (const auto& frame : moving.frames)
     for (const auto& p : frame.position) box.add(p);
@@ -260,6 +282,7 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
       geo::report(progress, "page", f, frames.size());
       writer.add_surface(frames[f], std::filesystem::path(run.frames[f]).stem().string(), most);
     }
+    writer.add_obstacles(obstacles, budget.triangles / 10);
     if (subject.body) {
       const bool whole = writer.add_surface(subject.surface, "at rest", most);
       writer.add_nodes(subject, static_cast<int>(frames.size()), whole, options.before, moving);

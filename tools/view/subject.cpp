@@ -120,4 +120,15 @@ Subject read_checkpoint(const Run& run) {
   return subject;
 }
 
+std::vector<geo::TriangleMesh> read_obstacles(const Run& run) {
+  std::vector<geo::TriangleMesh> frames;
+  for (const auto& path : run.frames) {
+    const auto beside = obstacles_of(path);
+    if (beside.empty()) return {};
+    frames.push_back(geo::read_surface(beside).mesh);
+    if (frames.back().triangles != frames[0].triangles) throw geo::InputError(beside + ": its triangles are not those of the frames before; run kerf-sim again");
+  }
+  return frames;
+}
+
 }  // namespace view

@@ -39,5 +39,7 @@ struct Run {
 Run find_run(const std::string& folder);
 /// The checkpoint's body with its motion; empty where the run has none.
 Subject read_checkpoint(const Run& run);
+/// The obstacles of each frame, rows alike in all; empty where the run has none. Throws InputError.
+std::vector<geo::TriangleMesh> read_obstacles(const Run& run);
 
 }  // namespace view

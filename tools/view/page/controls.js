@@ -17,7 +17,7 @@ function set(key, value) {
 const keys = {
   c: () => set("cracks", !state.cracks), w: () => set("wire", !state.wire), n: () => set("nodes", !state.nodes),
   e: () => set("edges", !state.edges), d: () => set("cut", !state.cut), b: () => set("near", !state.near), t: () => set("tree", !state.tree),
-  u: () => set("updated", !state.updated), o: () => set("own", !state.own), f: () => set("fronts", !state.fronts), p: () => set("clip", !state.clip), r: () => set("rest", !state.rest),
+  u: () => set("updated", !state.updated), o: () => set("own", !state.own), f: () => set("fronts", !state.fronts), k: () => set("obstacles", !state.obstacles), p: () => set("clip", !state.clip), r: () => set("rest", !state.rest),
   s: () => set("skin", state.skin === 1 ? 0.25 : state.skin > 0 ? 0 : 1), x: () => set("explode", state.explode > 0 ? 0 : 0.5),
   h: resetView, m: () => $("menu").click(), "?": () => $("help").showModal(), " ": () => play(!state.playing),
   ",": () => showFrame(state.frame - 1), ".": () => showFrame(state.frame + 1), Escape: () => select(-1),
@@ -25,7 +25,7 @@ const keys = {
 };
 const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 // Which part of the controls a key belongs to: nothing happens where that part is not there.
-const needs = { n: "node-controls", e: "graph-controls", d: "graph-controls", b: "graph-controls", u: "updated-label", t: "tree-controls", o: "tree-controls", f: "front-controls", r: "rest-label", c: "surface-controls", w: "surface-controls", s: "surface-controls", x: "explode-label", " ": "timeline", ",": "timeline", ".": "timeline" };
+const needs = { n: "node-controls", e: "graph-controls", d: "graph-controls", b: "graph-controls", u: "updated-label", t: "tree-controls", o: "tree-controls", f: "front-controls", k: "obstacles-label", r: "rest-label", c: "surface-controls", w: "surface-controls", s: "surface-controls", x: "explode-label", " ": "timeline", ",": "timeline", ".": "timeline" };
 
 function resetView() {
   Object.assign(view, home);
@@ -90,6 +90,7 @@ function dress() {
   $("updated-label").hidden = !(n && n.updated);
   $("front-controls").hidden = about.fronts.length === 0;
   $("cracks").disabled = !cracked;
+  $("obstacles-label").hidden = about.obstacles.length === 0;
   $("rest-label").hidden = !(n && n.rest > 0);
   $("explode-label").hidden = !about.surfaces.some((s) => arrays[s.piece].some((p) => p > 0));
   $("timeline").hidden = frameCount() < 2;
@@ -126,7 +127,7 @@ async function begin() {
   $("data").textContent = "";
   dress();
   followAddress();
-  layers.push(new SurfaceLayer(), new FrontLayer(), new NodeLayer(), new GraphLayer(), new BindingLayer(), new InspectLayer());
+  layers.push(new SurfaceLayer(), new ObstacleLayer(), new FrontLayer(), new NodeLayer(), new GraphLayer(), new BindingLayer(), new InspectLayer());
   listenToControls(), listenToKeys(), listenToPointer();
   new ResizeObserver(resize).observe($("stage"));
   resize(), changed(), draw();

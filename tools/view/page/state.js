@@ -1,7 +1,7 @@
 // What is shown, and how it follows the controls: layers are told after each change, and draw once a display frame.
 const state = {
   frame: 0, rest: false, skin: 1, cracks: true, wire: false, color: "patch", explode: 0,
-  nodes: false, field: "radius", size: 1, edges: false, cut: false, updated: false, near: true, tree: false, own: true, fronts: true,
+  nodes: false, field: "radius", size: 1, edges: false, cut: false, updated: false, near: true, tree: false, own: true, fronts: true, obstacles: true,
   clip: false, axis: 3, offset: 0, fill: true, selected: -1, playing: false,
 };
 let about = null, arrays = null;

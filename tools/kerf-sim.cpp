@@ -5,12 +5,12 @@
 
 #include "base/stopwatch.h"
 #include "io/checkpoint_file.h"
-#include "io/run_files.h"
 #include "io/scene_file.h"
 #include "io/stream.h"
 #include "mechanics/node_fields.h"
 #include "model.h"
 #include "sim/frame_writer.h"
+#include "sim/whole_run.h"
 #include "simulation/simulation.h"
 #include "surface/pieces.h"
 #include "tool.h"
@@ -167,12 +167,7 @@ int main(int argc, char** argv) {
     }
     total.write_seconds += waited;
     geo::report(progress, "done", 1, 1);
-    std::vector<std::string> names;
-    for (int i = 0; i <= last; ++i) names.push_back(sim::RunFolder::frame_name(i));
-    geo::write_all((folder.path / "run.pvd").string(), [&](std::ostream& out) { geo::write_pvd(out, names, plan.scene.frame_rate); });
-    geo::write_all((folder.path / "run.usda").string(), [&](std::ostream& out) {
-      geo::write_usda(out, names.size(), [&](std::size_t i) { return geo::read_surface((folder.path / names[i]).string()).mesh; }, plan.scene.frame_rate);
-    });
+    sim::write_whole_run(folder, last, plan.scene.frame_rate);
     const std::size_t nodes = run.body().nodes.size(), edges = run.body().graph.edge_count(), pieces = geo::find_pieces(run.body().surface).count;
     const auto of = [](const char* name, std::size_t n) { return std::string(",\"") + name + "\":" + std::to_string(n); };
     folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) + of("edges", edges) + of("pieces", pieces) + "," + sim::counts(run.state().total) + "}\n");

@@ -1,7 +1,6 @@
 #include "io/run_files.h"
 
 #include <array>
-#include <charconv>
 
 #include "base/error.h"
 #include "io/node_file.h"
@@ -30,53 +29,12 @@ FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name) 
   return frame;
 }
 
-void write_pvd(std::ostream& out, const std::vector<std::string>& frames, double frame_rate) {
+void write_pvd(std::ostream& out, const std::vector<std::vector<std::string>>& parts, double frame_rate) {
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
-  for (std::size_t i = 0; i < frames.size(); ++i) out << "    <DataSet timestep=\"" << double(i) / frame_rate << "\" file=\"" << frames[i] << "\"/>\n";
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (std::size_t i = 0; i < parts[p].size(); ++i)
+      out << "    <DataSet timestep=\"" << double(i) / frame_rate << "\" part=\"" << p << "\" file=\"" << parts[p][i] << "\"/>\n";
   out << "  </Collection>\n</VTKFile>\n";
-}
-
-void write_usda(std::ostream& out, std::size_t count, const std::function<TriangleMesh(std::size_t)>& frame, double frame_rate) {
-  out << "#usda 1.0\n(\n    defaultPrim = \"body\"\n    upAxis = \"Z\"\n    startTimeCode = 0\n    endTimeCode = " << (count > 0 ? count - 1 : 0)
-      << "\n    timeCodesPerSecond = " << frame_rate << "\n)\n\ndef Mesh \"body\"\n{\n    uniform token subdivisionScheme = \"none\"\n";
-  const auto samples = [&](const char* declaration, const auto& add) {
-    out << "    " << declaration << ".timeSamples = {\n";
-    std::string text;
-    for (std::size_t i = 0; i < count; ++i) {
-      text = "        " + std::to_string(i) + ": [";
-      add(frame(i), text);
-      out << text << "],\n";
-    }
-    out << "    }\n";
-  };
-  // In the shortest form that reads back the same.
-  const auto number = [](auto x, std::string& text) {
-    char digits[32];
-    text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
-  };
-  const auto row = [&](const auto& values, std::string& text) {
-    for (int k = 0; k < 3; ++k) {
-      if (k > 0) text += ", ";
-      number(values[k], text);
-    }
-  };
-  samples("int[] faceVertexCounts", [&](const TriangleMesh& m, std::string& text) {
-    for (std::size_t t = 0; t < m.triangles.size(); ++t) text += t ? ", 3" : "3";
-  });
-  samples("int[] faceVertexIndices", [&](const TriangleMesh& m, std::string& text) {
-    for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-      if (t > 0) text += ", ";
-      row(m.triangles[t], text);
-    }
-  });
-  samples("point3f[] points", [&](const TriangleMesh& m, std::string& text) {
-    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
-      text += v > 0 ? ", (" : "(";
-      row(Eigen::Vector3f(m.vertices[v].cast<float>()), text);
-      text += ')';
-    }
-  });
-  out << "}\n";
 }
 
 }  // namespace geo

@@ -1,13 +1,11 @@
-// The files of a run that other programs read: nodes of a frame, ParaView collection, USD.
+// The files of a run that other programs read: nodes of a frame, ParaView collection (usd_file.h: USD).
 #pragma once
 
-#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "sampling/node_set.h"
-#include "surface/triangle_mesh.h"
 
 namespace geo {
 
@@ -20,10 +18,7 @@ void write_frame_nodes(std::ostream& out, const FrameNodes& frame);
 /// Throws InputError for what is no such file.
 FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name);
 
-/// A ParaView collection of numbered frames.
-void write_pvd(std::ostream& out, const std::vector<std::string>& frames, double frame_rate);
-/// A USD layer whose mesh has time samples of points, counts and indices: topology may change per frame. `frame` gives each
-/// of `count` frames, three times; one is in memory at a time.
-void write_usda(std::ostream& out, std::size_t count, const std::function<TriangleMesh(std::size_t)>& frame, double frame_rate);
+/// A ParaView collection: of each part its numbered frames.
+void write_pvd(std::ostream& out, const std::vector<std::vector<std::string>>& parts, double frame_rate);
 
 }  // namespace geo

@@ -230,6 +230,8 @@ attributes)
   printf 'front a\nstep 0\n-1 0.53 3\n2 0.53 3\nstep 1\n-1 0.53 0.4\n2 0.53 0.4\nstep 2\n-1 0.53 -2\n2 0.53 -2\n' >a.front
   printf 'front b\nstep 0\n0.41 -1 3\n0.41 2 3\nstep 1\n0.41 -1 -2\n0.41 2 -2\n' >b.front
   quietly kerf-crack die.obj --front a.front -o cut.obj
+  printf '[body]\nmesh = "die.obj"\nspacing = 0.3\n[[score]]\nfile = "a.front"\n[time]\nframes = 1\n' >die.toml
+  kerf-sim -q die.toml -o die && /usr/bin/python3 "$(dirname "$script")/check_usd.py" die | grep -q "texture" || fail "USD with texture coordinates"
   for line in "mtllib die.mtl" "usemtl side" "usemtl lid" "usemtl crack" "g patch_-1" "f [0-9]*/[0-9]* [0-9]*/[0-9]* [0-9]*/[0-9]*"; do grep -q "^$line\$" cut.obj || fail "cut.obj has no '$line'"; done
   [ "$(grep -c '^vt ' cut.obj)" -gt 4 ] || fail "cut.obj has no new texture coordinates"
   quietly kerf-crack die.obj --front a.front --steps 0:1 -o half.ply
@@ -396,6 +398,7 @@ simulation)
   kerf-sim -q s.toml -o parts --frames 2 && kerf-sim -q s.toml -o parts --frames 4 --resume && kerf-sim -q s.toml -o parts --resume || fail "kerf-sim --resume"
   diff -r whole parts || fail "a run made in three parts differs"
   [ -s whole/obstacles/obstacles_0006.ply ] || fail "no obstacles of the last frame"
+  /usr/bin/python3 "$(dirname "$script")/check_usd.py" whole || fail "the USD file"
   grep -q '"obstacles":\[{"force":\[[0-9e.,-]*\],"torque"' whole/frames.jsonl || fail "no forces on the obstacle"
   grep -q '"pieces":2' whole/summary.json || fail "not two pieces: $(cat whole/summary.json)"
   kerf-info --check -q whole/checkpoint.kerf || fail "the body is not sound"

@@ -24,7 +24,7 @@ std::string RunFolder::frame_name(int i) { return numbered("frames/frame_%04d.pl
 
 std::string RunFolder::nodes(int i) const { return (nodes() / numbered("nodes_%04d.ply", i)).string(); }
 
-std::string RunFolder::obstacles(int i) const { return (obstacles() / numbered("obstacles_%04d.ply", i)).string(); }
+std::string RunFolder::obstacles_name(int i) { return numbered("obstacles/obstacles_%04d.ply", i); }
 
 void RunFolder::make(bool with_obstacles) const {
   std::error_code error;

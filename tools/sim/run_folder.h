@@ -19,7 +19,8 @@ struct RunFolder {
   std::string frame(int i) const { return (path / frame_name(i)).string(); }
   std::string nodes(int i) const;
   std::filesystem::path obstacles() const { return path / "obstacles"; }
-  std::string obstacles(int i) const;
+  static std::string obstacles_name(int i);
+  std::string obstacles(int i) const { return (path / obstacles_name(i)).string(); }
 
   /// `with_obstacles`: a folder for them, too. Throws OutputError.
   void make(bool with_obstacles) const;

@@ -1,0 +1,28 @@
+#include "sim/whole_run.h"
+
+#include <vector>
+
+#include "io/run_files.h"
+#include "io/stream.h"
+#include "io/surface_file.h"
+#include "io/usd_file.h"
+
+namespace sim {
+
+void write_whole_run(const RunFolder& folder, int last, double frame_rate) {
+  const bool obstacles = std::filesystem::exists(folder.obstacles(0));
+  std::vector<std::vector<std::string>> parts(obstacles ? 2 : 1);
+  for (int i = 0; i <= last; ++i) {
+    parts[0].push_back(RunFolder::frame_name(i));
+    if (obstacles) parts[1].push_back(RunFolder::obstacles_name(i));
+  }
+  geo::write_all((folder.path / "run.pvd").string(), [&](std::ostream& out) { geo::write_pvd(out, parts, frame_rate); });
+  const auto frames = [&](std::size_t part) {
+    return [&, part](std::size_t i) { return geo::read_surface((folder.path / parts[part][i]).string()).mesh; };
+  };
+  geo::UsdRun usd{parts[0].size(), frame_rate, frames(0), {}};
+  if (obstacles) usd.obstacles = frames(1);
+  geo::write_all((folder.path / "run.usda").string(), [&](std::ostream& out) { geo::write_usda(out, usd); });
+}
+
+}  // namespace sim

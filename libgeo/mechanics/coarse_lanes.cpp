@@ -20,7 +20,6 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
   const Four d4;
   const Eight d8;
   constexpr std::size_t step = hn::MaxLanes(Eight());
-  const std::size_t n = modes.stride;
   std::vector<float> moment, strain, stress;  // per slot of a point: three rows of (Σ arm g, Σ g); six rows of eight modes
   std::vector<std::uint32_t> here;
   std::vector<std::uint32_t> place(slots, ~0u);
@@ -37,10 +36,8 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
         for (std::size_t k = 0; k < 4; k += hn::MaxLanes(Four()))
           hn::StoreU(hn::Add(hn::LoadU(d4, m + 4 * c + k), hn::Mul(hn::Set(d4, block.rounded[3 * q + c]), hn::LoadU(d4, at + k))), d4, m + 4 * c + k);
     }
-    const auto number = [&](std::size_t k) { return modes.values[k * n + i]; };
-    float r[3][3];  // columns of the rotation U Vᵀ
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < 3; ++k) r[c][k] = number(k) * number(9 + c) + number(3 + k) * number(12 + c) + number(6 + k) * number(15 + c);
+    const Eigen::Matrix3f rotation = modes.rotation(i);
+    const auto r = [&](std::size_t column) { return rotation.data() + 3 * column; };
     strain.assign(tile * here.size(), 0.0f), stress.assign(tile * here.size(), 0.0f);
     for (std::size_t s = 0; s < here.size(); ++s) {
       // Row (a, b) of the gradient in the rotated frame, by modes: translations r_a g_b, rotations m_b × r_a.
@@ -51,8 +48,8 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
         for (std::size_t b = 0; b < 3; ++b) {
           float* const to = e + 8 * row[a][b];
           const float* const mb = m + 4 * b;
-          for (std::size_t k = 0; k < 3; ++k) to[k] += r[a][k] * mb[3];
-          for (std::size_t k = 0; k < 3; ++k) to[3 + k] += mb[(k + 1) % 3] * r[a][(k + 2) % 3] - mb[(k + 2) % 3] * r[a][(k + 1) % 3];
+          for (std::size_t k = 0; k < 3; ++k) to[k] += r(a)[k] * mb[3];
+          for (std::size_t k = 0; k < 3; ++k) to[3 + k] += mb[(k + 1) % 3] * r(a)[(k + 2) % 3] - mb[(k + 2) % 3] * r(a)[(k + 1) % 3];
         }
       float* const f = &stress[tile * s];
       for (std::size_t k = 0; k < 6; ++k) {

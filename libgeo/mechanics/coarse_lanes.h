@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mechanics/material_points.h"
-#include "mechanics/point_lanes.h"
+#include "mechanics/stiffness_lanes.h"
 
 namespace geo {
 

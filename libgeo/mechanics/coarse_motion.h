@@ -8,7 +8,7 @@
 #include "mechanics/band_factor.h"
 #include "mechanics/material_points.h"
 #include "mechanics/node_groups.h"
-#include "mechanics/point_lanes.h"
+#include "mechanics/stiffness_lanes.h"
 
 namespace geo {
 

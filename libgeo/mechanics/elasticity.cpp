@@ -98,9 +98,9 @@ Mat9 stress_derivative(const Material& m, const Mat3& f) {
 }
 
 StiffnessConstants stiffness_constants(const Material& m) {
-  if (m.model == ElasticModel::saint_venant_kirchhoff) return {false, float(m.mu()), float(m.lambda()), 1, float(m.volume_term)};
+  if (m.model == ElasticModel::saint_venant_kirchhoff) return {false, float(m.mu()), float(m.lambda()), 1, float(m.volume_term), 0};
   const Stable p(m);
-  return {true, float(p.mu), float(p.lambda), float(p.alpha), float(m.volume_term)};
+  return {true, float(p.mu), float(p.lambda), float(p.alpha), float(m.volume_term), 0};
 }
 
 Mat9 projected_derivative(const Material& m, const Mat3& f) {

@@ -35,10 +35,11 @@ void require_material(const Material& material);
 double energy_density(const Material& material, const Mat3& f);
 /// First Piola–Kirchhoff stress ∂Ψ/∂F, Pa.
 Mat3 stress(const Material& material, const Mat3& f);
-/// What principal stiffness needs of a material (point_lanes.h): μ, λ and α of the stable neo-Hookean energy are its own.
+/// What stiffness needs of a material (stiffness_lanes.h): μ, λ and α of the stable neo-Hookean energy are its own.
 struct StiffnessConstants {
   bool neo_hookean = true;
   float mu = 0, lambda = 0, alpha = 1, volume = 0;
+  float viscous = 0;  ///< η/Δt on the symmetric part of the gradient: what viscosity has at small strain
 };
 StiffnessConstants stiffness_constants(const Material& material);
 using Mat9 = Eigen::Matrix<double, 9, 9>;

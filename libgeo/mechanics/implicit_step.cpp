@@ -12,7 +12,7 @@
 #include "mechanics/ground.h"
 #include "mechanics/patch_motion.h"
 #include "mechanics/plasticity.h"
-#include "mechanics/point_lanes.h"
+#include "mechanics/product_lanes.h"
 #include "mechanics/solid.h"
 
 namespace geo {
@@ -31,7 +31,6 @@ class ImplicitStep {
   void linearise();
   void precondition();
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out);
-  void turn(StiffnessModes& modes, std::size_t block) const;
   void elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const;
   int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small);
   double most(const std::vector<Vec3>& moved) const;
@@ -138,33 +137,19 @@ double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* for
   return sum;
 }
 
-// Gradients of points are times their relaxation before and after: V has it in it then, for both are symmetric together.
-void ImplicitStep::turn(StiffnessModes& modes, std::size_t b) const {
-  for (std::size_t i = 0; i < s_.points_.blocks[b].points.size(); ++i) {
-    const Eigen::Matrix3f back = relaxed_[s_.points_.first(b) + i].cast<float>();
-    Eigen::Matrix3f v;
-    for (std::size_t k = 0; k < 9; ++k) v.data()[k] = modes.values[(9 + k) * modes.stride + i];
-    v = (back * v).eval();
-    for (std::size_t k = 0; k < 9; ++k) modes.values[(9 + k) * modes.stride + i] = v.data()[k];
-  }
-}
-
 // The stiffness of points at u_, after evaluate(u_).
 void ImplicitStep::linearise() {
-  const Material& m = s_.material_;
-  const StiffnessConstants constants = stiffness_constants(m);
+  StiffnessConstants constants = stiffness_constants(s_.material_);
+  constants.viscous = float(s_.material_.viscosity / dt_);
   parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    Columns<float> relaxed;
     for (std::size_t b = begin; b < end; ++b) {
-      stiffness_modes(constants, gradient_[b], weight_[b], modes_[b]);
-      if (!relaxed_.empty()) turn(modes_[b], b);
-      if (m.viscosity > 0) {  // its Gauss-Newton part, at small strain: w η/Δt on the symmetric part of the gradient
-        StiffnessModes& modes = modes_[b];
-        for (std::size_t i = 0; i < modes.stride; ++i) {
-          const float w = weight_[b][i] * float(m.viscosity / dt_);
-          for (std::size_t k : {18, 19, 20}) modes.values[k * modes.stride + i] += w;
-          for (std::size_t k = 24; k < 30; ++k) modes.values[k * modes.stride + i] += 0.5f * w;
-        }
+      if (!relaxed_.empty()) {
+        relaxed.resize(s_.points_.blocks[b].points.size());
+        for (std::size_t i = 0; i < s_.points_.blocks[b].points.size(); ++i)
+          for (int c = 0; c < 3; ++c) Eigen::Map<Eigen::Vector3f>(&relaxed.column[c][4 * i]) = relaxed_[s_.points_.first(b) + i].col(c).cast<float>();
       }
+      stiffness_modes(constants, gradient_[b], relaxed_.empty() ? nullptr : &relaxed, weight_[b], modes_[b]);
     }
   });
 }

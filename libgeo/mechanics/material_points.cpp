@@ -1,6 +1,7 @@
 #include "mechanics/material_points.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -41,7 +42,29 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow>
   }
   rounded.assign(gradient.begin(), gradient.end());
   rounded.push_back(0);  // entries are read by fours
+  pack();
   for (const MaterialPoint& p : points) box.add(p.position);
+}
+
+// What rounding leaves of one entry is the next one's, so that a field that is constant has no gradient.
+void PointBlock::pack() {
+  constexpr double full = 32766;
+  packed.assign(4 * (to.size() + 1), 0), unit.assign((points.size() + 7) / 8 * 8, 0);  // entries are read by twos
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double most = 0;
+    for (std::size_t k = 3 * first[i]; k < 3 * first[i + 1]; ++k) most = std::max(most, std::abs(gradient[k]));
+    for (std::size_t q = first[i]; q < first[i + 1]; ++q) packed[4 * q + 3] = static_cast<std::int16_t>(to[q]);
+    if (!(most > 0)) continue;
+    unit[i] = float(most / full);
+    Vec3 sum = Vec3::Zero(), taken = Vec3::Zero();
+    for (std::size_t q = first[i]; q < first[i + 1]; ++q)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto k = static_cast<Eigen::Index>(c);
+        sum[k] += full / most * gradient[3 * q + c];
+        const double whole = std::nearbyint(sum[k]) - taken[k];
+        packed[4 * q + c] = static_cast<std::int16_t>(whole), taken[k] += whole;
+      }
+  }
 }
 
 ShapeRow PointBlock::row(std::size_t point) const {

@@ -29,6 +29,8 @@ struct PointBlock {
   std::vector<std::uint16_t> to;     ///< entries: places in `nodes`
   std::vector<double> gradient;      ///< three an entry
   std::vector<float> rounded;        ///< the same
+  std::vector<std::int16_t> packed;  ///< the same, in multiples of the point's unit, such that they still sum to zero, and `to`
+  std::vector<float> unit;           ///< per point, a multiple of eight of them
   Box3 box;                          ///< of the points
 
   PointBlock() = default;
@@ -36,6 +38,9 @@ struct PointBlock {
   /// A row that it was made of.
   ShapeRow row(std::size_t point) const;
   friend bool operator==(const PointBlock& a, const PointBlock& b);
+
+ private:
+  void pack();
 };
 
 class MaterialPoints {

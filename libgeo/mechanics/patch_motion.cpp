@@ -14,12 +14,6 @@ using Mat3f = Eigen::Matrix3f;
 // The upper half, rounded.
 std::uint16_t half(float x) { return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(x) + 0x8000u) >> 16); }
 
-Mat3f rotation_at(const StiffnessModes& modes, std::size_t point) {
-  Mat3f u, v;
-  for (std::size_t k = 0; k < 9; ++k) u.data()[k] = modes.values[k * modes.stride + point], v.data()[k] = modes.values[(9 + k) * modes.stride + point];
-  return u * v.transpose();
-}
-
 }  // namespace
 
 PatchMotion::PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
@@ -32,7 +26,7 @@ PatchMotion::PatchMotion(const NodePatches& patches, const std::vector<Stiffness
   inverse_.resize(first_.back());
   parallel_for(patches.count(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = rotation_at(modes[block], point);
+      if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = modes[block].rotation(point);
       invert(p, shear, bulk, blocks, fixed);
     }
   });

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mechanics/node_patches.h"
-#include "mechanics/point_lanes.h"
+#include "mechanics/stiffness_lanes.h"
 
 namespace geo {
 

@@ -169,7 +169,7 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
       const Vec3 difference = (backward[i] - forward[i]) / 2e-5;
       error += (product[i] - difference).squaredNorm(), size += difference.squaredNorm();
     }
-    CHECK(std::sqrt(error / size) < 1e-5);
+    CHECK(std::sqrt(error / size) < 4e-5);  // numbers of 16 bits
     // And the forces that of the energy.
     double along = 0;
     const auto force = solid.forces(u);

@@ -1,0 +1,204 @@
+// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mechanics/stiffness_lanes.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "hwy/foreach_target.h"
+// After foreach_target.h:
+#include <array>
+
+#include "hwy/highway.h"
+#include "mechanics/stiffness_lanes.h"
+#include "mechanics/matrix_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace geo::HWY_NAMESPACE {
+
+using Vector = V<float>;
+
+// Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v.
+HWY_INLINE void diagonalise(Vector (&a)[3][3], Matrix<float>& v) {
+  const Lanes<float> d;
+  const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f), tiny = hn::Set(d, 1e-30f);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) v.at[c][r] = c == r ? one : zero;
+  for (int sweep = 0; sweep < 4; ++sweep)
+    for (int k = 0; k < 3; ++k) {
+      const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
+      // tan of the angle: the smaller root of t² + 2 θ t − 1 = 0.
+      const auto apq = a[p][q];
+      const auto none = hn::Lt(hn::Abs(apq), tiny);
+      const auto theta = hn::Div(hn::Mul(half, hn::Sub(a[q][q], a[p][p])), hn::IfThenElse(none, one, apq));
+      const auto t = hn::IfThenElse(none, zero, hn::CopySign(hn::Div(one, hn::Add(hn::Abs(theta), hn::Sqrt(hn::Add(hn::Mul(theta, theta), one)))), theta));
+      const auto c = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s = hn::Mul(t, c), step = hn::Mul(t, apq);
+      a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
+      a[p][q] = a[q][p] = zero;
+      const auto arp = a[r][p], arq = a[r][q];
+      a[r][p] = a[p][r] = hn::Sub(hn::Mul(c, arp), hn::Mul(s, arq));
+      a[r][q] = a[q][r] = hn::Add(hn::Mul(s, arp), hn::Mul(c, arq));
+      for (int i = 0; i < 3; ++i) {
+        const auto vp = v.at[p][i], vq = v.at[q][i];
+        v.at[p][i] = hn::Sub(hn::Mul(c, vp), hn::Mul(s, vq));
+        v.at[q][i] = hn::Add(hn::Mul(s, vp), hn::Mul(c, vq));
+      }
+    }
+}
+
+// F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out.
+HWY_INLINE void decompose(const Matrix<float>& f, Matrix<float>& u, Vector (&sigma)[3], Matrix<float>& v) {
+  const Lanes<float> d;
+  const auto tiny = hn::Set(d, 1e-20f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  Vector s[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) s[i][j] = dot3(f.at[i], f.at[j]);
+  diagonalise(s, v);
+  for (int k = 0; k < 3; ++k) {
+    const int p = k == 1 ? 1 : 0, q = p + 1;
+    const auto swap = hn::Lt(s[p][p], s[q][q]);
+    const auto sp = s[p][p];
+    s[p][p] = hn::IfThenElse(swap, s[q][q], sp), s[q][q] = hn::IfThenElse(swap, sp, s[q][q]);
+    for (int i = 0; i < 3; ++i) {
+      const auto vp = v.at[p][i];
+      v.at[p][i] = hn::IfThenElse(swap, v.at[q][i], vp), v.at[q][i] = hn::IfThenElse(swap, hn::Neg(vp), v.at[q][i]);
+    }
+  }
+  Vector b[3][3];
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) b[c][r] = hn::Add(hn::Add(hn::Mul(f.at[0][r], v.at[c][0]), hn::Mul(f.at[1][r], v.at[c][1])), hn::Mul(f.at[2][r], v.at[c][2]));
+  const auto length = hn::Sqrt(dot3(b[0], b[0]));
+  const auto gone = hn::Lt(length, tiny);
+  const auto inverse = hn::Div(one, hn::IfThenElse(gone, one, length));
+  for (int r = 0; r < 3; ++r) u.at[0][r] = hn::IfThenElse(gone, r == 0 ? one : zero, hn::Mul(b[0][r], inverse));
+  const auto along = dot3(u.at[0], b[1]);
+  for (int r = 0; r < 3; ++r) b[1][r] = hn::Sub(b[1][r], hn::Mul(along, u.at[0][r]));
+  // Where the second column is lost, any direction across the first one.
+  const auto second = dot3(b[1], b[1]);
+  const auto lost = hn::Lt(second, hn::Max(hn::Mul(hn::Set(d, 1e-12f), hn::Mul(length, length)), tiny));
+  const auto flat = hn::Lt(hn::Abs(u.at[0][0]), hn::Set(d, 0.7f));
+  const Vector across[3] = {hn::IfThenElse(flat, zero, hn::Neg(u.at[0][2])), hn::IfThenElse(flat, u.at[0][2], zero), hn::IfThenElse(flat, hn::Neg(u.at[0][1]), u.at[0][0])};
+  for (int r = 0; r < 3; ++r) b[1][r] = hn::IfThenElse(lost, across[r], b[1][r]);
+  const auto unit = hn::Div(one, hn::Sqrt(dot3(b[1], b[1])));
+  for (int r = 0; r < 3; ++r) u.at[1][r] = hn::Mul(b[1][r], unit);
+  for (int r = 0; r < 3; ++r) {
+    const int i = (r + 1) % 3, j = (r + 2) % 3;
+    u.at[2][r] = hn::Sub(hn::Mul(u.at[0][i], u.at[1][j]), hn::Mul(u.at[0][j], u.at[1][i]));
+  }
+  sigma[0] = length, sigma[1] = hn::IfThenElse(lost, zero, hn::Sqrt(second)), sigma[2] = dot3(u.at[2], b[2]);
+}
+
+// What the energies have in common: ∂Ψ/∂σᵢ, its derivatives, and divided differences without a division.
+struct Principal {
+  Vector a[3][3];
+  Vector same[3], turned[3];  // of pairs 01, 02, 12: (ψᵢ − ψⱼ)/(σᵢ − σⱼ), (ψᵢ + ψⱼ)/(σᵢ + σⱼ)
+};
+
+HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]) {
+  const Lanes<float> d;
+  const auto one = hn::Set(d, 1.0f), mu = hn::Set(d, m.mu), lambda = hn::Set(d, m.lambda), volume = hn::Set(d, m.volume);
+  const Vector cof[3] = {hn::Mul(s[1], s[2]), hn::Mul(s[0], s[2]), hn::Mul(s[0], s[1])};
+  const auto j = hn::Mul(s[0], cof[0]), square = hn::Add(hn::Add(hn::Mul(s[0], s[0]), hn::Mul(s[1], s[1])), hn::Mul(s[2], s[2]));
+  Principal p;
+  const auto pressure = hn::Add(hn::Mul(volume, hn::Sub(j, one)), m.neo_hookean ? hn::Mul(lambda, hn::Sub(j, hn::Set(d, m.alpha))) : hn::Zero(d));
+  const auto bulk = m.neo_hookean ? hn::Add(lambda, volume) : volume;
+  const auto i1 = hn::Div(one, hn::Add(square, one));
+  const auto shear = hn::Mul(mu, hn::Sub(one, i1)), soft = hn::Mul(hn::Mul(hn::Set(d, 2.0f), mu), hn::Mul(i1, i1));
+  const auto trace = hn::Mul(hn::Set(d, 0.5f), hn::Sub(square, hn::Set(d, 3.0f)));
+  const auto green = hn::Sub(hn::Mul(lambda, trace), mu);  // λ tr E − μ
+  for (int i = 0; i < 3; ++i)
+    for (int k = i; k < 3; ++k) {
+      const auto ss = hn::Mul(s[i], s[k]);
+      auto value = hn::Mul(bulk, hn::Mul(cof[i], cof[k]));
+      if (m.neo_hookean)
+        value = hn::Add(value, hn::Mul(soft, ss));
+      else
+        value = hn::Add(value, hn::Mul(lambda, ss));
+      if (i == k)
+        value = hn::Add(value, m.neo_hookean ? shear : hn::Add(green, hn::Mul(hn::Set(d, 3.0f), hn::Mul(mu, ss))));
+      else
+        value = hn::Add(value, hn::Mul(pressure, s[3 - i - k]));
+      p.a[i][k] = p.a[k][i] = value;
+    }
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 1 : 0, l = k == 0 ? 1 : 2;
+    const auto turn = hn::Mul(pressure, s[3 - i - l]);
+    auto same = shear, turned = shear;
+    if (!m.neo_hookean) {
+      const auto squares = hn::Add(hn::Mul(s[i], s[i]), hn::Mul(s[l], s[l])), both = hn::Mul(s[i], s[l]);
+      same = hn::Add(green, hn::Mul(mu, hn::Add(squares, both))), turned = hn::Add(green, hn::Mul(mu, hn::Sub(squares, both)));
+    }
+    p.same[k] = hn::Max(hn::Sub(same, turn), hn::Zero(d));
+    p.turned[k] = hn::Max(hn::Add(turned, turn), hn::Zero(d));
+  }
+  return p;
+}
+
+void Modes(const StiffnessConstants& material, const Columns<float>& gradient, const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
+  const Lanes<float> d;
+  const hn::Rebind<std::int32_t, Lanes<float>> d32;
+  const hn::Rebind<std::int16_t, Lanes<float>> d16;
+  const auto columns_of = [](const Columns<float>& c) { return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()}; };
+  const auto columns = columns_of(gradient);
+  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full);
+  for (std::size_t i = 0; i < out.points; i += width<float>) {
+    Matrix<float> f = load(columns.data(), i), u, v;
+    for (int c = 0; c < 3; ++c) f.at[c][c] = hn::Add(f.at[c][c], one);
+    Vector sigma[3];
+    decompose(f, u, sigma, v);
+    Principal p = principal(material, sigma);
+    Matrix<float> e;
+    diagonalise(p.a, e);
+    // Where plastic strain has made V no rotation, what its numbers are too long by is the stiffness'.
+    Vector longest = one;
+    if (relaxed) {
+      v = product(load(columns_of(*relaxed).data(), i), v);
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) longest = hn::Max(longest, hn::Abs(v.at[c][r]));
+    }
+    std::int16_t* const frame = &out.frame[out.number(i, 18)];
+    const auto put = [&](std::size_t k, Vector x) HWY_ATTR {
+      hn::StoreU(hn::DemoteTo(d16, hn::ConvertTo(d32, hn::Add(x, hn::CopySign(half, x)))), d16, frame + 8 * k);
+    };
+    const auto shorter = hn::Div(full, longest);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t r = 0; r < 3; ++r) put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
+    const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
+    float* const to = &out.stiffness[out.number(i, 12)];
+    Vector kept[3];
+    for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(w, hn::Max(p.a[k][k], hn::Zero(d)));
+    const auto viscous = hn::Mul(w, hn::Set(d, material.viscous));
+    constexpr int rows[6] = {0, 1, 2, 0, 0, 1}, cols[6] = {0, 1, 2, 1, 2, 2};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const int r = rows[k], c = cols[k];
+      auto sum = hn::Mul(kept[0], hn::Mul(e.at[0][r], e.at[0][c]));
+      for (int q = 1; q < 3; ++q) sum = hn::Add(sum, hn::Mul(kept[q], hn::Mul(e.at[q][r], e.at[q][c])));
+      hn::StoreU(k < 3 ? hn::Add(sum, viscous) : sum, d, to + 8 * k);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Add(p.same[k], p.turned[k])), viscous)), d, to + 8 * (6 + 2 * k));
+      hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Sub(p.same[k], p.turned[k])), viscous)), d, to + 8 * (7 + 2 * k));
+    }
+  }
+}
+
+}  // namespace geo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(Modes);
+
+void stiffness_modes(const StiffnessConstants& constants, const Columns<float>& gradient, const Columns<float>* relaxed, const std::vector<float>& weight,
+                     StiffnessModes& out) {
+  out.points = weight.size();
+  out.frame.resize(18 * out.points), out.stiffness.resize(12 * out.points);
+  HWY_DYNAMIC_DISPATCH(Modes)(constants, gradient, relaxed, weight.data(), out);
+}
+
+Eigen::Matrix3f StiffnessModes::rotation(std::size_t point) const {
+  Eigen::Matrix3f u, v;
+  const std::int16_t* const from = &frame[number(point, 18)];
+  for (std::size_t k = 0; k < 9; ++k) u.data()[k] = from[8 * k], v.data()[k] = from[8 * (9 + k)];
+  return u * v.transpose() / (full * full);
+}
+
+}  // namespace geo
+#endif

@@ -9,7 +9,7 @@
 #include "contact/close_pairs.h"
 #include "contact/crossing.h"
 #include "contact/dividers.h"
-#include "contact/parting.h"
+#include "contact/parting_lanes.h"
 #include "contact/smooth_field.h"
 #include "contact/straight_motion.h"
 #include "contact/triangle_planes.h"
@@ -110,7 +110,7 @@ class Mover {
       carried.zones.place(start, carried.field, next);
       for (std::size_t t = 0; t < changed.size(); ++t)
         changed[t] = std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](auto v) { return next[v] != before[v]; });
-      near_again(start, next, changed);
+      near_again(next, changed);
     }
     report_.in_zones = std::max(report_.in_zones, carried.zones.count());
     at_ = std::move(next);
@@ -173,53 +173,61 @@ class Mover {
 
   // Triangles that may come together from `start` to `next`.
   void near(const std::vector<Vec3>& start, const std::vector<Vec3>& next) {
-    boxes_.resize(triangles_.size());
-    parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) boxes_[t] = box(t, next), boxes_[t].add(box(t, start));
+    std::vector<Box3> boxes(triangles_.size());
+    parallel_for(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) boxes[t] = box(t, next), boxes[t].add(box(t, start));
     });
-    pairs_ = close_pairs(boxes_);
+    tree_ = BoxTree(std::move(boxes));
+    pairs_ = tree_.pairs();
   }
 
   // The same, when only these triangles have another `next`.
-  void near_again(const std::vector<Vec3>& start, const std::vector<Vec3>& next, const std::vector<std::uint8_t>& changed) {
+  void near_again(const std::vector<Vec3>& next, const std::vector<std::uint8_t>& changed) {
     std::vector<std::uint8_t> outside(triangles_.size(), 0);
     bool any = false;
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       if (!changed[t]) continue;
-      const Box3 now = box(t, next);
-      if (!(now.lo.array() < boxes_[t].lo.array()).any() && !(now.hi.array() > boxes_[t].hi.array()).any()) continue;
+      const Box3 now = box(t, next), &known = tree_.boxes()[t];
+      if (!(now.lo.array() < known.lo.array()).any() && !(now.hi.array() > known.hi.array()).any()) continue;
       outside[t] = 1, any = true;
-      boxes_[t] = now, boxes_[t].add(box(t, start));
+      tree_.enlarge(t, now);
     }
     if (!any) return;
     std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
-    const auto more = close_pairs(boxes_, &outside);
+    const auto more = tree_.pairs(&outside);
     pairs_.insert(pairs_.end(), more.begin(), more.end());
   }
 
-  // Among pairs with a changed triangle, those that cross at the end, or may have passed through each other on the way.
+  // Among pairs with a changed triangle, those that cross at the end, or may have passed through each other on the way. That they
+  // have not is clear where one direction parts them at both ends by more than rounding; the field does not let them pass, either,
+  // when they are farther from each other than it deviates.
   std::vector<Pair> failing_pairs(const std::vector<Vec3>& start, const std::vector<Vec3>& next, Carried& carried, const std::vector<std::uint8_t>& changed) const {
     enum : std::uint8_t { clear, unsure, through };
     const TrianglePlanes planes(triangles_, start, next);
     const double rounding = 1e-14 * size_;
     std::vector<std::uint8_t> found(pairs_.size(), clear);
     parallel_for(pairs_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
+        for (int k = 0; k < Partings::count; ++k)
+          if (p.first[k][lane] > rounding && p.last[k][lane] > rounding) return;
+        const auto &s = triangles_[pairs_[i].first], &t = triangles_[pairs_[i].second];
+        const auto each = [&](const auto& test) { return test(s[0]) && test(s[1]) && test(s[2]) && test(t[0]) && test(t[1]) && test(t[2]); };
+        const bool by_field = !carried.field.empty() && each([&](std::uint32_t v) { return carried.is[v] != 0; });
+        const bool parted = by_field && p.first[Partings::closest][lane] > (carried.deviation[pairs_[i].first] + carried.deviation[pairs_[i].second]) / (1 - steepest);
+        found[i] = parted || (by_field && in_one_zone(carried.zones, s, t)) ? unsure : through;
+      };
+      CouplesInLanes<decltype(judge)> couples(start, next, true, judge);
       for (std::size_t i = begin; i < end; ++i) {
         const auto& [p, q] = pairs_[i];
         if (!changed[p] && !changed[q]) continue;
         const auto &s = triangles_[p], &t = triangles_[q];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) {
+        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2]))
           found[i] = unsure;  // neighbours cannot pass without crossing others
-          continue;
-        }
-        if (planes.part(p, q, rounding, rounding)) continue;
-        const auto each = [&](const auto& test) { return test(s[0]) && test(s[1]) && test(s[2]) && test(t[0]) && test(t[1]) && test(t[2]); };
-        const bool by_field = !carried.field.empty() && each([&](std::uint32_t v) { return carried.is[v] != 0; });
-        const double enough = by_field ? (carried.deviation[p] + carried.deviation[q]) / (1 - steepest) : std::numeric_limits<double>::infinity();
-        const Way way = stay_parted({{s[0], s[1], s[2]}, 3}, {{t[0], t[1], t[2]}, 3}, start, next, enough);
-        found[i] = way == Way::clear ? clear : way == Way::parted || (by_field && in_one_zone(carried.zones, s, t)) ? unsure : through;
+        else if (!planes.part(p, q, rounding, rounding))
+          couples.add({{{s[0], s[1], s[2]}, 3}, {{t[0], t[1], t[2]}, 3}}, i);
       }
+      couples.finish();
     });
     std::vector<Pair> result, test;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -237,20 +245,6 @@ class Mover {
     return in(s[1]) && in(s[2]) && in(t[0]) && in(t[1]) && in(t[2]);
   }
 
-  // Clear: one direction parts them at both ends by more than rounding. Parted: the field does not let them pass, as they are
-  // farther from each other than `enough`.
-  enum class Way { clear, parted, unknown };
-  Way stay_parted(const Simplex& a, const Simplex& b, const std::vector<Vec3>& start, const std::vector<Vec3>& next, double enough) const {
-    const double rounding = 1e-14 * size_;
-    bool far = false;
-    const bool clear = some_direction(a, b, start, next, [&](const Vec3& n, double before) {
-      const double length = n.norm();
-      far |= before > enough * length;
-      return before > rounding * length && parted(n, a, b, next) > rounding * length;
-    });
-    return clear ? Way::clear : far ? Way::parted : Way::unknown;
-  }
-
   // For those that are not where they want to be: straight on where nothing is in the way, then as far as planes let them go.
   void settle() {
     std::vector<double> room(at_.size(), 0);
@@ -258,15 +252,16 @@ class Mover {
     for (const auto v : rows_)
       if (const double way = (m_.to[v] - at_[v]).norm(); way > negligible * edge_) room[v] = std::min(farthest * edge_, way), to[v] = m_.to[v];
     std::vector<std::uint8_t> moving(triangles_.size(), 0);
+    std::vector<Box3> boxes(triangles_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       double most = 0;
       for (const auto v : triangles_[t]) most = std::max(most, room[v]);
-      moving[t] = most > 0, boxes_[t] = box(t, at_);
-      if (moving[t]) boxes_[t].add(box(t, to));
-      boxes_[t] = boxes_[t].grown(most + 0.5 * m_.gap);
+      moving[t] = most > 0, boxes[t] = box(t, at_);
+      if (moving[t]) boxes[t].add(box(t, to));
+      boxes[t] = boxes[t].grown(most + 0.5 * m_.gap);
     }
     if (std::count(moving.begin(), moving.end(), 1) == 0) return;
-    pairs_ = close_pairs(boxes_, &moving);
+    pairs_ = close_pairs(std::move(boxes), &moving);
     move_straight(triangles_, pairs_, to, m_.gap, at_);
     for (const auto v : rows_) room[v] = std::min(room[v], (to[v] - at_[v]).norm());
     report_.planes += move_divided({triangles_, pairs_, to, room, m_.gap}, at_);
@@ -279,7 +274,7 @@ class Mover {
   std::vector<Triangle> triangles_;  // of rows that stand for others
   std::vector<std::uint32_t> rows_;  // those, ascending
   double edge_ = 0, size_ = 0;
-  std::vector<Box3> boxes_;  // that the pairs are of
+  BoxTree tree_;             // that the pairs are of
   std::vector<Pair> pairs_;
 };
 

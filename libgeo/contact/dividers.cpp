@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "contact/parting_lanes.h"
 #include "contact/triangle_planes.h"
 
 namespace geo {
@@ -15,45 +16,31 @@ struct Divider {
   double at, half;  // a stays above at + half, b below at − half
 };
 
+// How far two parts may come towards each other.
+double way_of(const Divided& d, const Couple& c) {
+  double a = 0, b = 0;
+  for (int k = 0; k < c.a.size; ++k) a = std::max(a, d.limit[c.a.v[k]]);
+  for (int k = 0; k < c.b.size; ++k) b = std::max(b, d.limit[c.b.v[k]]);
+  return a + b;
+}
+
 // Whether the parts may come together, and the plane between them then.
-bool divide(const Divided& d, const std::vector<Vec3>& at, double within, bool adjacent, Divider& out) {
-  const auto way = [&](const Simplex& s) {
-    double most = 0;
-    for (int k = 0; k < s.size; ++k) most = std::max(most, d.limit[s.v[k]]);
-    return most;
-  };
-  const double both = way(out.a) + way(out.b);
-  if (!(both > 0)) return false;
-  const auto middle = [&](const Simplex& s) {
-    Vec3 sum = at[s.v[0]];
-    for (int k = 1; k < s.size; ++k) sum += at[s.v[k]];
-    return Vec3(sum / s.size);
-  };
-  const Vec3 across = middle(out.a) - middle(out.b);
-  // The corners' centres and the triangles' own normals part most; only else closest places are looked for.
-  const auto normal = [&](const Simplex& s) { return Vec3((at[s.v[1]] - at[s.v[0]]).cross(at[s.v[2]] - at[s.v[0]])); };
-  double best = 0;
-  const auto clear = [&](const Vec3& n) {
-    const double length = n.norm(), along = n.dot(across);
-    if (!(length > 0)) return false;
-    const Vec3 unit = n / (along < 0 ? -length : length);
-    const double free = parted(unit, out.a, out.b, at);
-    if (free > best) best = free, out.normal = unit;
-    return free > both + within;
-  };
-  if (clear(across) || (out.a.size == 3 && clear(normal(out.a))) || (out.b.size == 3 && clear(normal(out.b)))) return false;
-  Vec3 p[3], q[3];
-  for (int k = 0; k < out.a.size; ++k) p[k] = at[out.a.v[k]];
-  for (int k = 0; k < out.b.size; ++k) q[k] = at[out.b.v[k]];
-  if (adjacent || best < d.gap) {
-    const Vec3 apart = closest_places(p, out.a.size, q, out.b.size).apart;
-    const double distance = apart.norm();
-    if (distance > both + within) return false;
-    out.normal = distance > 0 ? Vec3(apart / distance) : Vec3(Vec3::Zero());
+bool divide(const Divided& d, const std::vector<Vec3>& at, bool adjacent, const Partings& p, std::size_t lane, Divider& out) {
+  const double reach = way_of(d, {out.a, out.b}) + d.gap;
+  // The corners' centres and the triangles' own normals part most; only else closest places are looked at.
+  int taken = Partings::across;
+  for (int k = 0; k < Partings::closest; ++k) {
+    if (p.first[k][lane] > reach) return false;
+    if (p.first[k][lane] > p.first[taken][lane]) taken = k;
   }
+  if (adjacent || p.first[taken][lane] < d.gap) {
+    taken = Partings::closest;
+    if (p.first[taken][lane] > reach) return false;
+  }
+  out.normal = {p.normal[taken][0][lane], p.normal[taken][1][lane], p.normal[taken][2][lane]};
   double low = -std::numeric_limits<double>::infinity(), high = -low, wants_low = low, wants_high = high;
-  for (int k = 0; k < out.a.size; ++k) high = std::min(high, out.normal.dot(p[k])), wants_high = std::min(wants_high, out.normal.dot(d.to[out.a.v[k]]));
-  for (int k = 0; k < out.b.size; ++k) low = std::max(low, out.normal.dot(q[k])), wants_low = std::max(wants_low, out.normal.dot(d.to[out.b.v[k]]));
+  for (int k = 0; k < out.a.size; ++k) high = std::min(high, out.normal.dot(at[out.a.v[k]])), wants_high = std::min(wants_high, out.normal.dot(d.to[out.a.v[k]]));
+  for (int k = 0; k < out.b.size; ++k) low = std::max(low, out.normal.dot(at[out.b.v[k]])), wants_low = std::max(wants_low, out.normal.dot(d.to[out.b.v[k]]));
   const double free = high - low;
   // Parts of neighbours may become thinner as the body is squeezed, but never flat; sheets in contact keep their distance.
   const double gap = free > d.gap ? d.gap : adjacent ? 0.5 * free : free;
@@ -115,16 +102,27 @@ std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
   });
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::pair<Simplex, Simplex> parts[2];
-    for (std::size_t s = begin; s < end; ++s)
+    for (std::size_t s = begin; s < end; ++s) {
+      // Numbers: of the pair, which couple of it, of how many.
+      const auto judge = [&](std::size_t number, const Partings& p, std::size_t lane) {
+        const auto& [t, o] = d.pairs[number / 4];
+        const bool adjacent = number % 2 != 0;
+        parts_apart(d.triangles[t], d.triangles[o], parts);
+        const auto& [a, b] = parts[number / 2 % 2];
+        Divider one{a, b, Vec3::Zero(), 0, 0};
+        if (divide(d, at, adjacent, p, lane, one)) found[s].push_back(one);
+      };
+      CouplesInLanes<decltype(judge)> couples(at, at, false, judge);
       for (std::size_t i = s * stretch; i < std::min(d.pairs.size(), (s + 1) * stretch); ++i) {
         const auto& [t, o] = d.pairs[i];
         if (!boxes[t].meets(boxes[o]) || planes_of.part(t, o, way[t] + way[o] + d.gap, way[t] + way[o] + d.gap)) continue;
-        const int count = parts_apart(d.triangles[t], d.triangles[o], parts);
-        for (int k = 0; k < count; ++k) {
-          Divider one{parts[k].first, parts[k].second, Vec3::Zero(), 0, 0};
-          if (divide(d, at, d.gap, count == 2, one)) found[s].push_back(one);
-        }
+        std::pair<Simplex, Simplex> own[2];
+        const int count = parts_apart(d.triangles[t], d.triangles[o], own);
+        for (int k = 0; k < count; ++k)
+          if (const Couple c{own[k].first, own[k].second}; way_of(d, c) > 0) couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
       }
+      couples.finish();
+    }
   });
   std::vector<std::size_t> first(at.size() + 1, 0);
   const auto each = [&](const auto& take) {

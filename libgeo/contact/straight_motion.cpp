@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "contact/dividers.h"
-#include "contact/parting.h"
+#include "contact/parting_lanes.h"
 
 namespace geo {
 namespace {
@@ -17,44 +17,53 @@ Box3 swept(const Triangle& t, const std::vector<Vec3>& from, const std::vector<V
   return box;
 }
 
-bool keep_apart(const Triangle& s, const Triangle& t, const std::vector<Vec3>& from, const std::vector<Vec3>& to, double gap) {
-  std::pair<Simplex, Simplex> parts[2];
-  const int count = parts_apart(s, t, parts);
-  for (int k = 0; k < count; ++k) {
-    const auto& [a, b] = parts[k];
-    const double share = count == 2 ? 0.5 : 1;
-    const bool kept = some_direction(a, b, from, to, [&, &a = a, &b = b](const Vec3& n, double before) {
-      return before > 0 && parted(n, a, b, to) >= std::min(gap * n.norm(), share * before);
-    });
-    if (!kept) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 void move_straight(const std::vector<Triangle>& triangles, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
                    const std::vector<Vec3>& to, double gap, std::vector<Vec3>& at) {
   constexpr int most_halvings = 2;
+  enum : std::uint8_t { parted, meets, never };  // never: whichever part of their ways the corners go
   const std::vector<Vec3> start = at;
   std::vector<double> share(at.size(), 0);
-  std::vector<std::uint8_t> moves(at.size(), 0), blocked(at.size(), 0), changed(triangles.size(), 1), meets(pairs.size());
+  std::vector<std::uint8_t> moves(at.size(), 0), blocked(at.size(), 0), changed(triangles.size(), 1), found(pairs.size(), parted);
   for (const auto& t : triangles)
     for (const auto v : t) share[v] = to[v] != start[v], moves[v] = share[v] > 0;
   for (int trial = 0;; ++trial) {
     for (std::size_t v = 0; v < at.size(); ++v)
       if (moves[v] || blocked[v]) at[v] = share[v] == 1 ? to[v] : Vec3(start[v] + share[v] * (to[v] - start[v]));
     parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
+      // Numbers: of the pair, and whether it is one of neighbours.
+      const auto judge = [&](std::size_t number, const Partings& p, std::size_t lane) {
+        const bool adjacent = number % 2 != 0;
+        bool kept = false, for_good = false;
+        for (int k = 0; k < Partings::count; ++k) {
+          const double enough = std::min(gap, adjacent ? 0.5 * p.first[k][lane] : p.first[k][lane]);
+          kept |= p.first[k][lane] > 0 && p.last[k][lane] >= enough;
+          for_good |= p.always[k][lane] > 0 && p.always[k][lane] >= enough;
+        }
+        auto& all = found[number / 2];
+        if (!kept) all = meets;
+        else if (!for_good && all == never) all = parted;
+      };
+      CouplesInLanes<decltype(judge)> couples(start, at, true, judge);
+      std::pair<Simplex, Simplex> parts[2];
       for (std::size_t i = begin; i < end; ++i) {
-        const auto &s = triangles[pairs[i].first], &t = triangles[pairs[i].second];
-        const bool asked = (changed[pairs[i].first] || changed[pairs[i].second]) && (any_corner(s, moves) || any_corner(t, moves));  // those that stay are apart
-        meets[i] = asked && swept(s, start, at).grown(gap).meets(swept(t, start, at)) && !keep_apart(s, t, start, at, gap);
+        const auto& [p, q] = pairs[i];
+        const auto &s = triangles[p], &t = triangles[q];
+        if (found[i] == never) continue;
+        found[i] = parted;
+        if (!(changed[p] || changed[q]) || !(any_corner(s, moves) || any_corner(t, moves))) continue;  // those that stay are apart
+        if (!swept(s, start, at).grown(gap).meets(swept(t, start, at))) continue;
+        found[i] = never;
+        const int count = parts_apart(s, t, parts);
+        for (int k = 0; k < count; ++k) couples.add({parts[k].first, parts[k].second}, 2 * i + (count == 2));
       }
+      couples.finish();
     });
     std::fill(blocked.begin(), blocked.end(), 0);
     bool done = true;
     for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (meets[i]) {
+      if (found[i] == meets) {
         done = false;
         for (const auto& t : {triangles[pairs[i].first], triangles[pairs[i].second]})
           for (const auto v : t) blocked[v] = 1;

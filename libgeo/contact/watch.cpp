@@ -6,49 +6,29 @@
 #include "base/parallel.h"
 #include "contact/affine_motion.h"
 #include "contact/close_pairs.h"
+#include "contact/parting_lanes.h"
 #include "contact/triangle_planes.h"
 
 namespace geo {
 namespace {
 
-Vec3 normal_of(const Simplex& s, const std::vector<Vec3>& at) {
-  return s.size < 3 ? Vec3(Vec3::Zero()) : Vec3((at[s.v[1]] - at[s.v[0]]).cross(at[s.v[2]] - at[s.v[0]]));
-}
-
-Vec3 middle_of(const Simplex& s, const std::vector<Vec3>& at) {
-  Vec3 sum = at[s.v[0]];
-  for (int k = 1; k < s.size; ++k) sum += at[s.v[k]];
-  return sum / s.size;
-}
-
 // True when the pair is to be watched.
-bool examine(const SurfaceMotion& m, Watched& w) {
-  const Vec3 across = middle_of(w.a, m.from) - middle_of(w.b, m.from);
-  Vec3 quick[3] = {across, normal_of(w.a, m.from), normal_of(w.b, m.from)};
-  for (Vec3& d : quick) {
-    const double length = d.norm();
-    if (!(length > 0)) continue;
-    d /= d.dot(across) < 0 ? -length : length;
-    if (parted(d, w.a, w.b, m.from) >= m.gap && parted(d, w.a, w.b, m.to) >= m.reach) return false;
-  }
-  Vec3 a[3], b[3];
-  const auto closest_of = [&](const std::vector<Vec3>& at) {
-    for (int k = 0; k < w.a.size; ++k) a[k] = at[w.a.v[k]];
-    for (int k = 0; k < w.b.size; ++k) b[k] = at[w.b.v[k]];
-    return closest_places(a, w.a.size, b, w.b.size);
-  };
-  w.closest = closest_of(m.from);
-  const double distance = w.closest.apart.norm();
+bool examine(const SurfaceMotion& m, const Partings& p, std::size_t lane, Watched& w) {
+  for (int k = 0; k < Partings::closest; ++k)
+    if (p.first[k][lane] >= m.gap && p.last[k][lane] >= m.reach) return false;
+  const auto along = [&](int k) { return Vec3(p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]); };
+  const double distance = p.first[Partings::closest][lane];
   if (!(distance > 0)) return false;
-  w.normal = w.closest.apart / distance;
-  double best = parted(w.normal, w.a, w.b, m.to);
+  int taken = Partings::closest;
+  double best = p.last[taken][lane];
   if (distance >= m.gap && best >= m.reach) return false;
+  for (int k = 0; k < 3; ++k) w.closest.from[k] = p.from[k][lane], w.closest.to[k] = p.to[k][lane];
+  w.closest.apart = distance * along(Partings::closest);
   // Another direction, if it parts them about as well at the beginning and better at the end.
-  for (const Vec3& d : quick) {
-    if (!(parted(d, w.a, w.b, m.from) >= 0.5 * std::min(distance, m.gap))) continue;
-    if (const double after = parted(d, w.a, w.b, m.to); after > best) best = after, w.normal = d;
-  }
-  w.gap = std::min({distance, m.gap, std::max(0.0, parted(w.normal, w.a, w.b, m.from))});
+  for (int k = 0; k < Partings::closest; ++k)
+    if (p.first[k][lane] >= 0.5 * std::min(distance, m.gap) && p.last[k][lane] > best) best = p.last[k][lane], taken = k;
+  w.normal = along(taken);
+  w.gap = std::min(m.gap, p.first[taken][lane]);
   return true;
 }
 
@@ -116,12 +96,20 @@ std::vector<Watched> watch(const SurfaceMotion& m, std::span<const std::uint32_t
   constexpr std::size_t stretch = 256;
   std::vector<std::vector<Watched>> found((pairs.size() + stretch - 1) / stretch);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-    const auto simplex = [](const Triangle& t) { return Simplex{{t[0], t[1], t[2]}, 3}; };
-    for (std::size_t s = begin; s < end; ++s)
-      for (std::size_t i = s * stretch; i < std::min(pairs.size(), (s + 1) * stretch); ++i) {
-        Watched w{simplex(corners[pairs[i].first]), simplex(corners[pairs[i].second]), Vec3::Zero(), {}, 0};
-        if (examine(m, w)) found[s].push_back(w);
-      }
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto couple = [&](std::size_t i) {
+        const auto &a = corners[pairs[i].first], &b = corners[pairs[i].second];
+        return Couple{{{a[0], a[1], a[2]}, 3}, {{b[0], b[1], b[2]}, 3}};
+      };
+      const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
+        const Couple c = couple(i);
+        Watched w{c.a, c.b, Vec3::Zero(), {}, 0};
+        if (examine(m, p, lane, w)) found[s].push_back(w);
+      };
+      CouplesInLanes<decltype(judge)> couples(m.from, m.to, false, judge);
+      for (std::size_t i = s * stretch; i < std::min(pairs.size(), (s + 1) * stretch); ++i) couples.add(couple(i), i);
+      couples.finish();
+    }
   });
   std::vector<Watched> result;
   for (const auto& f : found) result.insert(result.end(), f.begin(), f.end());

@@ -1,0 +1,205 @@
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "contact/box_tree.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "contact/box_tree.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace geo {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Which of a block's boxes meet one box of another block.
+HWY_INLINE std::uint32_t meeting(const BoxTree::Block& boxes, const BoxTree::Block& other, std::uint32_t lane) {
+  const hn::CappedTag<float, BoxTree::width> d;
+  std::uint32_t bits = 0;
+  for (std::size_t at = 0; at < BoxTree::width; at += hn::Lanes(d)) {
+    auto mask = hn::Le(hn::Load(d, boxes.lo[0] + at), hn::Set(d, other.hi[0][lane]));
+    mask = hn::And(mask, hn::Ge(hn::Load(d, boxes.hi[0] + at), hn::Set(d, other.lo[0][lane])));
+    for (int axis = 1; axis < 3; ++axis) {
+      mask = hn::And(mask, hn::Le(hn::Load(d, boxes.lo[axis] + at), hn::Set(d, other.hi[axis][lane])));
+      mask = hn::And(mask, hn::Ge(hn::Load(d, boxes.hi[axis] + at), hn::Set(d, other.lo[axis][lane])));
+    }
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    bits |= (bytes[0] | std::uint32_t(bytes[1]) << 8) << at;
+  }
+  return bits;
+}
+
+// Blocks of the lowest level that meet the box around block `own` of it, from block `first` on.
+void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t first, std::vector<std::uint32_t>& out) {
+  constexpr std::uint32_t width = BoxTree::width;
+  out.clear();
+  std::pair<std::uint32_t, std::uint32_t> stack[8 * width];  // levels and blocks; 2³² boxes have eight levels
+  int top = 0;
+  stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
+  while (top > 0) {
+    const auto [level, block] = stack[--top];
+    if (level == 0) {
+      if (block >= first) out.push_back(block);
+      continue;
+    }
+    for (auto lanes = meeting(levels[level][block], levels[1][own / width], own % width); lanes != 0; lanes &= lanes - 1)
+      stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
+  }
+}
+
+}  // namespace
+
+// Pairs of places in the tree, of one block with all: with places behind each, or with all but those behind it that are marked.
+void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t asked, const std::uint8_t* marked,
+                    std::vector<std::uint32_t>& near, std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) {
+  constexpr std::uint32_t width = BoxTree::width;
+  blocks_near(levels, own, marked ? 0 : own, near);
+  for (const auto block : near)
+    for (auto lanes = asked; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), place = own * width + lane;
+      auto met = meeting(levels[0][block], levels[0][own], lane);
+      if (block == own && !marked) met &= ~((2u << lane) - 1);
+      for (; met != 0; met &= met - 1)
+        if (const auto other = block * width + static_cast<std::uint32_t>(std::countr_zero(met)); !marked || !(marked[other] && other <= place)) out.push_back({place, other});
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace geo
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(pairs_of_block);
+namespace {
+
+float below(double x) {
+  const auto f = static_cast<float>(x);
+  return f > x ? std::nextafter(f, -INFINITY) : f;
+}
+float above(double x) { return -below(-x); }
+
+// Every third bit of the result is one of x, of ten.
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000ff, x = (x | x << 8) & 0x0300f00f, x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+std::vector<BoxTree::Block> empty_blocks(std::size_t boxes) {
+  BoxTree::Block none;
+  for (int axis = 0; axis < 3; ++axis) std::fill_n(none.lo[axis], BoxTree::width, INFINITY), std::fill_n(none.hi[axis], BoxTree::width, -INFINITY);
+  return std::vector<BoxTree::Block>((boxes + BoxTree::width - 1) / BoxTree::width, none);
+}
+
+// True when that changed it.
+bool add(BoxTree::Block& block, std::size_t lane, const float* lo, const float* hi) {
+  bool larger = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    float &least = block.lo[axis][lane], &most = block.hi[axis][lane];
+    larger |= lo[axis] < least || hi[axis] > most;
+    least = std::min(least, lo[axis]), most = std::max(most, hi[axis]);
+  }
+  return larger;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), place_(boxes_.size(), ~0u) {
+  Box3 all;
+  for (const Box3& b : boxes_)
+    if (!b.empty()) all.add(b);
+  if (all.empty()) return;
+  middle_ = 0.5 * all.lo + 0.5 * all.hi;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> along;  // place on the curve, row
+  const Vec3 scale = 1023 * (all.hi - all.lo).cwiseMax(1e-300).cwiseInverse();
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+    if (boxes_[i].empty()) continue;
+    const Vec3 at = (0.5 * boxes_[i].lo + 0.5 * boxes_[i].hi - all.lo).cwiseProduct(scale);
+    along.push_back({spread(static_cast<std::uint32_t>(at[0])) << 2 | spread(static_cast<std::uint32_t>(at[1])) << 1 | spread(static_cast<std::uint32_t>(at[2])), i});
+  }
+  std::sort(along.begin(), along.end());
+  order_.resize(along.size());
+  levels_.push_back(empty_blocks(along.size()));
+  parallel_for(along.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = along[i].second;
+      order_[i] = row, place_[row] = static_cast<std::uint32_t>(i);
+      const Floats b = local(boxes_[row]);
+      add(levels_[0][i / width], i % width, b.lo, b.hi);
+    }
+  });
+  while (levels_.size() < 2 || levels_.back().size() > 1) {
+    const auto& lower = levels_.back();
+    auto level = empty_blocks(lower.size());
+    for (std::size_t i = 0; i < lower.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        level[i / width].lo[axis][i % width] = *std::min_element(lower[i].lo[axis], lower[i].lo[axis] + width);
+        level[i / width].hi[axis][i % width] = *std::max_element(lower[i].hi[axis], lower[i].hi[axis] + width);
+      }
+    levels_.push_back(std::move(level));
+  }
+}
+
+BoxTree::Floats BoxTree::local(const Box3& box) const {
+  Floats b;
+  for (int axis = 0; axis < 3; ++axis) b.lo[axis] = below(box.lo[axis] - middle_[axis]), b.hi[axis] = above(box.hi[axis] - middle_[axis]);
+  return b;
+}
+
+void BoxTree::enlarge(std::uint32_t row, const Box3& box) {
+  boxes_[row].add(box);
+  const Floats b = local(box);
+  std::uint32_t place = place_[row];
+  for (auto& level : levels_) {
+    if (!add(level[place / width], place % width, b.lo, b.hi)) break;
+    place /= width;
+  }
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::vector<std::uint8_t>* only) const {
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  if (levels_.empty()) return {};
+  std::vector<std::uint8_t> marked;
+  if (only) {
+    marked.resize(order_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) marked[i] = (*only)[order_[i]];
+  }
+  constexpr std::size_t stretch = 32;  // blocks
+  const std::size_t blocks = levels_[0].size();
+  std::vector<Pairs> found((blocks + stretch - 1) / stretch);
+  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t s = begin; s < end; ++s) {
+      for (std::size_t b = s * stretch; b < std::min(blocks, (s + 1) * stretch); ++b) {
+        std::uint32_t asked = 0;
+        for (std::size_t i = b * width; i < std::min(order_.size(), (b + 1) * width); ++i) asked |= std::uint32_t(!only || marked[i]) << i % width;
+        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, found[s]);
+      }
+      std::size_t count = 0;
+      for (const auto& [p, q] : found[s])
+        if (const auto i = order_[p], j = order_[q]; boxes_[i].meets(boxes_[j])) found[s][count++] = {std::min(i, j), std::max(i, j)};
+      found[s].resize(count);
+    }
+  });
+  std::vector<std::uint32_t> first(boxes_.size() + 1, 0);
+  for (const Pairs& some : found)
+    for (const auto& pair : some) ++first[pair.first + 1];
+  for (std::size_t i = 0; i < boxes_.size(); ++i) first[i + 1] += first[i];
+  Pairs result(first.back());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (const Pairs& some : found)
+    for (const auto& pair : some) result[next[pair.first]++] = pair;
+  parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) std::sort(result.begin() + first[i], result.begin() + first[i + 1]);
+  });
+  return result;
+}
+
+}  // namespace geo
+#endif

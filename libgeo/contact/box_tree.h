@@ -1,0 +1,48 @@
+// Which boxes of a set meet: a tree over them, sixteen boxes at a time.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace geo {
+
+/// Boxes in the order of a space-filling curve, sixteen to a block, and boxes around blocks. Blocks hold floats, rounded outwards;
+/// which boxes meet is decided by the boxes themselves.
+class BoxTree {
+ public:
+  static constexpr std::uint32_t width = 16;
+  struct Block {
+    alignas(64) float lo[3][width], hi[3][width];
+  };
+
+  BoxTree() = default;
+  /// Finite boxes; empty ones meet none.
+  explicit BoxTree(std::vector<Box3> boxes);
+
+  const std::vector<Box3>& boxes() const { return boxes_; }
+  /// Makes a box larger, so that it holds this one, too.
+  void enlarge(std::uint32_t row, const Box3& box);
+  /// All pairs (i < j) of boxes that meet, ascending. Only pairs with a box marked in `only`, where given. By all threads; cost
+  /// follows the boxes that are asked for, and the pairs.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
+
+  /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].
+  const std::vector<std::vector<Block>>& levels() const { return levels_; }
+
+ private:
+  // In a frame of its own, where floats are fine: going there is monotone, so boxes that meet still do.
+  struct Floats {
+    float lo[3], hi[3];
+  };
+  Floats local(const Box3& box) const;
+
+  std::vector<Box3> boxes_;
+  Vec3 middle_ = Vec3::Zero();
+  std::vector<std::uint32_t> order_, place_;  // rows in the order of the tree, and where each is
+  std::vector<std::vector<Block>> levels_;
+};
+
+}  // namespace geo

@@ -23,7 +23,7 @@ const std::map<std::string, std::set<std::string>> doors{{"CGAL/", {"geometry"}}
                                                          {"openvdb/", {"io"}},
                                                          {"pcl/", {"graph", "io"}},
                                                          {"tbb/", {"base"}},
-                                                         {"hwy/", {"geometry", "graph", "mechanics"}},
+                                                         {"hwy/", {"geometry", "graph", "mechanics", "contact"}},
                                                          {"toml++/", {"io"}},
                                                          {"nlohmann/", {"io"}},
                                                          {"hdf5.h", {"io"}},

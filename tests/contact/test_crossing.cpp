@@ -5,6 +5,7 @@
 #include "contact/close_pairs.h"
 #include "contact/crossing.h"
 #include "surface/shapes.h"
+#include "vectors.h"
 
 using namespace geo;
 
@@ -52,12 +53,27 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
       boxes.push_back(random.below(20) == 0 ? Box3() : Box3{p, p + size * Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1))});
       if (random.below(5) == 0 && !boxes.back().empty()) boxes.push_back(boxes.back());
     }
-    auto pairs = close_pairs(boxes);
-    std::sort(pairs.begin(), pairs.end());
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
-    for (std::uint32_t i = 0; i < boxes.size(); ++i)
-      for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
-        if (!boxes[i].empty() && !boxes[j].empty() && boxes[i].meets(boxes[j])) expected.push_back({i, j});
-    CHECK(pairs == expected);
+    std::vector<std::uint8_t> some;
+    for (std::size_t i = 0; i < boxes.size(); ++i) some.push_back(random.below(4) == 0);
+    const auto expected = [&](bool only) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+      for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
+          if (!boxes[i].empty() && !boxes[j].empty() && boxes[i].meets(boxes[j]) && (!only || some[i] || some[j])) pairs.push_back({i, j});
+      return pairs;
+    };
+    CHECK(close_pairs(boxes) == expected(false));
+    CHECK(close_pairs(boxes, &some) == expected(true));
+    // Some become larger, also beyond the room that all had.
+    BoxTree tree(boxes);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+      if (boxes[i].empty() || random.below(10) != 0) continue;
+      const Vec3 p(random.uniform(-3, 3), random.uniform(-1, 1), random.uniform(-1, 1));
+      tree.enlarge(i, {p, p}), boxes[i].add(p);
+    }
+    on_every_target([&] {
+      CHECK(tree.pairs() == expected(false));
+      CHECK(tree.pairs(&some) == expected(true));
+    });
   }
 }

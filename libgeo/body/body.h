@@ -52,7 +52,7 @@ struct Body {
   Upkeep upkeep;                     ///< derived, never in a file
   int k = 26;                        ///< nearest neighbours per node in the graph
   double guides = 0;                 ///< of guides along concave edges (§ 8), in spacings of the nodes; 0: none
-  double resample_limit = 1;         ///< new nodes may be at most this many per crack face area over spacing²; 0: none
+  double resample_limit = 1;         ///< 0: cracks get no new nodes
   std::uint32_t updates = 0;         ///< cracks steps applied since the build
   std::vector<std::uint8_t> debris;  ///< per node: 1 where its neighbours do not span space (nodes.h): rigid debris
   std::vector<Provenance> history;

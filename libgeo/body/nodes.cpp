@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -32,15 +34,22 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   const auto all = [](std::uint32_t) { return true; };
   std::vector<std::array<Vec3, 3>> soup;
   for (const FaceId f : faces) soup.push_back(body.surface.corners(f));
-  const Vec3 middle = (soup[0][0] + soup[0][1] + soup[0][2]) / 3;
-  const auto nearest = body.grid.nearest(body.nodes.position, middle, 1, ~0u, all);
-  if (spacing == 0) spacing = body.nodes.spacing[nearest[0]];
+  // That of the node nearest to the middle of each cell of a lattice as fine as nodes usually are.
+  const double cell = body.grid.cell();
+  std::map<std::array<double, 3>, double> found;
+  const auto spacing_at = [&](const Vec3& x) {
+    if (spacing > 0) return spacing;
+    const std::array<double, 3> at{std::floor(x[0] / cell), std::floor(x[1] / cell), std::floor(x[2] / cell)};
+    const auto [place, fresh] = found.try_emplace(at, 0);
+    if (fresh) place->second = body.nodes.spacing[body.grid.nearest(body.nodes.position, cell * (Vec3(at.data()) + Vec3::Constant(0.5)), 1, ~0u, all)[0]];
+    return place->second;
+  };
   std::size_t count = 0;
   std::vector<std::uint32_t> near;
-  for (const auto& s : offset_samples(soup, spacing, seed)) {
+  for (const auto& s : offset_samples(soup, spacing_at, seed)) {
     if (!stands_before(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
     near.clear();
-    body.grid.within(body.nodes.position, s.position, 0.6 * spacing, near);
+    body.grid.within(body.nodes.position, s.position, 0.6 * s.spacing, near);
     if (std::any_of(near.begin(), near.end(),
                     [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
       continue;
@@ -49,7 +58,9 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
     const auto seen = std::find_if(candidates.begin(), candidates.end(), [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); });
     // Where rounding has exchanged two sheets, even air may be before a side with material.
     if (seen == candidates.end() && !is_inside(body.surface, s.position)) continue;
-    insert_node(body, s.position, NodeId(seen == candidates.end() ? candidates[0] : *seen), spacing);
+    const NodeId donor(seen == candidates.end() ? candidates[0] : *seen);
+    const NodeId node = insert_node(body, s.position, donor, s.spacing);
+    if (spacing == 0) body.nodes.radius[node.index()] *= s.spacing / body.nodes.spacing[donor.index()];
     if (++count == limit) break;
   }
   return count;

@@ -9,9 +9,11 @@
 #include "contact/close_pairs.h"
 #include "contact/crossing.h"
 #include "contact/dividers.h"
+#include "contact/give_way.h"
 #include "contact/parting_lanes.h"
 #include "contact/smooth_field.h"
 #include "contact/straight_motion.h"
+#include "contact/tilted.h"
 #include "contact/triangle_planes.h"
 
 namespace geo {
@@ -75,7 +77,7 @@ class Mover {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   static constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-one
   static constexpr double negligible = 0.01, farthest = 0.1;  // of an edge: not worth a plane, and as far as planes let one go
-  static constexpr int most_rounds = 8, growths_apart = 10, most_growths = 20;
+  static constexpr int most_rounds = 8, most_mendings = 20, growths_apart = 10, most_growths = 20;
 
   bool wanting() const {
     return std::any_of(rows_.begin(), rows_.end(), [&](auto v) { return at_[v] != m_.to[v]; });
@@ -88,8 +90,14 @@ class Mover {
     if (round == 0) move_affinely(rows_, at_, m_.to, start);
     std::vector<Vec3> next = start;
     for (const auto v : rows_) next[v] = m_.to[v];
-    Carried carried(at_.size());
     near(start, next);
+    if (give_way(start, next)) {
+      at_ = std::move(next);
+      return true;
+    }
+    for (const auto v : rows_) next[v] = m_.to[v];
+    near(start, next);
+    Carried carried(at_.size());
     std::vector<std::uint8_t> changed(triangles_.size(), 1);
     for (int growth = 0;; ++growth) {
       const auto failing = failing_pairs(start, next, carried, changed);
@@ -108,13 +116,35 @@ class Mover {
       for (const auto v : rows_)
         if (carried.is[v]) next[v] = carried.field[v];
       carried.zones.place(start, carried.field, next);
-      for (std::size_t t = 0; t < changed.size(); ++t)
-        changed[t] = std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](auto v) { return next[v] != before[v]; });
+      mark(before, next, changed);
       near_again(next, changed);
     }
     report_.in_zones = std::max(report_.in_zones, carried.zones.count());
     at_ = std::move(next);
     return carried.share == 1;
+  }
+
+  // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.
+  bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
+    GiveWay couples(triangles_, start, m_.gap);
+    const Carried none(at_.size());
+    std::vector<std::uint8_t> changed(triangles_.size(), 1);
+    for (int round = 0; round < most_mendings; ++round) {
+      const auto failing = failing_pairs(start, next, none, changed);
+      if (failing.empty()) return true;
+      const std::vector<Vec3> before = next;
+      couples.add(failing, next);
+      couples.push(next);
+      mark(before, next, changed);
+      near_again(next, changed);
+    }
+    return false;
+  }
+
+  // Triangles of which a corner has another place.
+  void mark(const std::vector<Vec3>& before, const std::vector<Vec3>& next, std::vector<std::uint8_t>& changed) const {
+    for (std::size_t t = 0; t < changed.size(); ++t)
+      changed[t] = std::any_of(triangles_[t].begin(), triangles_[t].end(), [&](auto v) { return next[v] != before[v]; });
   }
 
   // What does not go straight.
@@ -201,7 +231,7 @@ class Mover {
   // Among pairs with a changed triangle, those that cross at the end, or may have passed through each other on the way. That they
   // have not is clear where one direction parts them at both ends by more than rounding; the field does not let them pass, either,
   // when they are farther from each other than it deviates.
-  std::vector<Pair> failing_pairs(const std::vector<Vec3>& start, const std::vector<Vec3>& next, Carried& carried, const std::vector<std::uint8_t>& changed) const {
+  std::vector<Pair> failing_pairs(const std::vector<Vec3>& start, const std::vector<Vec3>& next, const Carried& carried, const std::vector<std::uint8_t>& changed) const {
     enum : std::uint8_t { clear, unsure, through };
     const TrianglePlanes planes(triangles_, start, next);
     const double rounding = 1e-14 * size_;
@@ -210,6 +240,7 @@ class Mover {
       const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
         for (int k = 0; k < Partings::count; ++k)
           if (p.first[k][lane] > rounding && p.last[k][lane] > rounding) return;
+        if (some_tilted(couple(pairs_[i]), p, lane, start, next, [&](const Vec3&, double first, double last) { return first > rounding && last > rounding; })) return;
         const auto &s = triangles_[pairs_[i].first], &t = triangles_[pairs_[i].second];
         const auto each = [&](const auto& test) { return test(s[0]) && test(s[1]) && test(s[2]) && test(t[0]) && test(t[1]) && test(t[2]); };
         const bool by_field = !carried.field.empty() && each([&](std::uint32_t v) { return carried.is[v] != 0; });
@@ -225,7 +256,7 @@ class Mover {
         if (in_t(s[0]) || in_t(s[1]) || in_t(s[2]))
           found[i] = unsure;  // neighbours cannot pass without crossing others
         else if (!planes.part(p, q, rounding, rounding))
-          couples.add({{{s[0], s[1], s[2]}, 3}, {{t[0], t[1], t[2]}, 3}}, i);
+          couples.add(couple(pairs_[i]), i);
       }
       couples.finish();
     });
@@ -237,6 +268,11 @@ class Mover {
     const auto crossing = find_crossings(test, triangles_, next, m_.together, two_sided_);
     result.insert(result.end(), crossing.begin(), crossing.end());
     return result;
+  }
+
+  Couple couple(const Pair& p) const {
+    const auto simplex = [&](std::uint32_t t) { return Simplex{{triangles_[t][0], triangles_[t][1], triangles_[t][2]}, 3}; };
+    return {simplex(p.first), simplex(p.second)};
   }
 
   // A zone keeps what is inside it apart.

@@ -12,8 +12,9 @@ struct BoundedMotion {
 };
 
 /// The end of the motion, by row; rows together move together. At the beginning no triangles cross, and at the end none do. After
-/// the affine motion that is closest to what they want, all go straight to their places but for those of pairs that would cross, by
-/// the exact test of crossing.h, or pass: these are carried along by a smooth field of what all want (smooth_field.h), in which
+/// the affine motion that is closest to what they want, all go straight to their places. Where pairs of triangles would cross, by
+/// the exact test of crossing.h, or pass, the places are mended first, again and again (give_way.h). If something fails after many
+/// rounds all the same, vertices of such pairs are carried along by a smooth field of what all want (smooth_field.h), in which
 /// neither side of a narrow gap passes the other; what crosses all the same, since triangles are flat and the field is not, moves
 /// as rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing does. From there each vertex for itself
 /// goes straight on where nothing is in its way (straight_motion.h), and as far as planes between near parts let it (dividers.h).

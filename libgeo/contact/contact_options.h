@@ -8,6 +8,7 @@ namespace geo {
 struct ContactOptions {
   double friction = 0.3;  ///< Coulomb's coefficient between surfaces of the body
   double gap = 1e-4;      ///< that open sheets keep, in mean edges of the surface
+  double opening = 1e-2;  ///< how far Eq. 1 must have the two sides of a sheet apart before they part, in mean edges; along each other, three times
   double recovery = 0.3;  ///< share of the way back, in a step, for nodes whose surfaces have passed through each other
   int rounds = 2;         ///< of finding what touches and applying impulses
 };

@@ -62,7 +62,7 @@ std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>
 // from what they share, or along the sum of their normals where that does not help. Where a triangle would cross another for it
 // they stay together.
 std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std::vector<std::uint32_t>>& copies) {
-  const double gap = options_.gap * surface_.edge;
+  const double gap = options_.gap * surface_.edge, opens = options_.opening * surface_.edge;
   const std::vector<Vec3> normals = vertex_normals(surface_, positions_);
   std::vector<std::uint32_t> opening;
   for (std::uint32_t v = 0; v < copies.size(); ++v)
@@ -71,7 +71,7 @@ std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std
         const auto a = copies[v][i], b = copies[v][j];
         const Vec3 n = (normals[b].normalized() - normals[a].normalized()).normalized(), apart = to[a] - to[b];
         const double along = n.dot(apart);
-        if ((along > gap || (apart - along * n).norm() > 10 * gap) && (opening.empty() || opening.back() != v)) opening.push_back(v);
+        if ((along > opens || (apart - along * n).norm() > 3 * opens) && (opening.empty() || opening.back() != v)) opening.push_back(v);
       }
   const std::size_t wanted = opening.size();
   if (wanted == 0) return 0;
@@ -160,12 +160,22 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
   touch_ = TouchPenalty({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
   const double stiffness = firmness * solid.material().young / (solid.material().density * spacing * spacing) + 1 / (dt * dt);  // 1/s²
+  // How far along their normal places were made apart: what is less than they should keep stays so.
+  const auto made_apart = [&](const TouchingPlaces& t) {
+    const auto at_rest = [&](const SurfacePlace& p) {
+      Vec3 sum = Vec3::Zero();
+      for (int k = 0; k < p.size; ++k) sum += p.weight[k] * body.surface.point(VertexId(surface_.site[p.vertex[k]]));
+      return sum;
+    };
+    return (at_rest(t.a) - at_rest(t.b)).norm() * t.normal.dot((place(t.a, positions_) - place(t.b, positions_)).normalized());
+  };
   const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for, const std::vector<Vec3>& at, double distance) {
     const std::vector<RelativeRow> rows = relative_rows(weights_, touching, stands_for, inverse_mass);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double alone = rows[i].of_a + rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
       if (!(alone > 0)) continue;
-      const double lack = distance - touching[i].normal.dot(place(touching[i].a, at) - place(touching[i].b, at));
+      const double limit = distance > 0 ? std::min(distance, made_apart(touching[i])) : 0;
+      const double lack = limit - touching[i].normal.dot(place(touching[i].a, at) - place(touching[i].b, at));
       touch_.add(rows[i], touching[i].normal, lack > 0 ? recovered * lack : lack, stiffness / alone, state.displacement);
     }
   };

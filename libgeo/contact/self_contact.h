@@ -6,7 +6,7 @@
 // what would still cross (bounded_motion.h). How far it stays behind is reported, and made good as soon as there is room.
 //
 // Sheets are born together: copies of a site at the same coordinates, to the bit, that move as one (their average) and part
-// along their own normals once Eq. 1 pulls them apart or along each other.
+// along their own normals once Eq. 1 pulls them apart or along each other by more than its own noise.
 #pragma once
 
 #include "contact/birth.h"

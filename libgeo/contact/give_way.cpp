@@ -1,0 +1,78 @@
+#include "contact/give_way.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "contact/dividers.h"
+#include "contact/tilted.h"
+
+namespace geo {
+
+void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const std::vector<Vec3>& next) {
+  const auto choose = [&](std::size_t i, const Partings& p, std::size_t lane) {
+    Kept& c = couples_[i];
+    const bool neighbours = c.a.size < 3 || c.b.size < 3;
+    const double share = neighbours ? 0.5 : 1;  // neighbours may become thinner as the body is squeezed
+    double most = 0, best = -std::numeric_limits<double>::infinity();
+    for (const auto& first : p.first) most = std::max(most, first[lane]);
+    const auto offer = [&](const Vec3& n, double first, double last) {
+      if (first > 0 && first >= 0.5 * std::min(most, gap_) && last > best) best = last, c.normal = n, c.apart = std::min(gap_, share * first);
+      return false;
+    };
+    for (int k = 0; k < Partings::count; ++k) offer({p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]}, p.first[k][lane], p.last[k][lane]);
+    if (!neighbours) some_tilted({c.a, c.b}, p, lane, start_, next, offer);
+  };
+  CouplesInLanes<decltype(choose)> in_lanes(start_, next, true, choose);
+  for (const auto& pair : pairs) {
+    std::pair<Simplex, Simplex> parts[2];
+    const auto count = static_cast<std::size_t>(parts_apart(triangles_[pair.first], triangles_[pair.second], parts));
+    const std::size_t at = known_.try_emplace(std::uint64_t(pair.first) << 32 | pair.second, couples_.size()).first->second;
+    if (at == couples_.size()) couples_.resize(at + count);
+    for (std::size_t k = 0; k < count; ++k) {
+      couples_[at + k] = {parts[k].first, parts[k].second, Vec3::Zero(), 0};
+      in_lanes.add({parts[k].first, parts[k].second}, at + k);
+    }
+  }
+  in_lanes.finish();
+}
+
+void GiveWay::push(std::vector<Vec3>& at) const {
+  constexpr int most_sweeps = 1000;
+  constexpr double spare = 0.1;  // of what they keep
+  const auto each_corner = [](const Kept& c, const auto& take) {
+    for (int k = 0; k < c.a.size; ++k) take(c.a.v[k]);
+    for (int k = 0; k < c.b.size; ++k) take(c.b.v[k]);
+  };
+  std::vector<std::uint32_t> first(at.size() + 1, 0);
+  for (const Kept& c : couples_) each_corner(c, [&](std::uint32_t v) { ++first[v + 1]; });
+  for (std::size_t v = 0; v < at.size(); ++v) first[v + 1] += first[v];
+  std::vector<std::uint32_t> of(first.back()), end(first.begin(), first.end() - 1);
+  for (std::uint32_t i = 0; i < couples_.size(); ++i) each_corner(couples_[i], [&](std::uint32_t v) { of[end[v]++] = i; });
+  // Only couples are looked at again of which something has moved.
+  std::vector<std::uint32_t> asked(couples_.size()), next;
+  std::iota(asked.begin(), asked.end(), 0u);
+  std::vector<std::uint8_t> waits(couples_.size(), 0);
+  for (int sweep = 0; sweep < most_sweeps && !asked.empty(); ++sweep) {
+    for (const auto i : asked) {
+      const Kept& c = couples_[i];
+      double least = std::numeric_limits<double>::infinity(), most = -least;
+      for (int k = 0; k < c.a.size; ++k) least = std::min(least, c.normal.dot(at[c.a.v[k]]));
+      for (int k = 0; k < c.b.size; ++k) most = std::max(most, c.normal.dot(at[c.b.v[k]]));
+      if (least - most >= c.apart) continue;
+      const double plane = 0.5 * (least + most), half = 0.5 * (1 + spare) * c.apart;
+      const auto move = [&](std::uint32_t v, double lack, double sign) {
+        if (!(lack > 0)) return;
+        at[v] += sign * lack * c.normal;
+        for (auto j = first[v]; j < first[v + 1]; ++j)
+          if (!waits[of[j]]) waits[of[j]] = 1, next.push_back(of[j]);
+      };
+      for (int k = 0; k < c.a.size; ++k) move(c.a.v[k], plane + half - c.normal.dot(at[c.a.v[k]]), 1);
+      for (int k = 0; k < c.b.size; ++k) move(c.b.v[k], c.normal.dot(at[c.b.v[k]]) - plane + half, -1);
+    }
+    std::sort(next.begin(), next.end());
+    asked.swap(next), next.clear();
+    for (const auto i : asked) waits[i] = 0;
+  }
+}
+
+}  // namespace geo

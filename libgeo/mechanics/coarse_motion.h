@@ -20,7 +20,7 @@ class CoarseMotion {
   /// blocks of nodes, for the groups' six motions each; factored.
   void factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight, float shear, float bulk,
               std::size_t stride, const std::vector<Mat3>& blocks);
-  /// z += P (Pᵀ K P)⁻¹ Pᵀ r
+  /// z += 0.4 P (Pᵀ K P)⁻¹ Pᵀ r: its share beside that of patches
   void add(const std::vector<Vec3>& r, std::vector<Vec3>& z);
 
  private:

@@ -135,7 +135,9 @@ class Mover {
       const std::vector<Vec3> before = next;
       couples.add(failing, next);
       couples.push(next);
+      if (next == before) return false;
       mark(before, next, changed);
+      for (const auto& [s, t] : failing) changed[s] = changed[t] = 1;  // they may not have been moved
       near_again(next, changed);
     }
     return false;

@@ -77,6 +77,7 @@ class Mover {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   static constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-one
   static constexpr double negligible = 0.01, farthest = 0.1;  // of an edge: not worth a plane, and as far as planes let one go
+  static constexpr double spare = 0.05;  // of an edge: so that what is carried further stays in its box
   static constexpr int most_rounds = 8, most_mendings = 20, growths_apart = 10, most_growths = 20;
 
   bool wanting() const {
@@ -222,7 +223,7 @@ class Mover {
       const Box3 now = box(t, next), &known = tree_.boxes()[t];
       if (!(now.lo.array() < known.lo.array()).any() && !(now.hi.array() > known.hi.array()).any()) continue;
       outside[t] = 1, any = true;
-      tree_.enlarge(t, now);
+      tree_.enlarge(t, now.grown(spare * edge_));
     }
     if (!any) return;
     std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
@@ -237,35 +238,39 @@ class Mover {
     enum : std::uint8_t { clear, unsure, through };
     const TrianglePlanes planes(triangles_, start, next);
     const double rounding = 1e-14 * size_;
-    std::vector<std::uint8_t> found(pairs_.size(), clear);
-    parallel_for(pairs_.size(), 512, [&](std::size_t begin, std::size_t end) {
+    std::vector<Pair> asked;
+    for (const Pair& pair : pairs_)
+      if (changed[pair.first] || changed[pair.second]) asked.push_back(pair);
+    std::vector<std::uint8_t> found(asked.size(), clear);
+    parallel_for(asked.size(), 512, [&](std::size_t begin, std::size_t end) {
       const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
         for (int k = 0; k < Partings::count; ++k)
           if (p.first[k][lane] > rounding && p.last[k][lane] > rounding) return;
-        if (some_tilted(couple(pairs_[i]), p, lane, start, next, [&](const Vec3&, double first, double last) { return first > rounding && last > rounding; })) return;
-        const auto &s = triangles_[pairs_[i].first], &t = triangles_[pairs_[i].second];
+        if (some_tilted(couple(asked[i]), p, lane, start, next, [&](const Vec3&, double first, double last) { return first > rounding && last > rounding; })) return;
+        const auto &s = triangles_[asked[i].first], &t = triangles_[asked[i].second];
         const auto each = [&](const auto& test) { return test(s[0]) && test(s[1]) && test(s[2]) && test(t[0]) && test(t[1]) && test(t[2]); };
         const bool by_field = !carried.field.empty() && each([&](std::uint32_t v) { return carried.is[v] != 0; });
-        const bool parted = by_field && p.first[Partings::closest][lane] > (carried.deviation[pairs_[i].first] + carried.deviation[pairs_[i].second]) / (1 - steepest);
+        const bool parted = by_field && p.first[Partings::closest][lane] > (carried.deviation[asked[i].first] + carried.deviation[asked[i].second]) / (1 - steepest);
         found[i] = parted || (by_field && in_one_zone(carried.zones, s, t)) ? unsure : through;
       };
       CouplesInLanes<decltype(judge)> couples(start, next, true, judge);
       for (std::size_t i = begin; i < end; ++i) {
-        const auto& [p, q] = pairs_[i];
-        if (!changed[p] && !changed[q]) continue;
+        const auto& [p, q] = asked[i];
         const auto &s = triangles_[p], &t = triangles_[q];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
         if (in_t(s[0]) || in_t(s[1]) || in_t(s[2]))
           found[i] = unsure;  // neighbours cannot pass without crossing others
-        else if (!planes.part(p, q, rounding, rounding))
-          couples.add(couple(pairs_[i]), i);
+        else if (!planes.part(p, q, rounding, rounding)) {
+          const Couple both = couple(asked[i]);
+          if (const Parting across = part_across(both, start, next); !(across.first > rounding && across.last > rounding)) couples.add(both, i);
+        }
       }
       couples.finish();
     });
     std::vector<Pair> result, test;
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      if (found[i] == through) result.push_back(pairs_[i]);
-      if (found[i] == unsure) test.push_back(pairs_[i]);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      if (found[i] == through) result.push_back(asked[i]);
+      if (found[i] == unsure) test.push_back(asked[i]);
     }
     const auto crossing = find_crossings(test, triangles_, next, m_.together, two_sided_);
     result.insert(result.end(), crossing.begin(), crossing.end());

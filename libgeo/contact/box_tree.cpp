@@ -170,33 +170,30 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::v
     marked.resize(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) marked[i] = (*only)[order_[i]];
   }
-  constexpr std::size_t stretch = 32;  // blocks
+  constexpr std::size_t stretch = 16;  // blocks
   const std::size_t blocks = levels_[0].size();
   std::vector<Pairs> found((blocks + stretch - 1) / stretch);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
+    Pairs some;
     for (std::size_t s = begin; s < end; ++s) {
+      some.clear();
       for (std::size_t b = s * stretch; b < std::min(blocks, (s + 1) * stretch); ++b) {
         std::uint32_t asked = 0;
         for (std::size_t i = b * width; i < std::min(order_.size(), (b + 1) * width); ++i) asked |= std::uint32_t(!only || marked[i]) << i % width;
-        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, found[s]);
+        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, some);
       }
       std::size_t count = 0;
-      for (const auto& [p, q] : found[s])
-        if (const auto i = order_[p], j = order_[q]; boxes_[i].meets(boxes_[j])) found[s][count++] = {std::min(i, j), std::max(i, j)};
-      found[s].resize(count);
+      for (const auto& [p, q] : some)
+        if (const auto i = order_[p], j = order_[q]; boxes_[i].meets(boxes_[j])) some[count++] = {std::min(i, j), std::max(i, j)};
+      found[s].assign(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
     }
   });
-  std::vector<std::uint32_t> first(boxes_.size() + 1, 0);
-  for (const Pairs& some : found)
-    for (const auto& pair : some) ++first[pair.first + 1];
-  for (std::size_t i = 0; i < boxes_.size(); ++i) first[i + 1] += first[i];
+  std::vector<std::size_t> first(found.size() + 1, 0);
+  for (std::size_t s = 0; s < found.size(); ++s) first[s + 1] = first[s] + found[s].size();
   Pairs result(first.back());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (const Pairs& some : found)
-    for (const auto& pair : some) result[next[pair.first]++] = pair;
-  parallel_for(boxes_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) std::sort(result.begin() + first[i], result.begin() + first[i + 1]);
+  parallel_for(found.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) std::copy(found[s].begin(), found[s].end(), result.begin() + static_cast<std::ptrdiff_t>(first[s]));
   });
   return result;
 }

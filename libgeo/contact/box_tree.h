@@ -25,8 +25,8 @@ class BoxTree {
   const std::vector<Box3>& boxes() const { return boxes_; }
   /// Makes a box larger, so that it holds this one, too.
   void enlarge(std::uint32_t row, const Box3& box);
-  /// All pairs (i < j) of boxes that meet, ascending. Only pairs with a box marked in `only`, where given. By all threads; cost
-  /// follows the boxes that are asked for, and the pairs.
+  /// All pairs (i < j) of boxes that meet, each once, neighbours near each other, in an order that depends on the boxes alone. Only
+  /// pairs with a box marked in `only`, where given. By all threads; cost follows the boxes that are asked for, and the pairs.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
 
   /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].

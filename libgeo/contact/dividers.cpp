@@ -119,7 +119,7 @@ std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
         std::pair<Simplex, Simplex> own[2];
         const int count = parts_apart(d.triangles[t], d.triangles[o], own);
         for (int k = 0; k < count; ++k)
-          if (const Couple c{own[k].first, own[k].second}; way_of(d, c) > 0) couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
+          if (const Couple c{own[k].first, own[k].second}; part_across(c, at, at).first <= way_of(d, c) + d.gap && way_of(d, c) > 0) couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
       }
       couples.finish();
     }
@@ -128,8 +128,10 @@ std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
   const auto each = [&](const auto& take) {
     for (const auto& some : found)
       for (const Divider& p : some) {
-        for (int k = 0; k < p.a.size; ++k) take(p.a.v[k], p, 1.0);
-        for (int k = 0; k < p.b.size; ++k) take(p.b.v[k], p, -1.0);
+        for (int k = 0; k < p.a.size; ++k)
+          if (d.limit[p.a.v[k]] > 0) take(p.a.v[k], p, 1.0);
+        for (int k = 0; k < p.b.size; ++k)
+          if (d.limit[p.b.v[k]] > 0) take(p.b.v[k], p, -1.0);
       }
   };
   each([&](std::uint32_t v, const Divider&, double) { ++first[v + 1]; });

@@ -1,6 +1,7 @@
 // How far some directions part two triangles, where a motion begins and where it ends: eight couples at a time.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "contact/simplex.h"
@@ -22,6 +23,21 @@ struct Partings {
 struct Couple {
   Simplex a, b;
 };
+
+/// The same of one couple's direction `across` alone, which parts most of them: the quick look before the others.
+struct Parting {
+  double first, last, always;
+};
+inline Parting part_across(const Couple& c, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  const auto middle = [&](const Simplex& s) { return s.size == 1 ? from[s.v[0]] : s.size == 2 ? Vec3((from[s.v[0]] + from[s.v[1]]) / 2) : Vec3((from[s.v[0]] + from[s.v[1]] + from[s.v[2]]) / 3); };
+  Vec3 n = middle(c.a) - middle(c.b);
+  if (const double length = n.norm(); length > 0) n /= length;
+  constexpr double most = std::numeric_limits<double>::infinity();
+  double a_first = most, a_last = most, b_first = -most, b_last = -most;
+  for (int k = 0; k < c.a.size; ++k) a_first = std::min(a_first, n.dot(from[c.a.v[k]])), a_last = std::min(a_last, n.dot(to[c.a.v[k]]));
+  for (int k = 0; k < c.b.size; ++k) b_first = std::max(b_first, n.dot(from[c.b.v[k]])), b_last = std::max(b_last, n.dot(to[c.b.v[k]]));
+  return {a_first - b_first, a_last - b_last, std::min(a_first, a_last) - std::max(b_first, b_last)};
+}
 
 /// Fills in the partings of couples, eight at most, whose rows are at `from`, then at `to`. Without `end` all but closest_at_end.
 /// The same for any processor. Floating point.

@@ -25,38 +25,49 @@ void move_straight(const std::vector<Triangle>& triangles, std::span<const std::
   enum : std::uint8_t { parted, meets, never };  // never: whichever part of their ways the corners go
   const std::vector<Vec3> start = at;
   std::vector<double> share(at.size(), 0);
-  std::vector<std::uint8_t> moves(at.size(), 0), blocked(at.size(), 0), changed(triangles.size(), 1), found(pairs.size(), parted);
+  std::vector<std::uint8_t> moves(at.size(), 0), blocked(at.size(), 0), changed(triangles.size(), 1), asked(triangles.size()), found(pairs.size(), parted);
   for (const auto& t : triangles)
     for (const auto v : t) share[v] = to[v] != start[v], moves[v] = share[v] > 0;
+  std::vector<Box3> boxes(triangles.size());
   for (int trial = 0;; ++trial) {
     for (std::size_t v = 0; v < at.size(); ++v)
       if (moves[v] || blocked[v]) at[v] = share[v] == 1 ? to[v] : Vec3(start[v] + share[v] * (to[v] - start[v]));
+    parallel_for(triangles.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        if (changed[t]) boxes[t] = swept(triangles[t], start, at).grown(0.5 * gap), asked[t] = any_corner(triangles[t], moves);
+    });
     parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
+      const auto kept = [gap](const Parting& p, bool adjacent) { return p.first > 0 && p.last >= std::min(gap, adjacent ? 0.5 * p.first : p.first); };
+      const auto for_good = [gap](const Parting& p, bool adjacent) { return p.always > 0 && p.always >= std::min(gap, adjacent ? 0.5 * p.first : p.first); };
       // Numbers: of the pair, and whether it is one of neighbours.
       const auto judge = [&](std::size_t number, const Partings& p, std::size_t lane) {
-        const bool adjacent = number % 2 != 0;
-        bool kept = false, for_good = false;
+        bool any = false, any_for_good = false;
         for (int k = 0; k < Partings::count; ++k) {
-          const double enough = std::min(gap, adjacent ? 0.5 * p.first[k][lane] : p.first[k][lane]);
-          kept |= p.first[k][lane] > 0 && p.last[k][lane] >= enough;
-          for_good |= p.always[k][lane] > 0 && p.always[k][lane] >= enough;
+          const Parting one{p.first[k][lane], p.last[k][lane], p.always[k][lane]};
+          any |= kept(one, number % 2 != 0), any_for_good |= for_good(one, number % 2 != 0);
         }
         auto& all = found[number / 2];
-        if (!kept) all = meets;
-        else if (!for_good && all == never) all = parted;
+        if (!any) all = meets;
+        else if (!any_for_good && all == never) all = parted;
       };
       CouplesInLanes<decltype(judge)> couples(start, at, true, judge);
       std::pair<Simplex, Simplex> parts[2];
       for (std::size_t i = begin; i < end; ++i) {
         const auto& [p, q] = pairs[i];
-        const auto &s = triangles[p], &t = triangles[q];
         if (found[i] == never) continue;
         found[i] = parted;
-        if (!(changed[p] || changed[q]) || !(any_corner(s, moves) || any_corner(t, moves))) continue;  // those that stay are apart
-        if (!swept(s, start, at).grown(gap).meets(swept(t, start, at))) continue;
+        if (!(changed[p] || changed[q]) || !(asked[p] || asked[q])) continue;  // those that stay are apart
+        if (!boxes[p].meets(boxes[q])) continue;
         found[i] = never;
-        const int count = parts_apart(s, t, parts);
-        for (int k = 0; k < count; ++k) couples.add({parts[k].first, parts[k].second}, 2 * i + (count == 2));
+        const int count = parts_apart(triangles[p], triangles[q], parts);
+        for (int k = 0; k < count; ++k) {
+          const Couple couple{parts[k].first, parts[k].second};
+          const Parting across = part_across(couple, start, at);
+          if (!kept(across, count == 2))
+            couples.add(couple, 2 * i + (count == 2));
+          else if (!for_good(across, count == 2) && found[i] == never)
+            found[i] = parted;
+        }
       }
       couples.finish();
     });

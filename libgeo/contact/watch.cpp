@@ -36,27 +36,38 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 Pairs closest_between(const Pairs& pairs, const std::vector<Triangle>& corners, std::span<const std::uint32_t> owner, const TrianglePlanes& planes, std::size_t most) {
   struct Entry {
-    std::uint64_t owners;
-    double left;
+    std::uint32_t other;  // the higher of the two owners
     std::uint32_t pair;
+    double left;
   };
-  std::vector<Entry> order(pairs.size());
-  parallel_for(order.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto& [s, t] = pairs[i];
-      const std::uint64_t a = owner[corners[s][0]], b = owner[corners[t][0]];
-      order[i] = {std::min(a, b) << 32 | std::max(a, b), planes.left(s, t), static_cast<std::uint32_t>(i)};
+  // By the lower owner first; row 0 is of triangles that have none.
+  const auto low = [&](std::size_t i) { return std::size_t(std::min(owner[corners[pairs[i].first][0]], owner[corners[pairs[i].second][0]]) + 1u); };
+  std::size_t owners = 1;
+  for (const auto o : owner) owners = std::max<std::size_t>(owners, o + 2u);
+  std::vector<std::uint32_t> first(owners + 1, 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) ++first[low(i) + 1];
+  for (std::size_t o = 0; o < owners; ++o) first[o + 1] += first[o];
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1), order(pairs.size());
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) order[next[low(i)]++] = i;
+  std::vector<std::uint8_t> keep(pairs.size(), 0);
+  parallel_for(owners, 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<Entry> some;
+    for (std::size_t o = begin; o < end; ++o) {
+      some.clear();
+      for (auto k = first[o]; k < first[o + 1]; ++k) {
+        const auto& [s, t] = pairs[order[k]];
+        some.push_back({std::max(owner[corners[s][0]], owner[corners[t][0]]), order[k], planes.left(s, t)});
+      }
+      std::sort(some.begin(), some.end(), [](const Entry& p, const Entry& q) { return std::tie(p.other, p.left, p.pair) < std::tie(q.other, q.left, q.pair); });
+      for (std::size_t i = 0, same = 0; i < some.size(); ++i) {
+        if (some[i].other != some[same].other) same = i;
+        keep[some[i].pair] = i - same < most;
+      }
     }
   });
-  std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) { return std::tie(p.owners, p.left, p.pair) < std::tie(q.owners, q.left, q.pair); });
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
-    if (order[i].owners != order[first].owners) first = i;
-    if (i - first < most) kept.push_back(order[i].pair);
-  }
-  std::sort(kept.begin(), kept.end());
   Pairs result;
-  for (const auto i : kept) result.push_back(pairs[i]);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (keep[i]) result.push_back(pairs[i]);
   return result;
 }
 

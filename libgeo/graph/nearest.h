@@ -3,8 +3,8 @@
 
 #include <functional>
 #include <span>
-#include <vector>
 
+#include "base/fresh_array.h"
 #include "base/ids.h"
 #include "base/vec.h"
 #include "graph/node_tree.h"
@@ -13,8 +13,8 @@ namespace geo {
 
 /// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
 /// Missing entries are invalid ids. Exact: by squared_distance(), then id.
-std::vector<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
-std::vector<NodeId> nearest_nodes(const NodeTree& tree, int k);
+FreshArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
+FreshArray<NodeId> nearest_nodes(const NodeTree& tree, int k);
 
 /// The same, a row at a time and none of them kept: `take(i, row)` is called once for each node, in no set order and from
 /// several threads; the row is gone after the call.

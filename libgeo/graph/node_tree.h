@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "base/fresh_array.h"
 #include "base/vec.h"
 
 namespace geo {
@@ -51,9 +51,9 @@ class NodeTree {
   const double* along(int axis) const { return coordinate_[axis].data(); }
 
  private:
-  std::vector<Cell> cells_;
-  std::vector<std::uint32_t> node_;
-  std::vector<double> coordinate_[3];
+  FreshArray<Cell> cells_;
+  FreshArray<std::uint32_t> node_;
+  FreshArray<double> coordinate_[3];
 };
 
 }  // namespace geo

@@ -22,7 +22,7 @@ struct Cloud {
   }
 };
 
-void by_nanoflann(std::span<const geo::Vec3> x, std::vector<geo::NodeId>& rows) {
+void by_nanoflann(std::span<const geo::Vec3> x, geo::FreshArray<geo::NodeId>& rows) {
   const Cloud cloud{x};
   const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t> index(3, cloud);
   std::uint32_t found[k + 1];
@@ -40,7 +40,7 @@ void by_nanoflann(std::span<const geo::Vec3> x, std::vector<geo::NodeId>& rows) 
 void measure_nearest(const GraphCase& c, const Options& options, Figures& figures) {
   const auto& x = c.nodes.position;
   const double n = double(x.size());
-  std::vector<geo::NodeId> ours, theirs(x.size() * k);
+  geo::FreshArray<geo::NodeId> ours, theirs(x.size() * k);
   double t_ours = 1e300, t_theirs = 1e300;
   geo::set_threads(1);
   for (int round = 0; round < 3; ++round) {

@@ -1,0 +1,39 @@
+// Arrays that nobody has written to yet.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+namespace geo {
+
+/// An array of fixed size whose elements hold anything until they are written. The system gives memory where it is first
+/// touched, which takes as long as filling it; this way all threads that fill it share that.
+template <class T>
+class FreshArray {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  FreshArray() = default;
+  explicit FreshArray(std::size_t size) : at_(static_cast<T*>(::operator new(size * sizeof(T)))), size_(size) {}
+  std::size_t size() const { return size_; }
+  T* data() { return at_.get(); }
+  const T* data() const { return at_.get(); }
+  T& operator[](std::size_t i) { return at_.get()[i]; }
+  const T& operator[](std::size_t i) const { return at_.get()[i]; }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  operator std::span<const T>() const { return {data(), size_}; }
+
+ private:
+  struct Release {
+    void operator()(T* at) const { ::operator delete(at); }
+  };
+  std::unique_ptr<T, Release> at_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace geo

@@ -78,11 +78,12 @@ class Inspection {
     for (const auto& f : edit.new_faces) {
       std::array<Vec3, 3> corners;
       std::array<std::uint32_t, 3> rows;
-      bool touched = moved.empty();
-      for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, touched = touched || is_moved(f.v[k]);
+      bool rounded = moved.empty();
+      for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, rounded = rounded || is_moved(f.v[k]);
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
       const double apart = f.crack > 0 ? clearance : 0;
-      faces_.push_back({corners, rows, box.grown(apart), Plane(corners, box, apart), ~0u, touched, f.crack > 0});
+      // An exact face of a crack may still come too near to what an earlier step has rounded.
+      faces_.push_back({corners, rows, box.grown(apart), Plane(corners, box, apart), ~0u, rounded, rounded || apart > 0, f.crack > 0});
     }
     for (const Family& family : families)
       for (auto i = family.first; i < family.end; ++i)
@@ -98,7 +99,7 @@ class Inspection {
         const int is = orient2d(c[0], c[1], c[2], axis);
         if (is == 0) return {"rounding would leave a face without area", {i}};
         if (was != is) return {"rounding would turn a face over", {i}};
-        if (clearance_ > 0 && faces_[i].touched && faces_[i].cracked && height(c) < clearance_) return {"rounding would leave a face that is too thin", {i}};
+        if (clearance_ > 0 && faces_[i].rounded && faces_[i].cracked && height(c) < clearance_) return {"rounding would leave a face that is too thin", {i}};
       }
     }
     return {};
@@ -147,7 +148,7 @@ class Inspection {
       const auto end = families_[next - 1].end;
       Box3 box;
       for (auto i = family.first; i < end; ++i)
-        if (faces_[i].touched) box.add(faces_[i].box);
+        if (faces_[i].asked) box.add(faces_[i].box);
       if (box.empty()) continue;
       looked_up.clear();
       if (family.near.empty()) complex_.near(box, looked_up);
@@ -157,13 +158,13 @@ class Inspection {
         const double size = (there.hi - there.lo).maxCoeff();
         for (auto i = family.first; i < end; ++i) {
           const New& face = faces_[i];
-          if (!face.touched || !there.meets(face.box)) continue;
+          if (!face.asked || !there.meets(face.box)) continue;
           const auto corners = complex_.corners(f);
           const auto& v = complex_.face(f).v;
           const std::array<std::uint32_t, 3> rows{v[0].value, v[1].value, v[2].value};
           if (face.plane.clears(face.rows, rows, corners, size)) continue;
           const bool cracked = complex_.face(f).crack > 0;
-          const New old{corners, rows, there, Plane(corners, there, cracked ? clearance_ : 0), ~0u, false, cracked};
+          const New old{corners, rows, there, Plane(corners, there, cracked ? clearance_ : 0), ~0u, false, false, cracked};
           if (const char* what = fault_between(face, old)) return {std::string(what) + " face " + std::to_string(f.value), {i}};
         }
       }
@@ -186,7 +187,7 @@ class Inspection {
       const double end = a.box.hi[axis];
       for (std::uint32_t j = i + 1; j < count_ && order[j].first <= end; ++j) {
         const New& b = faces_[order[j].second];
-        if (!a.box.meets(b.box) || !(a.touched || b.touched)) continue;
+        if (!a.box.meets(b.box) || !(a.asked || b.asked)) continue;
         // All children of a triangle, none turned over: they cover it once, as before rounding.
         if (a.family != ~0u && a.family == b.family) continue;
         if (const char* what = fault_between(a, b)) return {std::string(what) + " another new face", {order[i].second, order[j].second}};
@@ -202,7 +203,8 @@ class Inspection {
     Box3 box;
     Plane plane;
     std::uint32_t family;  // the first child of the same triangle where all are known not to overlap, else ~0u
-    bool touched;          // has a vertex that rounding moved
+    bool rounded;          // has a vertex that rounding moved
+    bool asked;            // is compared with other faces
     bool cracked;          // of a crack, not of the skin
   };
 

@@ -31,9 +31,9 @@ struct Fault {
 /// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
 /// vertex stands where another does, faces stand around edges as they are listed, and no new face crosses a near one. Exact.
 /// `moved` says per new vertex whether rounding moved it; faces that it has not touched are as exact decisions left them
-/// (empty: all are asked about). Families list every new face once, in order. With a `clearance`, what does not touch must
-/// also be that far apart, since features at a few last places from each other are what no later step can round. Returns the
-/// first fault, none when all is well. Cost follows the edit.
+/// (empty: all are asked about). Families list every new face once, in order. With a `clearance`, features of cracks that do
+/// not touch must also be that far apart, exact faces' as well, since some may be near what an earlier step has rounded: what is
+/// a few last places thick no later step can round. Returns the first fault, none when all is well. Cost follows the edit.
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance = 0);
 
 /// Moves points that rounding has moved anyway by a few places more, where that takes a fault away. Returns the fault that

@@ -81,12 +81,18 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options, SplitWork* work,
                 const Agreement& agree) {
   if (!agree) return split(body, front, next, options, work);
-  Complex grown = body.surface;
-  FrontState moved = front;
-  CrackDelta crack = advance(grown, moved, next, options, work ? &work->crack : nullptr);
-  if (!crack.empty()) agree(grown, crack);
   begin_upkeep(body);
-  body.surface = std::move(grown), front = std::move(moved);
+  FrontState moved = front;
+  CrackDelta crack = advance(body.surface, moved, next, options, work ? &work->crack : nullptr);
+  if (!crack.empty()) {
+    try {
+      agree(body.surface, crack);
+    } catch (...) {
+      body.surface.take_back();
+      throw;
+    }
+  }
+  front = std::move(moved);
   return follow_delta(body, std::move(crack), work);
 }
 

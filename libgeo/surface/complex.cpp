@@ -209,6 +209,7 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   }
 
   // Commit.
+  undo_ = {true, old_vertices, old_faces, surface_vertex_count(), crack_count_, removed, {}, {}, {}};
   CrackDelta delta;
   delta.removed_faces = removed;
   points_.insert(points_.end(), edit.new_vertices.begin(), edit.new_vertices.end());
@@ -258,8 +259,15 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
     if (n.crack > 0 && !n.parent.valid()) delta.new_crack_faces.push_back(f);
     ++live_faces_;
   }
-  for (const NewRing& r : rings)
-    link_ring(VertexId(static_cast<std::uint32_t>(r.edge >> 32)), VertexId(static_cast<std::uint32_t>(r.edge)), ring_faces.data() + r.begin, r.end - r.begin);
+  for (const NewRing& r : rings) {
+    const VertexId lo(static_cast<std::uint32_t>(r.edge >> 32)), hi(static_cast<std::uint32_t>(r.edge));
+    for (auto i = r.begin; i < r.end; ++i)
+      if (const FaceId f = ring_faces[i]; f.value < old_faces) {
+        const auto at = f.index() * 3 + static_cast<std::size_t>(edge_in(face(f), lo, hi));
+        undo_.radial.push_back({at, radial_[at]});
+      }
+    link_ring(lo, hi, ring_faces.data() + r.begin, r.end - r.begin);
+  }
   std::sort(touched.begin(), touched.end());
   std::sort(old_ids.begin(), old_ids.end());
   std::size_t at = 0;
@@ -268,11 +276,52 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (const VertexId v : touched) {
     here.clear();
     for (; at < old_ids.size() && old_ids[at].first == v; ++at) here.push_back(old_ids[at].second);
+    remember(v, here);
     refan(v, here, &delta, scratch);
   }
   std::sort(delta.touched_surface_vertices.begin(), delta.touched_surface_vertices.end());
   std::sort(delta.removed_surface_vertices.begin(), delta.removed_surface_vertices.end());
   return delta;
+}
+
+void Complex::remember(VertexId v, const std::vector<SurfaceVertexId>& gone) {
+  const auto keep = [&](SurfaceVertexId id) {
+    if (undo_.stands.empty() || undo_.stands.back().v != id) undo_.stands.push_back({id, site(id), fan_side_[id.index()], fan_corner_[id.index()]});
+  };
+  for (const FaceId f : faces_at(v)) {
+    if (f.value >= undo_.faces) break;
+    for (std::size_t which = 0; which < (face(f).crack > 0 ? 2 : 1); ++which) {
+      const auto at = f.index() * 6 + which * 3 + static_cast<std::size_t>(corner_at(face(f), v));
+      undo_.corners.push_back({at, corner_vertex_[at]});
+      keep(corner_vertex_[at]);
+    }
+  }
+  for (const auto id : gone) keep(id);
+}
+
+void Complex::take_back() {
+  if (!undo_.possible) throw GeometryError("there is no edit to take back");
+  for (std::uint32_t f = undo_.faces; f < faces_.size(); ++f) {
+    index_.erase(f);
+    unlink_corners(FaceId(f));
+    --live_faces_;
+  }
+  points_.resize(undo_.vertices), first_corner_.resize(undo_.vertices), mark_.resize(undo_.vertices);
+  faces_.resize(undo_.faces), radial_.resize(std::size_t(3) * undo_.faces), next_corner_.resize(std::size_t(3) * undo_.faces);
+  corner_vertex_.resize(std::size_t(6) * undo_.faces);
+  site_.resize(undo_.surface_vertices), fan_side_.resize(undo_.surface_vertices), fan_corner_.resize(undo_.surface_vertices);
+  for (const FaceId f : undo_.removed) {
+    faces_[f.index()].alive = true;
+    link_corners(f);
+    const auto c = corners(f);
+    index_.insert(f.value, box_of(c[0], c[1], c[2]));
+    ++live_faces_;
+  }
+  for (const auto& [at, next] : undo_.radial) radial_[at] = next;
+  for (const auto& [at, id] : undo_.corners) corner_vertex_[at] = id;
+  for (const auto& s : undo_.stands) site_[s.v.index()] = s.site, fan_side_[s.v.index()] = s.side, fan_corner_[s.v.index()] = s.corner;
+  crack_count_ = undo_.cracks;
+  undo_ = {};
 }
 
 // Groups the sides at v into fans and gives each a surface vertex: one of those it had before where it can.

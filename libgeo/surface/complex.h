@@ -154,6 +154,9 @@ class Complex {
   /// Cost follows the edit. Throws GeometryError (nothing changed) when the edit would break a structural rule: an
   /// edge with a single skin face, a ring that does not list its edge's faces, skin and material sides that disagree.
   CrackDelta apply(const ComplexEdit& edit);
+  /// Takes the last edit back: everything is as before it, to the ids that the next one gives. Cost follows the edit.
+  /// Throws GeometryError when there is none that is not taken back yet.
+  void take_back();
 
   /// The edit that turns this complex into `other`, which must have grown from it (same ids for the same vertices).
   /// Throws InputError when it has not.
@@ -189,6 +192,25 @@ class Complex {
   /// Renews the fans at v; `old_ids`: surface vertices that stood there and whose corners are gone.
   void refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelta* delta, FanScratch& scratch);
 
+  /// What stood where the last edit has changed something that it has not removed.
+  struct Undo {
+    struct Stand {
+      SurfaceVertexId v;
+      VertexId site;
+      Side side;
+      std::uint8_t corner;
+    };
+    bool possible = false;
+    std::uint32_t vertices, faces, surface_vertices;
+    std::int32_t cracks;
+    std::vector<FaceId> removed;
+    std::vector<std::pair<std::size_t, FaceId>> radial;             // places in radial_
+    std::vector<std::pair<std::size_t, SurfaceVertexId>> corners;  // in corner_vertex_
+    std::vector<Stand> stands;
+  };
+  /// Keeps what is at v, and the surface vertices whose corners there are gone.
+  void remember(VertexId v, const std::vector<SurfaceVertexId>& gone);
+
   std::vector<Vec3> points_;
   std::vector<Face> faces_;
   std::uint32_t live_faces_ = 0;
@@ -204,6 +226,7 @@ class Complex {
   TriangleIndex index_;
   std::vector<std::uint32_t> mark_;  // per vertex: the last commit that touched it
   std::uint32_t epoch_ = 0;
+  Undo undo_;
 };
 
 class Complex::FacesAt {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -6,6 +7,7 @@
 #include "cases.h"
 #include "crack/advance.h"
 #include "crack/front.h"
+#include "crack/grid_case.h"
 #include "surface/check.h"
 #include "surface/pieces.h"
 #include "surface/shapes.h"
@@ -150,4 +152,73 @@ TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
     require_sound(k, signed_volume(mesh));
   }
   CHECK(refused * 100 <= steps);
+}
+
+namespace {
+
+// All that can be asked of a complex, and ids that are dead.
+void require_same(const Complex& a, const Complex& b) {
+  REQUIRE(a.vertex_count() == b.vertex_count());
+  REQUIRE(a.face_count() == b.face_count());
+  REQUIRE(a.surface_vertex_count() == b.surface_vertex_count());
+  REQUIRE(a.live_face_count() == b.live_face_count());
+  REQUIRE(a.crack_count() == b.crack_count());
+  std::vector<std::uint32_t> rows_a, rows_b;
+  const TriangleMesh ma = a.two_sided(&rows_a), mb = b.two_sided(&rows_b);
+  REQUIRE(rows_a == rows_b);
+  REQUIRE((ma.vertices == mb.vertices && ma.triangles == mb.triangles && ma.patch == mb.patch && ma.site == mb.site && ma.source == mb.source));
+  bool rings = true, fans = true, near = true;
+  std::vector<FaceId> near_a, near_b;
+  for (std::uint32_t f = 0; f < a.face_count(); ++f) {
+    if (!a.alive(FaceId(f))) continue;
+    const auto& v = a.face(FaceId(f)).v;
+    for (int k = 0; k < 3; ++k) {
+      rings = rings && std::ranges::equal(a.around(v[k], v[(k + 1) % 3]), b.around(v[k], v[(k + 1) % 3]));
+      fans = fans && std::ranges::equal(a.faces_at(v[k]), b.faces_at(v[k]));
+    }
+    near_a.clear(), near_b.clear();
+    a.near(a.box(FaceId(f)), near_a), b.near(b.box(FaceId(f)), near_b);
+    near = near && near_a == near_b;
+  }
+  for (std::uint32_t v = 0; v < a.surface_vertex_count(); ++v)
+    if (a.alive(SurfaceVertexId(v))) fans = fans && a.corner_of(SurfaceVertexId(v)) == b.corner_of(SurfaceVertexId(v));
+  CHECK(rings);
+  CHECK(fans);
+  CHECK(near);
+}
+
+}  // namespace
+
+TEST_CASE("a step that is taken back leaves the complex as it was, and what comes next as it would have been") {
+  const auto [first, count] = seeds(20);
+  std::size_t taken_back = 0;
+  for (auto seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    CAPTURE(seed);
+    const GridCase grid = random_case(seed);
+    Complex k = Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / grid.divisions)), plain = k;
+    REQUIRE_THROWS_AS(k.take_back(), GeometryError);
+    for (std::size_t c = 0; c < grid.cracks.size(); ++c) {
+      FrontState front = begin_front(grid.cracks[c].rows[0], grid.cracks[c].closed, static_cast<std::int32_t>(c + 1));
+      for (std::size_t s = 1; s < grid.cracks[c].rows.size(); ++s) {
+        const FrontState before = front;
+        try {
+          const bool changed = !advance(k, front, grid.cracks[c].rows[s]).empty();
+          if (changed) {
+            k.take_back();
+            ++taken_back;
+            require_same(k, plain);
+            REQUIRE_THROWS_AS(k.take_back(), GeometryError);
+            FrontState again = before;
+            advance(k, again, grid.cracks[c].rows[s]);
+          }
+          FrontState other = before;
+          advance(plain, other, grid.cracks[c].rows[s]);
+          require_same(k, plain);
+        } catch (const GeometryError&) {
+          break;
+        }
+      }
+    }
+  }
+  CHECK(taken_back > 0);
 }

@@ -2,6 +2,8 @@
 // the fronts of cracks too, in blocks that follow cuts.
 #pragma once
 
+#include <optional>
+
 #include "mechanics/material_points.h"
 #include "mechanics/quadrature.h"
 
@@ -15,14 +17,11 @@ class Galerkin {
   /// Takes down what a split has changed, for settle(). `old_position`: of moved nodes, before they moved.
   void note(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
   /// After splits: new rows for points of which the cell, a node within the support or the sight of one has changed. The
-  /// result is that of a build from scratch, bit for bit. Appends to `kept`, for each point there is now, the number of the
-  /// same point before, or ~0u; nothing where all are the same. False where no split had been noted.
-  bool settle(const Body& body, MaterialPoints& points, std::vector<std::uint32_t>& kept);
+  /// result is that of a build from scratch, bit for bit. Nothing where no split had been noted.
+  std::optional<PointChanges> settle(const Body& body, MaterialPoints& points);
 
  private:
   std::span<const QuadratureCell> group(std::size_t b) const { return {&cells_.cells()[groups_[b]], groups_[b + 1] - groups_[b]}; }
-  PointBlock build(const Body& body, std::span<const QuadratureCell> cells, std::vector<MaterialPoint> points, std::span<ShapeRow> rows,
-                   std::span<const std::uint32_t> stale) const;
   QuadratureCells cells_;
   std::vector<std::size_t> groups_;
   std::vector<std::array<Vec3, 3>> faces_;           // changed since the last settle()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -25,46 +26,81 @@ std::vector<Mat3> matrices(const Columns<double>& columns, std::size_t count) {
   return all;
 }
 
+std::vector<PointBlock::Source> sources_of(std::span<const ShapeRow> rows) {
+  std::vector<PointBlock::Source> sources;
+  for (const ShapeRow& row : rows) sources.push_back({nullptr, 0, &row});
+  return sources;
+}
+
 }  // namespace
 
-PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow> rows) : points(std::move(all)) {
-  for (const ShapeRow& row : rows) nodes.insert(nodes.end(), row.to.begin(), row.to.end());
+PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow> rows) : PointBlock(std::move(all), sources_of(rows)) {}
+
+PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> sources) : points(std::move(all)) {
+  // The nodes of all rows; then places in each block's list, and in the whole one, for those here.
+  std::size_t entries = 0;
+  std::map<const PointBlock*, std::vector<std::uint16_t>> place;
+  for (const Source& s : sources)
+    if (s.row) {
+      nodes.insert(nodes.end(), s.row->to.begin(), s.row->to.end()), entries += s.row->to.size();
+    } else {
+      auto& used = place[s.block];
+      used.resize(s.block->nodes.size(), 0);
+      for (auto q = s.block->first[s.point]; q < s.block->first[s.point + 1]; ++q) used[s.block->to[q]] = 1;
+      entries += s.block->first[s.point + 1] - s.block->first[s.point];
+    }
+  for (const auto& [block, used] : place)
+    for (std::size_t k = 0; k < used.size(); ++k)
+      if (used[k]) nodes.push_back(block->nodes[k]);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.size() > 65536) throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
+  const auto find = [&](std::uint32_t node) { return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()); };
+  for (auto& [block, to_here] : place)
+    for (std::size_t k = 0; k < to_here.size(); ++k) to_here[k] = find(block->nodes[k]);
+
+  first.reserve(points.size() + 1), to.reserve(entries), gradient.reserve(3 * entries);
   first.push_back(0);
-  for (const ShapeRow& row : rows) {
-    for (std::size_t q = 0; q < row.to.size(); ++q) {
-      to.push_back(static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), row.to[q]) - nodes.begin()));
-      gradient.insert(gradient.end(), row.gradient[q].begin(), row.gradient[q].end());
+  for (const Source& s : sources) {
+    if (s.row) {
+      for (const auto j : s.row->to) to.push_back(find(j));
+      for (const Vec3& g : s.row->gradient) gradient.insert(gradient.end(), g.begin(), g.end());
+    } else {
+      const auto& to_here = place[s.block];
+      const auto begin = s.block->first[s.point], end = s.block->first[s.point + 1];
+      for (auto q = begin; q < end; ++q) to.push_back(to_here[s.block->to[q]]);
+      gradient.insert(gradient.end(), s.block->gradient.data() + 3 * begin, s.block->gradient.data() + 3 * end);
     }
     first.push_back(static_cast<std::uint32_t>(to.size()));
   }
   rounded.assign(gradient.begin(), gradient.end());
   rounded.push_back(0);  // entries are read by fours
-  pack();
-  for (const MaterialPoint& p : points) box.add(p.position);
+  packed.assign(4 * (to.size() + 1), 0), unit.assign((points.size() + 7) / 8 * 8, 0);  // entries are read by twos
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (const Source& s = sources[i]; s.row)
+      pack(i);
+    else
+      std::copy_n(&s.block->packed[4 * s.block->first[s.point]], 4 * (first[i + 1] - first[i]), &packed[4 * first[i]]), unit[i] = s.block->unit[s.point];
+    for (auto q = first[i]; q < first[i + 1]; ++q) packed[4 * q + 3] = static_cast<std::int16_t>(to[q]);
+    box.add(points[i].position);
+  }
 }
 
 // What rounding leaves of one entry is the next one's, so that a field that is constant has no gradient.
-void PointBlock::pack() {
+void PointBlock::pack(std::size_t point) {
   constexpr double full = 32766;
-  packed.assign(4 * (to.size() + 1), 0), unit.assign((points.size() + 7) / 8 * 8, 0);  // entries are read by twos
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    double most = 0;
-    for (std::size_t k = 3 * first[i]; k < 3 * first[i + 1]; ++k) most = std::max(most, std::abs(gradient[k]));
-    for (std::size_t q = first[i]; q < first[i + 1]; ++q) packed[4 * q + 3] = static_cast<std::int16_t>(to[q]);
-    if (!(most > 0)) continue;
-    unit[i] = float(most / full);
-    Vec3 sum = Vec3::Zero(), taken = Vec3::Zero();
-    for (std::size_t q = first[i]; q < first[i + 1]; ++q)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto k = static_cast<Eigen::Index>(c);
-        sum[k] += full / most * gradient[3 * q + c];
-        const double whole = std::nearbyint(sum[k]) - taken[k];
-        packed[4 * q + c] = static_cast<std::int16_t>(whole), taken[k] += whole;
-      }
-  }
+  double most = 0;
+  for (std::size_t k = 3 * first[point]; k < 3 * first[point + 1]; ++k) most = std::max(most, std::abs(gradient[k]));
+  if (!(most > 0)) return;
+  unit[point] = float(most / full);
+  Vec3 sum = Vec3::Zero(), taken = Vec3::Zero();
+  for (std::size_t q = first[point]; q < first[point + 1]; ++q)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto k = static_cast<Eigen::Index>(c);
+      sum[k] += full / most * gradient[3 * q + c];
+      const double whole = std::nearbyint(sum[k]) - taken[k];
+      packed[4 * q + c] = static_cast<std::int16_t>(whole), taken[k] += whole;
+    }
 }
 
 ShapeRow PointBlock::row(std::size_t point) const {
@@ -78,9 +114,9 @@ ShapeRow PointBlock::row(std::size_t point) const {
 
 bool operator==(const PointBlock& a, const PointBlock& b) {
   const auto same = [](const MaterialPoint& p, const MaterialPoint& q) {
-    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.reach == q.reach;
+    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.reach == q.reach && p.measured == q.measured;
   };
-  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
+  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && a.packed == b.packed && a.unit == b.unit && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }
 
 void MaterialPoints::connect(std::size_t nodes) {

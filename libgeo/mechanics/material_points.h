@@ -19,6 +19,7 @@ struct MaterialPoint {
   std::uint8_t growth = 0;  ///< how often its support was widened by a fifth
   bool blinded = false;     ///< a face hides a node within its support
   double reach = 0;         ///< no node within its support is farther away, nor is any part of a way to one
+  double measured = 0;      ///< its volume before all were scaled to sum to that of the nodes
 };
 
 /// Points near each other and the rows of their shape functions.
@@ -33,14 +34,29 @@ struct PointBlock {
   std::vector<float> unit;           ///< per point, a multiple of eight of them
   Box3 box;                          ///< of the points
 
+  /// Where a point's row comes from: its own, or that of a point of another block.
+  struct Source {
+    const PointBlock* block = nullptr;
+    std::size_t point = 0;
+    const ShapeRow* row = nullptr;
+  };
+
   PointBlock() = default;
+  PointBlock(std::vector<MaterialPoint> points, std::span<const Source> sources);
   PointBlock(std::vector<MaterialPoint> points, std::span<const ShapeRow> rows);
   /// A row that it was made of.
   ShapeRow row(std::size_t point) const;
   friend bool operator==(const PointBlock& a, const PointBlock& b);
 
  private:
-  void pack();
+  void pack(std::size_t point);
+};
+
+/// What a cut did to points.
+struct PointChanges {
+  std::vector<std::uint32_t> kept;    ///< per point there is now, its number before, or ~0u; empty where all are the same
+  std::vector<std::uint32_t> blocks;  ///< per block there was, the number of the one with the same points now, or ~0u
+  std::vector<char> nodes;            ///< per node: 1 where points with it came, went or have another row, or are in other blocks
 };
 
 class MaterialPoints {

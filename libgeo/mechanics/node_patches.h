@@ -6,20 +6,22 @@
 #include <vector>
 
 #include "mechanics/material_points.h"
-#include "mechanics/node_groups.h"
+#include "mechanics/node_rows.h"
 
 namespace geo {
 
 class NodePatches {
  public:
   NodePatches() = default;
-  /// Boxes of half a dozen nodes that hang together (as in NodeGroups), each with the neighbours of its nodes within 0.9 of
-  /// both spacings.
-  NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part, std::uint32_t parts,
-              const std::vector<double>& spacing, const MaterialPoints& points);
+  /// Boxes of half a dozen nodes, which are halves of halves of cubes about the origin; then what hangs together in a box, with
+  /// the neighbours of these nodes within 0.9 of both spacings.
+  NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points);
+  /// After points have changed: sums anew what they concern. The result is that of a build from scratch, bit for bit.
+  void follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points, const PointChanges& changes);
 
   struct Incidence {
     std::uint32_t patch, slot;
+    friend bool operator==(const Incidence&, const Incidence&) = default;
   };
   std::size_t count() const { return first_.size() - 1; }
   std::span<const std::uint32_t> nodes(std::size_t patch) const { return {&node_[first_[patch]], first_[patch + 1] - first_[patch]}; }
@@ -28,17 +30,20 @@ class NodePatches {
   /// Where a node is, in the order of patches.
   std::span<const Incidence> patches_of(std::size_t node) const { return {&at_[begin_[node]], begin_[node + 1] - begin_[node]}; }
 
-  /// Of slots a ≥ b of a patch twelve numbers at a (a + 1) / 2 + b: rows of Σ w g_a g_bᵀ, each with a fourth of no account.
-  const float* outer(std::size_t patch) const { return &outer_[tiles_[patch]]; }
+  /// Of slots a ≥ b of a patch twelve numbers at a (a + 1) / 2 + b: rows of Σ w g_a g_bᵀ and a zero each; w: volumes
+  /// as they were measured.
+  const float* outer(std::size_t patch) const { return outer_[patch].data(); }
   /// The material point that has most of a patch's nodes: block, and place there. ~0u: none has any.
   std::pair<std::uint32_t, std::uint32_t> point(std::size_t patch) const { return point_[patch]; }
+  friend bool operator==(const NodePatches&, const NodePatches&) = default;
 
  private:
-  void sum_points(const MaterialPoints& points);
-  std::vector<std::size_t> first_{0}, tiles_;
+  void list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing);
+  void sum_points(const MaterialPoints& points, const std::vector<char>& wanted);
+  std::vector<std::size_t> first_{0};
   std::vector<std::uint32_t> node_, begin_;
   std::vector<Incidence> at_;
-  std::vector<float> outer_;
+  std::vector<std::vector<float>> outer_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> point_;
 };
 

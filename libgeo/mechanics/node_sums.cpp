@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "mechanics/kernel.h"
 #include "mechanics/plasticity.h"
 
 namespace geo {
@@ -11,7 +10,8 @@ namespace geo {
 std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const PointStress& stress) {
   constexpr std::size_t width = std::tuple_size_v<StressSums>;
   const MaterialPoints& points = solid.points();
-  std::vector<double> parts(width * points.parts(), 0);
+  std::vector<double> parts(width * points.parts(), 0), inverse(nodes.size());  // of supports, squared
+  for (std::size_t i = 0; i < nodes.size(); ++i) inverse[i] = 1 / (nodes.radius[i] * nodes.radius[i]);
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::array<double, 6> own;
     for (std::size_t b = begin; b < end; ++b) {
@@ -24,7 +24,9 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
         if (p.rung == Rung::rigid || !stress(all, elastic, own)) continue;
         for (auto e = block.first[i]; e < block.first[i + 1]; ++e) {
           const std::uint32_t node = block.nodes[block.to[e]];
-          const double w = p.volume * kernel((p.position - nodes.position[node]).norm() / nodes.radius[node], 1.0);
+          const double left = 1 - (p.position - nodes.position[node]).squaredNorm() * inverse[node];  // the kernel, but for its scale
+          if (!(left > 0)) continue;
+          const double w = p.volume * left * left * left;
           double* sum = &parts[width * (points.part(b) + block.to[e])];
           for (const double c : own) *sum++ += w * c;
           *sum += w;

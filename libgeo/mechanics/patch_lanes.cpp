@@ -27,7 +27,7 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const No
   for (std::size_t i = 0; i < block.points.size(); ++i) {
     const MaterialPoint& point = block.points[i];
     if (point.rung == Rung::rigid) continue;
-    const float w = static_cast<float>(point.volume);
+    const float w = static_cast<float>(point.measured);
     for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q)
       for (auto k = first[block.to[q]]; k < first[block.to[q] + 1]; ++k) {
         auto& list = here[places[k].patch];

@@ -133,7 +133,7 @@ Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
 void QuadratureCells::share_volume(const NodeSet& nodes) {
   cells_ = placed_;
   double whole = 0, cut = 0;
-  for (const auto& c : cells_) (c.whole ? whole : cut) += c.volume;
+  for (auto& c : cells_) (c.whole ? whole : cut) += c.measured = c.volume;
   const double volume = sum_of(nodes.volume);
   const bool cut_only = cut > 0 && whole < volume;
   const double scale = cut_only ? (volume - whole) / cut : volume / (whole + cut);

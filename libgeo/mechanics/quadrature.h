@@ -17,6 +17,7 @@ struct QuadratureCell {
   bool whole = false;
   double volume = 0;  ///< of its material, model units³
   std::array<Vec3, 4> point;
+  double measured = 0;  ///< the volume that was found, before all were scaled
 };
 
 /// The octree is told by the nodes alone: a cell that holds a node of a finer spacing is divided. Cracks change nothing

@@ -55,9 +55,11 @@ void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
 
 void Solid::settle(const Body& body, State& state) {
   if (!galerkin_) return;
-  std::vector<std::uint32_t> kept;
-  if (!galerkin_->settle(body, points_, kept)) return;
-  group_nodes();
+  const auto changes = galerkin_->settle(body, points_);
+  if (!changes) return;
+  groups_ = NodeGroups(position_, rows_, part_, parts_);
+  patches_.follow(position_, rows_, spacing_, points_, *changes);
+  const auto& kept = changes->kept;
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < plastic.size(); ++i)
@@ -75,7 +77,7 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
       std::vector<MaterialPoint> points;
       std::vector<ShapeRow> rows;
       for (std::size_t i = b * nodes_a_block; i < std::min(n, (b + 1) * nodes_a_block); ++i) {
-        points.push_back({position_[i], volume_[i], rows_.rung(i), 0, 0});
+        points.push_back({position_[i], volume_[i], rows_.rung(i), 0, false, 0, volume_[i]});
         if (stale[b] || b >= before) rows.push_back(rows_.rung(i) == Rung::rigid ? ShapeRow{} : rows_.row(i));
       }
       if (stale[b] || b >= before)
@@ -91,7 +93,7 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
 
 void Solid::group_nodes() {
   groups_ = NodeGroups(position_, rows_, part_, parts_);
-  patches_ = NodePatches(position_, rows_, part_, parts_, spacing_, points_);
+  patches_ = NodePatches(position_, rows_, spacing_, points_);
 }
 
 RungCounts Solid::rungs() const {

@@ -74,6 +74,7 @@ class Solid {
   RungCounts rungs() const;
   const Material& material() const { return material_; }
   const MaterialPoints& points() const { return points_; }
+  const NodePatches& patches() const { return patches_; }
 
   /// ∇u at every node, by moving least squares: exact for linear fields where the rung is full.
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const { return rows_.gradients(u); }

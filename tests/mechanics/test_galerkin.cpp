@@ -27,7 +27,7 @@ std::vector<Vec3> field(const Body& body, const std::function<Vec3(const Vec3&)>
   return values;
 }
 
-bool same(const Solid& a, const Solid& b) { return a.points().blocks == b.points().blocks; }
+bool same(const Solid& a, const Solid& b) { return a.points().blocks == b.points().blocks && a.patches() == b.patches(); }
 
 // A block with a slanting cut half way through it.
 Body cut_block(int steps, double spacing = 0.14) {
@@ -106,6 +106,29 @@ TEST_CASE("a solid that follows cuts equals one built anew, bit for bit") {
   for (int k = 1; k <= 3; ++k) solid.update(body, split(body, second, blade_at(c, d, down, k, 4)), state);
   CHECK(same(solid, Solid(body, soft())));
   CHECK(solid.rungs().points[2] == 0);
+}
+
+TEST_CASE("a solid that follows random cuts, several at once, equals one built anew, bit for bit") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    Body body = block_body({1, 0.8, 0.7}, 0.15);
+    Solid solid(body, soft());
+    State state = at_rest(body);
+    for (int cut = 1; cut <= 3; ++cut) {
+      const double x = 0.2 + 0.6 * random.uniform(), y = 0.15 + 0.5 * random.uniform();
+      const bool across = random.uniform() < 0.5;
+      const Vec3 a = across ? Vec3(x, -0.2, 0.9) : Vec3(-0.2, y, 0.9), b = across ? Vec3(1 - x, 1, 0.9) : Vec3(1.2, 0.8 - y, 0.9);
+      const Vec3 step(0.04 * random.uniform(), 0.04 * random.uniform(), -0.1 - 0.1 * random.uniform());
+      auto front = begin_front(blade_at(a, b, step, 0, 3), false, cut);
+      for (int k = 1; k <= 5; ++k) {
+        solid.follow(body, split(body, front, blade_at(a, b, step, k, 3)), state);
+        if (random.uniform() < 0.4) continue;
+        solid.settle(body, state);
+        CHECK(same(solid, Solid(body, soft())));
+      }
+    }
+  }
 }
 
 TEST_CASE("linear and angular momentum and mass carry over cuts and insertions") {

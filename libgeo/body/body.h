@@ -53,6 +53,8 @@ struct Body {
   int k = 26;                        ///< nearest neighbours per node in the graph
   double guides = 0;                 ///< of guides along concave edges (§ 8), in spacings of the nodes; 0: none
   double resample_limit = 1;         ///< 0: cracks get no new nodes
+  std::uint32_t sampled = 0;         ///< nodes that it was built of: the first rows
+  double finest = 0, widest = 0;     ///< their smallest spacing and largest support radius: cracks get no finer nodes, and no wider ones
   std::uint32_t updates = 0;         ///< cracks steps applied since the build
   std::vector<std::uint8_t> debris;  ///< per node: 1 where its neighbours do not span space (nodes.h): rigid debris
   std::vector<Provenance> history;

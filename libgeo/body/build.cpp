@@ -4,6 +4,7 @@
 #include "body/connect.h"
 #include "body/front_guides.h"
 #include "body/locate.h"
+#include "body/nodes.h"
 #include "graph/guides.h"
 
 namespace geo {
@@ -27,6 +28,7 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
   body.surface = std::move(surface);
   body.nodes = std::move(nodes);
   body.k = options.k, body.guides = options.guides;
+  set_sampled(body, static_cast<std::uint32_t>(body.nodes.size()));
   body.debris.assign(body.nodes.size(), 0);
   body.grid =
       NodeGrid(std::accumulate(body.nodes.spacing.begin(), body.nodes.spacing.end(), 0.0) / double(body.nodes.size()),

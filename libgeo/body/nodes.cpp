@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -13,6 +14,12 @@
 #include "sampling/resample.h"
 
 namespace geo {
+
+void set_sampled(Body& body, std::uint32_t count) {
+  body.sampled = count;
+  body.finest = *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.begin() + count);
+  body.widest = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.begin() + count);
+}
 
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
   const NodeId id(body.nodes.size());
@@ -34,14 +41,18 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   const auto all = [](std::uint32_t) { return true; };
   std::vector<std::array<Vec3, 3>> soup;
   for (const FaceId f : faces) soup.push_back(body.surface.corners(f));
-  // That of the node nearest to the middle of each cell of a lattice as fine as nodes usually are.
+  // A crack is a boundary, and an octree's leaves halve at most from one to the next: half of what the nearest node to each cell of
+  // a lattice has, which is as fine as nodes usually are. Of the nodes that the body was built of: else each step would halve anew.
   const double cell = body.grid.cell();
   std::map<std::array<double, 3>, double> found;
   const auto spacing_at = [&](const Vec3& x) {
     if (spacing > 0) return spacing;
     const std::array<double, 3> at{std::floor(x[0] / cell), std::floor(x[1] / cell), std::floor(x[2] / cell)};
     const auto [place, fresh] = found.try_emplace(at, 0);
-    if (fresh) place->second = body.nodes.spacing[body.grid.nearest(body.nodes.position, cell * (Vec3(at.data()) + Vec3::Constant(0.5)), 1, ~0u, all)[0]];
+    if (fresh) {
+      const double there = body.nodes.spacing[body.grid.nearest(body.nodes.position, cell * (Vec3(at.data()) + Vec3::Constant(0.5)), 1, ~0u, [&](std::uint32_t i) { return i < body.sampled; })[0]];
+      place->second = std::min(there, std::max(body.finest, 0.5 * there));
+    }
     return place->second;
   };
   std::size_t count = 0;
@@ -54,13 +65,20 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
                     [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
       continue;
     // The donor is the nearest node that sees it; else, in a fresh sliver, the nearest of all.
-    const auto candidates = body.grid.nearest(body.nodes.position, s.position, 8, ~0u, all);
-    const auto seen = std::find_if(candidates.begin(), candidates.end(), [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); });
+    const auto nearest = body.grid.nearest(body.nodes.position, s.position, 24, ~0u, all);
+    std::vector<std::uint32_t> seen;
+    for (const auto i : nearest)
+      if (seen.size() < 12 && !is_blocked(body.surface, body.nodes.position[i], s.position)) seen.push_back(i);
     // Where rounding has exchanged two sheets, even air may be before a side with material.
-    if (seen == candidates.end() && !is_inside(body.surface, s.position)) continue;
-    const NodeId donor(seen == candidates.end() ? candidates[0] : *seen);
+    if (seen.empty() && !is_inside(body.surface, s.position)) continue;
+    const NodeId donor(seen.empty() ? nearest[0] : seen[0]);
     const NodeId node = insert_node(body, s.position, donor, s.spacing);
-    if (spacing == 0) body.nodes.radius[node.index()] *= s.spacing / body.nodes.spacing[donor.index()];
+    if (spacing == 0 && !seen.empty()) {
+      // In proportion, and wide enough for a dozen, as those of the sampling are.
+      const double reach = std::min((body.nodes.position[seen.back()] - s.position).norm(), 3 * s.spacing);
+      double& radius = body.nodes.radius[node.index()];
+      radius = std::min(body.widest, std::max(radius * (s.spacing / body.nodes.spacing[donor.index()]), 1.05 * reach));
+    }
     if (++count == limit) break;
   }
   return count;
@@ -71,9 +89,15 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
   std::vector<std::uint32_t> near;
   for (const FaceId f : faces) {
     const auto t = body.surface.corners(f);
-    const Ball ball = ball_around(t);
     near.clear();
-    body.grid.within(body.nodes.position, ball.center, ball.radius + 0.1 * body.grid.cell(), near);
+    // Those in cubes along the face: the ball about a large one would be the whole body.
+    body.grid.walk(
+        [&](int, const Vec3& middle, double half) {
+          const double reach = std::numbers::sqrt3 * half + 0.1 * body.grid.cell();
+          return (closest_point_on_triangle(middle, t[0], t[1], t[2]) - middle).squaredNorm() <= reach * reach;
+        },
+        [&](int, std::uint32_t i) { near.push_back(i); });
+    std::sort(near.begin(), near.end());
     for (const auto i : near) {
       const Vec3 x = body.nodes.position[i];
       const double spacing = body.nodes.spacing[i];

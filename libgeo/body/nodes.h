@@ -9,12 +9,15 @@ namespace geo {
 
 using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 
+/// The first `count` nodes, at least one, are those that the body was built of.
+void set_sampled(Body& body, std::uint32_t count);
+
 /// Appends a node at x, with spacing and radius of node `donor` and half of its volume: Σ volume stays what it was.
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
 
 /// § 6.4: nodes on both sides of the faces, inside, seen from the face, not too close to nodes that see them. Returns
-/// how many. `spacing`: wanted distance between them, 0: as of the nodes that are there, whose support radii they take in
-/// proportion; at most `limit` are inserted.
+/// how many. `spacing`: wanted distance between them, 0: half of what nodes are apart there, no finer than body.finest, with
+/// support radii in proportion; at most `limit` are inserted.
 std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spacing, std::uint64_t seed,
                         std::size_t limit = std::size_t(-1));
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "body/nodes.h"
 #include "io/json_internal.h"
 
 namespace geo {
@@ -109,7 +110,7 @@ void add_binding(Arrays& a) {
 
 void add_about(Arrays& a) {
   const Body& body = a.body;
-  nlohmann::ordered_json about = {{"k", body.k}, {"updates", body.updates}, {"resample_limit", body.resample_limit}, {"cell", body.grid.cell()}, {"crack_count", body.surface.crack_count()}};
+  nlohmann::ordered_json about = {{"k", body.k}, {"updates", body.updates}, {"resample_limit", body.resample_limit}, {"sampled", body.sampled}, {"cell", body.grid.cell()}, {"crack_count", body.surface.crack_count()}};
   if (body.guides > 0) about["guides"] = body.guides;
   about["history"] = nlohmann::ordered_json::array();
   for (const auto& p : body.history) about["history"].push_back({{"tool", p.tool}, {"version", p.version}, {"arguments", p.arguments}, {"inputs", p.inputs}});
@@ -277,6 +278,7 @@ void read_about(const KerfFile& in, Body& body) {
     body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
     body.guides = about.value("guides", 0.0);
+    body.sampled = about.contains("sampled") ? whole<std::uint32_t>(about.at("sampled")) : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
       body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(), p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
   } catch (const nlohmann::json::exception&) {
@@ -284,9 +286,10 @@ void read_about(const KerfFile& in, Body& body) {
   } catch (const std::out_of_range&) {
     in.fail("section 'about' holds an impossible value");
   }
-  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) ||
+  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) || body.sampled < 1 || body.sampled > body.nodes.size() ||
       (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
     in.fail("section 'about' holds an impossible value");
+  set_sampled(body, body.sampled);
   body.grid = NodeGrid(cell, body.nodes.position);
 }
 

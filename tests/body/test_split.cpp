@@ -130,3 +130,38 @@ TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {
     CHECK(std::count(body.debris.begin(), body.debris.end(), 1) == (lift < 0.1 ? 25 : 4));
   }
 }
+
+TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.1);
+  SampleOptions sampling;
+  sampling.spacing = 0.03, sampling.levels = 4;
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
+  const NodeSet before = body.nodes;
+  CHECK(body.finest == *std::min_element(before.spacing.begin(), before.spacing.end()));
+  const double coarsest = *std::max_element(before.spacing.begin(), before.spacing.end());
+  REQUIRE(coarsest >= 4 * body.finest);
+  auto front = begin_front(std::vector<Vec3>{{0.473, -0.5, -0.5}, {0.481, 1.5, -0.5}}, false, 1);
+  for (const double z : {0.4, 0.8, 1.5}) split(body, front, {{0.473, -0.5, z}, {0.481, 1.5, z}});
+  CHECK(check_body(body).first_problem == "");
+  const std::size_t all = body.nodes.size();
+  REQUIRE(all > before.size() + 100);
+  std::size_t inside = 0;
+  CHECK(total(body.nodes.volume) == Approx(total(before.volume)).epsilon(1e-12));
+  for (std::size_t i = before.size(); i < all; ++i) {
+    const Vec3& x = body.nodes.position[i];
+    const double spacing = body.nodes.spacing[i];
+    // Of those that were there before: at least half as far apart as the closest ones, no farther than the farthest.
+    double least = coarsest, most = 0;
+    for (std::size_t j = 0; j < before.size(); ++j)
+      if ((before.position[j] - x).norm() < 2 * coarsest) least = std::min(least, before.spacing[j]), most = std::max(most, before.spacing[j]);
+    CHECK(spacing >= std::max(body.finest, 0.5 * least));
+    CHECK(spacing <= most);
+    if (std::min({x.y(), 1 - x.y(), x.z(), 1 - x.z()}) > 0.35) {
+      CHECK(spacing > 1.5 * body.finest);  // the middle of the crack is not as fine as its rim
+      ++inside;
+    }
+    CHECK(body.graph.neighbor_count(NodeId(i)) >= 6);
+    CHECK(body.nodes.radius[i] >= 1.2 * spacing);
+  }
+  CHECK(inside > 5);
+}

@@ -118,8 +118,11 @@ std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
         if (!boxes[t].meets(boxes[o]) || planes_of.part(t, o, way[t] + way[o] + d.gap, way[t] + way[o] + d.gap)) continue;
         std::pair<Simplex, Simplex> own[2];
         const int count = parts_apart(d.triangles[t], d.triangles[o], own);
-        for (int k = 0; k < count; ++k)
-          if (const Couple c{own[k].first, own[k].second}; part_across(c, at, at).first <= way_of(d, c) + d.gap && way_of(d, c) > 0) couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
+        for (int k = 0; k < count; ++k) {
+          const Couple c{own[k].first, own[k].second};
+          const double both = way_of(d, c);
+          if (both > 0 && part_across(c, at, at).first <= both + d.gap) couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
+        }
       }
       couples.finish();
     }

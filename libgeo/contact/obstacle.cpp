@@ -165,7 +165,10 @@ void Obstacle::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
     const Vec3 y = row.rest + at(row, u);
     const RigidShape::Field field = inside(row, y);
     Vec3 f = -row.stiffness * field.distance * field.normal;
-    if (const Vec3 slid = slide(row, y); row.pressed > 0) f -= drag(row, slid) * slid;
+    if (row.pressed > 0) {
+      const Vec3 slid = slide(row, y);
+      f -= drag(row, slid) * slid;
+    }
     to.force -= share * f;
     to.torque -= share * (y - now_.translation()).cross(f);
   }

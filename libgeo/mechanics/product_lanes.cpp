@@ -58,13 +58,15 @@ struct Spread {
   }
 };
 
+// Of the node's numbers, which are by fours, for entry q.
+HWY_INLINE std::size_t place_of(const PointBlock& block, std::size_t q) { return 4 * std::size_t(static_cast<std::uint16_t>(block.packed[4 * q + 3])); }
+
 template <class Wide = hn::CappedTag<float, 8>>
 HWY_INLINE void gradients(const PointBlock& block, std::size_t from, std::size_t end_point, const float* values, float* const* out) {
   constexpr std::size_t beside = hn::MaxLanes(Wide()) / 4;
   const Wide d;
   const hn::CappedTag<float, 4> d4;
   const Spread<Wide> spread;
-  const auto place = [&](std::size_t q) { return 4 * std::size_t(static_cast<std::uint16_t>(block.packed[4 * q + 3])); };
   for (std::size_t i = from; i < end_point; ++i) {
     hn::Vec<Wide> sum[2 / beside][3];
     for (auto& s : sum)
@@ -76,12 +78,12 @@ HWY_INLINE void gradients(const PointBlock& block, std::size_t from, std::size_t
     };
     std::size_t q = block.first[i];
     if constexpr (beside == 2) {
-      for (; q + 2 <= end; q += 2) add(sum[0], q, hn::Combine(d, hn::LoadU(d4, values + place(q + 1)), hn::LoadU(d4, values + place(q))));
-      if (q < end) add(sum[0], q, hn::ZeroExtendVector(d, hn::LoadU(d4, values + place(q))));
+      for (; q + 2 <= end; q += 2) add(sum[0], q, hn::Combine(d, hn::LoadU(d4, values + place_of(block, q + 1)), hn::LoadU(d4, values + place_of(block, q))));
+      if (q < end) add(sum[0], q, hn::ZeroExtendVector(d, hn::LoadU(d4, values + place_of(block, q))));
       for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(hn::LowerHalf(d4, sum[0][c]), hn::UpperHalf(d4, sum[0][c])), d4, out[c] + 4 * (i - from));
     } else {
-      for (; q + 2 <= end; q += 2) add(sum[0], q, hn::LoadU(d, values + place(q))), add(sum[1], q + 1, hn::LoadU(d, values + place(q + 1)));
-      if (q < end) add(sum[0], q, hn::LoadU(d, values + place(q)));
+      for (; q + 2 <= end; q += 2) add(sum[0], q, hn::LoadU(d, values + place_of(block, q))), add(sum[1], q + 1, hn::LoadU(d, values + place_of(block, q + 1)));
+      if (q < end) add(sum[0], q, hn::LoadU(d, values + place_of(block, q)));
       for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(sum[0][c], sum[1][c]), d, out[c] + 4 * (i - from));
     }
   }
@@ -93,7 +95,6 @@ HWY_INLINE void divergence(const PointBlock& block, std::size_t from, std::size_
   const Wide d;
   const hn::CappedTag<float, 4> d4;
   const Spread<Wide> spread;
-  const auto place = [&](std::size_t q) { return 4 * std::size_t(static_cast<std::uint16_t>(block.packed[4 * q + 3])); };
   for (std::size_t i = from; i < end_point; ++i) {
     hn::Vec<Wide> s[3];
     for (std::size_t c = 0; c < 3; ++c) s[c] = hn::LoadDup128(d, stress[c] + 4 * (i - from));
@@ -102,7 +103,7 @@ HWY_INLINE void divergence(const PointBlock& block, std::size_t from, std::size_
       return hn::Add(hn::Add(hn::Mul(s[0], spread(g, 0)), hn::Mul(s[1], spread(g, 1))), hn::Mul(s[2], spread(g, 2)));
     };
     const auto add = [&](std::size_t q, hn::Vec<decltype(d4)> f) HWY_ATTR {
-      float* const at = out + place(q);
+      float* const at = out + place_of(block, q);
       hn::StoreU(hn::Add(hn::LoadU(d4, at), f), d4, at);
     };
     std::size_t q = block.first[i];

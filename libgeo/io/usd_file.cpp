@@ -1,6 +1,7 @@
 #include "io/usd_file.h"
 
 #include <charconv>
+#include <numeric>
 #include <string>
 
 namespace geo {
@@ -73,29 +74,36 @@ std::string uv_of(const TriangleMesh& m) {
   return text;
 }
 
-// A sample is what holds until the next: one that says the same is left out.
-void add_samples(std::ostream& out, const std::string& margin, const std::string& declaration, const UsdRun& run, const auto& frame, const auto& text_of) {
+using Frames = std::vector<std::size_t>;
+
+// A sample is what holds until the next: one that says the same is left out. `frames`: the others are like those before them.
+void add_samples(std::ostream& out, const std::string& margin, const std::string& declaration, const Frames& frames, const auto& frame, const auto& text_of) {
   out << margin << declaration << ".timeSamples = {\n";
   std::string last;
-  bool left_out = false;
-  for (std::size_t i = 0; i < run.frames; ++i) {
+  std::size_t written = 0;
+  for (const std::size_t i : frames) {
     std::string text = text_of(frame(i));
-    if (text == last) {
-      left_out = true;
-      continue;
-    }
+    if (i > 0 && text == last) continue;
     // Points between two samples would be interpolated from where they last changed.
-    if (left_out) out << margin << "    " << i - 1 << ": " << last << ",\n";
+    if (i > written + 1) out << margin << "    " << i - 1 << ": " << last << ",\n";
     out << margin << "    " << i << ": " << text << ",\n";
-    last = std::move(text), left_out = false;
+    last = std::move(text), written = i;
   }
   out << margin << "}\n";
 }
 
-void add_subset(std::ostream& out, const std::string& name, const UsdRun& run, bool crack) {
+Frames all_frames(const UsdRun& run) {
+  Frames all(run.frames);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+bool same_rows(const TriangleMesh& a, const TriangleMesh& b) { return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv; }
+
+void add_subset(std::ostream& out, const std::string& name, const UsdRun& run, const Frames& cut, bool crack) {
   out << "\n        def GeomSubset \"" << name << "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {\n"
       << "            uniform token elementType = \"face\"\n            uniform token familyName = \"materialBind\"\n            rel material:binding = </run/materials/" << name << ">\n";
-  add_samples(out, "            ", "int[] indices", run, run.surface, [&](const TriangleMesh& m) { return subset_of(m, crack); });
+  add_samples(out, "            ", "int[] indices", cut, run.surface, [&](const TriangleMesh& m) { return subset_of(m, crack); });
   out << "        }\n";
 }
 
@@ -117,25 +125,33 @@ void write_usda(std::ostream& out, const UsdRun& run) {
       << "\n    timeCodesPerSecond = " << run.frame_rate << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
-  const auto body = [&](const std::string& declaration, const auto& text_of) { add_samples(out, "        ", declaration, run, run.surface, text_of); };
+  Frames cut;  // those with other triangles than the one before
+  TriangleMesh last;
+  std::size_t next = 0;
+  add_samples(out, "        ", "point3f[] points", all_frames(run), run.surface, [&](TriangleMesh m) {
+    std::string points = points_of(m);
+    if (next == 0 || !same_rows(m, last)) cut.push_back(next), last = std::move(m);
+    ++next;
+    return points;
+  });
+  const auto body = [&](const std::string& declaration, const auto& text_of) { add_samples(out, "        ", declaration, cut, run.surface, text_of); };
   body("int[] faceVertexCounts", counts_of);
   body("int[] faceVertexIndices", corners_of_triangles);
-  body("point3f[] points", points_of);
   out << "        int[] primvars:patch (\n            interpolation = \"uniform\"\n        )\n";
   body("int[] primvars:patch", patches_of);
-  if (run.frames > 0 && !run.surface(0).attributes.uv.empty()) {
+  if (!last.attributes.uv.empty()) {
     out << "        texCoord2f[] primvars:st (\n            interpolation = \"faceVarying\"\n        )\n";
     body("texCoord2f[] primvars:st", uv_of);
   }
-  add_subset(out, "skin", run, false);
-  add_subset(out, "crack", run, true);
+  add_subset(out, "skin", run, cut, false);
+  add_subset(out, "crack", run, cut, true);
   out << "    }\n";
   if (run.frames > 0 && run.obstacles) {
     out << '\n';
     begin_mesh(out, "obstacles", "obstacle");
     const TriangleMesh first = run.obstacles(0);
     out << "        int[] faceVertexCounts = " << counts_of(first) << "\n        int[] faceVertexIndices = " << corners_of_triangles(first) << '\n';
-    add_samples(out, "        ", "point3f[] points", run, run.obstacles, points_of);
+    add_samples(out, "        ", "point3f[] points", all_frames(run), run.obstacles, points_of);
     out << "    }\n";
   }
   out << "\n    def Scope \"materials\"\n    {\n";

@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
     const bool begun = resume && fs::exists(folder.checkpoint(), error);
     const double frame_bytes = sim::bytes_of_frames(plan.model.mesh, last);
     if (!begun) folder.require_space(frame_bytes);
-    folder.make(!geo::place_obstacles(plan.scene, 0).triangles.empty());
+    folder.make(!plan.scene.obstacles.empty());
     const auto progress = t.progress();
     const auto begin = [&] {
       try {
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
       if (run.state().frame < last) run = take_up(plan, folder);
     };
     if (!begun) {
-      writer.add({{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, run.state().time)});
+      writer.add({{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)});
       checkpoint();
       folder.require_space(frame_bytes + 28.0 * (last + 1) * double(run.body().nodes.size()) + 4 * double(fs::file_size(folder.checkpoint())));
     }
@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
         return !progress || progress(phase, static_cast<std::size_t>(frame - 1) * steps + step, static_cast<std::size_t>(last) * steps);
       });
       geo::Stopwatch writing;
-      sim::Frame done{{frame, run.state().time, run.body().nodes.size(), run.body().surface.live_face_count(), std::move(work)}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, run.state().time)};
+      sim::Frame done{{frame, run.state().time, run.body().nodes.size(), run.body().surface.live_face_count(), std::move(work)}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)};
       done.outcome.work.write_seconds = waited + writing.lap();
       total += done.outcome.work;
       writer.add(std::move(done));

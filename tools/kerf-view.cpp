@@ -86,7 +86,7 @@ class Drawing {
     const view::Subject subject = view::read_subject(w_.paths);
     view::Stage stage = view::stage_of(subject, look_);
     stage.ground = !w_.no_ground;
-    eye_.box = view::box_of(stage);
+    eye_.box = view::frame_of(stage);
     if (look_.node && w_.zoom > 1) {  // looked at closely: the node in the middle
       const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
       eye_.box = {eye_.box.lo + away, eye_.box.hi + away};
@@ -110,7 +110,7 @@ class Drawing {
     const int count = run ? static_cast<int>(files.size()) : w_.frames > 0 ? w_.frames : 72;
     view::Stage stage;
     if (run) look_around(files);
-    else stage = staged(w_.paths), eye_.box = view::box_of(stage);
+    else stage = staged(w_.paths), eye_.box = view::frame_of(stage);
     const view::Sequence picture = [&](int i) {
       if (run) return frame(files[static_cast<std::size_t>(i)], static_cast<std::size_t>(i), files.size());
       geo::report(progress_, "render", static_cast<std::size_t>(i), static_cast<std::size_t>(count));
@@ -128,20 +128,24 @@ class Drawing {
     stage.ground = !w_.no_ground;
     return stage;
   }
-  // One eye for all frames.
+  // One eye and one floor for all frames.
   void look_around(const std::vector<std::string>& files) {
-    for (const auto& file : files) eye_.box.add(view::box_of(staged({file})));
+    for (const auto& file : files) {
+      const view::Stage stage = staged({file});
+      eye_.box.add(view::frame_of(stage)), all_.add(view::box_of(stage));
+    }
   }
   view::Picture frame(const std::string& file, std::size_t i, std::size_t count) const {
     geo::report(progress_, "render", i, count);
     view::Stage stage = staged({file});
-    stage.ground_level = eye_.box.lo.z() - 1e-4 * eye_.box.diagonal();
+    stage.ground_level = all_.lo.z() - 1e-4 * all_.diagonal();
     return view::render(stage, eye_, options_);
   }
 
   const Wishes& w_;
   const view::Look& look_;
   view::Camera eye_;
+  geo::Box3 all_;  // of all frames
   view::RenderOptions options_;
   geo::Progress progress_;
 };

@@ -19,6 +19,17 @@ void append(TriangleMesh& to, const TriangleMesh& from) {
   for (const Triangle& t : from.triangles) to.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
+// Of a plane, in its own coordinates.
+TriangleMesh square_of(const SceneObstacle& plane, const Box3& bodies) {
+  const Pose placed = plane.pose(0);
+  const Vec3 n = plane.normal.normalized(), middle = (placed.rotation.conjugate() * (bodies.center() - placed.position)) / plane.scale;
+  const Vec3 level = n.cross(Vec3::UnitZ()).norm() > 1e-6 ? n.cross(Vec3::UnitZ()).normalized() : Vec3::UnitX();
+  const Vec3 foot = middle - n.dot(middle) * n, a = 0.75 * bodies.diagonal() / plane.scale * level, b = n.cross(a);
+  TriangleMesh square;
+  square.vertices = {foot - a - b, foot + a - b, foot + a + b, foot - a + b}, square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return square;
+}
+
 }  // namespace
 
 Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes) {
@@ -38,10 +49,10 @@ Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes) {
   return model;
 }
 
-TriangleMesh place_obstacles(const Scene& scene, double time) {
+TriangleMesh place_obstacles(const Scene& scene, const Model& model, double time) {
   TriangleMesh all;
   for (const SceneObstacle& o : scene.obstacles) {
-    TriangleMesh mesh = o.mesh;
+    TriangleMesh mesh = o.mesh.triangles.empty() ? square_of(o, bounding_box(model.mesh)) : o.mesh;
     for (Vec3& p : mesh.vertices) p = o.pose(time) * (o.scale * p);
     append(all, mesh);
   }

@@ -18,8 +18,9 @@ struct Model {
 /// Places the meshes of scene.bodies. Throws InputError when their number differs.
 Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes);
 
-/// The meshes of the scene's obstacles where they are at that time, as one; empty: there are planes only, or none.
-TriangleMesh place_obstacles(const Scene& scene, double time);
+/// What the scene's obstacles look like where they are at that time, as one mesh: of a plane a square beside the bodies (`model`) as
+/// they were placed, half as wide again as these. Empty: there are none.
+TriangleMesh place_obstacles(const Scene& scene, const Model& model, double time);
 
 /// Samples each part and builds the body; `part` receives the row of each node's part. Throws InputError as sampling does.
 Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32_t>& part, const Progress& progress = {});

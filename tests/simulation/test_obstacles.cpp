@@ -137,3 +137,22 @@ TEST_CASE("obstacles that are none are refused in one line") {
   CHECK(refused("normal = [0, 0, 1]\nkeys = [[1, 0, 0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0, 1, 0]]\n").find("must ascend in time") != std::string::npos);
   CHECK(refused("mesh = 'no such file.ply'\n").find("no such file.ply") != std::string::npos);
 }
+
+TEST_CASE("a plane is shown as a square that moves with it, beside the bodies and wider than they are") {
+  Scene scene = scene_of("position = [3, 1, 2]\n[[obstacle]]\nnormal = [0.5, 0.2, 1]\nposition = [0, 0, -0.5]\nrotation = [1, 0, 0, 20]\nscale = 2\n"
+                         "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, 0.7, 0, 0, 1, 30]]\n");
+  const Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
+  const Box3 bodies = bounding_box(model.mesh);
+  for (const double time : {0.0, 0.4, 2.0}) {
+    const TriangleMesh shown = place_obstacles(scene, model, time);
+    const Pose pose = scene.obstacles[0].pose(time);
+    const Vec3 normal = pose.rotation * scene.obstacles[0].normal.normalized();
+    REQUIRE(shown.vertices.size() == 4);
+    REQUIRE(shown.triangles.size() == 2);
+    for (const Vec3& p : shown.vertices) CHECK(std::abs((p - pose.position).dot(normal)) < 1e-12);
+    CHECK(std::abs(area(shown) - std::pow(1.5 * bodies.diagonal(), 2)) < 1e-9);
+    for (const auto& [a, b, c] : corners_of(shown)) CHECK((b - a).cross(c - a).normalized().dot(normal) > 1 - 1e-12);
+    const Vec3 middle = bounding_box(shown).center(), away = middle - bodies.center();
+    if (time == 0) CHECK((away - away.dot(normal) * normal).norm() < 1e-12);
+  }
+}

@@ -36,11 +36,21 @@ void add_obstacles(Stage& stage, const geo::TriangleMesh& mesh) {
     stage.surface.triangles.push_back({first + a, first + b, first + c});
     stage.triangle_colors.push_back(rigid), stage.back_colors.push_back(rigid);
   }
+  stage.obstacles = mesh.triangles.size();
+}
+
+geo::Box3 box_without_obstacles(const Stage& stage) {
+  geo::Box3 box;
+  for (std::size_t t = 0; t + stage.obstacles < stage.surface.triangles.size(); ++t)
+    for (const auto v : stage.surface.triangles[t]) box.add(stage.surface.vertices[v]);
+  for (const auto& s : stage.spheres) box.add(geo::Box3{s.center, s.center}.grown(s.radius));
+  for (const auto& s : stage.sticks) box.add(s.a), box.add(s.b);
+  return box;
 }
 
 void cut(Stage& stage, const Look& look) {
   if (!look.cutaway) return;
-  const geo::Box3 box = box_of(stage);
+  const geo::Box3 box = frame_of(stage);
   const Vec3 n = look.cutaway->normal.normalized();
   stage.cutaway = Plane{box.center() + look.cutaway->offset * 0.5 * box.diagonal() * n, n};
   // Nodes and edges on the removed side go with it.
@@ -105,11 +115,17 @@ Stage stage_of(const Subject& subject, const Look& look) {
 }
 
 geo::Box3 box_of(const Stage& stage) {
-  geo::Box3 box;
-  for (const auto& t : stage.surface.triangles)
-    for (const auto v : t) box.add(stage.surface.vertices[v]);
-  for (const auto& s : stage.spheres) box.add(geo::Box3{s.center, s.center}.grown(s.radius));
-  for (const auto& s : stage.sticks) box.add(s.a), box.add(s.b);
+  geo::Box3 box = box_without_obstacles(stage);
+  box.add(geo::bounding_box(stage.surface));
+  return box;
+}
+
+geo::Box3 frame_of(const Stage& stage) {
+  const geo::Box3 bodies = box_without_obstacles(stage), near = bodies.grown(0.25 * bodies.diagonal());
+  geo::Box3 box = bodies;
+  for (std::size_t t = stage.surface.triangles.size() - stage.obstacles; t < stage.surface.triangles.size(); ++t)
+    for (const auto v : stage.surface.triangles[t])
+      if (const Vec3& p = stage.surface.vertices[v]; near.meets({p, p})) box.add(p);
   return box;
 }
 

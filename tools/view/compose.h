@@ -46,5 +46,7 @@ Stage stage_of(const Subject& subject, const Look& look);
 
 /// The box of everything on a stage, spheres and sticks included.
 geo::Box3 box_of(const Stage& stage);
+/// What a picture should show: the same without what obstacles have beyond a quarter of its diagonal.
+geo::Box3 frame_of(const Stage& stage);
 
 }  // namespace view

@@ -31,6 +31,7 @@ struct Stage {
   std::vector<Color> back_colors;      ///< the same, seen from behind; empty: no difference
   std::vector<Sphere> spheres;
   std::vector<Stick> sticks;
+  std::size_t obstacles = 0;           ///< so many triangles, the last ones, are of obstacles
   std::optional<Plane> cutaway;
   double surface_opacity = 1;  ///< below 1 nodes and edges inside show through
   bool sheets_opaque = false;  ///< the opacity is the skin's; sheets of cracks (surface.patch) stay opaque

@@ -215,7 +215,7 @@ try:
     page.done()
     page = Page(browser, os.path.join(folder, "coarse-run.html"))
     notices = browser.run('document.getElementById("notices").innerText')
-    check(f"coarse-run.html says {notices!r}", "decimated" in notices and "One node in" in notices)
+    check(f"coarse-run.html says {notices!r}", "decimated" in notices and "Obstacles decimated" in notices and "One node in" in notices)
     run(page), page.done()
 finally:
     browser.close()

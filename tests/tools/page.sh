@@ -27,7 +27,7 @@ kerf-view nodes.pcd -o nodes.html
 kerf-crack p.ply --front '<script>.front' -o whole.ply
 kerf-view whole.ply -o pieces.html
 kerf-model block --edge 0.1 -o cube.ply
-kerf-model sphere --frequency 6 -o ball.ply
+kerf-model sphere --frequency 11 -o ball.ply
 cat >s.toml <<'T'
 [body]
 mesh = "cube.ply"

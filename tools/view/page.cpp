@@ -69,6 +69,7 @@ class Writer {
     for (const auto& mesh : frames) around.add(geo::bounding_box(mesh));
     Numbers kept, corners;
     const geo::TriangleMesh shown = double(frames[0].triangles.size()) > most ? shrink(frames[0], Numbers(frames[0].vertices.size(), 0), static_cast<std::size_t>(most), kept) : frames[0];
+    if (!kept.empty()) notice("obstacles", "Obstacles decimated for this page: " + std::to_string(shown.triangles.size()) + " of " + counted(frames[0].triangles.size(), "triangles shown"));
     if (kept.empty()) kept.resize(shown.vertices.size()), std::iota(kept.begin(), kept.end(), 0u);
     for (const auto& t : shown.triangles) corners.insert(corners.end(), t.begin(), t.end());
     pack_.whole("obstacles/triangles", corners, 4, 3);

@@ -65,9 +65,10 @@ class Mover {
 
   std::vector<Vec3> run() {
     for (int round = 0; round < most_rounds && wanting(); ++round) {
-      const bool whole = advance(round);
+      const Way way = advance(round);
+      if (way == Way::free) break;
       settle();
-      if (whole) break;
+      if (way == Way::carried) break;
     }
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.together[v]];
     return std::move(at_);
@@ -84,9 +85,10 @@ class Mover {
     return std::any_of(rows_.begin(), rows_.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
-  // Straight to where all want to be; what would cross or pass something is carried along instead. True when none is left behind
-  // because the field would be too steep.
-  bool advance(int round) {
+  // Straight to where all want to be; what would cross or pass something is carried along instead, and left behind where the field
+  // would be too steep.
+  enum class Way { free, carried, behind };
+  Way advance(int round) {
     std::vector<Vec3> start = at_;
     if (round == 0) move_affinely(rows_, at_, m_.to, start);
     std::vector<Vec3> next = start;
@@ -94,7 +96,7 @@ class Mover {
     near(start, next);
     if (give_way(start, next)) {
       at_ = std::move(next);
-      return true;
+      return Way::free;
     }
     for (const auto v : rows_) next[v] = m_.to[v];
     near(start, next);
@@ -122,7 +124,7 @@ class Mover {
     }
     report_.in_zones = std::max(report_.in_zones, carried.zones.count());
     at_ = std::move(next);
-    return carried.share == 1;
+    return carried.share == 1 ? Way::carried : Way::behind;
   }
 
   // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.

@@ -16,7 +16,7 @@ struct BoundedMotion {
 /// the exact test of crossing.h, or pass, the places are mended first, again and again (give_way.h). If something fails after many
 /// rounds all the same, vertices of such pairs are carried along by a smooth field of what all want (smooth_field.h), in which
 /// neither side of a narrow gap passes the other; what crosses all the same, since triangles are flat and the field is not, moves
-/// as rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing does. From there each vertex for itself
+/// as rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing does. From there, then, each vertex for itself
 /// goes straight on where nothing is in its way (straight_motion.h), and as far as planes between near parts let it (dividers.h).
 std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr);
 

@@ -255,9 +255,9 @@ void SelfContact::expect(const Body& body, const Solid& solid, const State& stat
   birth_ = give_birth(body, solid, state, surface_, positions_, grown, crack, options_.gap * surface_.edge);
 }
 
-void SelfContact::follow(const Body& body, const Solid& solid) {
+void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
   surface_ = std::move(birth_.surface), positions_ = std::move(birth_.positions);
-  weights_.update(body, solid);
+  weights_.follow(body, solid, delta);
 }
 
 }  // namespace geo

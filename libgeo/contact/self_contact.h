@@ -27,7 +27,7 @@ class SelfContact {
   /// GeometryError when it would cross itself or what is there; the step must not be made then.
   void expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack);
   /// After it was made.
-  void follow(const Body& body, const Solid& solid);
+  void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
   /// Before an implicit step of dt, at whose beginning state is: what parts of the surface that may come together in it do to each
   /// other (touch_penalty.h); null: nothing. It is valid until the next call. resolve() then leaves the nodes as they are.
   Potential* begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity, const std::vector<std::uint8_t>& fixed);

@@ -1,6 +1,7 @@
 #include "contact/surface_weights.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "mechanics/kernel.h"
@@ -8,17 +9,43 @@
 namespace geo {
 
 void SurfaceWeights::update(const Body& body, const Solid& solid) {
+  rows_.clear(), heaviest_.clear();
+  std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
+  std::iota(all.begin(), all.end(), 0u);
+  make(body, solid, all);
+}
+
+void SurfaceWeights::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
+  // A row is of what the vertex's node and its neighbours have as neighbours.
+  std::vector<std::uint8_t> stale(body.nodes.size(), 0);
+  for (const NodeId i : delta.updated_nodes) {
+    stale[i.index()] = 1;
+    for (const auto& n : body.graph.neighbors(body.nodes, i)) stale[n.to.index()] = 1;
+  }
   const std::size_t n = body.surface.surface_vertex_count();
-  rows_.resize(n);
-  heaviest_.assign(n, ~0u);
-  parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::uint8_t> asked(n, 0);
+  for (const auto v : delta.rebound) asked[v.index()] = 1;
+  for (const auto v : delta.crack.new_surface_vertices) asked[v.index()] = 1;
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t v = 0; v < n; ++v) {
+    const SurfaceVertexId master = body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
+    if (asked[v] || !master.valid() || stale[body.binding.master_node[master.index()].index()]) vertices.push_back(v);
+  }
+  make(body, solid, vertices);
+}
+
+void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
+  rows_.resize(body.surface.surface_vertex_count());
+  heaviest_.resize(rows_.size(), ~0u);
+  parallel_for(vertices.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
     std::vector<double> weight(solid.size(), 0);
     std::vector<std::uint32_t> used;
-    for (std::size_t v = begin; v < end; ++v) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
-      rows_[v].clear();
+      rows_[v].clear(), heaviest_[v] = ~0u;
       if (!body.surface.alive(id)) continue;
       bound_nodes(body, id, bound);
       if (bound.empty()) continue;

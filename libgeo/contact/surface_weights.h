@@ -30,6 +30,8 @@ class SurfaceWeights {
   /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's gradient, those of its
   /// neighbours. Cost follows the surface.
   void update(const Body& body, const Solid& solid);
+  /// After a split that was made since: the same, but only rows are made anew that it can have changed.
+  void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
 
   std::size_t size() const { return rows_.size(); }
   std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
@@ -39,6 +41,8 @@ class SurfaceWeights {
   Vec3 at(std::size_t v, const std::vector<Vec3>& values) const { return weighed(rows_[v], values); }
 
  private:
+  void make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);
+
   std::vector<std::vector<Entry>> rows_;
   std::vector<std::uint32_t> heaviest_;
 };

@@ -27,8 +27,8 @@ Agreement Collisions::agreement(const Body& body, const Solid& solid, const Stat
   return [&](const Complex& grown, const CrackDelta& crack) { surface_->expect(body, solid, motion, grown, crack); };
 }
 
-void Collisions::follow(const Body& body, const Solid& solid) {
-  if (surface_) surface_->follow(body, solid);
+void Collisions::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
+  if (surface_) surface_->follow(body, solid, delta);
 }
 
 void Collisions::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion,

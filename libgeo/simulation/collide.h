@@ -20,7 +20,7 @@ class Collisions {
   /// What has to agree to a crack step; empty: nothing.
   Agreement agreement(const Body& body, const Solid& solid, const State& motion);
   /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
-  void follow(const Body& body, const Solid& solid);
+  void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion, ContactWork& work);
 
   /// False: the scene asks for none, and the surface is where Eq. 1 has it.

@@ -100,7 +100,7 @@ void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
   prepare();
   work.mechanics_seconds += watch.lap();
-  if (collisions_) collisions_->follow(body_, solid_);
+  if (collisions_) collisions_->follow(body_, solid_, delta);
   obstacles_.follow();
   work.contact_seconds += watch.lap();
 }

@@ -30,7 +30,7 @@ TEST_CASE("sheets cut in a body at rest are born together") {
       const BodyDelta delta = split(body, front, edge(1.3 - 0.14 * step), {}, nullptr,
                                     [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
       solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-      surface.follow(body, solid);
+      surface.follow(body, solid, delta);
       const auto& s = surface.surface();
       for (std::size_t v = 0; v < s.site.size(); ++v)
         if (body.surface.alive(SurfaceVertexId(v))) CHECK((surface.positions()[v] - body.surface.point(VertexId(s.site[v]))).norm() < 1e-14);

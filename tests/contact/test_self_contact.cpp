@@ -52,7 +52,7 @@ TEST_CASE("random steps of cut bodies never make the surface cross itself", "[ca
         const auto delta = split(body, front, {{-0.3, y + sway, z}, {0.5, y + sway + 0.05, z}, {1.3, y + sway, z}}, {}, nullptr,
                                  [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-        contact.follow(body, solid);
+        contact.follow(body, solid, delta);
         CHECK(count_crossings(surface_of(contact)) == 0);
       }
       const Vec3 push = random.uniform(0, 0.3) * random.direction();

@@ -113,7 +113,7 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
   const auto delta = split(body, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}}, {}, nullptr,
                            [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
   solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-  contact.follow(body, solid);
+  contact.follow(body, solid, delta);
   Environment environment;
   environment.gravity = {0, 0, -9.81};
   environment.fixed.assign(solid.size(), 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "contact/untangle.h"
@@ -74,12 +75,15 @@ class Midwife {
     }
   }
 
-  // On old faces: each part of one gives its new corners their place in it, the lowest face that has one first.
+  // On old faces: each part of one gives its new corners their place in it, the lowest face that has one first. What is on an edge
+  // is placed by its two ends, so that copies are together where these are.
   void on_parts(const CrackDelta& crack) {
     std::vector<FaceId> parents = crack.removed_faces, parts;
     std::sort(parents.begin(), parents.end());
     std::set_difference(crack.new_faces.begin(), crack.new_faces.end(), crack.new_crack_faces.begin(), crack.new_crack_faces.end(), std::back_inserter(parts));
     const double size = k_.extent().diagonal();
+    std::vector<std::pair<FaceId, FaceId>> part_of;  // parent, part
+    std::map<VertexId, std::vector<VertexId>> common;  // by site the corners that all of its parents have
     for (const FaceId g : parents) {
       const auto corners = k_.corners(g);
       const Box3 box = box_of(corners[0], corners[1], corners[2]).grown(1e-12 * size);
@@ -88,20 +92,41 @@ class Midwife {
         const auto part = k_.corners(f);
         const Vec3 middle = (part[0] + part[1] + part[2]) / 3;
         if ((closest_point_on_triangle(middle, corners[0], corners[1], corners[2]) - middle).norm() > 1e-10 * size) continue;
-        for (int which = 0; which < 2; ++which) {
-          if (!k_.has({f, which}) || old_side_[2 * g.index() + static_cast<std::size_t>(which)][0] == ~0u) continue;
-          const Triangle& at = old_side_[2 * g.index() + static_cast<std::size_t>(which)];
-          for (int c = 0; c < 3; ++c) {
-            const auto v = k_.surface_vertex({f, which}, c);
-            if (placed_[v.index()]) continue;
-            const auto& own = k_.face(g).v;
-            const auto same = static_cast<std::size_t>(std::find(own.begin(), own.end(), k_.face(f).v[static_cast<std::size_t>(c)]) - own.begin());
-            place(v, same < 3 ? old_[at[same]] : carried(part[static_cast<std::size_t>(c)], corners, {old_[at[0]], old_[at[1]], old_[at[2]]}),
-                  SurfaceVertexId(at[same < 3 ? same : 0]));
-          }
+        part_of.push_back({g, f});
+        const auto& own = k_.face(g).v;
+        for (const VertexId v : k_.face(f).v) {
+          auto& of = common.try_emplace(v, own.begin(), own.end()).first->second;
+          std::erase_if(of, [&](VertexId c) { return std::find(own.begin(), own.end(), c) == own.end(); });
         }
       }
     }
+    std::map<VertexId, std::vector<OnEdge>> on_edges;
+    for (const auto& [g, f] : part_of)
+      for (int which = 0; which < 2; ++which)
+        if (k_.has({f, which}) && old_side_[2 * g.index() + static_cast<std::size_t>(which)][0] != ~0u)
+          for (int c = 0; c < 3; ++c)
+            if (const auto v = k_.surface_vertex({f, which}, c); !placed_[v.index()]) place_on_part(v, k_.face(f).v[static_cast<std::size_t>(c)], {g, which}, common, on_edges);
+  }
+
+  struct OnEdge {
+    Vec3 ends[2], at;
+  };
+
+  void place_on_part(SurfaceVertexId v, VertexId site, Side parent, const std::map<VertexId, std::vector<VertexId>>& common, std::map<VertexId, std::vector<OnEdge>>& on_edges) {
+    const auto corners = k_.corners(parent.face);
+    const Triangle& at = old_side_[2 * parent.face.index() + static_cast<std::size_t>(parent.which)];
+    const auto& own = k_.face(parent.face).v;
+    const auto row = [&](VertexId c) { return static_cast<std::size_t>(std::find(own.begin(), own.end(), c) - own.begin()); };
+    if (const auto same = row(site); same < 3) return place(v, old_[at[same]], SurfaceVertexId(at[same]));
+    Vec3 to = carried(k_.point(site), corners, {old_[at[0]], old_[at[1]], old_[at[2]]});
+    if (const auto& edge = common.at(site); edge.size() == 2) {
+      const Vec3 &a = old_[at[row(edge[0])]], &b = old_[at[row(edge[1])]];
+      auto& known = on_edges[site];
+      const auto same = std::find_if(known.begin(), known.end(), [&](const OnEdge& e) { return e.ends[0] == a && e.ends[1] == b; });
+      if (same == known.end()) known.push_back({{a, b}, to});
+      else to = same->at;
+    }
+    place(v, to, SurfaceVertexId(at[0]));
   }
 
   // Places on what is there that x sees, and how far away they are.

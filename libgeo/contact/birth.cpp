@@ -193,9 +193,10 @@ class Midwife {
 
   void part(const CrackDelta& crack, double gap) {
     const ContactSurface& s = birth_.surface;
-    std::vector<std::uint8_t> is_new(k_.face_count(), 0), marked;
+    std::vector<std::uint8_t> is_new(k_.face_count(), 0), is_crack = is_new, marked, fresh;
     for (const FaceId f : crack.new_faces) is_new[f.index()] = 1;
-    for (const auto side : s.side) marked.push_back(is_new[side / 2]);
+    for (const FaceId f : crack.new_crack_faces) is_crack[f.index()] = 1;
+    for (const auto side : s.side) marked.push_back(is_new[side / 2]), fresh.push_back(is_crack[side / 2]);
     std::vector<Vec3> rest(s.site.size(), Vec3::Zero());
     for (std::uint32_t v = 0; v < rest.size(); ++v)
       if (k_.alive(SurfaceVertexId(v))) rest[v] = k_.point(VertexId(s.site[v]));
@@ -203,7 +204,7 @@ class Midwife {
       const auto nodes = like_[v].valid() ? nodes_of(like_[v]) : nodes_near(rest[v]);
       return nodes.empty() ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + gradient_[nodes[0].index()]);
     };
-    if (!untangle(s, rest, slope, gap, birth_.positions, marked).empty()) throw GeometryError("the surface would cross itself where the crack begins to open");
+    if (!untangle(s, rest, slope, fresh, gap, birth_.positions, marked).empty()) throw GeometryError("the surface would cross itself where the crack begins to open");
   }
 
   std::vector<NodeId> with_neighbors(NodeId m) const {

@@ -33,9 +33,10 @@ bool push(const Tangle& t, std::vector<Vec3>& at, std::vector<std::uint8_t>& mov
 }  // namespace
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurface& surface, const std::vector<Vec3>& rest,
-                                                              const std::function<Mat3(std::uint32_t)>& slope, double gap,
-                                                              std::vector<Vec3>& positions, std::vector<std::uint8_t>& marked) {
+                                                              const std::function<Mat3(std::uint32_t)>& slope, const std::vector<std::uint8_t>& fresh,
+                                                              double gap, std::vector<Vec3>& positions, std::vector<std::uint8_t>& marked) {
   constexpr int most_rounds = 16, most_sweeps = 4;
+  const std::vector<Vec3> start = positions;
   const auto together = vertices_together(surface.site, positions);
   std::vector<Triangle> triangles = surface.triangles;
   for (auto& t : triangles)
@@ -55,14 +56,19 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurfa
       const int count = parts_apart(triangles[pair.first], triangles[pair.second], parts);
       for (int i = 0; i < count; ++i) {
         const auto& [a, b] = parts[i];
+        const bool there = !fresh[pair.first] && !fresh[pair.second];
+        const std::vector<Vec3>& from = there ? start : rest;
         Vec3 p[3], q[3];
-        for (int k = 0; k < a.size; ++k) p[k] = rest[a.v[k]];
-        for (int k = 0; k < b.size; ++k) q[k] = rest[b.v[k]];
+        for (int k = 0; k < a.size; ++k) p[k] = from[a.v[k]];
+        for (int k = 0; k < b.size; ++k) q[k] = from[b.v[k]];
         const Vec3 apart = closest_places(p, a.size, q, b.size).apart;
-        Mat3 mean = Mat3::Zero();
-        for (const Simplex& s : {a, b})
-          for (int k = 0; k < s.size; ++k) mean += slope(s.v[k]) / (a.size + b.size);
-        const Vec3 normal = mean.inverse().transpose() * apart;
+        Vec3 normal = apart;
+        if (!there) {
+          Mat3 mean = Mat3::Zero();
+          for (const Simplex& s : {a, b})
+            for (int k = 0; k < s.size; ++k) mean += slope(s.v[k]) / (a.size + b.size);
+          normal = mean.inverse().transpose() * apart;
+        }
         if (normal.norm() > 0 && normal.allFinite()) tangles.push_back({a, b, normal.normalized(), std::min(gap, 0.25 * apart.norm())});
       }
     }

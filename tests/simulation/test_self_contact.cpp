@@ -73,3 +73,39 @@ TEST_CASE("nor with the time step doubled or halved, nor in softer or stiffer ma
     }
   }
 }
+
+// Two crossed blades go down into Jell-O, turning: the second crack goes across the first, whose sheets slide and press on each other.
+TEST_CASE("no crack step is refused where soft sheets that lie on each other are cut across") {
+  const Scene scene = parse_scene(R"(
+gravity = [0, 0, -9.81]
+[body]
+mesh = "jello.ply"
+nodes = 80
+[material]
+young = 4e4
+poisson = 0.35
+damping = 2.0
+[ground]
+point = [0, 0, -0.02]
+stiffness = 4e3
+[contact]
+self = true
+[time]
+frames = 14
+frame_rate = 24
+step = 0.021
+[[blade]]
+points = [[-1.6, 0, 0], [1.6, 0.01, 0]]
+divide = 32
+keys = [[0.05, 1.003, 0.507, 1.15, 0, 0, 1, 12], [0.65, 1.007, 0.503, -0.15, 0, 0, 1, 72]]
+[[blade]]
+points = [[0, -1.6, 0], [0.01, 1.6, 0]]
+divide = 32
+keys = [[0.07, 1.003, 0.507, 1.15, 0, 0, 1, 12], [0.67, 1.007, 0.503, -0.15, 0, 0, 1, 72]]
+)", "s.toml");
+  Simulation sim(scene, make_block({2, 1, 1}, 0.25));
+  for (int i = 0; i < scene.frames; ++i) {
+    CHECK(sim.advance_frame().refused == 0);
+    CHECK(count_crossings(sim.surface()) == 0);
+  }
+}

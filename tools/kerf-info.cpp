@@ -1,6 +1,7 @@
 // kerf-info: what a file holds, and whether it is sound.
 #include <filesystem>
 #include <functional>
+#include <iostream>
 
 #include "info/ask.h"
 #include "info/diff.h"
@@ -41,12 +42,13 @@ std::size_t id_of(const std::string& text) {
 
 void check(const Command& c, const tool::Tool& t) {
   if (c.paths.empty()) throw tool::UsageError("give a file, or - for standard input");
-  if (c.diff ? c.paths.size() != 2 : c.paths.size() > 1) throw tool::UsageError(c.diff ? "--diff takes two bodies" : "give one file; two go with --diff");
+  if (c.diff && c.paths.size() != 2) throw tool::UsageError("--diff takes two bodies");
   if (!t.output_path.empty() && !c.compact) throw tool::UsageError("--output goes with --compact");
   if (!c.edge.empty() && c.edge.size() != 2) throw tool::UsageError("--edge takes two nodes");
   if (c.node < -1 || c.vertex < -1) throw tool::UsageError("--node and --vertex must not be negative");
   const int actions = c.diff + c.compact + !c.exported.empty() + (c.node >= 0) + (c.vertex >= 0) + !c.edge.empty();
   if (actions > 1) throw tool::UsageError("give one of --diff, --compact, --export, --node, --edge and --vertex");
+  if (actions == 1 && !c.diff && c.paths.size() > 1) throw tool::UsageError("give one file to --compact, --export, --node, --edge and --vertex");
 }
 
 void ask(const Command& c, const geo::Body& body, info::Report& report) {
@@ -56,8 +58,7 @@ void ask(const Command& c, const geo::Body& body, info::Report& report) {
 }
 
 // All that is no body.
-std::string report_other(const Command& c, const std::string& bytes, info::Report& report) {
-  const std::string& path = c.paths[0];
+std::string report_other(const Command& c, const std::string& path, const std::string& bytes, info::Report& report) {
   const auto kind = tool::kind_of(bytes, path);
   if (c.asks() && (kind != tool::Kind::surface || c.vertex < 0)) throw geo::InputError(path + ": is no body, which alone has nodes and edges to ask for");
   if (kind == tool::Kind::nodes) return info::report_nodes(geo::parse_nodes(bytes, path), c.wishes, report);
@@ -83,8 +84,7 @@ void write(const Command& c, const tool::Tool& t) {
 }
 
 // Fills the report; returns what is wrong first.
-std::string inspect(const Command& c, info::Report& report) {
-  const std::string& path = c.paths[0];
+std::string inspect(const Command& c, const std::string& path, info::Report& report) {
   if (c.diff) {
     const bool same = info::report_difference(geo::read_body(path), geo::read_body(c.paths[1]), report);
     return same ? std::string() : "differs from " + c.paths[1];
@@ -93,7 +93,7 @@ std::string inspect(const Command& c, info::Report& report) {
   if (!c.asks() && path.ends_with(".toml")) return info::report_scene(path, c.wishes, report);
   geo::Input input(path);
   const auto size = input.size();
-  if (!geo::looks_like_kerf(input.text(0, 16))) return report_other(c, input.text(0, size), report);
+  if (!geo::looks_like_kerf(input.text(0, 16))) return report_other(c, path, input.text(0, size), report);
   const geo::KerfFile file(std::move(input));
   const geo::Body body = geo::read_body(file);
   if (!c.asks()) return info::report_body(file, body, size, c.wishes, report);
@@ -101,14 +101,43 @@ std::string inspect(const Command& c, info::Report& report) {
   return {};
 }
 
+void one(const Command& c, const tool::Tool& t) {
+  info::Report report;
+  const std::string problem = inspect(c, c.paths[0], report);
+  if (!t.quiet || t.json) report.print(t.json);
+  if ((c.wishes.check || c.diff) && !problem.empty()) throw tool::Failure(c.paths[0] + ": " + problem);
+}
+
+// A sentence for each; what cannot be read, or is not sound, stops nothing.
+void many(const Command& c, const tool::Tool& t) {
+  std::size_t wrong = 0;
+  for (const auto& path : c.paths) {
+    std::string problem;
+    info::Report report;
+    report.add_text("file", path);
+    try {
+      const std::string found = inspect(c, path, report);
+      if (c.wishes.check && !found.empty()) problem = path + ": " + found;
+      if (t.json) report.print(true);
+      else if (!t.quiet) std::cout << path << ": " << report.headline << '\n';
+    } catch (const geo::InputError& e) {
+      problem = e.what();
+    }
+    if (problem.empty()) continue;
+    std::cerr << "kerf-info: " << problem << '\n';
+    ++wrong;
+  }
+  if (wrong > 0) throw tool::Failure(std::to_string(wrong) + " of " + std::to_string(c.paths.size()) + " files cannot be read or are not sound");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-info", "Says what a surface, node, body, front or scene file or the folder of a run holds; --check verifies every invariant.",
-               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off\n  kerf-info cut.kerf --histogram\n  kerf-info cut.kerf --node 12\n  kerf-info cut.kerf --edge 12 40\n  kerf-info cut.kerf --vertex 7\n"
+               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off\n  kerf-info --check pieces/*.ply\n  kerf-info cut.kerf --histogram\n  kerf-info cut.kerf --node 12\n  kerf-info cut.kerf --edge 12 40\n  kerf-info cut.kerf --vertex 7\n"
                "  kerf-info --diff bear.kerf cut.kerf\n  kerf-info out/halve\n  kerf-info cut.kerf --export cut.vtu\n  kerf-info --compact cut.kerf");
   Command c;
-  t.argument("FILE", c.paths, "Any file of Kerf's, or the folder of a run; - reads standard input; two with --diff");
+  t.argument("FILE", c.paths, "Files of Kerf's, folders of runs; - reads standard input; of several a sentence each; two with --diff");
   t.flag("--check", c.wishes.check, "Verify everything; exit code 1 names the first offending ids");
   t.flag("--histogram", c.wishes.histograms, "Distributions: of radii, edge lengths, neighbours, as far as there are any");
   t.option("--node", c.node, "Say what is known of this node of a body; the first is 0");
@@ -122,9 +151,6 @@ int main(int argc, char** argv) {
     if (c.paths.empty() && c.edge.size() == 3) c.paths = {c.edge[2]}, c.edge.pop_back();  // --edge I J FILE
     check(c, t);
     if (c.compact || !c.exported.empty()) return write(c, t);
-    info::Report report;
-    const std::string problem = inspect(c, report);
-    if (!t.quiet || t.json) report.print(t.json);
-    if ((c.wishes.check || c.diff) && !problem.empty()) throw tool::Failure(c.paths[0] + ": " + problem);
+    c.paths.size() > 1 && !c.diff ? many(c, t) : one(c, t);
   });
 }

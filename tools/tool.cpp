@@ -3,7 +3,10 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <poll.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <cmath>
@@ -14,6 +17,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/spelling.h"
 #include "describe.h"
 #include "io/stream.h"
 #include "version.h"
@@ -22,6 +26,7 @@ namespace tool {
 namespace {
 
 std::atomic<bool> interrupted{false};
+constexpr int closed_pipe = 141;  // what a shell says of programs that SIGPIPE ends
 
 // A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a second Ctrl-C comes,
 // it removes what is half written and ends the program.
@@ -49,6 +54,27 @@ void watch_signals(const std::string& name, double patience) {
 // False when standard output did not take everything, as on a full disk.
 bool flush_output() { return std::cout.flush().good() && std::fflush(stdout) == 0; }
 
+// True when standard output is a pipe whose reader has gone, as `head` does when it has enough.
+bool reader_gone() {
+  pollfd out{1, POLLOUT, 0};
+  return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
+}
+
+// What the words of the command line mean: behind "--" all are files, whatever they begin with; long options are known.
+std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
+  std::vector<std::string> words(argv + 1, argv + argc), known;
+  for (const CLI::Option* option : app.get_options())
+    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+  const auto end = std::find(words.begin(), words.end(), "--");
+  for (auto word = words.begin(); word != end; ++word) {
+    const std::string name = word->substr(0, word->find('='));
+    if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end()) throw UsageError("there is no option " + name + geo::did_you_mean(name, known));
+  }
+  for (auto word = end == words.end() ? end : end + 1; word != words.end(); ++word)
+    if (word->size() > 1 && word->front() == '-') word->insert(0, "./");
+  return words;
+}
+
 }  // namespace
 
 struct Tool::Parser {
@@ -59,7 +85,7 @@ Tool::Tool(std::string name, std::string summary, std::string examples) : parser
   CLI::App& app = parser_->app;
   app.name(name_);
   app.description(std::move(summary));
-  app.footer("Examples:\n" + examples + "\n\nExit codes: 0 done, 1 a check found something or the processing failed, 2 usage, 65 bad input,\n66 input missing, 70 internal error, 73 output cannot be made, 130 interrupted.");
+  app.footer("Examples:\n" + examples + "\n\nExit codes: 0 done, 1 a check found something or the processing failed, 2 usage, 65 bad input,\n66 input missing, 70 internal error, 73 output cannot be made, 130 interrupted, 141 closed pipe.");
   app.set_version_flag("--version", name_ + " (kerf) " KERF_VERSION);
   app.set_config("--config", "", "Read options from this TOML or INI file");
   app.allow_config_extras(false);
@@ -98,9 +124,11 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
       std::cout << describe(parser_->app, argv[2]);
       return flush_output() ? 0 : 73;
     }
-    parser_->app.parse(argc, argv);
+    auto words = words_of(argc, argv, parser_->app);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    parser_->app.parse(std::move(words));
   } catch (const UsageError& e) {
-    std::cerr << name_ << ": " << e.what() << '\n';
+    std::cerr << name_ << ": " << e.what() << "; see " << name_ << " --help\n";
     return 2;
   } catch (const CLI::FileError& e) {
     std::cerr << name_ << ": " << e.what() << "; check the name\n";
@@ -109,6 +137,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
     if (e.get_exit_code() == 0) {
       parser_->app.exit(e);
       if (flush_output()) return 0;
+      if (reader_gone()) return closed_pipe;
       std::cerr << name_ << ": -: cannot be written; is the disk full?\n";
       return 73;
     }
@@ -137,6 +166,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   } catch (const geo::GeometryError& e) {
     return fail(e.what(), 1);
   } catch (const geo::OutputError& e) {
+    if (std::string_view(e.what()).starts_with("-:") && reader_gone()) return closed_pipe;
     return fail(e.what(), 73);
   } catch (const geo::Interrupted&) {
     return fail("interrupted", 130);

@@ -61,12 +61,13 @@ void read_body_table(TomlTable& t, Scene& s) {
   body.name = "body" + std::to_string(s.bodies.size() + 1);
   t.get("name", body.name);
   t.get("mesh", body.mesh);
-  if (body.mesh.empty()) t.fail("'body.mesh' is missing: name the model");
+  if (body.mesh.empty()) t.missing("mesh", "name the model");
   t.get("spacing", body.sampling.spacing, 1e-12, 1e12);
   t.get("spacing_percent", body.spacing_percent, 0.05, 50);
   int nodes = 0;
   t.get("nodes", nodes, 1, 100000000);
   body.sampling.count = static_cast<std::size_t>(nodes);
+  if ((t.find("spacing") != nullptr) + (t.find("spacing_percent") != nullptr) + (nodes > 0) > 1) t.fail("give one of 'spacing', 'spacing_percent' and 'nodes'");
   t.get("levels", body.sampling.levels, 1, 10);
   t.get("across", body.sampling.across, 0, 100);
   t.get("k", s.k, 3, 1000);
@@ -151,7 +152,7 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
   int body = 0;
   t.get("file", file);
   t.get("body", body, 0, static_cast<int>(s.bodies.size()) - 1);
-  if (file.empty()) t.fail("'score.file' is missing: name a front file");
+  if (file.empty()) t.missing("file", "name a front file");
   const SceneBody& of = s.bodies[static_cast<std::size_t>(body)];
   const std::filesystem::path path = file;
   const std::string name = path.filename().string();
@@ -165,7 +166,7 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
 void read_top(TomlTable& top, Scene& s, Files& files) {
   top.section("material", [&](TomlTable& t) { read_material(t, s.material); });
   const auto* body = top.find("body");
-  if (!body) top.fail("'body.mesh' is missing: name the model");
+  if (!body) top.missing("body", "write [body], and in it mesh = \"MODEL\"");
   if (body->is_table()) top.section("body", [&](TomlTable& t) { read_body_table(t, s); });
   else top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
   top.section("ground", [&](TomlTable& t) {
@@ -215,7 +216,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   top.get("gravity", s.gravity);
   top.list("grip", [&](TomlTable& t) {
     const auto* box = t.find("box");
-    if (!box) t.fail("'grip.box' is missing: x0, y0, z0, x1, y1, z1");
+    if (!box) t.missing("box", "x0, y0, z0, x1, y1, z1");
     const auto v = t.row(*box, 6, "'grip.box'");
     Grip grip{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, read_motion(t, files), false};
     t.get("release", grip.release);

@@ -33,6 +33,9 @@ void override_key(toml::table& root, const std::string& key, const std::string& 
     from = dot + 1;
     if (toml::table* table = at->as_table()) {
       if (last) {
+        const std::initializer_list<const char*> fineness{"spacing", "spacing_percent", "nodes"};  // a body has one of them: the new one
+        if (std::find(fineness.begin(), fineness.end(), part) != fineness.end())
+          for (const char* other : fineness) table->erase(other);
         table->insert_or_assign(part, *parsed.get("value"));
         return;
       }

@@ -114,6 +114,7 @@ std::string read_all(const std::string& path) {
       throw InputError(path + ": is a folder; give a file");
     }
   }
+  if (path == "-" && ::isatty(0)) throw InputError("-: standard input is a terminal; give a file or a pipe");
   std::string bytes;
   char chunk[1 << 16];
   for (;;) {

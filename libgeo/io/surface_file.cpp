@@ -3,6 +3,7 @@
 #include "io/stream.h"
 #include "io/surface_internal.h"
 #include "io/text_internal.h"
+#include "surface/weld.h"
 
 namespace geo {
 namespace {
@@ -22,17 +23,18 @@ bool looks_like_off(const std::string& bytes) {
   return lines.next(words) && (words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF");
 }
 
+// What is often given in place of a surface file that is read here, told by its first bytes; null: none of these.
+const char* other_format(const std::string& bytes) {
+  static constexpr std::pair<const char*, const char*> formats[] = {{"glTF", "a glTF"}, {"Kaydara FBX", "an FBX"}, {"; FBX", "an FBX"}, {"<?xml", "an XML (COLLADA?)"}, {"BLENDER", "a Blender"},
+                                                                    {"PXR-USDC", "a USD"}, {"#usda", "a USD"}, {"PK\3\4", "a zipped"}, {"{", "a JSON (glTF?)"}};
+  for (const auto& [beginning, what] : formats)
+    if (bytes.rfind(beginning, 0) == 0) return what;
+  return nullptr;
+}
+
 }  // namespace
 
 std::uint32_t row_of(double x) { return x >= 0 && x < 4294967295.0 && x == std::floor(x) ? static_cast<std::uint32_t>(x) : ~0u; }
-
-void add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where) {
-  if (polygon.size() < 3) throw InputError(where + "a face has fewer than three vertices");
-  for (const auto v : polygon)
-    if (v >= mesh.vertices.size())
-      throw InputError(where + "a face names vertex " + std::to_string(v) + ", but there are " + std::to_string(mesh.vertices.size()));
-  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) mesh.triangles.push_back({polygon[0], polygon[k], polygon[k + 1]});
-}
 
 SurfaceFile read_surface(const std::string& path) { return parse_surface(read_all(path), path); }
 
@@ -44,8 +46,13 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
     file.mesh = parse_off(bytes, name);
   else if (looks_like_obj(bytes))
     file.mesh = parse_obj(bytes, name);
+  else if (const char* other = other_format(bytes))
+    throw InputError(name + ": is " + other + " file; save it as PLY, OBJ, STL or OFF, or convert it: assimp export " + name + " model.obj");
   else
     file.mesh = parse_stl(bytes, name);
+  for (std::size_t v = 0; v < file.mesh.vertices.size(); ++v)
+    if (!in_range(file.mesh.vertices[v])) throw InputError(name + ": vertex " + std::to_string(v) + " has a coordinate of no sensible size; repair the file");
+  if (!file.mesh.two_sided()) weld_seams(file.mesh);
   if (file.mesh.triangles.empty()) throw InputError(name + ": has no triangles; give a closed triangle mesh");
   return file;
 }

@@ -16,8 +16,8 @@ struct SurfaceFile {
   std::vector<FrontState> fronts;
 };
 
-/// Reads any supported format, told by content first and by extension next; polygons are triangulated as fans, STL
-/// corners are welded by exact position. What the file has of attributes and sources comes with it. Throws InputError (with line or row) on anything malformed, NaN or infinite,
+/// Reads any supported format, told by content first and by extension next; polygons are triangulated as fans,
+/// or by ears where they are not convex; seams are welded (weld_seams) unless there are sites. What the file has of attributes and sources comes with it. Throws InputError (with line or row) on anything malformed, NaN or infinite,
 /// indices out of range, sizes that the file cannot hold, trailing garbage.
 SurfaceFile read_surface(const std::string& path);
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name);

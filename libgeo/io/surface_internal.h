@@ -18,8 +18,9 @@ TriangleMesh parse_stl(const std::string& bytes, const std::string& name);
 /// A number as a row; ~0u when it is none.
 std::uint32_t row_of(double x);
 
-/// Adds a polygon as a fan of triangles: its corners 0, k, k + 1 for k = 1, 2 … Throws InputError, `where` first.
-void add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where);
+/// Adds a polygon of n corners as n − 2 triangles: 0, k, k + 1 for k = 1, 2 … unless these fold over, as of one that is not convex.
+/// Returns the corners of each. Throws InputError, `where` first.
+std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where);
 
 /// Each vertex' value at all of its corners.
 template <class V>

@@ -89,9 +89,8 @@ TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
         any_uv = any_uv || !vt.empty(), any_normal = any_normal || !vn.empty();
       }
       if (polygon.size() < 3) lines.fail("a face has fewer than three vertices");
-      add_polygon(mesh, polygon, name + ": ");
-      for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
-        rows.push_back({{polygon_uv[0], polygon_uv[k], polygon_uv[k + 1]}, {polygon_normal[0], polygon_normal[k], polygon_normal[k + 1]}});
+      for (const auto& [p, q, r] : add_polygon(mesh, polygon, name + ": ")) {
+        rows.push_back({{polygon_uv[p], polygon_uv[q], polygon_uv[r]}, {polygon_normal[p], polygon_normal[q], polygon_normal[r]}});
         material_of.push_back(materials.row(material));
         part_of.push_back(parts.row(part));
       }

@@ -10,9 +10,10 @@
 namespace geo {
 namespace {
 
-// Where a triangle comes from: its face, and its corners among the face's, which are 0, second and second + 1.
+// Where a triangle comes from: its face, and its corners among the face's.
 struct Part {
-  std::uint32_t face, second;
+  std::uint32_t face;
+  std::array<std::uint32_t, 3> corner;
 };
 
 // The properties of these names when the element has all of them, none a list; else nothing.
@@ -87,8 +88,7 @@ class Reader {
     for (std::uint32_t i = 0; i < face_->count; ++i) {
       polygon.clear();
       for (auto j = i ? indices_->ends[i - 1] : 0; j < indices_->ends[i]; ++j) polygon.push_back(row_of(indices_->values[j]));
-      add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": ");
-      for (std::uint32_t k = 1; k + 1 < polygon.size(); ++k) parts_.push_back({i, k});
+      for (const auto& corner : add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": ")) parts_.push_back({i, corner});
     }
     if (patch_ && site) {
       for (const Part& part : parts_) mesh().patch.push_back(whole(patch_->values[part.face], "patch"));
@@ -119,8 +119,7 @@ class Reader {
       }
     const double scale = list && size == 4 ? full(list->type) : 1;
     for (std::size_t t = 0; t < parts_.size(); ++t) {
-      const auto& [face, second] = parts_[t];
-      const std::uint32_t corner[3] = {0, second, second + 1};
+      const auto& [face, corner] = parts_[t];
       std::array<V, 3> row;
       for (int k = 0; k < 3; ++k) {
         if (list)

@@ -1,6 +1,5 @@
-// STL, ASCII and binary: triangles only, welded where their corners are equal.
+// STL, ASCII and binary: triangles only, three vertices each.
 #include <cstring>
-#include <map>
 
 #include "io/surface_internal.h"
 #include "io/text_internal.h"
@@ -8,28 +7,16 @@
 namespace geo {
 namespace {
 
-class Welder {
- public:
-  TriangleMesh mesh;
-  void add(const std::array<Vec3, 3>& corners) {
-    Triangle t;
-    for (int k = 0; k < 3; ++k) {
-      const std::array<double, 3> key{corners[k].x() + 0.0, corners[k].y() + 0.0, corners[k].z() + 0.0};
-      const auto [it, fresh] = rows_.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
-      if (fresh) mesh.vertices.push_back(corners[k]);
-      t[k] = it->second;
-    }
-    mesh.triangles.push_back(t);
-  }
-
- private:
-  std::map<std::array<double, 3>, std::uint32_t> rows_;
-};
+void add(TriangleMesh& mesh, const Vec3 (&corners)[3]) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), corners, corners + 3);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+}
 
 }  // namespace
 
 TriangleMesh parse_stl(const std::string& bytes, const std::string& name) {
-  Welder welder;
+  TriangleMesh mesh;
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, 4);
   const bool binary = bytes.size() >= 84 && bytes.size() == 84 + 50 * static_cast<std::size_t>(count);
@@ -38,13 +25,13 @@ TriangleMesh parse_stl(const std::string& bytes, const std::string& name) {
     for (std::size_t t = 0; t < count; ++t) {
       float f[12];
       std::memcpy(f, bytes.data() + 84 + 50 * t, sizeof f);
-      std::array<Vec3, 3> c;
+      Vec3 c[3];
       for (int k = 0; k < 3; ++k) c[k] = Vec3(f[3 + 3 * k], f[4 + 3 * k], f[5 + 3 * k]);
       for (const auto& p : c)
         if (!p.allFinite()) throw InputError(name + ": triangle " + std::to_string(t) + " has a coordinate that is not a finite number; repair the file");
-      welder.add(c);
+      add(mesh, c);
     }
-    return std::move(welder.mesh);
+    return mesh;
   }
   Lines lines(bytes, name, 0);
   std::vector<std::string_view> words;
@@ -56,14 +43,14 @@ TriangleMesh parse_stl(const std::string& bytes, const std::string& name) {
       corners.push_back({lines.real(words[1]), lines.real(words[2]), lines.real(words[3])});
     } else if (words[0] == "endfacet") {
       if (corners.size() != 3) lines.fail("a facet needs three vertices");
-      welder.add({corners[0], corners[1], corners[2]});
+      add(mesh, {corners[0], corners[1], corners[2]});
       corners.clear();
     } else if (words[0] == "endsolid") {
       ended = true;
     }
   }
   if (!ended || !corners.empty()) lines.fail("ends without 'endsolid'; the file is truncated");
-  return std::move(welder.mesh);
+  return mesh;
 }
 
 }  // namespace geo

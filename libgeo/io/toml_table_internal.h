@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 #include <set>
 #include <string>
 #include <toml++/toml.h>
 #include <vector>
 
 #include "base/error.h"
+#include "base/spelling.h"
 #include "base/vec.h"
 #include "io/text_internal.h"
 
@@ -22,6 +24,12 @@ class TomlTable {
     throw InputError(at.line > 0 ? name_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " + what : name_ + ": " + what);
   }
   [[noreturn]] void fail(const std::string& what) const { fail(table_, what); }
+  /// A key that must be there is not: perhaps it is there misspelt.
+  [[noreturn]] void missing(const std::string& key, const std::string& what) const {
+    for (const auto& [other, node] : table_)
+      if (const auto meant = did_you_mean(other.str(), {key}); !meant.empty()) fail(node, "unknown key '" + path_ + shown(other.str()) + "'" + meant);
+    fail("'" + path_ + key + "' is missing: " + what);
+  }
   const toml::node* find(const std::string& key) {
     known_.insert(key);
     return table_.get(key);
@@ -31,7 +39,7 @@ class TomlTable {
     if (!node) return;
     const auto v = node->value<double>();
     if (!v) fail(*node, "'" + path_ + key + "' must be a number");
-    if (!(*v >= least && *v <= most)) fail(*node, "'" + path_ + key + "' is out of range");
+    if (!(*v >= least && *v <= most)) fail(*node, "'" + path_ + key + "' is out of range: it must be from " + in_words(least) + " to " + in_words(most));
     value = *v;
   }
   void get(const std::string& key, int& value, int least, int most) {
@@ -100,10 +108,15 @@ class TomlTable {
   /// After all keys were asked for.
   void done() const {
     for (const auto& [key, node] : table_)
-      if (!known_.count(std::string(key.str()))) fail(node, "unknown key '" + path_ + shown(key.str()) + "'");
+      if (!known_.count(std::string(key.str()))) fail(node, "unknown key '" + path_ + shown(key.str()) + "'" + did_you_mean(key.str(), {known_.begin(), known_.end()}));
   }
 
  private:
+  static std::string in_words(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", x);
+    return text;
+  }
   template <class Read>
   void each(const toml::table& table, const std::string& key, const Read& read) {
     TomlTable inner(table, name_, path_ + key + ".");

@@ -132,7 +132,7 @@ TEST_CASE("obstacles that are none are refused in one line") {
   CHECK(refused("normal = [0, 0, 1]\nmesh = 'a'\n").find("give one of them") != std::string::npos);
   CHECK(refused("normal = [0, 0, 0]\n") == "s.toml:4:10: 'obstacle.normal' has no direction");
   CHECK(refused("normal = [0, 0, nan]\n") == "s.toml:4:17: 'obstacle.normal' must be 3 finite numbers");
-  CHECK(refused("normal = [0, 0, 1]\nstiffness = -1\n") == "s.toml:5:13: 'obstacle.stiffness' is out of range");
+  CHECK(refused("normal = [0, 0, 1]\nstiffness = -1\n") == "s.toml:5:13: 'obstacle.stiffness' is out of range: it must be from 0 to 1e+12");
   CHECK(refused("normal = [0, 0, 1]\nhard = 1\n") == "s.toml:5:8: unknown key 'obstacle.hard'");
   CHECK(refused("normal = [0, 0, 1]\nkeys = [[1, 0, 0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0, 1, 0]]\n").find("must ascend in time") != std::string::npos);
   CHECK(refused("mesh = 'no such file.ply'\n").find("no such file.ply") != std::string::npos);

@@ -41,6 +41,14 @@ TEST_CASE("a scene is read, overridden, and refused with line and column") {
   CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[material]\nyoung = \"stiff\"\n", "s.toml"), Catch::Contains("s.toml:4:"));
   CHECK_THROWS_WITH(parse_scene("[body\n", "s.toml"), Catch::Contains("s.toml:1:"));
   CHECK_THROWS_AS(parse_scene("", "s.toml"), InputError);
+  // What was meant, where a key is misspelt; what a number may be; what cannot be given together.
+  CHECK_THROWS_WITH(parse_scene("[body]\nmsh = \"a\"\n", "s.toml"), "s.toml:2:7: unknown key 'body.msh'; did you mean 'mesh'?");
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[fracture]\nstrenght = 1\n", "s.toml"), Catch::Contains("'fracture.strenght'; did you mean 'strength'?"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n", "s.toml", {{"materail.young", "1"}}), Catch::Contains("did you mean 'material'?"));
+  CHECK_THROWS_WITH(parse_scene("[bodi]\nmesh = \"a\"\n", "s.toml"), Catch::Contains("did you mean 'body'?"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[material]\npoisson = 0.5\n", "s.toml"), Catch::Contains("from -0.99 to 0.4999"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\nnodes = 5\nspacing = 0.1\n", "s.toml"), Catch::Contains("one of 'spacing'"));
+  CHECK(parse_scene("[body]\nmesh = \"a\"\nnodes = 5\n", "s.toml", {{"body.spacing", "0.5"}}).bodies[0].sampling.count == 0);
 }
 
 TEST_CASE("a blade turns and moves by its keys") {

@@ -4,7 +4,7 @@
 set -u
 here=$(dirname "$(realpath "$0")")
 . "$here/answers.sh"
-PATH=$1:$2:$PATH
+PATH=$(realpath "$1"):$(realpath "$2"):$PATH
 export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -23,7 +23,7 @@ kerf-update p.kerf --surface whole.ply -o whole.kerf
 says '^A closed surface: 1,280 triangles of skin, 1 piece; ' kerf-info p.ply
 says '^A closed surface: .* 1 crack of [0-9]+ triangles that ends inside, 1 piece; .* 1 front can go on' kerf-info half.ply
 says '^A body of 2 pieces: .* 1 crack' kerf-info whole.kerf
-says '^1 front: 9 time steps' kerf-info halve.front
+says '^1 front of 9 time steps; ' kerf-info halve.front
 says '^[0-9]+ nodes, ' kerf-info nodes.pcd
 says '^kind  *body$' kerf-info whole.kerf
 says '"history":\["kerf-graph [0-9.]*","kerf-update [0-9.]*"\]' kerf-info --json half.kerf
@@ -55,6 +55,14 @@ way = next(w for w in (ask("--vertex", v)["way"] for v in range(200)) if len(w) 
 assert ask("--vertex", way[-1])["way"] == way[-1:]
 P
 says '"triangles":\[[0-9,]+\].*"site":7' kerf-info --json half.ply --vertex 7
+# Several files: a sentence or a line of JSON each; one that is damaged stops none.
+says '^whole.kerf: A body of 2 pieces' kerf-info halve.front whole.kerf p.ply
+kerf-info --json halve.front whole.kerf p.ply | python3 -c 'import json, sys; assert [json.loads(line)["file"] for line in sys.stdin] == ["halve.front", "whole.kerf", "p.ply"]' || fail "--json of several files"
+head -c 300 p.ply >damaged.ply
+kerf-info --check damaged.ply whole.kerf >told.txt 2>why.txt && fail "a damaged file among others passes"
+grep -q '^whole.kerf: ' told.txt && grep -q 'damaged.ply:.*truncated' why.txt && grep -q '1 of 2 files' why.txt || fail "several files: $(cat told.txt why.txt)"
+kerf-score -q p.ply --pieces 4 -o walls.front
+says '^1 sheet of [0-9]+ triangles; [0-9]+ points\.$' kerf-info walls.front
 # A node behind the crack is behind a face of it.
 python3 - <<'P' || fail "no pair behind a crack"
 import json, subprocess
@@ -91,7 +99,7 @@ refuses 65 'no body' kerf-info half.ply --node 1
 refuses 2 'two nodes' kerf-info half.kerf --edge 3
 refuses 2 "'x' is not" kerf-info half.kerf --edge 3 x
 refuses 2 'two bodies' kerf-info half.kerf --diff
-refuses 2 'one file' kerf-info half.kerf whole.kerf
+refuses 2 'one file' kerf-info half.kerf whole.kerf --node 1
 refuses 2 'one of' kerf-info half.kerf --node 1 --vertex 2
 refuses 2 'give a file' kerf-info
 # The exports, in the readers that people have: Debian's, of Debian's Python.

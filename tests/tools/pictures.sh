@@ -33,6 +33,17 @@ draw whole.kerf --opacity 0.3 --nodes --explode 0.8 -o apart.png
 draw whole.kerf --opacity 0.3 --nodes --explode 0.8 -j 1 -o again.png
 cmp apart.png again.png || fail "threads change the picture"
 
+# However large a model is, and wherever it stands: the same picture.
+for size in 1 1e-20 1e20; do
+  awk -v s=$size 'BEGIN { s = 2 ^ int(log(s) / log(2)); for (i = 0; i < 8; ++i) printf "v %.17g %.17g %.17g\n", s * (i % 2), s * (int(i / 2) % 2), s * int(i / 4)
+    print "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 2 4 8 6\nf 4 3 7 8\nf 3 1 5 7" }' >cube$size.obj
+  draw cube$size.obj -o cube$size.png
+  cmp cube1.png cube$size.png || fail "a cube of $size looks otherwise"
+done
+sed 's/^v \([01]\)/v 100000000\1/' cube1.obj >far.obj
+draw far.obj -o far.png
+cmp cube1.png far.png || fail "a cube that is far away looks otherwise"
+
 # Animations: as many frames as asked for, the same bytes again.
 draw whole.ply --explode 0.5 --frames 5 -o turn.webp
 draw whole.ply --explode 0.5 --frames 5 -j 1 -o again.webp

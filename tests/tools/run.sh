@@ -3,7 +3,7 @@
 #   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | chunks | killed
 set -u
 script=$(realpath "$0")
-PATH=$1:$2:$PATH models=$3 what=$4
+PATH=$(realpath "$1"):$(realpath "$2"):$PATH models=$(realpath "$3") what=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -101,7 +101,8 @@ contract)
   for tool in kerf-sample kerf-graph kerf-score kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-view; do
     $tool --help | grep -q Examples || fail "$tool --help has no examples"
     $tool --version | grep -q "$tool (kerf) [0-9]" || fail "$tool --version"
-    expect 2 "see $tool --help" $tool --no-such-option
+    expect 2 "no option --no-such-option; see $tool --help" $tool --no-such-option
+    expect 2 "did you mean '--output'" $tool block.ply --ouput=x
   done
   expect 2 "spacing" kerf-sample block.ply --spacing banana -o x.pcd
   for options in "--spacing -1" "--spacing 0" "--spacing nan" "--spacing 3%%" "--spacing 0.1 -n 5" "--count -5" "--levels 0" "--levels 11" "--jitter 0.5" "--pattern red" "--min-across -1" "--min-across 101" "--iso 0" "--grid a" "--surface s.ply"; do
@@ -121,6 +122,19 @@ contract)
     grep -q terminal tty.txt || fail "$line does not say why"
     rm -f tty.txt
   done
+  script -qec "kerf-info -" /dev/null <<<"" >tty.txt && fail "a terminal is read"
+  grep -q "is a terminal" tty.txt || fail "kerf-info - waits at a terminal: $(cat tty.txt)"
+  rm tty.txt
+  # A reader that has enough is no error to speak of; files may be called anything.
+  for line in "kerf-info --json ok.kerf" "kerf-crack block.ply --front ok.front" "kerf-sample block.ply --spacing 12%"; do
+    { $line 2>err.txt; echo $? >status; } | true
+    case $(cat status) in 141 | 0) ;; *) fail "$line | true exits with $(cat status)" ;; esac
+    [ -s err.txt ] && fail "$line | true says: $(cat err.txt)"
+    rm err.txt status
+  done
+  cp block.ply ./-n.ply
+  quietly kerf-sample --spacing 12% -o 'ä ö.pcd' -- -n.ply
+  quietly kerf-info -q -- -n.ply 'ä ö.pcd'
   kerf-info --json block.ply | grep -q '"kind":"surface","vertices":' || fail "kerf-info --json"
   kerf-info --json ok.kerf | grep -q '"edges_crossing":null' || fail "kerf-info --json of a body"
   kerf-info --check --json ok.kerf | grep -q '"edges_crossing":0' || fail "kerf-info --check --json of a body"

@@ -55,10 +55,11 @@ std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report
 }
 
 void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, Report& report) {
-  std::size_t steps = 0, points = 0;
+  std::size_t steps = 0, points = 0, sheets = 0, triangles = 0;
   std::vector<double> moves;
   for (const auto& f : fronts) {
-    steps += f.steps.size();
+    sheets += f.is_sheet(), triangles += f.triangles.size();
+    if (!f.is_sheet()) steps += f.steps.size();
     for (std::size_t s = 0; s < f.steps.size(); ++s) {
       points += f.steps[s].size();
       if (s == 0) continue;
@@ -68,10 +69,14 @@ void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, 
       moves.push_back(longest);
     }
   }
-  report.headline = counted(fronts.size(), "front") + ": " + counted(steps, "time step") + ", " + counted(points, "point") + (moves.empty() ? "." : "; the longest move of a point in a step is " + rounded(*std::max_element(moves.begin(), moves.end())) + ".");
+  const std::string swept = counted(fronts.size() - sheets, "front") + " of " + counted(steps, "time step"), whole = counted(sheets, "sheet") + " of " + counted(triangles, "triangle");
+  report.headline = (sheets == 0 ? swept : sheets == fronts.size() ? whole : swept + ", " + whole) + "; " + counted(points, "point") +
+                    (moves.empty() ? "." : "; the longest move of a point in a step is " + rounded(*std::max_element(moves.begin(), moves.end())) + ".");
   report.add_text("kind", "fronts");
-  report.add("fronts", fronts.size());
+  report.add("fronts", fronts.size() - sheets);
+  report.add("sheets", sheets);
   report.add("steps", steps);
+  report.add("triangles", triangles);
   report.add("points", points);
   std::vector<std::string> names;
   for (const auto& f : fronts) names.push_back(tool::quoted(f.name));

@@ -331,18 +331,30 @@ class Tracer {
   double scale_ = 1, floor_ = 0;
 };
 
+// Rays are of single precision: what is drawn goes to the origin, and is made about as large as 1.
+Stage placed(Stage stage, const Vec3& middle, double scale) {
+  const auto place = [&](Vec3& p) { p = (p - middle) * scale; };
+  for (Vec3& p : stage.surface.vertices) place(p);
+  for (Sphere& s : stage.spheres) place(s.center), s.radius *= scale;
+  for (Stick& s : stage.sticks) place(s.a), place(s.b), s.radius *= scale;
+  if (stage.cutaway) place(stage.cutaway->point);
+  if (stage.ground_level) *stage.ground_level = (*stage.ground_level - middle.z()) * scale;
+  return stage;
+}
+
 }  // namespace
 
 Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options) {
-  const Tracer tracer(stage);
+  const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
+  const Stage near = placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius);
+  const Tracer tracer(near);
   const double azimuth = camera.azimuth * pi / 180, elevation = camera.elevation * pi / 180;
   const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation));
   const Vec3 right = Vec3(std::cos(azimuth), -std::sin(azimuth), 0), up = right.cross(forward);
   const double field = std::tan(17 * pi / 180);  // half the vertical angle of view
-  const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
   const double aspect = double(options.width) / options.height;
-  const double distance = 1.02 * radius / (field * std::min(1.0, aspect)) / camera.zoom;
-  const Vec3 eye = (camera.box.empty() ? Vec3::Zero() : camera.box.center()) - distance * forward;
+  const double distance = 1.02 / (field * std::min(1.0, aspect)) / camera.zoom;
+  const Vec3 eye = -distance * forward;
 
   const int samples = options.samples * options.samples, rays = (options.occlusion + samples - 1) / samples;
   Picture picture(options.width, options.height);

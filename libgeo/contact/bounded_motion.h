@@ -1,7 +1,8 @@
 // Moves a surface to where it should be, or as near to it as it comes without crossing itself.
 #pragma once
 
-#include "contact/watch.h"
+#include "contact/near_pairs.h"
+#include "contact/surface_motion.h"
 
 namespace geo {
 
@@ -17,7 +18,8 @@ struct BoundedMotion {
 /// rounds all the same, vertices of such pairs are carried along by a smooth field of what all want (smooth_field.h), in which
 /// neither side of a narrow gap passes the other; what crosses all the same, since triangles are flat and the field is not, moves
 /// as rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing does. From there, then, each vertex for itself
-/// goes straight on where nothing is in its way (straight_motion.h), and as far as planes between near parts let it (dividers.h).
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr);
+/// goes straight on where nothing is in its way, and as far as planes between near parts let it (settle.h). `near`: what is known of
+/// the same triangles from watch(), about this motion or one like it.
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr, NearPairs* near = nullptr);
 
 }  // namespace geo

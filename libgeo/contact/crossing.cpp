@@ -21,6 +21,14 @@ std::vector<std::uint32_t> vertices_together(std::span<const std::uint32_t> site
   return result;
 }
 
+bool triangles_cross(const Triangle& s, const Triangle& t, const std::vector<Vec3>& positions, bool two_sided) {
+  const std::array<Vec3, 3> p{positions[s[0]], positions[s[1]], positions[s[2]]}, q{positions[t[0]], positions[t[1]], positions[t[2]]};
+  if (!box_of(p[0], p[1], p[2]).meets(box_of(q[0], q[1], q[2]))) return false;
+  int same = 0;
+  for (const auto v : s) same += v == t[0] || v == t[1] || v == t[2];
+  return !(same == 3 && two_sided) && faces_cross(s, p, t, q);
+}
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
                                                                     std::span<const std::uint32_t> together, bool two_sided,
                                                                     const std::vector<std::uint8_t>* only) {
@@ -48,16 +56,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(std::span<co
     for (std::size_t i = begin; i < end; ++i) {
       const auto [s, t] = pairs[i];
       if (only && !(*only)[s] && !(*only)[t]) continue;
-      std::array<std::uint32_t, 3> f, g;
-      std::array<Vec3, 3> p, q;
-      int same = 0;
-      for (int k = 0; k < 3; ++k) {
-        f[k] = together[triangles[s][k]], g[k] = together[triangles[t][k]];
-        p[k] = positions[f[k]], q[k] = positions[g[k]];
-      }
-      if (!box_of(p[0], p[1], p[2]).meets(box_of(q[0], q[1], q[2]))) continue;
-      for (int k = 0; k < 3; ++k) same += f[k] == g[0] || f[k] == g[1] || f[k] == g[2];
-      crosses[i] = same == 3 && two_sided ? 0 : faces_cross(f, p, g, q);
+      const auto &a = triangles[s], &b = triangles[t];
+      crosses[i] = triangles_cross({together[a[0]], together[a[1]], together[a[2]]}, {together[b[0]], together[b[1]], together[b[2]]}, positions, two_sided);
     }
   });
   std::vector<std::pair<std::uint32_t, std::uint32_t>> result;

@@ -17,6 +17,9 @@ namespace geo {
 /// For each vertex the lowest row with the same site and the same coordinates. `site` empty: each for itself.
 std::vector<std::uint32_t> vertices_together(std::span<const std::uint32_t> site, const std::vector<Vec3>& positions);
 
+/// Whether two triangles of rows that stand for others cross.
+bool triangles_cross(const Triangle& s, const Triangle& t, const std::vector<Vec3>& positions, bool two_sided);
+
 /// Pairs of triangles that cross, ascending. `together` from vertices_together(); `two_sided`: two triangles with the same three
 /// corners are two sides of a face, and touch. Only pairs with a triangle marked in `only`, where given.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,

@@ -179,7 +179,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
       touch_.add(rows[i], touching[i].normal, lack > 0 ? recovered * lack : lack, stiffness / alone, state.displacement);
     }
   };
-  add(deepest(touching_places(watch(motion, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);
+  add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);
   std::vector<TouchingPlaces> sides;
   touching_copies(copies, free, vertex_normals(surface_, positions_), -reach, {dt}, sides);
   add(deepest(sides, weights_, most_between), each_alone(copies.size()), now, 0);
@@ -210,7 +210,7 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   const auto respond = [&](const Constraint& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
     const std::vector<Vec3> goal = averaged(to, together, copies);
     const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
-    if (watched.empty()) watched = watch(motion);
+    if (watched.empty()) watched = watch(motion, near_);
     const auto touching = deepest(touching_places(watched, motion, constraint), weights_, most_between);
     std::vector<TouchingPlaces> all_sides;
     touching_copies(copies, to, normals, 0.01 * gap, constraint, all_sides);
@@ -242,12 +242,12 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = copies_together(together);
   const std::vector<Vec3> goal = averaged(to, together, copies);
   BoundedMotion bounded;
-  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, reach}, true, &bounded);
+  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, reach}, true, &bounded, &near_);
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (const auto& t : surface_.triangles)
     for (const auto v : t) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
-  begun_ = false;
+  begun_ = false, near_ = {};
   if (told) *told += work;
 }
 

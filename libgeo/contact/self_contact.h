@@ -13,6 +13,7 @@
 #include "contact/bounded_motion.h"
 #include "contact/contact_options.h"
 #include "contact/contact_surface.h"
+#include "contact/near_pairs.h"
 #include "contact/surface_weights.h"
 #include "contact/touch_penalty.h"
 
@@ -50,6 +51,7 @@ class SelfContact {
   SurfaceWeights weights_;
   std::vector<Vec3> positions_;
   TouchPenalty touch_{TouchPenaltyOptions{}};
+  NearPairs near_;       // of the step that is worked on
   bool begun_ = false;  // a step that touch_ acts in
   Birth birth_;  // of the step that was expected last
 };

@@ -11,10 +11,18 @@ TrianglePlanes::TrianglePlanes(std::span<const Triangle> triangles, const std::v
       const auto& [a, b, c] = triangles_[t];
       Vec3 n = (from_[b] - from_[a]).cross(from_[c] - from_[a]);
       if (const double length = n.norm(); length > 0) n /= length;
-      const double x = n.dot(from_[a]), y = n.dot(from_[b]), z = n.dot(from_[c]), u = n.dot(to_[a]), v = n.dot(to_[b]), w = n.dot(to_[c]);
-      planes_[t] = {n, std::min({x, y, z}), std::max({x, y, z}), std::min({u, v, w}), std::max({u, v, w})};
+      const double x = n.dot(from_[a]), y = n.dot(from_[b]), z = n.dot(from_[c]);
+      planes_[t] = {n, std::min({x, y, z}), std::max({x, y, z}), 0, 0};
+      renew_end(t);
     }
   });
+}
+
+void TrianglePlanes::renew_end(std::size_t i) {
+  Plane& p = planes_[i];
+  const auto& [a, b, c] = triangles_[i];
+  const double x = p.normal.dot(to_[a]), y = p.normal.dot(to_[b]), z = p.normal.dot(to_[c]);
+  p.last_low = std::min({x, y, z}), p.last_high = std::max({x, y, z});
 }
 
 double TrianglePlanes::left_by(std::size_t i, std::size_t j) const {

@@ -13,6 +13,9 @@ class TrianglePlanes {
  public:
   TrianglePlanes(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
+  /// After the end of triangle i has changed.
+  void renew_end(std::size_t i);
+
   /// Whether the plane of one of triangles i and j parts them, with the same side, by more than `first` where the motion begins
   /// and by more than `last` where it ends: floating point, to some 1e-15 of coordinates.
   bool part(std::size_t i, std::size_t j, double first, double last) const { return parts(i, j, first, last) || parts(j, i, first, last); }

@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "contact/affine_motion.h"
-#include "contact/close_pairs.h"
 #include "contact/parting_lanes.h"
 #include "contact/triangle_planes.h"
 
@@ -73,39 +72,30 @@ Pairs closest_between(const Pairs& pairs, const std::vector<Triangle>& corners, 
 
 }  // namespace
 
-std::vector<Watched> watch(const SurfaceMotion& m, std::span<const std::uint32_t> owner, std::size_t most) {
+std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<const std::uint32_t> owner, std::size_t most) {
   // All boxes in a frame that moves as the surface does on the whole.
-  std::vector<Triangle> corners(m.triangles.size());
-  std::vector<std::uint8_t> used(m.from.size(), 0);
-  for (std::size_t t = 0; t < m.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) used[corners[t][k] = m.together[m.triangles[t][k]]] = 1;
-  std::vector<std::uint32_t> rows;
-  for (std::uint32_t v = 0; v < used.size(); ++v)
-    if (used[v]) rows.push_back(v);
+  const StandingRows surface(m);
+  const auto& corners = surface.triangles;
   std::vector<Vec3> carried = m.from;
-  if (!rows.empty()) move_affinely(rows, m.from, m.to, carried);
-  std::vector<Box3> boxes(corners.size());
-  for (std::size_t t = 0; t < corners.size(); ++t) {
-    for (const auto v : corners[t]) boxes[t].add(carried[v]), boxes[t].add(m.to[v]);
-    boxes[t] = boxes[t].grown(0.5 * m.reach);
-  }
+  if (!surface.rows.empty()) move_affinely(surface.rows, m.from, m.to, carried);
+  known.cover(corners.size(), [&](std::size_t t) { return surface.swept(t, carried, m.to).grown(0.5 * m.reach); }, 0);
   const TrianglePlanes planes(corners, m.from, m.to);
-  auto pairs = close_pairs(boxes);
-  std::vector<std::uint8_t> near(pairs.size(), 0);
-  parallel_for(pairs.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto &s = corners[pairs[i].first], &t = corners[pairs[i].second];
-      const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-      near[i] = !in_t(s[0]) && !in_t(s[1]) && !in_t(s[2]) && !planes.part(pairs[i].first, pairs[i].second, m.gap, m.reach);
-    }
+  constexpr std::size_t stretch = 1024;
+  std::vector<Pairs> some((known.pairs().size() + stretch - 1) / stretch);
+  parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t i = k * stretch; i < std::min(known.pairs().size(), (k + 1) * stretch); ++i) {
+        const auto& [p, q] = known.pairs()[i];
+        const auto &s = corners[p], &t = corners[q];
+        const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
+        if (!in_t(s[0]) && !in_t(s[1]) && !in_t(s[2]) && !planes.part(p, q, m.gap, m.reach)) some[k].push_back({p, q});
+      }
   });
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (near[i]) pairs[count++] = pairs[i];
-  pairs.resize(count);
+  Pairs pairs;
+  for (const auto& s : some) pairs.insert(pairs.end(), s.begin(), s.end());
   if (!owner.empty()) pairs = closest_between(pairs, corners, owner, planes, most);
-  constexpr std::size_t stretch = 256;
-  std::vector<std::vector<Watched>> found((pairs.size() + stretch - 1) / stretch);
+  constexpr std::size_t in_lanes = 256;
+  std::vector<std::vector<Watched>> found((pairs.size() + in_lanes - 1) / in_lanes);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const auto couple = [&](std::size_t i) {
@@ -118,7 +108,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, std::span<const std::uint32_t
         if (examine(m, p, lane, w)) found[s].push_back(w);
       };
       CouplesInLanes<decltype(judge)> couples(m.from, m.to, false, judge);
-      for (std::size_t i = s * stretch; i < std::min(pairs.size(), (s + 1) * stretch); ++i) couples.add(couple(i), i);
+      for (std::size_t i = s * in_lanes; i < std::min(pairs.size(), (s + 1) * in_lanes); ++i) couples.add(couple(i), i);
       couples.finish();
     }
   });

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "contact/near_pairs.h"
 #include "contact/simplex.h"
+#include "contact/surface_motion.h"
 
 namespace geo {
 
@@ -20,19 +22,9 @@ struct Watched {
   double gap;     ///< least distance along the normal that the step may leave, model units
 };
 
-/// What a step is about: triangles of rows, for each row the one that stands for it (vertices_together()), and where all are at
-/// its beginning, where no two triangles cross, and want to be at its end.
-struct SurfaceMotion {
-  const std::vector<Triangle>& triangles;
-  std::span<const std::uint32_t> together;
-  const std::vector<Vec3>&from, &to;
-  double gap = 0;    ///< that sheets in contact keep
-  double reach = 0;  ///< pairs that come closer than this are watched
-};
-
 /// Pairs that share no corner. Where the plane of a pair comes closest to what the motion wants, it is the one taken. In an order
 /// that depends on the motion alone. `owner` (per row, or empty): of the pairs of triangles between the surroundings of the same
-/// two owners no more than `most`, by the planes of the triangles those that the motion brings closest.
-std::vector<Watched> watch(const SurfaceMotion& motion, std::span<const std::uint32_t> owner = {}, std::size_t most = 0);
+/// two owners no more than `most`, by the planes of the triangles those that the motion brings closest. `near`: is left with the pairs that may come together.
+std::vector<Watched> watch(const SurfaceMotion& motion, NearPairs& near, std::span<const std::uint32_t> owner = {}, std::size_t most = 0);
 
 }  // namespace geo

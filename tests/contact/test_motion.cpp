@@ -7,6 +7,7 @@
 #include "contact/bounded_motion.h"
 #include "contact/crossing.h"
 #include "contact/straight_motion.h"
+#include "contact/watch.h"
 #include "geometry/predicates.h"
 #include "surface/shapes.h"
 
@@ -145,7 +146,8 @@ TEST_CASE("parts that a fixed direction parts at both ends do not meet in betwee
     Soup held = s;  // what stands still about them, so that the surface as a whole does not move
     held.add(make_sphere(2), {0, 0, 0}, 100);
     held.to.insert(held.to.end(), held.from.begin() + 6, held.from.end());
-    const auto watched = watch({held.triangles, held.together, held.from, held.to, 1e-4, 2e-3});
+    NearPairs near;
+    const auto watched = watch({held.triangles, held.together, held.from, held.to, 1e-4, 2e-3}, near);
     bool meets = false;
     for (int step = 0; step <= 2000 && !meets; ++step) {
       std::vector<Vec3> at;

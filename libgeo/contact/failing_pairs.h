@@ -1,0 +1,38 @@
+// Pairs of triangles that a straight motion does not keep apart.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "contact/carried.h"
+#include "contact/triangle_planes.h"
+#include "contact/vertex_fans.h"
+
+namespace geo {
+
+/// A motion from where no triangles cross. Its end may change from call to call.
+class FailingPairs {
+ public:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  /// Refers to all of them. Rows of triangles are those that stand for others (vertices_together()). `rounding`: of products, model units.
+  FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, bool two_sided, const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding);
+
+  /// Of those pairs that have a triangle marked in `changed` (whose end is another than at the call before; at the first all must be):
+  /// those that cross at the end, by the exact test of crossing.h, or may have passed through each other on the way. That they have not
+  /// is clear where one direction parts them at both ends, and where they are carried (may be null). Ascending.
+  std::vector<Pair> among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried);
+
+ private:
+  void renew(const std::vector<std::uint8_t>& changed);
+
+  const std::vector<Triangle>& triangles_;
+  const VertexFans& fans_;
+  bool two_sided_;
+  const std::vector<Vec3>&start_, &next_;
+  double rounding_;
+  TrianglePlanes planes_;
+  std::vector<std::uint8_t> opens_out_;  // per vertex: VertexFans::open_out() at the end
+};
+
+}  // namespace geo

@@ -1,0 +1,37 @@
+// What a step is about: where the vertices of a surface are at its beginning and want to be at its end.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace geo {
+
+/// Triangles of rows, for each row the one that stands for it (vertices_together()), and where all are at the beginning, where no
+/// two triangles cross, and want to be at the end.
+struct SurfaceMotion {
+  const std::vector<Triangle>& triangles;
+  std::span<const std::uint32_t> together;
+  const std::vector<Vec3>&from, &to;
+  double gap = 0;    ///< that sheets in contact keep
+  double reach = 0;  ///< pairs that come closer than this are watched
+};
+
+/// The same in rows that stand for others.
+struct StandingRows {
+  explicit StandingRows(const SurfaceMotion& motion);
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> rows;  ///< of all triangles, ascending
+  Vec3 middle = Vec3::Zero();       ///< of where they want to be
+
+  /// The box of what triangle t passes through on straight ways, relative to the middle.
+  Box3 swept(std::size_t t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {
+    Box3 box;
+    for (const auto v : triangles[t]) box.add(from[v] - middle), box.add(to[v] - middle);
+    return box;
+  }
+};
+
+}  // namespace geo

@@ -37,7 +37,7 @@ void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
 }
 
 void GiveWay::push(std::vector<Vec3>& at) const {
-  constexpr int most_sweeps = 1000;
+  constexpr int most_sweeps = 30;
   constexpr double spare = 0.1;  // of what they keep
   const auto each_corner = [](const Kept& c, const auto& take) {
     for (int k = 0; k < c.a.size; ++k) take(c.a.v[k]);

@@ -17,7 +17,7 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
   try {
     geo::require_solid(file.mesh);
   } catch (const geo::InputError& e) {
-    throw geo::InputError(path + ": " + e.what());
+    throw geo::InputError(path + ": " + e.what() + (file.mesh.two_sided() ? "" : ", or try kerf-repair"));
   }
   return file;
 }

@@ -3,6 +3,7 @@
 #include "io/stream.h"
 #include "io/surface_internal.h"
 #include "io/text_internal.h"
+#include "surface/polygon.h"
 #include "surface/weld.h"
 
 namespace geo {
@@ -35,6 +36,16 @@ const char* other_format(const std::string& bytes) {
 }  // namespace
 
 std::uint32_t row_of(double x) { return x >= 0 && x < 4294967295.0 && x == std::floor(x) ? static_cast<std::uint32_t>(x) : ~0u; }
+
+std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where) {
+  if (polygon.size() < 3) throw InputError(where + "a face has fewer than three vertices");
+  for (const auto v : polygon)
+    if (v >= mesh.vertices.size())
+      throw InputError(where + "a face names vertex " + std::to_string(v) + ", but there are " + std::to_string(mesh.vertices.size()));
+  auto triangles = triangles_of(mesh.vertices, polygon);
+  for (const auto& [a, b, c] : triangles) mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
+  return triangles;
+}
 
 SurfaceFile read_surface(const std::string& path) { return parse_surface(read_all(path), path); }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "geometry/bvh.h"
 #include "io/stream.h"
 
 namespace geo {
@@ -27,6 +28,15 @@ openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec& grids, const std::strin
   if (fit == 0) throw InputError(path + ": holds no grid of numbers named '" + name + "' but " + names);
   if (fit > 1) throw InputError(path + ": holds several grids, " + names + (name.empty() ? "; choose one by its name" : "; they cannot be told apart by name"));
   return found;
+}
+
+openvdb::FloatGrid::Ptr level_set_of(const TriangleMesh& solid, double voxel) {
+  openvdb::initialize();
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  for (const Vec3& p : solid.vertices) points.emplace_back(float(p.x()), float(p.y()), float(p.z()));
+  for (const auto& [a, b, c] : solid.triangles) triangles.emplace_back(a, b, c);
+  return openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*openvdb::math::Transform::createLinearTransform(voxel), points, triangles);
 }
 
 template <class Grid>
@@ -72,13 +82,22 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options) 
   return surface_of(*openvdb::gridPtrCast<openvdb::DoubleGrid>(grid), options, path);
 }
 
+TriangleMesh wrapped(const TriangleMesh& solid, double voxel) {
+  // In voxels about the middle: single precision is enough there.
+  const Vec3 middle = bounding_box(solid).center();
+  TriangleMesh scaled;
+  for (const Vec3& p : solid.vertices) scaled.vertices.push_back((p - middle) / voxel);
+  scaled.triangles = solid.triangles;
+  TriangleMesh mesh = surface_of(*level_set_of(scaled, 1), {}, "the level set");
+  const TriangleBvh tree(corners_of(solid));
+  for (Vec3& p : mesh.vertices) p = middle + voxel * p;
+  for (const auto& [a, b, c] : mesh.triangles) mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).row);
+  carry(solid, mesh);
+  return mesh;
+}
+
 void write_level_set(const std::string& path, const TriangleMesh& solid, double voxel, bool fog) {
-  openvdb::initialize();
-  std::vector<openvdb::Vec3s> points;
-  std::vector<openvdb::Vec3I> triangles;
-  for (const Vec3& p : solid.vertices) points.emplace_back(float(p.x()), float(p.y()), float(p.z()));
-  for (const auto& [a, b, c] : solid.triangles) triangles.emplace_back(a, b, c);
-  const auto grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*openvdb::math::Transform::createLinearTransform(voxel), points, triangles);
+  const auto grid = level_set_of(solid, voxel);
   if (fog) openvdb::tools::sdfToFogVolume(*grid);
   grid->setName(fog ? "density" : "surface");
   write_all(path, [&](std::ostream& out) { openvdb::io::Stream(out).write({grid}); });

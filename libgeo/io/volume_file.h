@@ -19,6 +19,10 @@ struct VolumeOptions {
 /// grid of single- or double-precision numbers or several to choose from, or have no closed surface at the level.
 TriangleMesh read_volume(const std::string& path, const VolumeOptions& options = {});
 
+/// A new surface around a closed one, which may cross itself: that of its level set, with voxels of the given size (edges are rounded
+/// by as much). `source` names the triangle that each is nearest to, and attributes are those of this one.
+TriangleMesh wrapped(const TriangleMesh& solid, double voxel);
+
 /// Writes a mesh's level set with voxels of the given size, or with `fog` a density from 0 outside to 1 in the depth;
 /// for samples and tests.
 void write_level_set(const std::string& path, const TriangleMesh& solid, double voxel, bool fog = false);

@@ -1,6 +1,8 @@
 #include "surface/weld.h"
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <tuple>
 
 namespace geo {
@@ -23,29 +25,60 @@ std::vector<std::uint32_t> open_vertices(const TriangleMesh& mesh) {
   return open;
 }
 
+// The vertex that each becomes: the lowest row of those that hang together.
+class Joined {
+ public:
+  explicit Joined(std::size_t count) : row_(count) { std::iota(row_.begin(), row_.end(), 0u); }
+  std::uint32_t operator[](std::uint32_t v) {
+    while (row_[v] != v) v = row_[v] = row_[row_[v]];
+    return v;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = (*this)[a], b = (*this)[b];
+    row_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> row_;
+};
+
+void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open, double reach, Joined& joined) {
+  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // of the size of the reach
+  for (const auto v : open) {
+    const Vec3& p = mesh.vertices[v];
+    const Vec3 cell = (p / reach).array().floor();
+    for (int i = 0; i < 27; ++i)
+      if (const auto at = cells.find({cell.x() + i % 3 - 1, cell.y() + i / 3 % 3 - 1, cell.z() + i / 9 - 1}); at != cells.end())
+        for (const auto other : at->second)
+          if ((mesh.vertices[other] - p).norm() <= reach) joined.join(v, other);
+    cells[{cell.x(), cell.y(), cell.z()}].push_back(v);
+  }
+}
+
 }  // namespace
 
-std::size_t weld_seams(TriangleMesh& mesh) {
+std::size_t weld_seams(TriangleMesh& mesh, double reach) {
   auto open = open_vertices(mesh);
+  Joined joined(mesh.vertices.size());
   const auto place = [&](std::uint32_t v) { return std::tie(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()); };
-  std::sort(open.begin(), open.end(), [&](std::uint32_t a, std::uint32_t b) { return std::make_tuple(place(a), a) < std::make_tuple(place(b), b); });
-  std::vector<std::uint32_t> kept(mesh.vertices.size());  // whom each vertex becomes; first in old rows, then in new ones
-  for (std::uint32_t v = 0; v < kept.size(); ++v) kept[v] = v;
-  for (std::size_t i = 1; i < open.size(); ++i)
-    if (place(open[i]) == place(open[i - 1])) kept[open[i]] = kept[open[i - 1]];
+  if (reach > 0) {
+    join_near(mesh, open, reach, joined);
+  } else {
+    std::sort(open.begin(), open.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+    for (std::size_t i = 1; i < open.size(); ++i)
+      if (place(open[i]) == place(open[i - 1])) joined.join(open[i], open[i - 1]);
+  }
+  std::vector<std::uint32_t> row(mesh.vertices.size());
   std::uint32_t count = 0;
-  for (std::uint32_t v = 0; v < kept.size(); ++v) {
-    if (kept[v] != v) {
-      kept[v] = kept[kept[v]];
-      continue;
-    }
-    mesh.vertices[count] = mesh.vertices[v];
-    kept[v] = count++;
+  for (std::uint32_t v = 0; v < row.size(); ++v) {
+    const auto first = joined[v];
+    if (first == v) mesh.vertices[count] = mesh.vertices[v];
+    row[v] = first == v ? count++ : row[first];
   }
   const std::size_t gone = mesh.vertices.size() - count;
   mesh.vertices.resize(count);
   for (auto& t : mesh.triangles)
-    for (auto& v : t) v = kept[v];
+    for (auto& v : t) v = row[v];
   return gone;
 }
 

@@ -65,6 +65,26 @@ TEST_CASE("a level set and a fog volume come back as the solid that was written,
     }
 }
 
+TEST_CASE("a surface is wrapped around parts that overlap, and has their dress") {
+  TriangleMesh boxes = make_block({1, 1, 1}, 0.5);
+  const auto n = static_cast<std::uint32_t>(boxes.vertices.size());
+  const auto rows = boxes.triangles.size();
+  for (std::uint32_t v = 0; v < n; ++v) boxes.vertices.push_back(boxes.vertices[v] + Vec3(0.5, 0.5, 0.5));
+  for (std::size_t t = 0; t < rows; ++t) boxes.triangles.push_back({boxes.triangles[t][0] + n, boxes.triangles[t][1] + n, boxes.triangles[t][2] + n});
+  for (Vec3& p : boxes.vertices) p += Vec3(1e7, 0, 0);
+  boxes.attributes.group_names = {"first", "second"};
+  for (std::size_t t = 0; t < 2 * rows; ++t) boxes.attributes.group.push_back(t >= rows);
+  const TriangleMesh mesh = wrapped(boxes, 0.04);
+  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(signed_volume(mesh) == Approx(2 - 0.125).epsilon(0.01));
+  REQUIRE(mesh.attributes.group.size() == mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3& p = mesh.vertices[mesh.triangles[t][0]];
+    if (p.x() > 1e7 + 1.1) REQUIRE(mesh.attributes.group[t] == 1);
+    if (p.x() < 1e7 + 0.4) REQUIRE(mesh.attributes.group[t] == 0);
+  }
+}
+
 TEST_CASE("a grid is chosen by name, its surface by level") {
   const Scratch scratch;
   openvdb::initialize();

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | chunks | killed
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | chunks | repairs | killed
 set -u
 script=$(realpath "$0")
 PATH=$(realpath "$1"):$(realpath "$2"):$PATH models=$(realpath "$3") what=$4
@@ -98,7 +98,7 @@ contract)
   kerf-model block --edge 0.25 -o block.ply
   kerf-model front --around block.ply --steps 2 -o ok.front
   kerf-sample block.ply --spacing 12% | kerf-graph --surface block.ply -o ok.kerf
-  for tool in kerf-sample kerf-graph kerf-score kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-view; do
+  for tool in kerf-sample kerf-graph kerf-score kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-view kerf-repair; do
     $tool --help | grep -q Examples || fail "$tool --help has no examples"
     $tool --version | grep -q "$tool (kerf) [0-9]" || fail "$tool --version"
     expect 2 "no option --no-such-option; see $tool --help" $tool --no-such-option
@@ -146,6 +146,24 @@ contract)
   quietly kerf-graph vdb.pcd --surface level.ply -o vdb.kerf
   quietly kerf-info --check -q vdb.kerf
   kerf-sample block.ply -n 500 --levels 3 --pattern blue --json -o figures.pcd | grep -q '^{"nodes":500,.*"levels":\[{"spacing":.*"thinnest":null,"too_thin":null,"seconds":{"read":' || fail "kerf-sample --json"
+  ;;
+repairs)
+  # Overlapping boxes, one of them open, with a group each: closed as they are, one solid when wrapped.
+  box='1 3 4 2\n5 6 8 7\n1 2 6 5\n2 4 8 6\n4 3 7 8\n3 1 5 7'
+  corners() { for i in 0 1 2 3 4 5 6 7; do echo "v $(awk "BEGIN { print $1 + $i % 2, $1 + int($i / 2) % 2, $1 + int($i / 4) }")"; done; }
+  { corners 0; printf 'usemtl wood\n'; printf "$box\n" | sed 's/^/f /'; } >box.obj
+  { sed '$d' box.obj; corners 0.5; printf 'usemtl stone\n'; printf "$box\n" | awk '{ print "f", $1 + 8, $2 + 8, $3 + 8, $4 + 8 }'; } >two.obj
+  expect 65 "open.*try kerf-repair" kerf-crack two.obj --jagged 0.1 -o x.ply
+  expect 1 "1 hole closed with 2 triangles, but .*intersect.*--voxel" kerf-repair two.obj -o x.ply
+  kerf-repair two.obj --voxel 0.01 -o two.ply 2>said.txt || fail "kerf-repair --voxel: $(cat said.txt)"
+  grep -q 'wrapped in [0-9]* triangles' said.txt || fail "kerf-repair says: $(cat said.txt)"
+  kerf-info --check --json two.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 1 and abs(r["volume"] - 1.875) < 0.01 and "group" in r["attributes"], r' || fail "the wrapped solid"
+  sed '$d' box.obj | kerf-repair -q - | kerf-info --check --json - | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["volume"] == 1 and r["faces"] == 12, r' || fail "an open box in a pipe"
+  kerf-repair --json box.obj -o box.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["holes"] == 0 and r["volume"] == 1' || fail "kerf-repair --json"
+  quietly kerf-repair -q two.obj --voxel 0.01 -j1 -o one.ply
+  cmp two.ply one.ply || fail "threads change bytes"
+  for options in "--weld -1" "--voxel 0.2" "--voxel nan"; do expect 2 "${options%% *}" kerf-repair box.obj $options -o x.ply; done
+  expect 66 "cannot" kerf-repair missing.obj -o x.ply
   ;;
 scores)
   kerf-model block --edge 0.25 -o block.ply

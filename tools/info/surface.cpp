@@ -64,8 +64,8 @@ std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, R
   for (auto& name : names) name = tool::quoted(name);
   report.add("attributes", list(names));
   if (wishes.histograms) report.add_histogram("edge_lengths", edge_lengths(mesh));
-  if (result.good() && wishes.check && !mesh.two_sided() && volume <= 0) return "the surface is inside out; reverse its triangles";
-  return result.first_problem;
+  const std::string problem = result.good() && wishes.check && !mesh.two_sided() && volume <= 0 ? "the surface is inside out; reverse its triangles" : result.first_problem;
+  return problem.empty() || mesh.two_sided() ? problem : problem + ", or try kerf-repair";
 }
 
 }  // namespace info

@@ -1,15 +1,12 @@
-// Polygons of files as triangles.
+#include "surface/polygon.h"
+
 #include <algorithm>
 #include <numeric>
 
-#include "base/error.h"
 #include "geometry/predicates.h"
-#include "io/surface_internal.h"
 
 namespace geo {
-namespace {
 
-// Corners 0 … n − 1 as triangles: a fan where all of it turns the polygon's way, else ears, cut off one after another.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& polygon) {
   const auto n = static_cast<std::uint32_t>(polygon.size());
   std::vector<std::array<std::uint32_t, 3>> fan, ears;
@@ -40,18 +37,6 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Vec3>& 
   }
   ears.push_back({ring[0], ring[1], ring[2]});
   return ears;
-}
-
-}  // namespace
-
-std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where) {
-  if (polygon.size() < 3) throw InputError(where + "a face has fewer than three vertices");
-  for (const auto v : polygon)
-    if (v >= mesh.vertices.size())
-      throw InputError(where + "a face names vertex " + std::to_string(v) + ", but there are " + std::to_string(mesh.vertices.size()));
-  auto triangles = triangles_of(mesh.vertices, polygon);
-  for (const auto& [a, b, c] : triangles) mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
-  return triangles;
 }
 
 }  // namespace geo

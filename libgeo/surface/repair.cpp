@@ -1,0 +1,255 @@
+#include "surface/repair.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include "geometry/bvh.h"
+#include "surface/polygon.h"
+#include "surface/weld.h"
+
+namespace geo {
+namespace {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+struct Side {
+  Edge edge;  // ascending
+  std::uint32_t triangle;
+  int corner;  // where it begins
+  friend bool operator<(const Side& a, const Side& b) { return std::tie(a.edge, a.triangle, a.corner) < std::tie(b.edge, b.triangle, b.corner); }
+};
+
+// The sides of all triangles, those of one edge together.
+std::vector<Side> sides_of(const TriangleMesh& mesh) {
+  std::vector<Side> sides;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) sides.push_back({std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t, k});
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+// Calls with the sides of each edge.
+template <class Call>
+void each_edge(const std::vector<Side>& sides, const Call& call) {
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].edge == sides[i].edge) ++end;
+    call(std::span(sides).subspan(i, end - i));
+  }
+}
+
+// Keeps the triangles of these rows, with all that belongs to them.
+void keep(TriangleMesh& mesh, const std::vector<char>& kept) {
+  const auto rows = [&](auto& values) {
+    if (values.empty()) return;
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < kept.size(); ++t)
+      if (kept[t]) values[count++] = values[t];
+    values.resize(count);
+  };
+  Attributes& a = mesh.attributes;
+  rows(mesh.triangles), rows(mesh.source), rows(a.uv), rows(a.normal), rows(a.color), rows(a.group);
+}
+
+void turn(TriangleMesh& mesh, std::uint32_t t) {
+  std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  Attributes& a = mesh.attributes;
+  if (!a.uv.empty()) std::swap(a.uv[t][1], a.uv[t][2]);
+  if (!a.color.empty()) std::swap(a.color[t][1], a.color[t][2]);
+  if (a.normal.empty()) return;
+  std::swap(a.normal[t][1], a.normal[t][2]);
+  const auto& [i, j, k] = mesh.triangles[t];
+  const Vec3 outwards = face_normal(mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]);
+  for (Vec3& n : a.normal[t])
+    if (n.dot(outwards) < 0) n = -n;
+}
+
+// Triangles with a vertex twice; of those with the same three vertices all but one, or all where as many run one way as the other.
+std::size_t drop_void(TriangleMesh& mesh) {
+  std::map<Triangle, std::pair<int, std::vector<std::uint32_t>>> same;
+  std::vector<char> kept(mesh.triangles.size(), 0);
+  const auto run = [&](std::uint32_t t) {  // the way around the sorted vertices
+    const auto& [a, b, c] = mesh.triangles[t];
+    return ((a > b) + (a > c) + (b > c)) % 2 == 0 ? 1 : -1;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    Triangle sorted = mesh.triangles[t];
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;
+    auto& [sum, rows] = same[sorted];
+    sum += run(t), rows.push_back(t);
+  }
+  for (const auto& [sorted, found] : same)
+    for (const auto t : found.second)
+      if (found.first * run(t) > 0) {
+        kept[t] = 1;
+        break;
+      }
+  const auto dropped = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 0));
+  if (dropped > 0) keep(mesh, kept);
+  return dropped;
+}
+
+// Triangles that hang together by edges of two; which part each belongs to.
+struct Parts {
+  std::vector<std::uint32_t> of;
+  std::uint32_t count = 0;
+};
+
+// Makes neighbours run the same way; of the two ways the one that turns fewer.
+Parts orient(TriangleMesh& mesh, std::size_t& turned) {
+  const std::size_t n = mesh.triangles.size();
+  std::vector<std::array<std::uint32_t, 3>> beside(n, {~0u, ~0u, ~0u});
+  std::vector<std::array<char, 3>> against(n, {0, 0, 0});
+  each_edge(sides_of(mesh), [&](std::span<const Side> s) {
+    if (s.size() != 2) return;
+    const bool same = mesh.triangles[s[0].triangle][s[0].corner] == mesh.triangles[s[1].triangle][s[1].corner];
+    beside[s[0].triangle][s[0].corner] = s[1].triangle, beside[s[1].triangle][s[1].corner] = s[0].triangle;
+    against[s[0].triangle][s[0].corner] = against[s[1].triangle][s[1].corner] = same;
+  });
+  Parts parts{std::vector<std::uint32_t>(n, ~0u)};
+  std::vector<char> flip(n, 0);
+  for (std::uint32_t seed = 0; seed < n; ++seed) {
+    if (parts.of[seed] != ~0u) continue;
+    std::vector<std::uint32_t> part{seed};
+    parts.of[seed] = parts.count;
+    std::size_t flips = 0;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const auto t = part[i], next = beside[t][k];
+        if (next == ~0u || parts.of[next] != ~0u) continue;
+        parts.of[next] = parts.count;
+        flip[next] = flip[t] != against[t][k];
+        flips += flip[next], part.push_back(next);
+      }
+    const bool others = 2 * flips > part.size();
+    for (const auto t : part)
+      if (bool(flip[t]) != others) turn(mesh, t), ++turned;
+    ++parts.count;
+  }
+  return parts;
+}
+
+// Loops of edges with one triangle only, each as the sides that it runs along; a loop that passes a vertex twice is two.
+std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
+  std::multimap<std::uint32_t, Side> from;  // a hole runs against its rim's triangles: by the vertex where it comes to a side
+  each_edge(sides_of(mesh), [&](std::span<const Side> s) {
+    if (s.size() == 1) from.emplace(mesh.triangles[s[0].triangle][(s[0].corner + 1) % 3], s[0]);
+  });
+  std::vector<std::vector<Side>> rims;
+  while (!from.empty()) {
+    std::vector<Side> way;
+    std::map<std::uint32_t, std::size_t> place;  // of the vertices on the way
+    for (std::uint32_t v = from.begin()->first;;) {
+      if (const auto seen = place.find(v); seen != place.end()) {
+        const std::size_t first = seen->second;
+        rims.emplace_back(way.begin() + static_cast<std::ptrdiff_t>(first), way.end());
+        for (std::size_t i = first; i < way.size(); ++i) place.erase(mesh.triangles[way[i].triangle][(way[i].corner + 1) % 3]);
+        way.resize(first);
+      }
+      const auto next = from.find(v);
+      if (next == from.end()) break;  // also where edges of three triangles end a rim
+      place[v] = way.size();
+      way.push_back(next->second);
+      from.erase(next);
+      v = mesh.triangles[way.back().triangle][way.back().corner];
+    }
+  }
+  return rims;
+}
+
+void close_holes(TriangleMesh& mesh, Parts& parts, Repairs& done) {
+  Attributes& a = mesh.attributes;
+  for (const auto& rim : rims_of(mesh)) {
+    if (rim.size() < 3) continue;
+    std::vector<std::uint32_t> polygon;
+    for (const Side& s : rim) polygon.push_back(mesh.triangles[s.triangle][(s.corner + 1) % 3]);
+    for (const auto& corner : triangles_of(mesh.vertices, polygon)) {
+      const Side* side[3];
+      for (int k = 0; k < 3; ++k) side[k] = &rim[corner[k]];
+      const auto at_rim = [&](auto& values) {
+        if (values.empty()) return;
+        auto row = values[0];
+        for (int k = 0; k < 3; ++k) row[k] = values[side[k]->triangle][(side[k]->corner + 1) % 3];
+        values.push_back(row);
+      };
+      mesh.triangles.push_back({polygon[corner[0]], polygon[corner[1]], polygon[corner[2]]});
+      const auto& [i, j, k] = mesh.triangles.back();
+      at_rim(a.uv), at_rim(a.color);
+      if (!a.normal.empty()) a.normal.emplace_back().fill(face_normal(mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]));
+      if (!a.group.empty()) a.group.push_back(a.group[side[0]->triangle]);
+      if (!mesh.source.empty()) mesh.source.push_back(~0u);
+      parts.of.push_back(parts.of[side[0]->triangle]);
+      ++done.added;
+    }
+    ++done.holes;
+  }
+}
+
+// Shells outwards; those wholly inside another are cavities where they ran the other way than that one, else hidden and left out.
+void arrange_shells(TriangleMesh& mesh, const Parts& parts, Repairs& done) {
+  struct Shell {
+    std::vector<std::uint32_t> rows;
+    std::vector<std::array<Vec3, 3>> corners;
+    double volume = 0;
+    Box3 box;
+    std::uint32_t within = ~0u;
+    int depth = 0;
+  };
+  std::vector<Shell> shells(parts.count);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    Shell& s = shells[parts.of[t]];
+    s.rows.push_back(t), s.corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+    for (const Vec3& p : s.corners.back()) s.box.add(p);
+  }
+  for (Shell& s : shells)
+    for (const auto& [a, b, c] : s.corners) s.volume += (a - s.box.lo).dot((b - s.box.lo).cross(c - s.box.lo)) / 6;
+  for (Shell& outer : shells) {
+    TriangleBvh tree;
+    for (Shell& s : shells) {
+      if (&s == &outer || !((outer.box.lo.array() < s.box.lo.array()).all() && (s.box.hi.array() < outer.box.hi.array()).all())) continue;
+      if (tree.empty()) tree = TriangleBvh(outer.corners);
+      if (!std::all_of(s.corners.begin(), s.corners.end(), [&](const auto& t) { return tree.inside(t[0]) && tree.inside(t[1]) && tree.inside(t[2]); })) continue;
+      ++s.depth;
+      if (s.within == ~0u || std::abs(outer.volume) < std::abs(shells[s.within].volume)) s.within = static_cast<std::uint32_t>(&outer - shells.data());
+    }
+  }
+  std::vector<char> kept(mesh.triangles.size(), 1);
+  for (const Shell& s : shells) {
+    const bool inner = s.depth % 2 == 1, hidden = inner && (s.volume > 0) == (shells[s.within].volume > 0);
+    if (hidden) ++done.hidden;
+    for (const auto t : s.rows)
+      if (hidden) kept[t] = 0;
+      else if ((s.volume > 0) == inner) turn(mesh, t), ++done.turned;
+  }
+  keep(mesh, kept);
+}
+
+void drop_loose_vertices(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> row(mesh.vertices.size(), ~0u);
+  for (const auto& t : mesh.triangles)
+    for (const auto v : t) row[v] = 0;
+  std::uint32_t count = 0;
+  for (std::size_t v = 0; v < row.size(); ++v)
+    if (row[v] == 0) mesh.vertices[count] = mesh.vertices[v], row[v] = count++;
+  mesh.vertices.resize(count);
+  for (auto& t : mesh.triangles)
+    for (auto& v : t) v = row[v];
+}
+
+}  // namespace
+
+Repairs repair(TriangleMesh& mesh, double reach) {
+  Repairs done;
+  done.welded = weld_seams(mesh, reach);
+  done.dropped = drop_void(mesh);
+  Parts parts = orient(mesh, done.turned);
+  close_holes(mesh, parts, done);
+  arrange_shells(mesh, parts, done);
+  drop_loose_vertices(mesh);
+  return done;
+}
+
+}  // namespace geo

@@ -1,0 +1,146 @@
+// Solids from surfaces that are nearly ones.
+#include <catch2/catch.hpp>
+
+#include "base/random.h"
+#include "cases.h"
+#include "surface/check.h"
+#include "surface/repair.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+// Texture coordinates that are where a corner is.
+TriangleMesh dressed(TriangleMesh mesh) {
+  for (const auto& t : mesh.triangles) {
+    auto& row = mesh.attributes.uv.emplace_back();
+    for (int k = 0; k < 3; ++k) row[k] = mesh.vertices[t[k]].head<2>();
+    mesh.attributes.group.push_back(static_cast<std::int32_t>(mesh.attributes.group.size() % 2));
+  }
+  mesh.attributes.group_names = {"a", "b"};
+  return mesh;
+}
+
+void drop_row(TriangleMesh& mesh, std::size_t t) {
+  const auto at = static_cast<std::ptrdiff_t>(t);
+  mesh.triangles.erase(mesh.triangles.begin() + at);
+  mesh.attributes.uv.erase(mesh.attributes.uv.begin() + at);
+  mesh.attributes.group.erase(mesh.attributes.group.begin() + at);
+}
+
+void add(TriangleMesh& mesh, const TriangleMesh& other, double scale, const Vec3& to, bool turned) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vec3& p : other.vertices) mesh.vertices.push_back(scale * p + to);
+  for (auto [a, b, c] : other.triangles) mesh.triangles.push_back(turned ? Triangle{first + a, first + c, first + b} : Triangle{first + a, first + b, first + c});
+}
+
+void check_dress(const TriangleMesh& mesh) {
+  REQUIRE(mesh.attributes.uv.size() == mesh.triangles.size());
+  REQUIRE(mesh.attributes.group.size() == mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) CHECK(mesh.attributes.uv[t][k] == Vec2(mesh.vertices[mesh.triangles[t][k]].head<2>()));
+}
+
+}  // namespace
+
+TEST_CASE("a sound solid stays as it is") {
+  TriangleMesh mesh = dressed(make_sphere(5));
+  const auto triangles = mesh.triangles;
+  CHECK(repair(mesh).nothing());
+  CHECK(mesh.triangles == triangles);
+  check_dress(mesh);
+}
+
+TEST_CASE("triangles missing, turned, twice, and with a vertex twice, are mended in one go") {
+  const auto [first, count] = seeds(10);
+  const std::uint64_t seed = first + static_cast<std::uint64_t>(GENERATE_COPY(range(0, count)));
+  CAPTURE(seed);
+  Random random(seed);
+  const TriangleMesh ball = dressed(make_sphere(6));
+  TriangleMesh mesh = ball;
+  drop_row(mesh, random.below(mesh.triangles.size()));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (random.below(5) == 0) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), std::swap(mesh.attributes.uv[t][1], mesh.attributes.uv[t][2]);
+  const auto twice = static_cast<std::uint32_t>(random.below(mesh.triangles.size()));
+  const auto again = [&](const Triangle& t) {
+    mesh.triangles.push_back(t);
+    auto& row = mesh.attributes.uv.emplace_back();
+    for (int k = 0; k < 3; ++k) row[k] = mesh.vertices[t[k]].head<2>();
+    mesh.attributes.group.push_back(0);
+  };
+  again(mesh.triangles[twice]);
+  again({mesh.triangles[0][0], mesh.triangles[0][0], mesh.triangles[0][1]});
+  mesh.vertices.push_back({9, 9, 9});
+  const Repairs done = repair(mesh);
+  CHECK(done.dropped == 2);
+  CHECK(done.turned > 0);
+  CHECK(done.holes == 1);
+  CHECK(done.added == 1);
+  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(mesh.vertices.size() == ball.vertices.size());
+  CHECK(signed_volume(mesh) == Approx(signed_volume(ball)));
+  check_dress(mesh);
+}
+
+TEST_CASE("a hole of many corners is closed, its dress that of its rim") {
+  TriangleMesh mesh = dressed(make_block({2, 1, 1}, 0.25));
+  const double volume = signed_volume(mesh);
+  for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (mesh.vertices[a].z() == 1 && mesh.vertices[b].z() == 1 && mesh.vertices[c].z() == 1) drop_row(mesh, t);
+  }
+  const Repairs done = repair(mesh);
+  CHECK(done.holes == 1);
+  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(signed_volume(mesh) == Approx(volume));
+  check_dress(mesh);
+}
+
+TEST_CASE("seams that are a little apart are welded within reach") {
+  const TriangleMesh ball = make_sphere(4);
+  TriangleMesh soup;
+  Random random(3);
+  for (const auto& t : ball.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const auto v : t) soup.vertices.push_back(ball.vertices[v] + 1e-6 * Vec3(random.uniform(), random.uniform(), random.uniform()));
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  TriangleMesh apart = soup;
+  repair(apart);
+  CHECK(apart.vertices.size() != ball.vertices.size());
+  CHECK(repair(soup, 1e-5).welded == 3 * ball.triangles.size() - ball.vertices.size());
+  CHECK(check_surface(soup, true).first_problem == "");
+}
+
+TEST_CASE("shells are turned outwards, cavities inwards, and what is hidden in a solid goes") {
+  const TriangleMesh ball = make_sphere(4);
+  const double one = signed_volume(ball);
+  for (const bool flipped : {false, true}) {
+    CAPTURE(flipped);
+    TriangleMesh mesh;
+    add(mesh, ball, 1, Vec3::Zero(), flipped);
+    add(mesh, ball, 0.3, {0.4, 0, 0}, !flipped);   // a cavity
+    add(mesh, ball, 0.3, {-0.4, 0, 0}, flipped);   // hidden
+    add(mesh, ball, 0.1, {0.4, 0, 0}, flipped);    // a core in the cavity
+    add(mesh, ball, 1, {5, 0, 0}, true);           // beside it all
+    const Repairs done = repair(mesh);
+    CHECK(done.hidden == 1);
+    CHECK(check_surface(mesh, true).first_problem == "");
+    CHECK(signed_volume(mesh) == Approx(one * (2 - 0.027 + 0.001)));
+  }
+}
+
+TEST_CASE("anything in gives an end") {
+  const auto [first, count] = seeds(200);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    TriangleMesh mesh;
+    for (int v = 0; v < 7; ++v) mesh.vertices.push_back({random.uniform(), random.uniform(), double(random.below(2))});
+    for (int t = 0; t < 12; ++t) mesh.triangles.push_back({random.below(7), random.below(7), random.below(7)});
+    repair(mesh, seed % 2 ? 0.1 : 0);
+    for (const auto& t : mesh.triangles)
+      for (const auto v : t) REQUIRE(v < mesh.vertices.size());
+  }
+}

@@ -1,0 +1,60 @@
+// kerf-repair: a solid from a surface that is nearly one, or a new surface around it.
+#include <iostream>
+
+#include "io/volume_file.h"
+#include "model.h"
+#include "surface/repair.h"
+#include "tool.h"
+
+namespace {
+
+struct Wishes {
+  std::string model;
+  double weld = 0, voxel = 0;
+};
+
+std::string in_words(const geo::Repairs& r) {
+  std::string text;
+  const auto add = [&](std::size_t n, const std::string& what, const std::string& done) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what + (n == 1 ? "" : "s") + " " + done;
+  };
+  add(r.welded, "vertex", "welded"), add(r.dropped, "triangle", "dropped"), add(r.turned, "triangle", "turned");
+  add(r.holes, "hole", "closed with " + std::to_string(r.added) + " triangle" + (r.added == 1 ? "" : "s")), add(r.hidden, "hidden shell", "left out");
+  for (std::size_t at; (at = text.find("vertexs")) != std::string::npos;) text.replace(at, 7, "vertices");
+  return text.empty() ? "nothing to mend" : text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tool::Tool t("kerf-repair", "Makes a solid of a surface: welds, turns triangles the same way, closes holes; or wraps it in a new surface.",
+               "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
+  Wishes w;
+  t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
+  t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
+  t.option("--voxel", w.voxel, "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
+  t.output("The solid (PLY; .obj on request)");
+  return t.run(argc, argv, [&] {
+    if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
+    if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1)) throw tool::UsageError("--voxel must be from 0.0005 to 0.1, or 0");
+    const std::string target = t.target(true);
+    geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
+    if (mesh.two_sided()) throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
+    const double diagonal = geo::bounding_box(mesh).diagonal();
+    const geo::Repairs done = geo::repair(mesh, w.weld * diagonal);
+    if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
+    if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
+    try {
+      geo::require_solid(mesh);
+    } catch (const geo::InputError& e) {
+      const std::string what = e.what();
+      throw tool::Failure(w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) + (w.voxel > 0 ? "; try another --voxel" : "; wrap it in a new surface: --voxel 0.005"));
+    }
+    geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair"); });
+    if (t.json)
+      (target == "-" ? std::cerr : std::cout) << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned << ",\"holes\":" << done.holes << ",\"added\":" << done.added
+                                              << ",\"hidden\":" << done.hidden << ",\"vertices\":" << mesh.vertices.size() << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh)) << "}\n";
+    else
+      t.say("kerf-repair: " + w.model + ": " + in_words(done) + (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
+  });
+}

@@ -16,7 +16,7 @@ namespace {
 class Mover {
  public:
   Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, BoundedMotion& report)
-      : m_(m), two_sided_(two_sided), near_(near), report_(report), surface_(m), fans_(surface_.triangles, m.from.size()), at_(m.from) {
+      : m_(m), two_sided_(two_sided), near_(near), report_(report), surface_(m), fans_(m.triangles, m.together), at_(m.from) {
     for (const auto& [a, b, c] : surface_.triangles) edge_ += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
     edge_ /= std::max(1.0, 3 * double(surface_.triangles.size()));
     double size = 0;

@@ -5,8 +5,10 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "contact/box_tree.h"
@@ -91,6 +93,21 @@ std::uint32_t spread(std::uint32_t x) {
   return (x | x << 2) & 0x09249249;
 }
 
+using Places = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // on the curve, and rows
+
+// By place; those at the same one stay in their order.
+void sort_along(Places& places) {
+  constexpr std::uint32_t bits = 10, buckets = 1u << bits;
+  Places sorted(places.size());
+  for (std::uint32_t shift = 0; shift < 30; shift += bits) {
+    std::array<std::uint32_t, buckets + 1> first{};
+    for (const auto& [place, row] : places) ++first[(place >> shift) % buckets + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    for (const auto& one : places) sorted[first[(one.first >> shift) % buckets]++] = one;
+    places.swap(sorted);
+  }
+}
+
 std::vector<BoxTree::Block> empty_blocks(std::size_t boxes) {
   BoxTree::Block none;
   for (int axis = 0; axis < 3; ++axis) std::fill_n(none.lo[axis], BoxTree::width, INFINITY), std::fill_n(none.hi[axis], BoxTree::width, -INFINITY);
@@ -116,14 +133,14 @@ BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), place_(box
     if (!b.empty()) all.add(b);
   if (all.empty()) return;
   middle_ = 0.5 * all.lo + 0.5 * all.hi;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> along;  // place on the curve, row
+  Places along;
   const Vec3 scale = 1023 * (all.hi - all.lo).cwiseMax(1e-300).cwiseInverse();
   for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
     if (boxes_[i].empty()) continue;
     const Vec3 at = (0.5 * boxes_[i].lo + 0.5 * boxes_[i].hi - all.lo).cwiseProduct(scale);
     along.push_back({spread(static_cast<std::uint32_t>(at[0])) << 2 | spread(static_cast<std::uint32_t>(at[1])) << 1 | spread(static_cast<std::uint32_t>(at[2])), i});
   }
-  std::sort(along.begin(), along.end());
+  sort_along(along);
   order_.resize(along.size());
   levels_.push_back(empty_blocks(along.size()));
   parallel_for(along.size(), 1024, [&](std::size_t begin, std::size_t end) {

@@ -10,14 +10,17 @@
 namespace geo {
 
 std::vector<std::uint32_t> vertices_together(std::span<const std::uint32_t> site, const std::vector<Vec3>& positions) {
-  std::vector<std::uint32_t> result(positions.size()), order(positions.size());
+  constexpr std::uint32_t none = ~0u;
+  std::vector<std::uint32_t> result(positions.size());
   std::iota(result.begin(), result.end(), 0u);
   if (site.empty()) return result;
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return site[a] < site[b]; });
-  for (std::size_t i = 1; i < order.size(); ++i)
-    for (std::size_t j = i; j-- > 0 && site[order[j]] == site[order[i]];)
-      if (positions[order[j]] == positions[order[i]]) result[order[i]] = result[order[j]];
+  std::vector<std::uint32_t> last(positions.size(), none), before(positions.size());  // of the same remainder
+  for (std::uint32_t v = 0; v < result.size(); ++v) {
+    auto& latest = last[site[v] % last.size()];
+    for (auto w = latest; w != none && result[v] == v; w = before[w])
+      if (site[w] == site[v] && positions[w] == positions[v]) result[v] = result[w];
+    before[v] = latest, latest = v;
+  }
   return result;
 }
 

@@ -40,9 +40,8 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
         if (!changed[p] && !changed[q]) continue;
         const auto &s = triangles_[p], &t = triangles_[q];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (const bool shared[3] = {in_t(s[0]), in_t(s[1]), in_t(s[2])}; shared[0] || shared[1] || shared[2]) {
-          // Neighbours cannot pass without crossing others.
-          if (!((shared[0] && opens_out_[s[0]]) || (shared[1] && opens_out_[s[1]]) || (shared[2] && opens_out_[s[2]]))) test(pairs[i]);
+        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) {
+          if (!in_open_fan(p, q)) test(pairs[i]);  // neighbours cannot pass without crossing others
         } else if (!planes_.part(p, q, rounding_, rounding_)) {
           const Couple both = couple(pairs[i]);
           if (const Parting across = part_across(both, start_, next_); !apart(across.first, across.last)) couples.add(both, i);
@@ -57,11 +56,17 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
   return result;
 }
 
+// Whether a vertex of both has a fan that opens out.
+bool FailingPairs::in_open_fan(std::uint32_t p, std::uint32_t q) const {
+  const auto &s = fans_.triangles()[p], &t = fans_.triangles()[q];
+  return std::any_of(s.begin(), s.end(), [&](auto v) { return opens_out_[v] && (v == t[0] || v == t[1] || v == t[2]); });
+}
+
 void FailingPairs::renew(const std::vector<std::uint8_t>& changed) {
   std::vector<std::uint8_t> asked(opens_out_.size(), 0);
   for (std::size_t t = 0; t < changed.size(); ++t)
     if (changed[t])
-      for (const auto v : triangles_[t]) asked[v] = 1;
+      for (const auto v : fans_.triangles()[t]) asked[v] = 1;
   parallel_for(asked.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       if (asked[v]) opens_out_[v] = fans_.open_out(static_cast<std::uint32_t>(v), next_);

@@ -24,6 +24,7 @@ class FailingPairs {
   std::vector<Pair> among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried);
 
  private:
+  bool in_open_fan(std::uint32_t p, std::uint32_t q) const;
   void renew(const std::vector<std::uint8_t>& changed);
 
   const std::vector<Triangle>& triangles_;

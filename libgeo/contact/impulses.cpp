@@ -7,7 +7,7 @@
 
 namespace geo {
 
-std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const std::vector<std::vector<std::uint32_t>>& stands_for,
+std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const Copies& stands_for,
                                        const std::vector<double>& inverse_mass) {
   std::vector<RelativeRow> rows(touching.size());
   parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -18,7 +18,7 @@ std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<
 }
 
 ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
-                             const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass,
+                             const Copies& stands_for, const std::vector<double>& inverse_mass,
                              const ImpulseOptions& options, std::vector<Vec3>& velocity) {
   ImpulseReport report;
   const std::vector<RelativeRow> rows = relative_rows(weights, touching, stands_for, inverse_mass);

@@ -19,7 +19,7 @@ struct TouchingPlaces {
 
 /// Their rows (relative_row.h), in the order given. `stands_for`: which surface vertices carry one vertex of the places (together,
 /// they move as their average). Made by all threads.
-std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const std::vector<std::vector<std::uint32_t>>& stands_for,
+std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const Copies& stands_for,
                                        const std::vector<double>& inverse_mass);
 
 struct ImpulseReport {
@@ -38,7 +38,7 @@ struct ImpulseOptions {
   double softness = 0.02;  ///< share of the places' own mobility that is added to the pair's: for places that share their nodes
 };
 ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
-                             const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass,
+                             const Copies& stands_for, const std::vector<double>& inverse_mass,
                              const ImpulseOptions& options, std::vector<Vec3>& velocity);
 
 }  // namespace geo

@@ -2,7 +2,7 @@
 
 namespace geo {
 
-RelativeRows::RelativeRows(const SurfaceWeights& weights, const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass)
+RelativeRows::RelativeRows(const SurfaceWeights& weights, const Copies& stands_for, const std::vector<double>& inverse_mass)
     : weights_(weights), stands_for_(stands_for), inverse_mass_(inverse_mass), sum_(inverse_mass.size(), Sums{0, 0}), taken_(inverse_mass.size(), 0) {}
 
 RelativeRow RelativeRows::make(const SurfacePlace& a, const SurfacePlace& b) {
@@ -23,7 +23,7 @@ RelativeRow RelativeRows::make(const SurfacePlace& a, const SurfacePlace& b) {
 
 void RelativeRows::add(const SurfacePlace& place, std::size_t which) {
   for (int k = 0; k < place.size; ++k) {
-    const auto& copies = stands_for_[place.vertex[k]];
+    const auto copies = stands_for_[place.vertex[k]];
     for (const auto v : copies)
       for (const auto& e : weights_.row(v)) {
         if (!taken_[e.node]) used_.push_back(e.node), taken_[e.node] = 1;

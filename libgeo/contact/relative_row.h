@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "contact/copies.h"
 #include "contact/surface_weights.h"
 
 namespace geo {
@@ -31,7 +32,7 @@ inline Vec3 place(const SurfacePlace& p, const std::vector<Vec3>& at) {
 /// Makes rows, one at a time. `stands_for`: which surface vertices carry one vertex of a place (they move as their average).
 class RelativeRows {
  public:
-  RelativeRows(const SurfaceWeights& weights, const std::vector<std::vector<std::uint32_t>>& stands_for, const std::vector<double>& inverse_mass);
+  RelativeRows(const SurfaceWeights& weights, const Copies& stands_for, const std::vector<double>& inverse_mass);
   RelativeRow make(const SurfacePlace& a, const SurfacePlace& b);
 
  private:
@@ -39,7 +40,7 @@ class RelativeRows {
   void add(const SurfacePlace& place, std::size_t which);
 
   const SurfaceWeights& weights_;
-  const std::vector<std::vector<std::uint32_t>>& stands_for_;
+  const Copies& stands_for_;
   const std::vector<double>& inverse_mass_;
   std::vector<Sums> sum_;
   std::vector<std::uint8_t> taken_;

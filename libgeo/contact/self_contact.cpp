@@ -12,10 +12,8 @@
 namespace geo {
 namespace {
 
-using Copies = std::vector<std::vector<std::uint32_t>>;
-
 // Copies that are together go to their average.
-std::vector<Vec3> averaged(const std::vector<Vec3>& to, const std::vector<std::uint32_t>& together, const Copies& copies) {
+std::vector<Vec3> averaged(const std::vector<Vec3>& to, std::span<const std::uint32_t> together, const Copies& copies) {
   std::vector<Vec3> result = to;
   for (std::size_t v = 0; v < copies.size(); ++v)
     if (copies[v].size() > 1) {
@@ -25,12 +23,6 @@ std::vector<Vec3> averaged(const std::vector<Vec3>& to, const std::vector<std::u
     }
   for (std::size_t v = 0; v < copies.size(); ++v) result[v] = result[together[v]];
   return result;
-}
-
-Copies each_alone(std::size_t count) {
-  Copies alone(count);
-  for (std::uint32_t v = 0; v < count; ++v) alone[v] = {v};
-  return alone;
 }
 
 constexpr std::size_t most_between = 4;  // couples of places between two nodes' surroundings: three keep planes from meeting
@@ -61,9 +53,9 @@ std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>
 // Copies whose targets come apart, or slide along each other, are moved apart by half a gap each into their own material: away
 // from what they share, or along the sum of their normals where that does not help. Where a triangle would cross another for it
 // they stay together.
-std::size_t SelfContact::open(const std::vector<Vec3>& to, const std::vector<std::vector<std::uint32_t>>& copies) {
+std::size_t SelfContact::open(const std::vector<Vec3>& to, const Copies& copies) {
   const double gap = options_.gap * surface_.edge, opens = options_.opening * surface_.edge;
-  const std::vector<Vec3> normals = vertex_normals(surface_, positions_);
+  const std::vector<Vec3> normals = vertex_normals(surface_, copies, positions_);
   std::vector<std::uint32_t> opening;
   for (std::uint32_t v = 0; v < copies.size(); ++v)
     for (std::size_t i = 0; i < copies[v].size(); ++i)
@@ -154,7 +146,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
     if (fixed.empty() || !fixed[i]) u[i] += dt * state.velocity[i] + dt * dt * gravity;
   }
   const auto together = vertices_together(surface_.site, positions_);
-  const auto copies = copies_together(together);
+  const Copies copies(together);
   const auto now = targets(body, state.displacement), free = targets(body, u);
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
@@ -181,35 +173,30 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   };
   add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);
   std::vector<TouchingPlaces> sides;
-  touching_copies(copies, free, vertex_normals(surface_, positions_), -reach, {dt}, sides);
-  add(deepest(sides, weights_, most_between), each_alone(copies.size()), now, 0);
+  touching_copies(copies, free, vertex_normals(surface_, copies, positions_), -reach, {dt}, sides);
+  add(deepest(sides, weights_, most_between), Copies::each_alone(copies.size()), now, 0);
   begun_ = true;
   return touch_.size() > 0 ? &touch_ : nullptr;
 }
 
-void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
-                          State& state, ContactWork* told) {
-  Stopwatch clock;
-  ContactWork work;
+// For steps whose forces know nothing of contact: returns how many places touched.
+std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
+                                              std::span<const std::uint32_t> together, const Copies& copies, State& state) {
   const std::size_t n = solid.size();
-  const double gap = options_.gap * surface_.edge, reach = 2 * gap;
+  const double gap = options_.gap * surface_.edge;
   std::vector<double> inverse_mass(n);
-  std::vector<Vec3> velocity(n), u(n);
+  std::vector<Vec3> velocity(n), u = state.displacement;
   for (std::size_t i = 0; i < n; ++i) {
     inverse_mass[i] = fixed.empty() || !fixed[i] ? 1 / solid.mass(NodeId(i)) : 0;
     velocity[i] = (state.displacement[i] - before[i]) / dt;
   }
-  const std::vector<Vec3> free = velocity;
-  auto together = vertices_together(surface_.site, positions_);
-  auto copies = copies_together(together);
-  auto to = targets(body, state.displacement);
-  const std::vector<Vec3> normals = vertex_normals(surface_, positions_);
-  const auto alone = each_alone(copies.size());
-  // What touches in the motion to the targets, and the change of velocities that keeps it from approaching.
+  const std::vector<Vec3> free = velocity, normals = vertex_normals(surface_, copies, positions_);
+  const Copies alone = Copies::each_alone(copies.size());
+  // What touches in the motion to where u has the surface, and the change of velocities that keeps it from approaching.
   std::vector<Watched> watched;
   const auto respond = [&](const Constraint& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
-    const std::vector<Vec3> goal = averaged(to, together, copies);
-    const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
+    const std::vector<Vec3> to = targets(body, u), goal = averaged(to, together, copies);
+    const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, 2 * gap};
     if (watched.empty()) watched = watch(motion, near_);
     const auto touching = deepest(touching_places(watched, motion, constraint), weights_, most_between);
     std::vector<TouchingPlaces> all_sides;
@@ -220,32 +207,41 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   };
   ImpulseOptions how;
   how.friction = options_.friction;
-  if (begun_) work.touching = touch_.pressing();
-  for (int round = 0; round < options_.rounds && !begun_; ++round) {
+  std::size_t touching = 0;
+  for (int round = 0; round < options_.rounds; ++round) {
     const std::size_t count = respond({dt}, how, velocity);
-    work.touching += count;
+    touching += count;
     if (count == 0) break;
     for (std::size_t i = 0; i < n; ++i) u[i] = state.displacement[i] + dt * (velocity[i] - free[i]);
-    to = targets(body, u);
   }
-  if (work.touching > 0 && !begun_) {
-    // Where nodes have let their surfaces pass through each other all the same, they are brought back without velocity.
-    std::vector<Vec3> back(n, Vec3::Zero());
-    how.friction = 0;
-    respond({dt, options_.recovery}, how, back);
-    for (std::size_t i = 0; i < n; ++i) {
-      state.displacement[i] += dt * (velocity[i] - free[i] + back[i]);
-      state.velocity[i] += velocity[i] - free[i];
-    }
-    to = targets(body, state.displacement);
+  if (touching == 0) return 0;
+  // Where nodes have let their surfaces pass through each other all the same, they are brought back without velocity.
+  std::vector<Vec3> back(n, Vec3::Zero());
+  how.friction = 0;
+  respond({dt, options_.recovery}, how, back);
+  for (std::size_t i = 0; i < n; ++i) {
+    state.displacement[i] += dt * (velocity[i] - free[i] + back[i]);
+    state.velocity[i] += velocity[i] - free[i];
   }
-  if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = copies_together(together);
+  return touching;
+}
+
+void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
+                          State& state, ContactWork* told) {
+  Stopwatch clock;
+  ContactWork work;
+  auto together = vertices_together(surface_.site, positions_);
+  Copies copies(together);
+  work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, together, copies, state);
+  const std::vector<Vec3> to = targets(body, state.displacement);
+  if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
   const std::vector<Vec3> goal = averaged(to, together, copies);
+  const double gap = options_.gap * surface_.edge;
   BoundedMotion bounded;
-  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, reach}, true, &bounded, &near_);
+  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap}, true, &bounded, &near_);
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
-  for (const auto& t : surface_.triangles)
-    for (const auto v : t) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
+  for (std::size_t v = 0; v < to.size(); ++v)
+    if (body.surface.alive(SurfaceVertexId(v))) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
   begun_ = false, near_ = {};
   if (told) *told += work;
@@ -256,6 +252,7 @@ void SelfContact::expect(const Body& body, const Solid& solid, const State& stat
 }
 
 void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
+  if (delta.crack.empty()) return;
   surface_ = std::move(birth_.surface), positions_ = std::move(birth_.positions);
   weights_.follow(body, solid, delta);
 }

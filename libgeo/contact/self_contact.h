@@ -27,7 +27,7 @@ class SelfContact {
   /// Before a crack step is made that will turn the surface into `grown`: where what is new will be (birth.h). Throws
   /// GeometryError when it would cross itself or what is there; the step must not be made then.
   void expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack);
-  /// After it was made.
+  /// After it was made; nothing happens where it changed nothing.
   void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
   /// Before an implicit step of dt, at whose beginning state is: what parts of the surface that may come together in it do to each
   /// other (touch_penalty.h); null: nothing. It is valid until the next call. resolve() then leaves the nodes as they are.
@@ -44,7 +44,9 @@ class SelfContact {
 
  private:
   std::vector<Vec3> targets(const Body& body, const std::vector<Vec3>& u) const;
-  std::size_t open(const std::vector<Vec3>& targets, const std::vector<std::vector<std::uint32_t>>& copies);
+  std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
+                                   std::span<const std::uint32_t> together, const Copies& copies, State& state);
+  std::size_t open(const std::vector<Vec3>& targets, const Copies& copies);
 
   ContactOptions options_;
   ContactSurface surface_;

@@ -8,12 +8,6 @@
 
 namespace geo {
 
-std::vector<std::vector<std::uint32_t>> copies_together(std::span<const std::uint32_t> together) {
-  std::vector<std::vector<std::uint32_t>> copies(together.size());
-  for (std::uint32_t v = 0; v < together.size(); ++v) copies[together[v]].push_back(v);
-  return copies;
-}
-
 std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m, const Constraint& how) {
   std::vector<TouchingPlaces> result;
   std::vector<std::array<std::uint32_t, 6>> keys;
@@ -49,12 +43,12 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
   return once;
 }
 
-void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
+void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
                      double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out) {
-  for (const auto& together : copies)
-    for (std::size_t i = 0; i < together.size(); ++i)
-      for (std::size_t j = i + 1; j < together.size(); ++j) {
-        const auto a = together[i], b = together[j];
+  for (std::size_t v = 0; v < copies.size(); ++v)
+    for (std::size_t i = 0; i < copies[v].size(); ++i)
+      for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
+        const auto a = copies[v][i], b = copies[v][j];
         const Vec3 across = normals[b].normalized() - normals[a].normalized();  // b's material looks at a along its normal
         if (!(across.norm() > 0.5)) continue;
         const Vec3 n = across.normalized();

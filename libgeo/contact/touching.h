@@ -7,9 +7,6 @@
 
 namespace geo {
 
-/// Per vertex the copies that move as one with it, itself included; empty where another stands for it.
-std::vector<std::vector<std::uint32_t>> copies_together(std::span<const std::uint32_t> together);
-
 /// How constraints come out: on velocities, as the speed at which the two may still approach; on displacements, as the share of
 /// what they lack at the end of the motion that they must part by in a time step.
 struct Constraint {
@@ -23,7 +20,7 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
 
 /// Copies that are together and that their own targets would push through each other: the two sides of a sheet, parted by
 /// the difference of their normals.
-void touching_copies(const std::vector<std::vector<std::uint32_t>>& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
+void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
                      double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out);
 
 /// Of those between the same two neighbourhoods of nodes, the deepest `most`: more say the same, for nodes are farther apart than

@@ -28,12 +28,12 @@ struct StruckBlock {
   Solid solid;
   SurfaceWeights weights;
   std::vector<double> inverse_mass;
-  std::vector<std::vector<std::uint32_t>> alone;
+  Copies alone{{}};
 
   StruckBlock(double edge, double spacing) : body(sampled(make_block({1, 1, 1}, edge), spacing)), solid(body.nodes, body.graph, Material()) {
     weights.update(body, solid);
     for (std::size_t i = 0; i < solid.size(); ++i) inverse_mass.push_back(1 / solid.mass(NodeId(i)));
-    for (std::uint32_t v = 0; v < weights.size(); ++v) alone.push_back({v});
+    alone = Copies::each_alone(weights.size());
   }
 
  private:

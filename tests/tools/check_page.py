@@ -208,6 +208,7 @@ try:
     page.done()
     page = Page(browser, os.path.join(folder, "nodes.html"))
     check("nodes.html: a surface's controls are shown", browser.run('document.getElementById("surface-controls").hidden'))
+    check("nodes.html: its y is not up", browser.run("eyePosition(), camera.up.y === 1 && camera.position.y > 0"))
     page.done()
     page = Page(browser, os.path.join(folder, "coarse.html"))
     notices = browser.run('document.getElementById("notices").innerText')

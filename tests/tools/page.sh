@@ -23,7 +23,7 @@ kerf-graph nodes.pcd --surface p.ply -o p.kerf
 kerf-crack p.ply --front '<script>.front' --steps 0:5 -o half.ply
 kerf-update p.kerf --surface half.ply -o half.kerf
 kerf-view half.kerf '<script>.front' --before p.kerf -o body.html
-kerf-view nodes.pcd -o nodes.html
+kerf-view nodes.pcd --up y -o nodes.html
 kerf-crack p.ply --front '<script>.front' -o whole.ply
 kerf-view whole.ply -o pieces.html
 kerf-model block --edge 0.1 -o cube.ply

@@ -44,6 +44,14 @@ sed 's/^v \([01]\)/v 100000000\1/' cube1.obj >far.obj
 draw far.obj -o far.png
 cmp cube1.png far.png || fail "a cube that is far away looks otherwise"
 
+# A model whose y is up, stood up.
+awk '/^v/ { print $1, $2, $4, -$3; next } { print }' cube1.obj >lying.obj
+draw lying.obj --up y -o standing.png
+cmp cube1.png standing.png || fail "--up y does not stand a cube up"
+draw lying.obj --up y --cut-away 0,0,1,0.1 -o standing.png
+draw cube1.obj --cut-away 0,-1,0,0.1 -o cut.png
+cmp cut.png standing.png || fail "--up y moves the cut-away"
+
 # Animations: as many frames as asked for, the same bytes again.
 draw whole.ply --explode 0.5 --frames 5 -o turn.webp
 draw whole.ply --explode 0.5 --frames 5 -j 1 -o again.webp

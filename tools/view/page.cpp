@@ -135,8 +135,8 @@ class Writer {
     }
   }
 
-  Page page(const std::string& title, double rate) {
-    about_["title"] = title, about_["rate"] = rate, about_["unit"] = 0.5 * box_.diagonal(), about_["made"] = made, about_["arrays"] = pack_.manifest();
+  Page page(const std::string& title, const PageOptions& options) {
+    about_["title"] = title, about_["rate"] = options.frame_rate, about_["y_up"] = options.y_up, about_["unit"] = 0.5 * box_.diagonal(), about_["made"] = made, about_["arrays"] = pack_.manifest();
     Page page;
     for (const auto& [key, text] : notice_of_) page.notices.push_back(text);
     about_["notices"] = page.notices;
@@ -257,7 +257,7 @@ Page page_of(const Subject& subject, const PageOptions& options, const geo::Prog
     const bool whole = some && writer.add_surface(subject.surface, subject.title, budget.triangles);
     writer.add_nodes(subject, some ? 0 : -1, whole, options.before);
     writer.add_fronts(subject.fronts);
-    return writer.page(subject.title, options.frame_rate);
+    return writer.page(subject.title, options);
   });
 }
 
@@ -288,7 +288,7 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
       const bool whole = writer.add_surface(subject.surface, "at rest", most);
       writer.add_nodes(subject, static_cast<int>(frames.size()), whole, options.before, moving);
     }
-    return writer.page(run.title, options.frame_rate);
+    return writer.page(run.title, options);
   });
 }
 

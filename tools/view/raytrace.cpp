@@ -332,13 +332,14 @@ class Tracer {
 };
 
 // Rays are of single precision: what is drawn goes to the origin, and is made about as large as 1.
-Stage placed(Stage stage, const Vec3& middle, double scale) {
-  const auto place = [&](Vec3& p) { p = (p - middle) * scale; };
+Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
+  const auto stand = [&](const Vec3& v) { return y_up ? Vec3(v.x(), -v.z(), v.y()) : v; };
+  const auto place = [&](Vec3& p) { p = stand((p - middle) * scale); };
   for (Vec3& p : stage.surface.vertices) place(p);
   for (Sphere& s : stage.spheres) place(s.center), s.radius *= scale;
   for (Stick& s : stage.sticks) place(s.a), place(s.b), s.radius *= scale;
-  if (stage.cutaway) place(stage.cutaway->point);
-  if (stage.ground_level) *stage.ground_level = (*stage.ground_level - middle.z()) * scale;
+  if (stage.cutaway) place(stage.cutaway->point), stage.cutaway->normal = stand(stage.cutaway->normal);
+  if (stage.ground_level) *stage.ground_level = (*stage.ground_level - middle[y_up ? 1 : 2]) * scale;
   return stage;
 }
 
@@ -346,7 +347,7 @@ Stage placed(Stage stage, const Vec3& middle, double scale) {
 
 Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options) {
   const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
-  const Stage near = placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius);
+  const Stage near = placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius, camera.y_up);
   const Tracer tracer(near);
   const double azimuth = camera.azimuth * pi / 180, elevation = camera.elevation * pi / 180;
   const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation));

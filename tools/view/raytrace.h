@@ -41,9 +41,11 @@ struct Stage {
   std::optional<double> ground_level;
 };
 
-/// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 frames `box`.
+/// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 frames `box`. With `y_up` all that is seen is
+/// stood up first: its y goes to z, its z to −y.
 struct Camera {
   double azimuth = 30, elevation = 22, zoom = 1;
+  bool y_up = false;
   geo::Box3 box;
 };
 

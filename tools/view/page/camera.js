@@ -1,12 +1,15 @@
-// The eye goes round a target, z up. Angles in radians.
+// The eye goes round a target, z up or y up as the model's maker wants. Angles in radians.
 const home = { azimuth: 0.52, elevation: 0.38, distance: 3.25 };
 const view = { ...home, target: new THREE.Vector3() };
 
 function eyePosition() {
   const c = Math.cos(view.elevation);
-  return new THREE.Vector3(-Math.sin(view.azimuth) * c, -Math.cos(view.azimuth) * c, Math.sin(view.elevation)).multiplyScalar(view.distance).add(view.target);
+  const side = Math.sin(view.azimuth) * c, back = Math.cos(view.azimuth) * c, up = Math.sin(view.elevation);
+  return (about.y_up ? new THREE.Vector3(-side, up, back) : new THREE.Vector3(-side, -back, up)).multiplyScalar(view.distance).add(view.target);
 }
 function placeCamera() {
+  camera.up.set(0, about.y_up ? 1 : 0, about.y_up ? 0 : 1);
+  sky.position.copy(camera.up);
   camera.position.copy(eyePosition());
   camera.near = view.distance / 200, camera.far = view.distance * 20 + 20;
   camera.updateProjectionMatrix();

@@ -13,10 +13,8 @@ renderer.setClearColor(0xe4e9ef);
 renderer.localClippingEnabled = true;
 const scene = new THREE.Scene();
 const camera = new THREE.PerspectiveCamera(34, 1, 0.01, 100);
-camera.up.set(0, 0, 1);
 const clipPlane = new THREE.Plane(new THREE.Vector3(0, -1, 0), 0);  // what is on its negative side is cut away
 const sky = new THREE.HemisphereLight(0xffffff, 0x8f98a3, 0.6);
-sky.position.set(0, 0, 1);
 scene.add(sky);
 const lamp = new THREE.DirectionalLight(0xffffff, 0.62);
 scene.add(lamp, lamp.target);

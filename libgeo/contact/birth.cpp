@@ -52,6 +52,7 @@ class Midwife {
     for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
     on_old_sides();
     on_parts(crack);
+    across(crack);
     inside(crack);
     part(crack, gap);
     return std::move(birth_);
@@ -127,6 +128,20 @@ class Midwife {
       else to = same->at;
     }
     place(v, to, SurfaceVertexId(at[0]));
+  }
+
+  // Between new faces only, at a site that was there: where the other side of one of these is, as the two are together.
+  void across(const CrackDelta& crack) {
+    for (bool any = true; any;) {
+      any = false;
+      for (const FaceId f : crack.new_crack_faces)
+        for (int c = 0; c < 3; ++c) {
+          auto v = k_.surface_vertex({f, 0}, c), w = k_.surface_vertex({f, 1}, c);
+          if (placed_[v.index()] == placed_[w.index()]) continue;
+          if (placed_[w.index()]) std::swap(v, w);
+          place(w, birth_.positions[v.index()], like_[v.index()]), any = true;
+        }
+    }
   }
 
   // Places on what is there that x sees, and how far away they are.

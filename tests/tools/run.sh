@@ -472,7 +472,7 @@ killed)
 scene)
   # A scene of the paper, small: to its end, with the pieces that it must have, sound, at rest or finite; also with the time
   # step doubled and halved, and with material ten times softer and stiffer.
-  scene=$5 file=$(dirname "$script")/../../samples/scenes/$5.toml
+  scene=$5 file=$(dirname "$script")/../../samples/scenes/$5.toml bear=$models/bear.off
   mkdir models
   models=$PWD/models
   kerf-model pumpkin --frequency 10 -o models/pumpkin.ply
@@ -481,7 +481,9 @@ scene)
   kerf-score -q models/pumpkin.ply --pattern voronoi --pieces 6 -o models/smash.front
   kerf-model block --edge 0.16 -o models/jello.ply
   for letter in K E R F; do kerf-model letter --text $letter --depth 0.25 --resolution 12 -o models/letter-$letter.ply; done
-  moves=0   # how far something must have gone at least
+  moves=0    # how far something must have gone at least
+  frames=32
+  cracks=0   # that begin by themselves
   # most: elastic energy, J; less than weight times the way that it falls
   case $scene in
   apple) young=3e5 pieces=1 most=3e3 moves=0.1 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;          # so few nodes make a stiff peel: it slides
@@ -490,16 +492,20 @@ scene)
   polyp) young=4e5 pieces=2 most=5e2 set="--set body.mesh=models/polyp.ply --set body.nodes=150" ;;
   halve) young=4e4 pieces=2 most=1e4 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
   smashed) young=3e5 pieces=12 most=1e4 set="--set body.0.mesh=models/pumpkin.ply --set body.1.mesh=models/pumpkin.ply --set score.0.file=models/smash.front --set score.1.file=models/smash.front --set body.0.nodes=150 --set body.1.nodes=150" ;;
+  drop) young=5e5 pieces=6 most=1e3 frames=10 set="--set body.mesh=$bear --set body.nodes=150 --set score.0.file=models/bear.front" && kerf-score -q $bear --pattern voronoi --pieces 6 -o models/bear.front ;;
+  plate) young=2e7 pieces='[0-9]*' cracks='[1-9]' most=1e4 frames=16 set="--set body.mesh=models/plate.ply --set body.spacing=0.1" && kerf-model plate --edge 0.1 -o models/plate.ply ;;
+  thrown) young=3e6 pieces='[0-9]*' cracks='[1-9]' most=1e5 frames=12 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
   letters) young=4e5 pieces=9 most=1e2 set=$(for i in 0 1 2 3; do printf -- "--set body.$i.mesh=models/letter-$(echo KERF | cut -c $((i + 1))).ply --set body.$i.nodes=200 "; done) ;;
   esac
   step=$(sed -n 's/^step = \([0-9.]*\).*/\1/p' $file) rate=$(sed -n 's/^frame_rate = //p' $file)
   times() { awk "BEGIN { printf \"%.9g\", $1 * $2 }"; }
-  kerf-sim -q $file $set -o run --frames 32 || fail "$scene"
+  kerf-sim -q $file $set -o run --frames $frames || fail "$scene"
   crossing() { grep -q '^self = true' $file && grep -v '"crossings":0,' $1/frames.jsonl | head -1; }  # in scenes with contact nothing may, in any frame
   crossing run | grep . && fail "$scene has frames in which triangles cross"
   grep -q "\"pieces\":$pieces," run/summary.json || fail "$scene has not $pieces pieces: $(cat run/summary.json)"
   kerf-info --json run/checkpoint.kerf | grep -o '"displacement_max":[0-9.]*' | awk -F: -v least=$moves '$2 < least { exit 1 }' || fail "nothing of $scene goes as far as $moves"
   grep -q '"refused":0,' run/summary.json || fail "$scene has refused steps: $(cat run/summary.json)"
+  grep -q "\"cracks_begun\":$cracks" run/summary.json || fail "$scene has not cracks enough: $(cat run/summary.json)"
   grep -qi "nan\|inf" run/frames.jsonl && fail "$scene has numbers that are none"
   grep -o '"energy":[-+0-9.e]*' run/frames.jsonl | awk -F: -v most=$most '$2 > most { print "energy", $2; exit 1 }' || fail "$scene has more energy than $most J"
   kerf-info --check -q run/checkpoint.kerf || fail "the body of $scene is not sound"
@@ -507,7 +513,7 @@ scene)
   # A step is a frame at most: where it is one, there are half as many frames a second.
   awk "BEGIN { exit !(2 * $step * $rate > 1.05) }" && doubled="$doubled --set time.frame_rate=$(times $rate 0.5)"
   for other in "$doubled" time.step=$(times $step 0.5) material.young=${young%e*}e$((${young#*e} - 1)) material.young=${young%e*}e$((${young#*e} + 1)); do
-    kerf-sim -q $file $set --set $other -o other --frames 12 || fail "$scene with $other"
+    kerf-sim -q $file $set --set $other -o other --frames $((frames < 12 ? frames : 12)) || fail "$scene with $other"
     crossing other | grep . && fail "$scene with $other has frames in which triangles cross"
     grep -qi "nan\|inf" other/frames.jsonl && fail "$scene with $other has numbers that are none"
     kerf-info --check -q other/checkpoint.kerf || fail "the body of $scene with $other is not sound"

@@ -100,7 +100,7 @@ geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-sim", "Runs a scene: bodies deform while blades cut them. Writes numbered frames, a ParaView collection, a USD file and checkpoints.",
+  tool::Tool t("kerf-sim", "Runs a scene: bodies deform while blades cut them. Writes numbered frames, a ParaView series, a USD file and checkpoints.",
                "  kerf-sim samples/scenes/halve.toml -o out/halve\n  kerf-sim halve.toml -o out/soft --set material.young=2e4 --set blade.0.thickness=0.01 --frames 48\n  kerf-sim halve.toml -o out/halve --resume");
   std::string path;
   std::vector<std::string> settings;
@@ -172,6 +172,6 @@ int main(int argc, char** argv) {
     const auto of = [](const char* name, std::size_t n) { return std::string(",\"") + name + "\":" + std::to_string(n); };
     folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) + of("edges", edges) + of("pieces", pieces) + "," + sim::counts(run.state().total) + "}\n");
     t.say("kerf-sim: " + std::to_string(last) + " frames, " + std::to_string(nodes) + " nodes, " + std::to_string(edges) + " edges, " + std::to_string(total.split.crack.triangles_cut) + " triangles cut, " +
-          std::to_string(pieces) + " pieces; seconds " + sim::seconds(total));
+          std::to_string(pieces) + (pieces == 1 ? " piece" : " pieces") + sim::seconds_in_words(total));
   });
 }

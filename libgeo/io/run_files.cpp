@@ -29,12 +29,11 @@ FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name) 
   return frame;
 }
 
-void write_pvd(std::ostream& out, const std::vector<std::vector<std::string>>& parts, double frame_rate) {
-  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    for (std::size_t i = 0; i < parts[p].size(); ++i)
-      out << "    <DataSet timestep=\"" << double(i) / frame_rate << "\" part=\"" << p << "\" file=\"" << parts[p][i] << "\"/>\n";
-  out << "  </Collection>\n</VTKFile>\n";
+void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate) {
+  out << "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n";
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    out << "    {\"name\": \"" << frames[i] << "\", \"time\": " << double(i) / frame_rate << (i + 1 < frames.size() ? "},\n" : "}\n");
+  out << "  ]\n}\n";
 }
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// The files of a run that other programs read: nodes of a frame, ParaView collection (usd_file.h: USD).
+// The files of a run that other programs read: nodes of a frame, ParaView series (usd_file.h: USD).
 #pragma once
 
 #include <ostream>
@@ -18,7 +18,8 @@ void write_frame_nodes(std::ostream& out, const FrameNodes& frame);
 /// Throws InputError for what is no such file.
 FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name);
 
-/// A ParaView collection: of each part its numbered frames.
-void write_pvd(std::ostream& out, const std::vector<std::vector<std::string>>& parts, double frame_rate);
+/// A series of ParaView's (`.ply.series`, JSON): paths of numbered frames, relative to it, with their times. (A collection, `.pvd`, is of
+/// VTK's own formats only.)
+void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate);
 
 }  // namespace geo

@@ -1,5 +1,5 @@
 """check_usd.py RUN: the USD file of a run folder says in each frame what the frame's PLY files do; prints how many values were compared."""
-import os, re, sys
+import json, os, re, sys
 import numpy
 
 run = sys.argv[1]
@@ -99,7 +99,9 @@ if os.path.isdir(folder):
         at, corner, _ = ply(os.path.join(folder, name))
         assert numpy.abs(moved[i].reshape(-1, 3) - at).max() <= 1e-6 * numpy.abs(at).max() and (corners == corner).all(), name
         compared += at.size
-pvd = open(os.path.join(run, "run.pvd")).read()
-listed = re.findall(r'file="(.*)"', pvd)
-assert len(listed) == frames * (2 if os.path.isdir(folder) else 1) and all(os.path.exists(os.path.join(run, name)) for name in listed)
+for name in ["run.ply.series"] + ["obstacles.ply.series"] * os.path.isdir(folder):
+    series = json.load(open(os.path.join(run, name)))
+    assert series["file-series-version"] == "1.0" and len(series["files"]) == frames, name
+    assert all(os.path.exists(os.path.join(run, f["name"])) for f in series["files"]) and series["files"][0]["time"] == 0, name
+    assert all(a["time"] < b["time"] for a, b in zip(series["files"], series["files"][1:])), name
 print(compared, "values of", frames, "frames" + (", with texture coordinates" if textured else ""))

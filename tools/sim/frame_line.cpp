@@ -1,5 +1,9 @@
 #include "sim/frame_line.h"
 
+#include <cstdio>
+#include <utility>
+#include <vector>
+
 #include "tool.h"
 
 namespace sim {
@@ -8,13 +12,29 @@ namespace {
 
 std::string vector(const geo::Vec3& v) { return "[" + tool::number(v.x()) + "," + tool::number(v.y()) + "," + tool::number(v.z()) + "]"; }
 
+std::vector<std::pair<std::string, double>> phases(const geo::FrameWork& w) {
+  return {{"front", w.front_seconds},       {"mesh", w.split.crack.seconds()},   {"graph", w.split.graph_seconds},  {"resample", w.split.resample_seconds}, {"binding", w.split.binding_seconds},
+          {"fracture", w.fracture_seconds}, {"mechanics", w.mechanics_seconds}, {"contact", w.contact_seconds}, {"write", w.write_seconds}};
+}
+
 }  // namespace
 
 std::string seconds(const geo::FrameWork& w) {
-  const auto of = [](const char* name, double s) { return std::string("\"") + name + "\":" + tool::number(s); };
-  return "{" + of("front", w.front_seconds) + "," + of("mesh", w.split.crack.seconds()) + "," + of("graph", w.split.graph_seconds) + "," + of("resample", w.split.resample_seconds) + "," +
-         of("binding", w.split.binding_seconds) + "," + of("fracture", w.fracture_seconds) + "," + of("mechanics", w.mechanics_seconds) + "," + of("contact", w.contact_seconds) + "," +
-         of("write", w.write_seconds) + "}";
+  std::string text;
+  for (const auto& [name, s] : phases(w)) text += (text.empty() ? "{\"" : ",\"") + name + "\":" + tool::number(s);
+  return text + "}";
+}
+
+std::string seconds_in_words(const geo::FrameWork& w) {
+  double all = 0;
+  std::string text;
+  char shown[32];
+  const auto rounded = [&](double s) { return std::snprintf(shown, sizeof shown, "%.2g", s), std::string(shown); };
+  for (const auto& [name, s] : phases(w)) {
+    all += s;
+    if (rounded(s) != "0") text += (text.empty() ? "" : ", ") + name + " " + rounded(s);
+  }
+  return text.empty() ? std::string() : "; " + rounded(all) + " s: " + text;
 }
 
 std::string counts(const geo::FrameWork& w) {

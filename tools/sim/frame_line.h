@@ -21,5 +21,7 @@ std::string line_of(const FrameOutcome& outcome, std::size_t crossings);
 std::string counts(const geo::FrameWork& work);
 /// Seconds by phase, as an object.
 std::string seconds(const geo::FrameWork& work);
+/// The same for people: "; 1.2 s: mechanics 0.8, graph 0.4", or nothing.
+std::string seconds_in_words(const geo::FrameWork& work);
 
 }  // namespace sim

@@ -16,7 +16,8 @@ void write_whole_run(const RunFolder& folder, int last, double frame_rate) {
     parts[0].push_back(RunFolder::frame_name(i));
     if (obstacles) parts[1].push_back(RunFolder::obstacles_name(i));
   }
-  geo::write_all((folder.path / "run.pvd").string(), [&](std::ostream& out) { geo::write_pvd(out, parts, frame_rate); });
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    geo::write_all((folder.path / (part == 0 ? "run.ply.series" : "obstacles.ply.series")).string(), [&](std::ostream& out) { geo::write_series(out, parts[part], frame_rate); });
   const auto frames = [&](std::size_t part) {
     return [&, part](std::size_t i) { return geo::read_surface((folder.path / parts[part][i]).string()).mesh; };
   };

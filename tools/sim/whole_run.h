@@ -1,4 +1,4 @@
-// The files about all frames of a run: a ParaView collection, a USD file.
+// The files about all frames of a run: a ParaView series, a USD file.
 #pragma once
 
 #include "sim/run_folder.h"

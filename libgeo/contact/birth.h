@@ -13,9 +13,9 @@ struct Birth {
 
 /// The body's surface is `before`, at `positions`; a crack step makes it `grown`. What was there stays where it is. New vertices
 /// on old faces take their place in these, the same to the bit on both sides of a sheet that is together there; the two sides of a
-/// new face are together. Those inside the material continue the deformed
-/// surface: from each place near them they are as far as Eq. 1, by the nodes there, has them, the nearest places saying most;
-/// their copies are together. Triangles are flat and Eq. 1 is not, so some may cross: they are pushed apart (untangle.h).
+/// new face are together. Those inside the material continue the deformed surface: from each place near them they are as far as
+/// Eq. 1, by the nodes there, has them, the nearest places saying most. Triangles are flat and Eq. 1 is not, so some may cross:
+/// they are pushed apart (untangle.h).
 /// `gap`: model units, as far as they are pushed at most. Throws GeometryError when some still cross.
 Birth give_birth(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions,
                  const Complex& grown, const CrackDelta& crack, double gap);

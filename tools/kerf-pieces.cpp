@@ -62,7 +62,7 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-pieces", "Writes each piece of a cut surface as a closed mesh, with bonds between them: all in one .glb, or as a folder.",
-               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o pieces/");
+               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/");
   Wishes w;
   t.argument("SURFACE", w.model, "A cut surface from kerf-crack");
   t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");

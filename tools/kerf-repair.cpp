@@ -43,8 +43,8 @@ int main(int argc, char** argv) {
     const double diagonal = geo::bounding_box(mesh).diagonal();
     const geo::Repairs done = geo::repair(mesh, w.weld * diagonal);
     if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
-    if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
     try {
+      if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
       geo::require_solid(mesh);
     } catch (const geo::InputError& e) {
       const std::string what = e.what();

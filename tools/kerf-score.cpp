@@ -54,7 +54,7 @@ geo::ScoreOptions options_of(const Wishes& w, std::uint64_t seed) {
   o.jagged.amplitude = w.jagged, o.jagged.frequency = w.bumps, o.jagged.seed = seed;
   o.pattern.cluster = w.cluster, o.pattern.grain = w.grain, o.pattern.seed = seed;
   for (const auto& path : w.curves)
-    for (const auto& front : geo::read_fronts(path)) {
+    for (const auto& front : geo::read_curves(path)) {
       if (front.is_sheet()) throw geo::InputError(path + ": '" + front.name + "' is a sheet, not a curve; give it with --sheets");
       for (auto curve : front.steps) {
         if (front.closed) curve.push_back(curve.front());

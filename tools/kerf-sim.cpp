@@ -84,6 +84,8 @@ Plan read_plan(const std::string& path, const geo::SceneOverrides& overrides) {
   return plan;
 }
 
+std::string in_words(const geo::Vec3& p) { return tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()); }
+
 geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
   geo::SceneOverrides overrides;
   for (const auto& s : settings) {
@@ -101,7 +103,7 @@ geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-sim", "Runs a scene: bodies deform while blades cut them. Writes numbered frames, a ParaView series, a USD file and checkpoints.",
-               "  kerf-sim samples/scenes/halve.toml -o out/halve\n  kerf-sim halve.toml -o out/soft --set material.young=2e4 --set blade.0.thickness=0.01 --frames 48\n  kerf-sim halve.toml -o out/halve --resume");
+               "  kerf-sim samples/scenes/halve.toml -o out/halve\n  kerf-sim halve.toml -o out/soft --set material.young=2e4 --set blade.0.divide=9 --frames 48\n  kerf-sim halve.toml -o out/halve --resume");
   std::string path;
   std::vector<std::string> settings;
   int frames = 0;
@@ -109,7 +111,7 @@ int main(int argc, char** argv) {
   bool resume = false;
   t.argument("SCENE", path, "Scene file (TOML)");
   t.option("--frames", frames, "How many frames; 0: as the scene says");
-  t.option("--set", settings, "Override a key of the scene, as KEY=VALUE; rows of lists by number, as blade.0.thickness");
+  t.option("--set", settings, "Override a key of the scene, as KEY=VALUE; rows of lists by number, as blade.0.divide");
   t.flag("--resume", resume, "Go on from the last checkpoint in the output folder, or begin where there is none");
   t.output("Folder of the run");
   return t.run(argc, argv, [&] {
@@ -133,6 +135,10 @@ int main(int argc, char** argv) {
       }
     };
     geo::Simulation run = begun ? take_up(plan, folder) : begin();
+    const auto& positions = run.body().nodes.position;
+    for (const geo::Grip& g : plan.scene.grips)
+      if (!begun && std::none_of(positions.begin(), positions.end(), [&](const geo::Vec3& p) { return (p.array() >= g.lo.array() && p.array() <= g.hi.array()).all(); }))
+        t.say("kerf-sim: no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) + "), which is to hold some; bodies are where their scale, rotation and position put them");
     const geo::TriangleMesh* carried = plan.model.parts.size() == 1 ? &plan.model.mesh : nullptr;
     sim::FrameWriter writer(folder, folder.read_log(run.state().frame), t.json);
     const auto checkpoint = [&] {
@@ -171,6 +177,7 @@ int main(int argc, char** argv) {
     const std::size_t nodes = run.body().nodes.size(), edges = run.body().graph.edge_count(), pieces = geo::find_pieces(run.body().surface).count;
     const auto of = [](const char* name, std::size_t n) { return std::string(",\"") + name + "\":" + std::to_string(n); };
     folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) + of("edges", edges) + of("pieces", pieces) + "," + sim::counts(run.state().total) + "}\n");
+    if (!plan.scene.blades.empty() && run.state().total.fronts == 0) t.say("kerf-sim: no blade met the material; its keys move it from where its points are");
     t.say("kerf-sim: " + std::to_string(last) + " frames, " + std::to_string(nodes) + " nodes, " + std::to_string(edges) + " edges, " + std::to_string(total.split.crack.triangles_cut) + " triangles cut, " +
           std::to_string(pieces) + (pieces == 1 ? " piece" : " pieces") + sim::seconds_in_words(total));
   });

@@ -9,10 +9,10 @@
 namespace geo {
 namespace {
 
-void check(const Front& front, const std::string& name) {
+void check(const Front& front, const std::string& name, std::size_t least_steps) {
   const bool sheet = front.is_sheet();
   const std::string who = name + (sheet ? ": sheet '" : ": front '") + shown(front.name) + "' ";
-  if (front.steps.size() < 2 && !sheet) throw InputError(who + "has one time step only; it needs at least two to sweep anything (a sheet, triangles)");
+  if (front.steps.size() < least_steps && !sheet) throw InputError(who + "has one time step only; it needs at least two to sweep anything (a sheet, triangles)");
   for (std::size_t s = 0; s < front.steps.size(); ++s) {
     for (const Vec3& p : front.steps[s])
       if (!in_range(p)) throw InputError(who + "has a coordinate of no sensible size" + (sheet ? "" : " in step " + std::to_string(s)) + "; repair the file");
@@ -22,7 +22,7 @@ void check(const Front& front, const std::string& name) {
 }
 
 // OBJ polylines: each object is a time step, in the order of their names.
-std::vector<Front> from_obj(const std::string& bytes, const std::string& name) {
+std::vector<Front> from_obj(const std::string& bytes, const std::string& name, std::size_t least_steps) {
   Lines lines(bytes, name);
   std::vector<std::string_view> words;
   std::vector<Vec3> points;
@@ -52,15 +52,12 @@ std::vector<Front> from_obj(const std::string& bytes, const std::string& name) {
     front.steps.emplace_back();
     for (const auto i : line) front.steps.back().push_back(points[static_cast<std::size_t>(i - 1)]);
   }
-  check(front, name);
+  check(front, name, least_steps);
   return {front};
 }
 
-}  // namespace
 
-std::vector<Front> read_fronts(const std::string& path) { return parse_fronts(read_all(path), path); }
-
-std::vector<Front> parse_fronts(const std::string& bytes, const std::string& name) {
+std::vector<Front> parse(const std::string& bytes, const std::string& name, std::size_t least_steps) {
   Lines lines(bytes, name);
   std::vector<std::string_view> words;
   std::vector<Front> fronts;
@@ -79,7 +76,7 @@ std::vector<Front> parse_fronts(const std::string& bytes, const std::string& nam
       fronts.push_back({std::string(words[1]), false, {{}}, {}});
       sheet = true;
     } else if (fronts.empty()) {
-      if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib") return from_obj(bytes, name);
+      if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib") return from_obj(bytes, name, least_steps);
       lines.fail("begins with '" + shown(words[0]) + "'; a front file begins with 'front NAME' or 'sheet NAME'");
     } else if (sheet && words[0] == "v") {
       fronts.back().steps[0].push_back(point(1));
@@ -102,9 +99,15 @@ std::vector<Front> parse_fronts(const std::string& bytes, const std::string& nam
     }
   }
   if (fronts.empty()) throw InputError(name + ": holds no front; write 'front NAME'");
-  for (const auto& f : fronts) check(f, name);
+  for (const auto& f : fronts) check(f, name, least_steps);
   return fronts;
 }
+
+}  // namespace
+
+std::vector<Front> read_fronts(const std::string& path) { return parse_fronts(read_all(path), path); }
+std::vector<Front> parse_fronts(const std::string& bytes, const std::string& name) { return parse(bytes, name, 2); }
+std::vector<Front> read_curves(const std::string& path) { return parse(read_all(path), path, 1); }
 
 void write_fronts(std::ostream& out, const std::vector<Front>& fronts) {
   out.precision(17);

@@ -13,6 +13,8 @@ namespace geo {
 /// name order. Throws InputError with file and line: fewer than two points, one step only, not finite, unknown words.
 std::vector<Front> read_fronts(const std::string& path);
 std::vector<Front> parse_fronts(const std::string& bytes, const std::string& name);
+/// The same where lines need not move: one step is enough, each is a curve.
+std::vector<Front> read_curves(const std::string& path);
 /// Numbers in digits enough to read the same.
 void write_fronts(std::ostream& out, const std::vector<Front>& fronts);
 

@@ -185,6 +185,10 @@ scores)
   printf 'o a\nv 0.5 -1 0\nv 0.6 2 0\nl 1 2\no b\nv -1 0.4 0\nv 3 0.6 0\nl 3 4\n' >lines.obj
   quietly kerf-score block.ply --pattern curves --curves lines.obj -o curves.front
   quietly kerf-crack block.ply --front curves.front -o curves.ply
+  sed -n '1,4p' lines.obj >line.obj
+  quietly kerf-score block.ply --pattern curves --curves line.obj -o curve.front
+  quietly kerf-crack block.ply --front curve.front -o curve.ply
+  kerf-info --json curve.ply | grep -q '"pieces":2,' || fail "one curve does not make 2 pieces"
   kerf-info --json curves.ply | grep -q '"pieces":4,' || fail "two curves that cross do not make 4 pieces"
   kerf-score block.ply --pattern planes --pieces 3 --json -o planes.front | grep -q '^{"pattern":"planes","pieces":3,"attempts":' || fail "kerf-score --json"
   for options in "--pattern zigzag" "--pieces 0" "--attempts 0" "--jagged 1" "--bumps 0" "--depth 0%" "--depth 80" "--axis 0,0,0" "--axis up" "--impact 1,2" "--cluster 0" "--grain 0" "--pattern curves" "--sheets x.obj"; do
@@ -442,6 +446,9 @@ simulation)
   expect 65 "names no row" kerf-sim s.toml -o x --set blade.first.thickness=1
   expect 65 "another scene" kerf-sim s.toml -o whole --resume --set material.young=2e5
   expect 73 "holds a run already" kerf-sim s.toml -o whole
+  # Boxes and blades that reach nothing are told.
+  kerf-sim s.toml -o astray --frames 1 --set 'body.fixed=[[5,5,5,6,6,6]]' --set 'blade.0.keys=[[0,9,9,9,0,0,1,0],[1,9,9,9,0,0,1,0]]' 2>said.txt || fail "boxes that hold nothing"
+  grep -q 'no node is in the box from (5, 5, 5) to (6, 6, 6)' said.txt && grep -q 'no blade met' said.txt || fail "kerf-sim says: $(cat said.txt)"
   # What would be noticed too late otherwise.
   expect 73 "are free" kerf-sim s.toml -o x --frames 100000000
   expect 73 "cannot be made" kerf-sim s.toml -o /proc/x

@@ -24,8 +24,12 @@ void Lengths(const double* squared, const double* radius, std::size_t count, std
   }
 }
 
-// Whole vectors only: the last of them begins so early that it ends with the row, without the entries that were taken.
-std::size_t LeadOn(const std::uint32_t* to, const std::uint16_t* bits, std::size_t count, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+// Of the entries of which `part` of the bits is not `refused`. Whole vectors only: the last of them begins so early that it ends
+// with the row, without the entries that were taken.
+std::size_t LeadOn(const RowView& row, std::uint32_t part, std::uint32_t refused, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+  const std::uint32_t* const to = row.to.data();
+  const std::uint16_t* const bits = row.bits.data();
+  const std::size_t count = row.to.size();
   const hn::CappedTag<std::uint32_t, 16> d;
   const hn::Rebind<std::uint16_t, decltype(d)> dh;
   const std::size_t lanes = hn::Lanes(d);
@@ -33,19 +37,19 @@ std::size_t LeadOn(const std::uint32_t* to, const std::uint16_t* bits, std::size
   const auto take = [&](std::size_t k) {
     const auto next = reach + VisibilityGraph::bound(bits[k]);
     targets[found] = to[k], lengths[found] = next;
-    found += VisibilityGraph::is_edge(bits[k]) & (next < unit_radius);
+    found += ((bits[k] & part) != refused) & (next < unit_radius);
   };
   if (count < lanes) {
     for (std::size_t k = 0; k < count; ++k) take(k);
     return found;
   }
-  const auto edge = hn::Set(d, std::uint32_t(VisibilityGraph::edge_bit)), bound = hn::Set(d, std::uint32_t(VisibilityGraph::bound_bits));
+  const auto asked = hn::Set(d, part), not_these = hn::Set(d, refused), bound = hn::Set(d, std::uint32_t(VisibilityGraph::bound_bits));
   const auto from = hn::Set(d, reach), radius = hn::Set(d, unit_radius);
   for (std::size_t k = 0; k < count; k += lanes) {
     const auto at = std::min(k, count - lanes);
     const auto entry = hn::PromoteTo(d, hn::LoadU(dh, bits + at));
     const auto next = hn::Add(from, hn::ShiftLeft<10>(hn::And(entry, bound)));
-    auto leads = hn::And(hn::Ne(hn::And(entry, edge), hn::Zero(d)), hn::Lt(next, radius));
+    auto leads = hn::And(hn::Ne(hn::And(entry, asked), not_these), hn::Lt(next, radius));
     if (at < k) leads = hn::AndNot(hn::FirstN(d, k - at), leads);
     hn::StoreU(hn::Compress(next, leads), d, lengths + found);  // CompressStore() is slow on some processors
     hn::StoreU(hn::Compress(hn::LoadU(d, to + at), leads), d, targets + found);
@@ -149,7 +153,12 @@ void warped_lengths(const double* squared, const double* radius, std::size_t cou
 }
 
 std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
-  return HWY_DYNAMIC_DISPATCH(LeadOn)(row.to.data(), row.bits.data(), row.to.size(), reach, targets, lengths);
+  return HWY_DYNAMIC_DISPATCH(LeadOn)(row, VisibilityGraph::edge_bit, 0, reach, targets, lengths);
+}
+
+std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+  constexpr std::uint32_t bare = VisibilityGraph::edge_bit | VisibilityGraph::path_bit;
+  return HWY_DYNAMIC_DISPATCH(LeadOn)(row, bare, bare, reach, targets, lengths);
 }
 
 void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sources) {

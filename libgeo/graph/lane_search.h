@@ -17,6 +17,9 @@ void warped_lengths(const double* squared, const double* radius, std::size_t cou
 /// lead, and at least how far that is. Writes up to 16 numbers behind the last, which are nothing. Returns how many there are.
 std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths);
 
+/// The same with the neighbours in place of the edges.
+std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths);
+
 class LaneSearch {
  public:
   static constexpr std::size_t lanes = 16;

@@ -55,7 +55,10 @@ class RowStore {
     const Place& place = places_[i];
     if (place.count == 0) return;
     const std::byte* row = at(place.offset);
-    for (std::size_t byte = 0; byte < 6u * place.count; byte += 64) __builtin_prefetch(row + byte);
+    for (std::size_t byte = 0; byte < 6u * place.count; byte += 64) {
+      __builtin_prefetch(row + byte);
+      asm volatile("");  // gcc takes out loops that only prefetch
+    }
   }
   /// Only the lower bits and the edge bit may be changed: no entry may gain or lose its float.
   std::span<std::uint16_t> bits(std::size_t i);

@@ -13,6 +13,7 @@ namespace geo {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A triangle's plane, with a bound of the rounding of heights over it.
 class Plane {
@@ -74,7 +75,7 @@ struct Slab {
     return ((x.x() - origin.x()) * normal.x() + (x.y() - origin.y()) * normal.y()) + (x.z() - origin.z()) * normal.z();
   }
   Vec3 origin, normal = Vec3::Zero();
-  double from = std::numeric_limits<double>::infinity(), to = -from;
+  double from = infinity, to = -infinity;
 };
 
 // Nodes and guides: one end at least of everything that the faces cut.
@@ -127,12 +128,20 @@ Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGr
   return near;
 }
 
+std::size_t guides_in(const RowView& row) {
+  std::size_t count = 0;
+  while (count < row.to.size() && VisibilityGraph::is_guide(row.to[row.to.size() - 1 - count])) ++count;
+  return count;
+}
+
 struct Pair {
   std::uint32_t a, b;  // numbers of ids
   std::uint16_t bits;
 };
 
-Severed rows_of(std::span<const Pair> pairs, std::span<const std::uint32_t> ids) {
+// Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other end, rows ascending: these
+// are the same rows, but in order.
+Severed rows_of(std::span<const Pair> pairs, std::span<const std::uint32_t> ids, const std::vector<bool>& above) {
   Severed severed;
   std::vector<std::uint64_t> order;
   for (std::uint32_t k = 0; k < ids.size(); ++k) order.push_back(std::uint64_t(ids[k]) << 32 | k);
@@ -142,13 +151,15 @@ Severed rows_of(std::span<const Pair> pairs, std::span<const std::uint32_t> ids)
   std::uint32_t sum = 0;
   for (const auto entry : order) {
     const auto k = static_cast<std::uint32_t>(entry), count = std::exchange(next[k], sum);
-    if (count > 0) severed.rows.push_back({ids[k], sum, sum + count});
+    severed.rows.push_back({ids[k], sum, sum + count, above[k]});
     sum += count;
   }
+  std::vector<Severed::Entry> mixed(sum);
+  auto next_mixed = next;
+  for (const Pair& p : pairs) mixed[next_mixed[p.a]++] = {p.b, p.bits}, mixed[next_mixed[p.b]++] = {p.a, p.bits};
   severed.entries.resize(sum);
-  for (const Pair& p : pairs) severed.entries[next[p.a]++] = {ids[p.b], p.bits}, severed.entries[next[p.b]++] = {ids[p.a], p.bits};
   for (const auto& row : severed.rows)
-    std::sort(severed.entries.begin() + row.begin, severed.entries.begin() + row.end, [](const auto& x, const auto& y) { return x.to < y.to; });
+    for (auto e = row.begin; e < row.end; ++e) severed.entries[next[mixed[e].to]++] = {row.id, mixed[e].bits};
   return severed;
 }
 
@@ -164,6 +175,7 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   has_asked.clear();
   number.clear(near.ids.size());
   std::vector<Pair> pairs;
+  std::vector<bool> is_above;  // by number
   std::vector<std::uint32_t> asked;
   std::vector<Vec3> ends;
   std::vector<std::uint8_t> blocked;
@@ -176,28 +188,40 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
     // What is not beyond the slab on the same side.
     const Slab& slab = near.slab[near.slabs[at]];
     const double height = slab.height(graph.position(nodes, i));
-    const bool below = height < slab.from, above = height > slab.to;
+    const double least = height < slab.from ? slab.from : -infinity, most = height > slab.to ? slab.to : infinity;
     asked.resize(std::max(asked.size(), row.to.size()));
     std::size_t count = 0;
-    for (std::uint32_t k = 0; k < row.to.size(); ++k) {
-      const double h = slab.height(graph.position(nodes, row.to[k]));
+    const auto ask = [&](std::uint32_t k, const Vec3& x) {
+      const double h = slab.height(x);
       asked[count] = k;
-      count += !((below & (h < slab.from)) | (above & (h > slab.to)));
-    }
+      count += (h >= least) & (h <= most);
+    };
+    std::uint32_t k = 0;
+    for (const auto end = static_cast<std::uint32_t>(row.to.size() - guides_in(row)); k < end; ++k) ask(k, nodes.position[row.to[k]]);
+    for (; k < row.to.size(); ++k) ask(k, graph.position(nodes, row.to[k]));
     ends.clear();
     std::size_t kept = 0;
     for (std::size_t a = 0; a < count; ++a) {
       const auto j = row.to[asked[a]];
-      if (has_asked.has(j)) continue;
-      asked[kept++] = asked[a], ends.push_back(graph.position(nodes, j));
+      asked[kept] = asked[a];
+      kept += !has_asked.has(j);
     }
-    blocked.assign(kept, 0);
-    tree.blocks(graph.position(nodes, i), ends, blocked.data());
-    for (std::size_t a = 0; a < kept; ++a)
-      if (blocked[a]) pairs.push_back({number.add(i), number.add(row.to[asked[a]]), row.bits[asked[a]]});
+    for (std::size_t a = 0; a < kept; ++a) ends.push_back(graph.position(nodes, row.to[asked[a]]));
     has_asked.add(i);
+    blocked.resize(kept);
+    tree.blocks(graph.position(nodes, i), ends, blocked.data());
+    const auto first = std::find(blocked.begin(), blocked.end(), 1) - blocked.begin();
+    if (static_cast<std::size_t>(first) == kept) continue;
+    const auto number_of = [&](std::uint32_t id) {
+      const auto it = number.add(id);
+      if (it == is_above.size()) is_above.push_back(2 * slab.height(graph.position(nodes, id)) > slab.from + slab.to);
+      return it;
+    };
+    const auto mine = number_of(i);
+    for (auto a = static_cast<std::size_t>(first); a < kept; ++a)
+      if (blocked[a]) pairs.push_back({mine, number_of(row.to[asked[a]]), row.bits[asked[a]]});
   }
-  return rows_of(pairs, number.ids());
+  return rows_of(pairs, number.ids(), is_above);
 }
 
 }  // namespace geo

@@ -8,6 +8,7 @@
 #include "geometry/predicates.h"
 #include "graph/guides.h"
 #include "graph/id_flags.h"
+#include "graph/lane_search.h"
 #include "graph/row_search.h"
 #include "graph/severed.h"
 
@@ -74,13 +75,16 @@ class Users {
 
  private:
   void add_near(const RowView& row, std::uint32_t length) {
-    for (std::size_t k = 0; k < row.to.size(); ++k)
-      if (VisibilityGraph::is_neighbor(row.bits[k]) && VisibilityGraph::bound(row.bits[k]) + length < unit_radius) update_.add(row.to[k]);
+    constexpr std::size_t vector = 16;
+    if (near_.size() < row.to.size() + vector) near_.resize(2 * row.to.size() + vector), reaches_.resize(near_.size());
+    const auto count = neighbors_that_lead_on(row, length, near_.data(), reaches_.data());
+    for (std::size_t k = 0; k < count; ++k) update_.add(near_[k]);
   }
   const NodeSet& nodes_;
   const VisibilityGraph& graph_;
   IdFlags& update_;
   std::vector<std::uint64_t> guides_;  // ids, lengths in the lower half
+  std::vector<std::uint32_t> near_, reaches_;
 };
 
 // Of this thread: its memory is kept from one update to the next.
@@ -88,6 +92,32 @@ RowSearch& own_search() {
   thread_local RowSearch search;
   return search;
 }
+
+// Who saw a node, and does still.
+class OldSight {
+ public:
+  static constexpr std::uint8_t none = 0, goes_on = 1, lost = 2;
+  /// For each of some entries (ascending): whether it was there and seen in the old row, and whether it is lost. Nothing else is
+  /// in the way of the row's sight. Without branches, since which entry comes next can't be foretold.
+  std::span<const std::uint8_t> of(std::span<const std::uint32_t> to, const RowView& old, std::span<const Severed::Entry> lost) {
+    lost_.clear();
+    for (const auto& entry : lost)
+      if (VisibilityGraph::is_neighbor(entry.bits)) lost_.push_back(entry.to);  // others have left the old row
+    lost_.push_back(~0u);
+    seen_.assign(to.size(), none);
+    for (std::size_t e = 0, o = 0, l = 0; e < to.size() && o < old.to.size();) {
+      const auto a = to[e], b = old.to[o];
+      const std::uint8_t is_lost = lost_[l] == b, saw = (a == b) & !(old.bits[o] & VisibilityGraph::path_bit);
+      seen_[e] = static_cast<std::uint8_t>(saw << is_lost);
+      e += a <= b, o += b <= a, l += is_lost & (b <= a);
+    }
+    return seen_;
+  }
+
+ private:
+  std::vector<std::uint32_t> lost_;
+  std::vector<std::uint8_t> seen_;
+};
 
 // Rows, kept until all are found.
 class RowBatch {
@@ -132,12 +162,11 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   // What the faces cut, and all that hangs on the moved nodes.
   const Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
   Users users(nodes, graph, update);
+  for (const auto& row : severed.rows)
+    if (const auto lost = severed.of(row); std::any_of(lost.begin(), lost.end(), [](const auto& entry) { return VisibilityGraph::is_neighbor(entry.bits); })) update.add(row.id);
   for (const auto& row : severed.rows) {
     std::uint32_t shortest = unit_radius;
-    for (const auto& entry : severed.of(row)) {
-      if (VisibilityGraph::is_edge(entry.bits)) shortest = std::min(shortest, VisibilityGraph::bound(entry.bits));
-      if (VisibilityGraph::is_neighbor(entry.bits)) update.add(row.id);
-    }
+    for (const auto& entry : severed.of(row)) shortest = std::min(shortest, VisibilityGraph::is_edge(entry.bits) ? VisibilityGraph::bound(entry.bits) : unit_radius);
     if (shortest < unit_radius) users.add(row.id, shortest);
   }
   std::vector<std::pair<NodeId, NodeId>> lost;  // other edges that go, from one end or both
@@ -232,34 +261,46 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   const auto is_fresh = [&](std::uint32_t i) { return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i)); };
   const auto find_rows = [&](std::span<const std::uint32_t> some, const RowSearch::Put& put) {
     PairSight asked(nodes, graph, obstacle_near);
+    OldSight old_sight;
     auto next_row = std::lower_bound(severed.rows.begin(), severed.rows.end(), some.empty() ? 0 : some.front(), [](const auto& row, std::uint32_t id) { return row.id < id; });
+    auto ahead = some.begin();
+    const auto prefetch_next = [&] {
+      constexpr std::ptrdiff_t rows = 4;
+      if (some.end() - ahead > 2 * rows) graph.rows().prefetch_place(ahead[2 * rows]);
+      if (some.end() - ahead > rows) graph.rows().prefetch(ahead[rows]);
+      ++ahead;
+    };
     const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
+      prefetch_next();
       while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
       const auto lost = next_row != severed.rows.end() && next_row->id == i ? severed.of(*next_row) : std::span<const Severed::Entry>();
-      const auto old = graph.rows().entries(i);
-      const bool fresh_i = is_fresh(i);
-      for (std::size_t e = 0, o = 0, l = 0; e < to.size(); ++e) {
-        while (o < old.to.size() && old.to[o] < to[e]) ++o;
-        while (l < lost.size() && lost[l].to < to[e]) ++l;
-        const bool is_lost = l < lost.size() && lost[l].to == to[e], was_there = o < old.to.size() && old.to[o] == to[e];
-        const bool is_edge = VisibilityGraph::is_edge(bits[e]), saw = was_there & !fresh_i && !(old.bits[o] & VisibilityGraph::path_bit) && !is_fresh(to[e]);
-        if (is_edge | (saw & !is_lost)) continue;  // nearly all
-        if (saw || asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
+      const auto seen = old_sight.of(to, is_fresh(i) ? RowView() : graph.rows().entries(i), lost);
+      for (std::size_t e = 0; e < to.size(); ++e) {
+        if (VisibilityGraph::is_edge(bits[e]) || (seen[e] == OldSight::goes_on && !is_fresh(to[e]))) continue;  // nearly all
+        if ((seen[e] == OldSight::lost && !is_fresh(to[e])) || asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
       }
     };
     own_search().run(nodes, graph, some, mark_hidden, put);
   };
   const auto set = [&](std::uint32_t i, const RowView& row) { graph.set_neighbors(NodeId(i), row); };
+  // Searches go together where they see the same: on one side of the cut.
+  std::vector<std::uint32_t> sides[2];
+  auto next_row = severed.rows.begin();
+  for (const auto i : sources) {
+    while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
+    sides[next_row != severed.rows.end() && next_row->id == i && next_row->above].push_back(i);
+  }
   constexpr std::size_t grain = 1024;
   if (threads() == 1 || sources.size() <= grain) {
-    find_rows(sources, set);
+    for (const auto& side : sides) find_rows(side, set);
   } else {
     // The graph stays as it is until all are found.
-    std::vector<RowBatch> batches((sources.size() + grain - 1) / grain);
+    std::vector<std::span<const std::uint32_t>> parts;
+    for (const auto& side : sides)
+      for (std::size_t first = 0; first < side.size(); first += grain) parts.push_back(std::span(side).subspan(first, std::min(grain, side.size() - first)));
+    std::vector<RowBatch> batches(parts.size());
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b)
-        find_rows(std::span(sources).subspan(b * grain, std::min(grain, sources.size() - b * grain)),
-                  [&](std::uint32_t i, const RowView& row) { batches[b].add(i, row); });
+      for (std::size_t b = begin; b < end; ++b) find_rows(parts[b], [&](std::uint32_t i, const RowView& row) { batches[b].add(i, row); });
     });
     for (const RowBatch& batch : batches) batch.give(set);
   }

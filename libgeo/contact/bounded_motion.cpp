@@ -37,7 +37,7 @@ class Mover {
 
  private:
   static constexpr double spare = 0.05;  // of an edge: so that what is carried further stays in its box
-  static constexpr int most_rounds = 8, most_mendings = 20, growths_apart = 10, most_growths = 20;
+  static constexpr int most_rounds = 8, most_mendings = 60, growths_apart = 10, most_growths = 20;
 
   bool wanting() const {
     return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });

@@ -12,7 +12,7 @@ bool within(const Box3& box, const Box3& other) { return (box.lo.array() >= othe
 }  // namespace
 
 void NearPairs::cover(std::size_t triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed) {
-  constexpr std::size_t most_outside = 8;  // one of so many
+  constexpr std::size_t most_outside = 4;  // one of so many
   const bool known = tree_.boxes().size() == triangles;
   std::vector<Box3> boxes(triangles);
   std::vector<std::uint8_t> outside(triangles, 0);

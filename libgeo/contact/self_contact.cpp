@@ -41,14 +41,19 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
   if (positions_.size() != surface_.site.size()) positions_ = targets(body, std::vector<Vec3>(solid.size(), Vec3::Zero()));
 }
 
-std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>& u) const {
-  std::vector<Vec3> result(weights_.size(), Vec3::Zero());
-  parallel_for(result.size(), 256, [&](std::size_t begin, std::size_t end) {
+template <std::size_t count>
+std::array<std::vector<Vec3>, count> SelfContact::targets(const Body& body, const std::array<const std::vector<Vec3>*, count>& u) const {
+  std::array<std::vector<Vec3>, count> result;
+  for (auto& r : result) r.assign(weights_.size(), Vec3::Zero());
+  parallel_for(weights_.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (const SurfaceVertexId id(v); body.surface.alive(id)) result[v] = body.surface.point(body.surface.site(id)) + weights_.at(v, u);
+      if (const SurfaceVertexId id(v); body.surface.alive(id))
+        for (std::size_t k = 0; k < count; ++k) result[k][v] = body.surface.point(body.surface.site(id)) + weights_.at(v, *u[k]);
   });
   return result;
 }
+
+std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>& u) const { return std::move(targets<1>(body, {&u})[0]); }
 
 // Copies whose targets come apart, or slide along each other, are moved apart by half a gap each into their own material: away
 // from what they share, or along the sum of their normals where that does not help. Where a triangle would cross another for it
@@ -147,7 +152,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   }
   const auto together = vertices_together(surface_.site, positions_);
   const Copies copies(together);
-  const auto now = targets(body, state.displacement), free = targets(body, u);
+  const auto [now, free] = targets<2>(body, {&state.displacement, &u});
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
   touch_ = TouchPenalty({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});

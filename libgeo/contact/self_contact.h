@@ -9,6 +9,8 @@
 // along their own normals once Eq. 1 pulls them apart or along each other by more than its own noise.
 #pragma once
 
+#include <array>
+
 #include "contact/birth.h"
 #include "contact/bounded_motion.h"
 #include "contact/contact_options.h"
@@ -43,6 +45,9 @@ class SelfContact {
   const ContactSurface& surface() const { return surface_; }
 
  private:
+  /// Where displacements of nodes have the surface.
+  template <std::size_t count>
+  std::array<std::vector<Vec3>, count> targets(const Body& body, const std::array<const std::vector<Vec3>*, count>& u) const;
   std::vector<Vec3> targets(const Body& body, const std::vector<Vec3>& u) const;
   std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                                    std::span<const std::uint32_t> together, const Copies& copies, State& state);

@@ -52,6 +52,10 @@ Pairs closest_between(const Pairs& pairs, const std::vector<Triangle>& corners, 
   parallel_for(owners, 32, [&](std::size_t begin, std::size_t end) {
     std::vector<Entry> some;
     for (std::size_t o = begin; o < end; ++o) {
+      if (first[o + 1] - first[o] <= most) {
+        for (auto k = first[o]; k < first[o + 1]; ++k) keep[order[k]] = 1;
+        continue;
+      }
       some.clear();
       for (auto k = first[o]; k < first[o + 1]; ++k) {
         const auto& [s, t] = pairs[order[k]];
@@ -78,7 +82,14 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   const auto& corners = surface.triangles;
   std::vector<Vec3> carried = m.from;
   if (!surface.rows.empty()) move_affinely(surface.rows, m.from, m.to, carried);
-  known.cover(corners.size(), [&](std::size_t t) { return surface.swept(t, carried, m.to).grown(0.5 * m.reach); }, 0);
+  // What is held stays, though the motion does not know of it.
+  Vec3 middle = Vec3::Zero();
+  for (const auto v : surface.rows) middle += m.from[v] / double(surface.rows.size());
+  known.cover(corners.size(), [&](std::size_t t) {
+    Box3 box = surface.swept(t, carried, m.to);
+    for (const auto v : corners[t]) box.add(m.from[v] - middle);
+    return box.grown(0.5 * m.reach);
+  }, 0);
   const TrianglePlanes planes(corners, m.from, m.to);
   constexpr std::size_t stretch = 1024;
   std::vector<Pairs> some((known.pairs().size() + stretch - 1) / stretch);

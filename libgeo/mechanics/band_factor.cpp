@@ -47,12 +47,18 @@ void BandFactor::factor(std::size_t from, std::size_t to) {
 }
 
 void BandFactor::solve(float* x) const {
-  const std::size_t n = inverse_.size();
-  for (std::size_t i = 0; i < n; ++i) {
+  parallel_for(ranges_.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (std::any_of(x + 6 * ranges_[k], x + 6 * ranges_[k + 1], [](float v) { return v != 0; })) solve(ranges_[k], ranges_[k + 1], x);
+  });
+}
+
+void BandFactor::solve(std::size_t from, std::size_t to, float* x) const {
+  for (std::size_t i = 6 * from; i < 6 * to; ++i) {
     x[i] *= inverse_[i];
     if (x[i] != 0) subtract(6 * (last_[i / 6] + 1) - i - 1, x[i], row(i) + 1, x + i + 1);
   }
-  for (std::size_t i = n; i-- > 0;) x[i] = inverse_[i] * (x[i] - dot(6 * (last_[i / 6] + 1) - i - 1, row(i) + 1, x + i + 1));
+  for (std::size_t i = 6 * to; i-- > 6 * from;) x[i] = inverse_[i] * (x[i] - dot(6 * (last_[i / 6] + 1) - i - 1, row(i) + 1, x + i + 1));
 }
 
 }  // namespace geo

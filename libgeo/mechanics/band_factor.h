@@ -21,6 +21,7 @@ class BandFactor {
   float* row(std::size_t i) { return &values_[begin_[i]]; }
   const float* row(std::size_t i) const { return &values_[begin_[i]]; }
   void factor(std::size_t from, std::size_t to);
+  void solve(std::size_t from, std::size_t to, float* x) const;
   std::vector<std::size_t> last_, begin_;  // per tile row; per row: where its diagonal is
   std::vector<std::size_t> ranges_;        // tile rows where nothing reaches across, and one past the last
   std::vector<float> inverse_;             // of the factor's diagonal

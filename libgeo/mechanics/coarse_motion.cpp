@@ -89,23 +89,18 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
   matrix_.factor();
 }
 
-void CoarseMotion::add(const std::vector<Vec3>& r, std::vector<Vec3>& z) {
-  values_.resize(6 * groups_.count());
+void CoarseMotion::solve(const std::vector<Vec3>& r, const StepParts& parts) {
+  values_.assign(6 * groups_.count(), 0.0f);
   parallel_for(groups_.count(), 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
+      if (first_[g] == first_[g + 1] || !parts.chosen()[parts.of(member_[first_[g]])]) continue;
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
       for (auto k = first_[g]; k < first_[g + 1]; ++k) force += r[member_[k]], torque += arm_[member_[k]].cross(r[member_[k]]);
       for (int k = 0; k < 3; ++k) values_[6 * g + static_cast<std::size_t>(k)] = float(force[k]), values_[6 * g + 3 + static_cast<std::size_t>(k)] = float(torque[k]);
     }
   });
   matrix_.solve(values_.data());
-  parallel_for(groups_.count(), 32, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end; ++g) {
-      const Eigen::Map<const Eigen::Vector3f> moves(&values_[6 * g]), turns(&values_[6 * g + 3]);
-      const Vec3 move = (share * moves).cast<double>(), turn = (share * turns).cast<double>();
-      for (auto k = first_[g]; k < first_[g + 1]; ++k) z[member_[k]] += move + turn.cross(arm_[member_[k]]);
-    }
-  });
+  for (float& v : values_) v *= share;
 }
 
 }  // namespace geo

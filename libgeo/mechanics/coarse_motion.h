@@ -8,6 +8,7 @@
 #include "mechanics/band_factor.h"
 #include "mechanics/material_points.h"
 #include "mechanics/node_groups.h"
+#include "mechanics/step_parts.h"
 #include "mechanics/stiffness_lanes.h"
 
 namespace geo {
@@ -20,8 +21,13 @@ class CoarseMotion {
   /// blocks of nodes, for the groups' six motions each; factored.
   void factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight, float shear, float bulk,
               std::size_t stride, const std::vector<Mat3>& blocks);
-  /// z += 0.4 P (Pᵀ K P)⁻¹ Pᵀ r: its share beside that of patches
-  void add(const std::vector<Vec3>& r, std::vector<Vec3>& z);
+  /// (Pᵀ K P)⁻¹ Pᵀ r of parts at work; then, at a node, 0.4 P of it: its share beside that of patches.
+  void solve(const std::vector<Vec3>& r, const StepParts& parts);
+  Vec3 at(std::size_t node) const {
+    if (!free_[node]) return Vec3::Zero();
+    const float* const motion = &values_[6 * groups_.of[node]];
+    return Eigen::Map<const Eigen::Vector3f>(motion).cast<double>() + Eigen::Map<const Eigen::Vector3f>(motion + 3).cast<double>().cross(arm_[node]);
+  }
 
  private:
   const NodeGroups& groups_;

@@ -40,7 +40,7 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
   }
   StepReport report;
   report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
-  const std::vector<Mat3> rest = relaxed(state);
+  const auto rest = relaxed(state);
   std::vector<Vec3> force;
   // Energy may only come from outside: where it rises beyond what loads and ground can have brought, the step was too long.
   for (int attempt = 0;; ++attempt, report.substeps *= 2) {

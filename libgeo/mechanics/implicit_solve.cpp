@@ -9,17 +9,18 @@
 
 namespace geo {
 
-// The stiffness of points at u_, after evaluate(u_).
+// The stiffness of points of parts at work, at u_, after evaluate(u_).
 void ImplicitStep::linearise() {
   StiffnessConstants constants = stiffness_constants(s_.material_);
   constants.viscous = float(s_.material_.viscosity / dt_);
-  parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const auto blocks = parts_.blocks();
+  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     Columns<float> relaxed;
-    for (std::size_t b = begin; b < end; ++b) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t b = blocks[k];
       if (!relaxed_.empty()) {
         relaxed.resize(s_.points_.blocks[b].points.size());
-        for (std::size_t i = 0; i < s_.points_.blocks[b].points.size(); ++i)
-          for (int c = 0; c < 3; ++c) Eigen::Map<Eigen::Vector3f>(&relaxed.column[c][4 * i]) = relaxed_[s_.points_.first(b) + i].col(c).cast<float>();
+        for (int c = 0; c < 3; ++c) std::copy(relaxed_[b].column[c].begin(), relaxed_[b].column[c].end(), relaxed.column[c].begin());
       }
       stiffness_modes(constants, gradient_[b], relaxed_.empty() ? nullptr : &relaxed, weight_[b], modes_[b]);
     }
@@ -28,7 +29,7 @@ void ImplicitStep::linearise() {
 
 // What nodes have besides, at u_, and both levels of the preconditioner.
 void ImplicitStep::precondition() {
-  each_node([&](std::size_t i) {
+  parts_.each_node([&](std::size_t i) {
     local_[i] = s_.mass_[i] / (dt_ * dt_) * Mat3::Identity();
     if (env_.ground) {
       const Mat3 nn = env_.ground_normal * env_.ground_normal.transpose();
@@ -50,92 +51,108 @@ void ImplicitStep::precondition() {
   if (s_.penalty_) {
     std::vector<double> penalty(n_, 0);
     s_.penalty_->add_diagonal(s_.rows_, penalty);
-    each_node([&](std::size_t i) { blocks[i] += penalty[i] * Mat3::Identity(); });
+    parts_.each_node([&](std::size_t i) { blocks[i] += penalty[i] * Mat3::Identity(); });
   }
   patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
 }
 
-void ImplicitStep::elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const {
+// Adds nothing: writes what blocks with points of parts at work have for their nodes.
+void ImplicitStep::elastic_product(const std::vector<Vec3>& p) {
   const MaterialPoints& points = s_.points_;
-  parts.resize(4 * points.parts());
-  parallel_for(modes_.size(), 1, [&](std::size_t begin, std::size_t end) {
+  product_.resize(4 * points.parts());
+  const auto blocks = parts_.blocks();
+  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<float> values;
-    for (std::size_t b = begin; b < end; ++b) {
+    for (std::size_t at = begin; at < end; ++at) {
+      const std::size_t b = blocks[at];
       const PointBlock& block = points.blocks[b];
-      if (block.nodes.empty()) continue;
       values.resize(4 * block.nodes.size());
       const Vec3 base = p[block.nodes[0]];
       for (std::size_t k = 0; k < block.nodes.size(); ++k) {
         const Vec3 from = p[block.nodes[k]] - base;
         for (std::size_t c = 0; c < 3; ++c) values[4 * k + c] = float(from[static_cast<Eigen::Index>(c)]);
       }
-      float* const out = &parts[4 * points.part(b)];
+      float* const out = &product_[4 * points.part(b)];
       std::fill(out, out + 4 * block.nodes.size(), 0.0f);
       multiply_stiffness(block, modes_[b], values.data(), out);
     }
   });
 }
 
-void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) {
-  elastic_product(p, parts_);
-  out.resize(n_);
-  s_.points_.gather(parts_.data(), 4, [&](std::size_t j, const double* sum) { out[j] = Vec3(sum[0], sum[1], sum[2]) + local_[j] * p[j]; });
+// out = K p, and for each part at work p · K p.
+void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature) {
+  elastic_product(p);
+  const auto elastic = [&](std::size_t i) -> Vec3 { return is_fixed(env_, i) ? Vec3(Vec3::Zero()) : Vec3(elastic_at(i) + local_[i] * p[i]); };
+  if (env_.contact.empty() && !s_.penalty_) return parts_.sums(curvature, 0.0, [&](std::size_t i) { return p[i].dot(out[i] = elastic(i)); });
+  parts_.each_node([&](std::size_t i) { out[i] = elastic(i); });
   if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
   for (const Potential* c : env_.contact) c->multiply(p, out);
-  if (!env_.fixed.empty())
-    for (std::size_t i = 0; i < n_; ++i)
-      if (env_.fixed[i]) out[i].setZero();
-}
-
-double ImplicitStep::dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  constexpr std::size_t share = 2048;
-  std::vector<double> sums((a.size() + share - 1) / share, 0);
-  parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      for (std::size_t i = k * share; i < std::min(a.size(), (k + 1) * share); ++i) sums[k] += a[i].dot(b[i]);
+  parts_.sums(curvature, 0.0, [&](std::size_t i) {
+    if (is_fixed(env_, i)) out[i].setZero();
+    return p[i].dot(out[i]);
   });
-  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-// Of the nodes' spacing.
-double ImplicitStep::most(const std::vector<Vec3>& moved) const {
-  double most = 0;
-  for (std::size_t i = 0; i < n_; ++i) most = std::max(most, moved[i].squaredNorm() / (s_.spacing_[i] * s_.spacing_[i]));
-  return std::sqrt(most);
-}
-
-// Until what is left is a seventh in the norm that counts, or what the preconditioner would still add is `small`.
-int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small) {
-  std::vector<Vec3> r = force, z(n_), p(n_), hp;
-  each_node([&](std::size_t i) { x[i].setZero(); });
-  patches_->apply(r, z);
-  coarse_->add(r, z);
-  p = z;
-  double rz = dot(r, z);
-  const double enough = 0.02 * rz;
+// For each part at work, until what is left is a seventh in the norm that counts, and what the preconditioner would still add is less than the accuracy
+// asks for. One of the two will do: the first where Newton will go on anyhow, the second where it has made a step. `left`: that addition, over the
+// nodes' spacing.
+int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
+  const std::vector<char> all = parts_.chosen();
+  std::vector<char> working = all;
+  std::vector<Vec3> r(n_), z(n_), p(n_, Vec3::Zero()), hp(n_);
+  std::vector<double> rz, next, curvature, along(parts_.count()), begun, far(parts_.count(), 0);
+  const auto improve = [&](std::vector<double>& product) {
+    patches_->solve(r, parts_.patches());
+    coarse_->solve(r, parts_);
+    parts_.sums(product, 0.0, [&](std::size_t i) { return r[i].dot(z[i] = patches_->at(i) + coarse_->at(i)); });
+    most(z, left);
+  };
+  parts_.each_node([&](std::size_t i) { x[i].setZero(), r[i] = force[i]; });
+  improve(rz);
+  parts_.each_node([&](std::size_t i) { p[i] = z[i]; });
+  begun = rz;
   int k = 0;
-  for (; k < 500 && rz > enough && !(k > 0 && small > 0 && most(z) < small); ++k) {
-    multiply(p, hp);
-    const double curvature = dot(p, hp);
-    if (!(curvature > 0)) break;
-    const double alpha = rz / curvature;
-    each_node([&](std::size_t i) { x[i] += alpha * p[i], r[i] -= alpha * hp[i]; });
-    patches_->apply(r, z);
-    coarse_->add(r, z);
-    const double next = dot(r, z), beta = next / rz;
-    each_node([&](std::size_t i) { p[i] = z[i] + beta * p[i]; });
-    rz = next;
+  for (; k < 500; ++k) {
+    for (std::size_t q = 0; q < working.size(); ++q) {
+      const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.02 * begun[q], little = k > 0 && left[q] < 0.5 * accuracy_;
+      if (working[q] && (!(rz[q] > 0) || (reduced && (little || far_from_done)) || (little && !first))) working[q] = 0;
+    }
+    if (std::find(working.begin(), working.end(), 1) == working.end()) break;
+    parts_.choose(working);
+    multiply(p, hp, curvature);
+    for (std::size_t q = 0; q < working.size(); ++q) {
+      if (working[q] && !(curvature[q] > 0)) working[q] = 0;
+      along[q] = working[q] ? rz[q] / curvature[q] : 0;
+    }
+    parts_.choose(working);
+    parts_.each_node([&](std::size_t i) {
+      const double alpha = along[parts_.of(i)];
+      x[i] += alpha * p[i], r[i] -= alpha * hp[i];
+    });
+    most(x, far);
+    improve(next);
+    parts_.each_node([&](std::size_t i) { p[i] = z[i] + next[parts_.of(i)] / rz[parts_.of(i)] * p[i]; });
+    for (std::size_t q = 0; q < working.size(); ++q)
+      if (working[q]) rz[q] = next[q];
   }
+  parts_.choose(all);
   return k;
 }
 
+// Of the nodes' spacing, for each part at work.
+void ImplicitStep::most(const std::vector<Vec3>& moved, std::vector<double>& most) const {
+  parts_.most(most, [&](std::size_t i) { return moved[i].squaredNorm() / (s_.spacing_[i] * s_.spacing_[i]); });
+  for (std::size_t p = 0; p < most.size(); ++p)
+    if (parts_.chosen()[p]) most[p] = std::sqrt(most[p]);
+}
+
 std::vector<Vec3> ImplicitStep::product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) {
-  evaluate(u, nullptr);
-  u_ = u;
-  linearise();
+  std::vector<double> value;
   std::vector<Vec3> out(n_);
-  elastic_product(p, parts_);
-  s_.points_.gather(parts_.data(), 4, [&](std::size_t j, const double* sum) { out[j] = Vec3(sum[0], sum[1], sum[2]); });
+  evaluate(u, value, &out);
+  linearise();
+  elastic_product(p);
+  parts_.each_node([&](std::size_t i) { out[i] = elastic_at(i); });
   if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
   return out;
 }

@@ -1,17 +1,20 @@
 #include "mechanics/implicit_step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/error.h"
+#include "mechanics/elastic_block.h"
 #include "mechanics/ground.h"
 #include "mechanics/plasticity.h"
 
 namespace geo {
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
-    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), relaxed_(solid.relaxed(state)),
-      u_(n_), target_(n_), load_(n_), drag_(n_, 0), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
+    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()),
+      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, !env.contact.empty() || solid.penalty_), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
+      relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
   const double keep = 1 / (1 + s_.material_.damping * dt);
   for (std::size_t i = 0; i < n_; ++i) {
     target_[i] = state.displacement[i];
@@ -19,8 +22,8 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     if (!env.load.empty()) load_[i] += env.load[i];
     if (!is_fixed(env, i)) target_[i] += dt * keep * state.velocity[i];
   }
-  // Newton begins where nodes come to if they accelerate as in the step before, or, where that is unknown, fly on their own,
-  // unless that is too far from anything.
+  // Where nodes come to if they accelerate as in the step before, or, where that is unknown, fly on their own, unless that is too far from
+  // anything.
   u_ = target_;
   const bool known = state.acceleration.size() == n_;
   for (std::size_t i = 0; i < n_; ++i) {
@@ -31,121 +34,178 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
   if (env.ground)
     for (std::size_t i = 0; i < n_; ++i)
       if (depth(env, i, s_.position_[i] + state.displacement[i]) > 0) drag_[i] = s_.mass_[i] * env.friction / (0.01 * dt);
+  std::vector<double> values;
   for (std::size_t b = 0; b < weight_.size(); ++b) {
     const auto& points = s_.points_.blocks[b].points;
     weight_[b].assign((points.size() + 7) / 8 * 8, 0);
     for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
-    if (s_.material_.viscosity > 0) before_.push_back(s_.points_.gradients(b, state.displacement));
+    if (s_.material_.viscosity > 0) {
+      s_.points_.values(b, state.displacement, values);
+      point_gradients(s_.points_.blocks[b], values.data(), before_.emplace_back());
+    }
   }
 }
 
-double ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* force) {
-  const Material& m = s_.material_;
-  std::vector<double> energy(gradient_.size(), 0);
-  s_.points_.transform(u, [&](std::size_t b, std::span<Mat3> g) {
-    Columns<float>& kept = gradient_[b];
-    kept.resize(g.size());
-    for (std::size_t i = 0; i < g.size(); ++i) {
-      const MaterialPoint& p = s_.points_.blocks[b].points[i];
-      Mat3 f = Mat3::Identity() + g[i];
-      if (!relaxed_.empty()) f = f * relaxed_[s_.points_.first(b) + i];
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) kept.column[c][4 * i + static_cast<std::size_t>(r)] = float(f(r, c) - (r == c));
-      if (p.rung == Rung::rigid) {
-        g[i].setZero();
-        continue;
-      }
-      energy[b] += p.volume * energy_density(m, f);
-      Mat3 pull = stress(m, f);
-      if (!relaxed_.empty()) pull = pull * relaxed_[s_.points_.first(b) + i];
-      if (!before_.empty()) {
-        const Mat3 whole = Mat3::Identity() + g[i], was = Mat3::Identity() + before_[b][i];
-        const Mat3 rate = 0.5 / dt_ * (whole.transpose() * whole - was.transpose() * was);
-        energy[b] += 0.5 * dt_ * p.volume * m.viscosity * rate.squaredNorm();
-        pull += m.viscosity * whole * rate;
-      }
-      g[i] = p.volume * pull;
+void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force) {
+  if (std::find(parts_.chosen().begin(), parts_.chosen().end(), 1) == parts_.chosen().end()) return;
+  const MaterialPoints& points = s_.points_;
+  const auto blocks = parts_.blocks();
+  energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()), elastic_.resize(parts_.count());
+  std::vector<double> elastic(parts_.count(), 0);
+  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    ElasticBlock work(elastic_constants(s_.material_, dt_));
+    for (std::size_t at = begin; at < end; ++at) {
+      const std::size_t b = blocks[at];
+      const PointHistory history{relaxed_.empty() ? nullptr : &relaxed_[b], before_.empty() ? nullptr : &before_[b]};
+      const auto& of_point = work.evaluate(points, b, u, history, force ? &gradient_[b] : nullptr, force ? &pull_[4 * points.part(b)] : nullptr);
+      double* const energy = &energy_[parts_.block_first(b)];
+      std::fill_n(energy, parts_.of_block(b).size(), 0.0);
+      for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) energy[parts_.slot(b, points.blocks[b], i)] += of_point[i];
     }
-  }, force);
-  double sum = std::accumulate(energy.begin(), energy.end(), 0.0);
-  if (s_.penalty_) sum += s_.penalty_->add(s_.rows_, u, force);
-  elastic_ = sum;
+  });
+  for (const auto b : blocks) {
+    const double* energy = &energy_[parts_.block_first(b)];
+    for (const auto p : parts_.of_block(b)) elastic[p] += *energy++;
+  }
   if (force)
-    for (Vec3& f : *force) f = -f;
-  for (const Potential* p : env_.contact) sum += p->energy(u);
-  for (std::size_t i = 0; i < n_; ++i) {
-    sum += 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm() - load_[i].dot(u[i] - state_.displacement[i]);
-    if (!env_.ground) continue;
+    parts_.each_node([&](std::size_t i) {
+      const auto sum = points.sum<4>(pull_.data(), i);
+      (*force)[i] = -Vec3(sum[0], sum[1], sum[2]);
+    });
+  if (s_.penalty_) {
+    std::vector<Vec3> pull(force ? n_ : 0, Vec3::Zero());
+    elastic[0] += s_.penalty_->add(s_.rows_, u, force ? &pull : nullptr);
+    if (force)
+      for (std::size_t i = 0; i < n_; ++i) (*force)[i] -= pull[i];
+  }
+  parts_.sums(value, 0.0, [&](std::size_t i) {
+    double sum = 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm() - load_[i].dot(u[i] - state_.displacement[i]);
+    if (!env_.ground) return sum;
     const double d = depth(env_, i, s_.position_[i] + u[i]);
     if (d > 0) sum += 0.5 * s_.mass_[i] * env_.ground_stiffness * d * d;
     if (drag_[i] > 0) sum += 0.5 * drag_[i] * tangential(u[i] - state_.displacement[i]).squaredNorm();
+    return sum;
+  });
+  for (std::size_t p = 0; p < parts_.count(); ++p) {
+    if (!parts_.chosen()[p]) continue;
+    value[p] += elastic[p];
+    if (force) elastic_[p] = elastic[p];
   }
-  return sum;
+  for (const Potential* p : env_.contact) value[0] += p->energy(u);
 }
 
 // Internal forces do not change the mean motion of a part that nothing holds: neither must rounding or an unfinished solve.
 // The direction takes such a part to where inertia and loads alone bring its middle.
 void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
   if (!env_.contact.empty()) return;
-  std::vector<char> held(s_.parts_, 0);
-  std::vector<Vec3> mean(s_.parts_, Vec3::Zero());
-  std::vector<double> mass(s_.parts_, 0);
-  for (std::size_t i = 0; i < n_; ++i) {
-    const auto part = s_.part_[i];
-    held[part] |= is_fixed(env_, i) || (env_.ground && (drag_[i] > 0 || depth(env_, i, s_.position_[i] + u_[i]) > 0));
-    mean[part] += s_.mass_[i] * (u_[i] + direction[i] - target_[i]) - dt_ * dt_ * load_[i], mass[part] += s_.mass_[i];
-  }
-  for (std::size_t i = 0; i < n_; ++i)
-    if (const auto part = s_.part_[i]; !held[part]) direction[i] -= mean[part] / mass[part];
+  std::vector<double> held, mass;
+  std::vector<Vec3> mean;
+  parts_.most(held, [&](std::size_t i) { return is_fixed(env_, i) || (env_.ground && (drag_[i] > 0 || depth(env_, i, s_.position_[i] + u_[i]) > 0)) ? 1.0 : 0.0; });
+  parts_.sums(mass, 0.0, [&](std::size_t i) { return s_.mass_[i]; });
+  parts_.sums(mean, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return s_.mass_[i] * (u_[i] + direction[i] - target_[i]) - dt_ * dt_ * load_[i]; });
+  parts_.each_node([&](std::size_t i) {
+    if (const auto p = parts_.of(i); held[p] == 0) direction[i] -= mean[p] / mass[p];
+  });
+}
+
+// Elastic forces at u_ become all that acts on nodes; `elastic` keeps them.
+void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic) {
+  parts_.each_node([&](std::size_t i) { elastic[i] = force[i]; });
+  for (Potential* p : env_.contact) p->force(u_, force);
+  parts_.each_node([&](std::size_t i) {
+    Vec3& r = force[i];
+    r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
+    if (env_.ground) {
+      const double d = depth(env_, i, s_.position_[i] + u_[i]);
+      if (d > 0) r += s_.mass_[i] * env_.ground_stiffness * d * env_.ground_normal;
+      if (drag_[i] > 0) r -= drag_[i] * tangential(u_[i] - state_.displacement[i]);
+    }
+    if (is_fixed(env_, i)) r.setZero();
+  });
+}
+
+// Newton may as well begin where the step did: after an impact or a cut, nodes do not go on as before. That is asked only of parts for which forces
+// say that it could have less, by how far they pull there and what inertia alone has against it; true for those where it has.
+std::vector<char> ImplicitStep::better_at_start(const std::vector<Vec3>& force, const std::vector<double>& value) {
+  std::vector<double> less, at_start;
+  std::vector<char> better(parts_.count());
+  parts_.sums(less, 0.0, [&](std::size_t i) {
+    const Vec3 back = state_.displacement[i] - u_[i];
+    return back.dot(force[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * back);
+  });
+  for (std::size_t p = 0; p < better.size(); ++p) better[p] = less[p] > 0;
+  parts_.choose(better);
+  evaluate(state_.displacement, at_start, nullptr);
+  for (std::size_t p = 0; p < better.size(); ++p) better[p] = better[p] && at_start[p] < value[p];
+  return better;
 }
 
 bool ImplicitStep::run(StepReport& report) {
-  std::vector<Vec3> force, elastic, direction(n_), trial(n_), next;
-  double value = evaluate(u_, &force), moved = 1e300;
-  for (int newton = 0; newton < 20; ++newton, ++report.newton) {
-    elastic = force;
-    for (Potential* p : env_.contact) p->force(u_, force);
+  const std::size_t parts = parts_.count();
+  std::vector<Vec3> force(n_), elastic(n_), direction(n_), next(n_), trial;
+  std::vector<double> value, tried, moved(parts, 1e300), longest(parts, 0), left(parts, 0), step, more;
+  std::vector<char> active(parts, 1), wanted;
+  const auto any = [](const std::vector<char>& of) { return std::find(of.begin(), of.end(), 1) != of.end(); };
+  evaluate(u_, value, &force);
+  add_forces(force, elastic);
+  wanted = better_at_start(force, value);
+  if (any(wanted)) {
+    parts_.choose(wanted);
+    parts_.each_node([&](std::size_t i) { u_[i] = state_.displacement[i]; });
+    evaluate(u_, value, &force);
+    add_forces(force, elastic);
+  }
+  trial = u_;
+  for (int newton = 0; newton < 20; ++newton) {
     // The stiffness of points is used again while they have hardly strained since.
-    if (moved > 0.15) linearise(), moved = 0;
+    wanted.assign(parts, 0);
+    for (std::size_t p = 0; p < parts; ++p)
+      if (active[p] && moved[p] > 0.15) wanted[p] = 1, moved[p] = 0;
+    parts_.choose(wanted);
+    linearise();
+    parts_.choose(active);
     precondition();
-    for (std::size_t i = 0; i < n_; ++i) {
-      Vec3& r = force[i];
-      r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
-      if (env_.ground) {
-        const double d = depth(env_, i, s_.position_[i] + u_[i]);
-        if (d > 0) r += s_.mass_[i] * env_.ground_stiffness * d * env_.ground_normal;
-        if (drag_[i] > 0) r -= drag_[i] * tangential(u_[i] - state_.displacement[i]);
-      }
-      if (is_fixed(env_, i)) r.setZero();
-    }
-    // Once Newton has made a step, no more than the accuracy asks for.
-    report.cg += solve(force, direction, newton > 0 ? 0.5 * accuracy_ : 0);
+    report.cg += solve(force, newton == 0, direction, moved, left);
+    ++report.newton;
     keep_momentum(direction);
-    const double longest = most(direction);
-    double step = 1, tried = 0;
-    if (!std::isfinite(longest)) return false;
-    // What is left after the direction is a fraction of it or less than the accuracy, as the solve ends there.
-    const bool last = longest < 10 * accuracy_;
-    const double rounding = 1e-14 * std::abs(value);
-    int halvings = 0;
-    for (;; ++halvings, step *= 0.5) {
-      for (std::size_t i = 0; i < n_; ++i) trial[i] = u_[i] + step * direction[i];
-      if (last) break;  // too small a change for the potential to tell
-      tried = evaluate(trial, &next);
-      if (tried <= value + rounding || halvings == 16) break;
+    most(direction, longest);
+    // To second order, where a part is done: the stiffness times the direction is the force less inertia.
+    parts_.sums(more, 0.0, [&](std::size_t i) {
+      return direction[i].dot(0.5 * force[i] - elastic[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * direction[i]);
+    });
+    wanted = active, step.assign(parts, 1);
+    for (std::size_t p = 0; p < parts; ++p) {
+      if (!active[p]) continue;
+      if (!std::isfinite(longest[p])) return false;
+      // What is left of a direction grows with its square, or with what the stiffness is behind. Where that is less than the accuracy, and what the
+      // solve has left, too, the direction is taken as it is: it changes the potential by too little to tell.
+      if (longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_) active[p] = wanted[p] = 0, elastic_[p] += more[p];
     }
-    if (!last && !(tried <= value + rounding)) return longest * step < accuracy_;
-    u_.swap(trial);
-    moved += step * longest;
-    if (last) {
-      // To second order: the stiffness times the direction is the force less inertia.
-      double energy = elastic_;
-      for (std::size_t i = 0; i < n_; ++i)
-        energy += direction[i].dot(0.5 * force[i] - elastic[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * direction[i]);
-      report.energy = energy;
-      return ++report.newton, true;
+    parts_.each_node([&](std::size_t i) { trial[i] = u_[i] + direction[i]; });
+    for (int halvings = 0; any(wanted); ++halvings) {
+      parts_.choose(wanted);
+      if (halvings > 0) parts_.each_node([&](std::size_t i) { trial[i] = u_[i] + step[parts_.of(i)] * direction[i]; });
+      evaluate(trial, tried, &next);
+      for (std::size_t p = 0; p < parts; ++p) {
+        if (!wanted[p]) continue;
+        if (tried[p] <= value[p] + 1e-14 * std::abs(value[p])) {
+          wanted[p] = 0, value[p] = tried[p], moved[p] += step[p] * longest[p];
+        } else if (halvings == 16) {
+          if (!(longest[p] * step[p] < accuracy_)) return false;
+          active[p] = wanted[p] = 0;
+        } else {
+          step[p] *= 0.5;
+        }
+      }
     }
-    value = tried, force.swap(next);
+    u_.swap(trial), force.swap(next);
+    trial = u_;
+    if (!any(active)) {
+      report.energy = std::accumulate(elastic_.begin(), elastic_.end(), 0.0);
+      return true;
+    }
+    parts_.choose(active);
+    add_forces(force, elastic);
   }
   return false;
 }
@@ -156,11 +216,17 @@ std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std
   return ImplicitStep(*this, still, 1, nothing, 1).product(u, p);
 }
 
-std::vector<Mat3> Solid::relaxed(const State& state) const {
+std::vector<Columns<double>> Solid::relaxed(const State& state) const {
   if (!state.plastic.empty() && state.plastic.size() != points_.size()) throw InputError("the plastic strains are not those of this solid");
-  std::vector<Mat3> all(material_.yield > 0 ? state.plastic.size() : 0);
-  parallel_for(all.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) all[i] = relaxation(state.plastic[i]);
+  std::vector<Columns<double>> all(material_.yield > 0 && !state.plastic.empty() ? points_.blocks.size() : 0);
+  parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      all[b].resize(points_.blocks[b].points.size());
+      for (std::size_t i = 0; i < points_.blocks[b].points.size(); ++i) {
+        const Mat3 back = relaxation(state.plastic[points_.first(b) + i]);
+        for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&all[b].column[c][4 * i]) = back.col(c);
+      }
+    }
   });
   return all;
 }

@@ -2,13 +2,14 @@
 // point's stiffness made positive, conjugate gradients preconditioned on two levels, line search on the potential.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "base/parallel.h"
 #include "mechanics/coarse_motion.h"
 #include "mechanics/patch_motion.h"
 #include "mechanics/solid.h"
+#include "mechanics/step_parts.h"
 #include "mechanics/stiffness_lanes.h"
 
 namespace geo {
@@ -24,39 +25,42 @@ class ImplicitStep {
   std::vector<Vec3> product(const std::vector<Vec3>& u, const std::vector<Vec3>& p);
 
  private:
-  /// The potential at u; its elastic energy and gradients are kept. `force`, where given: the elastic one.
-  double evaluate(const std::vector<Vec3>& u, std::vector<Vec3>* force);
+  /// The potential of each part at work at u. `force`, where given: the elastic one; then their elastic energy and gradients are kept, too.
+  void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
+  void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
+  std::vector<char> better_at_start(const std::vector<Vec3>& force, const std::vector<double>& value);
   void linearise();
   void precondition();
-  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out);
-  void elastic_product(const std::vector<Vec3>& p, std::vector<float>& parts) const;
-  int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, double small);
-  double most(const std::vector<Vec3>& moved) const;
-  void keep_momentum(std::vector<Vec3>& direction) const;
-  Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }
-  static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
-  template <class Work>
-  void each_node(const Work& work) const {
-    parallel_for(n_, 512, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) work(i);
-    });
+  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature);
+  void elastic_product(const std::vector<Vec3>& p);
+  Vec3 elastic_at(std::size_t node) const {
+    const auto sum = s_.points_.sum<4>(product_.data(), node);
+    return {sum[0], sum[1], sum[2]};
   }
+  int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
+  void most(const std::vector<Vec3>& moved, std::vector<double>& most) const;
+  void keep_momentum(std::vector<Vec3>& direction) const;
+  double trusted() const { return std::min(accuracy_, 0.01); }
+  Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }
 
   const Solid& s_;
   const State& state_;
   const Environment& env_;
   double dt_, accuracy_;
   std::size_t n_;
-  std::vector<Mat3> relaxed_;
+  StepParts parts_;
   std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;
-  std::vector<std::vector<Mat3>> before_;       // per block: F at the start, where there is viscosity
+  std::vector<Columns<double>> relaxed_;        // per block: of plastic strain, where there is any
+  std::vector<Columns<double>> before_;         // per block: ∇u at the start, where there is viscosity
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
   std::vector<Mat3> local_;  // what nodes have that acts on nothing else
-  double elastic_ = 0;  // energy at the last evaluation
-  std::vector<float> parts_;
+  std::vector<double> elastic_;  // per part: energy at its last evaluation
+  std::vector<double> energy_;   // per block, of each of its parts
+  std::vector<double> pull_;     // what blocks have for their nodes: forces,
+  std::vector<float> product_;   // products
   std::optional<PatchMotion> patches_;
   std::optional<CoarseMotion> coarse_;
 };

@@ -11,14 +11,6 @@
 namespace geo {
 namespace {
 
-// A nodal field at a block's nodes, four numbers each, from the first node's value on: differences lose nothing where a
-// body is far from where it was.
-std::vector<double> local_values(const PointBlock& block, const std::vector<Vec3>& u) {
-  std::vector<double> values(4 * block.nodes.size(), 0);
-  for (std::size_t k = 0; k < block.nodes.size(); ++k) Eigen::Map<Vec3>{&values[4 * k]} = u[block.nodes[k]] - u[block.nodes[0]];
-  return values;
-}
-
 std::vector<Mat3> matrices(const Columns<double>& columns, std::size_t count) {
   std::vector<Mat3> all(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -132,31 +124,19 @@ void MaterialPoints::connect(std::size_t nodes) {
     for (std::size_t k = 0; k < blocks[b].nodes.size(); ++k) incoming_[at[blocks[b].nodes[k]]++] = static_cast<std::uint32_t>(part_[b] + k);
 }
 
+void MaterialPoints::values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {
+  const auto& nodes = blocks[block].nodes;
+  if (values.size() < 4 * nodes.size()) values.resize(4 * nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]], 0;
+}
+
 std::vector<Mat3> MaterialPoints::gradients(std::size_t block, const std::vector<Vec3>& u) const {
   const PointBlock& b = blocks[block];
   Columns<double> columns;
-  point_gradients(b, local_values(b, u).data(), columns);
+  std::vector<double> at;
+  values(block, u, at);
+  point_gradients(b, at.data(), columns);
   return matrices(columns, b.points.size());
-}
-
-void MaterialPoints::transform(const std::vector<Vec3>& u, const std::function<void(std::size_t, std::span<Mat3>)>& work, std::vector<Vec3>* out) const {
-  std::vector<double> parts(out ? 4 * this->parts() : 0);
-  parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    Columns<double> columns;
-    for (std::size_t k = begin; k < end; ++k) {
-      const PointBlock& b = blocks[k];
-      point_gradients(b, local_values(b, u).data(), columns);
-      std::vector<Mat3> all = matrices(columns, b.points.size());
-      work(k, all);
-      if (!out) continue;
-      for (std::size_t i = 0; i < all.size(); ++i)
-        for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&columns.column[c][4 * i]) = all[i].col(c);
-      point_divergence(b, columns, &parts[4 * part_[k]]);
-    }
-  });
-  if (!out) return;
-  out->resize(begin_.size() - 1);
-  gather(parts.data(), 4, [&](std::size_t j, const double* sum) { (*out)[j] = {sum[0], sum[1], sum[2]}; });
 }
 
 }  // namespace geo

@@ -2,6 +2,7 @@
 // in its cache, and sums are made in an order that no thread or vector width changes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -69,15 +70,19 @@ class MaterialPoints {
   /// Number of a block's first point.
   std::size_t first(std::size_t block) const { return first_[block]; }
 
+  /// A nodal field at a block's nodes, four numbers each, from its first node's value on: differences lose nothing where a body is far from
+  /// where it was. `values` is made longer where it is too short.
+  void values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const;
   /// ∇u at the points of a block, in order.
   std::vector<Mat3> gradients(std::size_t block, const std::vector<Vec3>& u) const;
-  /// Calls work(block, ∇u at its points) for each block, from any thread; work replaces each ∇u by a stress (times volume).
-  /// out, one a node: Σ over points of stress · shape gradient; nothing where `out` is null.
-  void transform(const std::vector<Vec3>& u, const std::function<void(std::size_t, std::span<Mat3>)>& work, std::vector<Vec3>* out) const;
-  /// Sums what blocks have for each node, in the order of blocks: `width` numbers (8 at most) a node of a block, from
-  /// width · part(block) on. Calls take(node, sums), from any thread.
-  template <class Number, class Take>
-  void gather(const Number* parts, std::size_t width, const Take& take) const;
+  /// The sum of what blocks have for a node, in their order: `width` numbers a node of a block, from width · part(block) on.
+  template <std::size_t width, class Number>
+  std::array<double, width> sum(const Number* parts, std::size_t node) const {
+    std::array<double, width> sum{};
+    for (auto k = begin_[node]; k < begin_[node + 1]; ++k)
+      for (std::size_t c = 0; c < width; ++c) sum[c] += double(parts[width * incoming_[k] + c]);
+    return sum;
+  }
   std::size_t part(std::size_t block) const { return part_[block]; }
   std::size_t parts() const { return part_.back(); }
 
@@ -85,17 +90,5 @@ class MaterialPoints {
   std::vector<std::size_t> first_, part_;        // per block and one more: points, nodes
   std::vector<std::uint32_t> begin_, incoming_;  // per node: which parts of blocks are its
 };
-
-template <class Number, class Take>
-void MaterialPoints::gather(const Number* parts, std::size_t width, const Take& take) const {
-  parallel_for(begin_.size() - 1, 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = begin; j < end; ++j) {
-      double sum[8] = {};
-      for (auto k = begin_[j]; k < begin_[j + 1]; ++k)
-        for (std::size_t c = 0; c < width; ++c) sum[c] += double(parts[width * incoming_[k] + c]);
-      take(j, sum);
-    }
-  });
-}
 
 }  // namespace geo

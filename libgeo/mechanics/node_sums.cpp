@@ -35,7 +35,9 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
     }
   });
   std::vector<StressSums> sums(nodes.size(), StressSums{});
-  points.gather(parts.data(), width, [&](std::size_t i, const double* sum) { std::copy_n(sum, width, sums[i].begin()); });
+  parallel_for(sums.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sums[i] = points.sum<width>(parts.data(), i);
+  });
   return sums;
 }
 

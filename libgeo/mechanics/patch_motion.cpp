@@ -61,10 +61,11 @@ void PatchMotion::invert(std::size_t patch, float shear, float bulk, const std::
     for (std::size_t j = 0; j <= i; ++j) to[i * row + j] = to[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
 }
 
-void PatchMotion::apply(const std::vector<Vec3>& r, std::vector<Vec3>& z) {
-  parallel_for(patches_.count(), 128, [&](std::size_t begin, std::size_t end) {
+void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches) {
+  parallel_for(patches.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<float> x, y;
-    for (std::size_t p = begin; p < end; ++p) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t p = patches[k];
       const auto nodes = patches_.nodes(p);
       const std::size_t size = 3 * nodes.size();
       x.resize(padded(size)), y.resize(padded(size));
@@ -73,12 +74,6 @@ void PatchMotion::apply(const std::vector<Vec3>& r, std::vector<Vec3>& z) {
       multiply_halves(size, &inverse_[first_[p]], x.data(), y.data());
       float* const out = &parts_[4 * patches_.first(p)];
       for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>(out + 4 * a) = turn * Eigen::Map<const Eigen::Vector3f>(&y[3 * a]);
-    }
-  });
-  parallel_for(r.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      z[i].setZero();
-      for (const auto& at : patches_.patches_of(i)) z[i] += Eigen::Map<const Eigen::Vector3f>(&parts_[4 * (patches_.first(at.patch) + at.slot)]).cast<double>();
     }
   });
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mechanics/node_patches.h"
@@ -16,8 +17,13 @@ class PatchMotion {
   /// `fixed`: as in Environment.
   PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
               const std::vector<std::uint8_t>& fixed);
-  /// z = Σ over patches of their inverses times r
-  void apply(const std::vector<Vec3>& r, std::vector<Vec3>& z);
+  /// Inverses of the patches times r, each on its own; then their sum at a node.
+  void solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches);
+  Vec3 at(std::size_t node) const {
+    Vec3 sum = Vec3::Zero();
+    for (const auto& place : patches_.patches_of(node)) sum += Eigen::Map<const Eigen::Vector3f>(&parts_[4 * (patches_.first(place.patch) + place.slot)]).cast<double>();
+    return sum;
+  }
 
  private:
   void invert(std::size_t patch, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);

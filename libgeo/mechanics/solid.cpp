@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "mechanics/elastic_block.h"
 #include "mechanics/kernel.h"
 #include "mechanics/plasticity.h"
 
@@ -110,26 +111,24 @@ void Solid::gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) co
   out.push_back({i, row.g_self});
 }
 
-double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Mat3>& relaxed) const {
-  std::vector<double> energy(points_.blocks.size(), 0);
-  points_.transform(u, [&](std::size_t b, std::span<Mat3> g) {
-    for (std::size_t i = 0; i < g.size(); ++i) {
-      const MaterialPoint& p = points_.blocks[b].points[i];
-      if (p.rung == Rung::rigid) {
-        g[i].setZero();
-        continue;
-      }
-      const Mat3 f = Mat3::Identity() + g[i];
-      if (relaxed.empty()) {
-        energy[b] += p.volume * energy_density(material_, f);
-        g[i] = p.volume * stress(material_, f);
-      } else {
-        const Mat3& back = relaxed[points_.first(b) + i];
-        energy[b] += p.volume * energy_density(material_, f * back);
-        g[i] = p.volume * stress(material_, f * back) * back;  // `back` is symmetric
-      }
+double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Columns<double>>& relaxed) const {
+  std::vector<double> energy(points_.blocks.size(), 0), pull(force ? 4 * points_.parts() : 0);
+  parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
+    ElasticBlock work(elastic_constants(material_));
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto& of_point = work.evaluate(points_, b, u, {relaxed.empty() ? nullptr : &relaxed[b], nullptr}, nullptr, force ? &pull[4 * points_.part(b)] : nullptr);
+      energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
     }
-  }, force);
+  });
+  if (force) {
+    force->resize(size());
+    parallel_for(size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        const auto sum = points_.sum<4>(pull.data(), j);
+        (*force)[j] = {sum[0], sum[1], sum[2]};
+      }
+    });
+  }
   double sum = std::accumulate(energy.begin(), energy.end(), 0.0);
   if (penalty_) sum += penalty_->add(rows_, u, force);
   if (force)

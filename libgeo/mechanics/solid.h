@@ -15,6 +15,7 @@
 #include "mechanics/node_groups.h"
 #include "mechanics/node_patches.h"
 #include "mechanics/node_rows.h"
+#include "mechanics/point_lanes.h"
 #include "mechanics/potential.h"
 #include "sampling/node_set.h"
 
@@ -110,8 +111,8 @@ class Solid {
   std::size_t point_stride() const { return galerkin_ ? 2 : 1; }  // two of a cell's four points will do for the preconditioner
   void nodal_points(std::span<const NodeId> updated);
   void update_plasticity(State& state, double dt) const;
-  std::vector<Mat3> relaxed(const State& state) const;
-  double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Mat3>& relaxed = {}) const;
+  std::vector<Columns<double>> relaxed(const State& state) const;
+  double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Columns<double>>& relaxed = {}) const;
 
   Material material_;
   std::vector<double> mass_, volume_, spacing_;

@@ -1,0 +1,24 @@
+// Elastic energy and forces of one block of material points.
+#pragma once
+
+#include "mechanics/elastic_lanes.h"
+#include "mechanics/material_points.h"
+
+namespace geo {
+
+/// For block after block: what one leaves is room for the next.
+class ElasticBlock {
+ public:
+  explicit ElasticBlock(const ElasticConstants& constants) : constants_(constants) {}
+  /// At nodal displacements u. `deformed`, where given: F of its points, less 1; `pull`, where given: Σ stress · shape gradient, four numbers a node of
+  /// the block. Returns each point's energy, J; what follows the last one's is zero.
+  const std::vector<double>& evaluate(const MaterialPoints& points, std::size_t block, const std::vector<Vec3>& u, const PointHistory& history, Columns<float>* deformed,
+                                      double* pull);
+
+ private:
+  ElasticConstants constants_;
+  Columns<double> gradient_;
+  std::vector<double> values_, volume_, energy_;
+};
+
+}  // namespace geo

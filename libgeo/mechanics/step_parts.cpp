@@ -1,0 +1,77 @@
+#include "mechanics/step_parts.h"
+
+#include <numeric>
+
+namespace geo {
+namespace {
+
+constexpr std::uint32_t most_a_run = 512;
+
+std::uint32_t root(std::vector<std::uint32_t>& up, std::uint32_t p) {
+  while (up[p] != p) p = up[p] = up[up[p]];
+  return p;
+}
+
+}  // namespace
+
+StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components, bool joined)
+    : all_patches_(patches), of_(component.size(), 0), node_(component.size()) {
+  // A point may see nodes that see nothing of each other.
+  std::vector<std::uint32_t> up(components);
+  std::iota(up.begin(), up.end(), 0);
+  for (const PointBlock& block : points.blocks) {
+    if (joined || std::all_of(block.nodes.begin(), block.nodes.end(), [&](auto j) { return component[j] == component[block.nodes[0]]; })) continue;
+    for (std::size_t i = 0; i < block.points.size(); ++i)
+      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) {
+        const auto a = root(up, component[block.nodes[block.to[q - 1]]]), b = root(up, component[block.nodes[block.to[q]]]);
+        up[std::max(a, b)] = std::min(a, b);
+      }
+  }
+  if (!joined) {
+    std::vector<std::uint32_t> number(components, 0);
+    count_ = 0;
+    for (std::uint32_t c = 0; c < components; ++c) number[c] = root(up, c) == c ? static_cast<std::uint32_t>(count_++) : number[root(up, c)];
+    for (std::size_t i = 0; i < of_.size(); ++i) of_[i] = number[component[i]];
+  }
+  first_.assign(count_ + 1, 0);
+  for (const auto p : of_) ++first_[p + 1];
+  for (std::size_t p = 0; p < count_; ++p) first_[p + 1] += first_[p];
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (std::uint32_t i = 0; i < of_.size(); ++i) node_[next[of_[i]]++] = i;
+  block_first_.push_back(0);
+  std::vector<std::uint32_t> here;
+  for (const PointBlock& block : points.blocks) {
+    here.clear();
+    for (const auto j : block.nodes)
+      if (here.empty() || of_[j] != here.back()) here.push_back(of_[j]);
+    std::sort(here.begin(), here.end());
+    block_part_.insert(block_part_.end(), here.begin(), std::unique(here.begin(), here.end()));
+    block_first_.push_back(block_part_.size());
+  }
+  choose(std::vector<char>(count_, 1));
+}
+
+std::size_t StepParts::slot(std::size_t block, const PointBlock& points, std::size_t point) const {
+  const auto parts = of_block(block);
+  if (parts.size() < 2 || points.first[point] == points.first[point + 1]) return 0;
+  return static_cast<std::size_t>(std::lower_bound(parts.begin(), parts.end(), of_[points.nodes[points.to[points.first[point]]]]) - parts.begin());
+}
+
+void StepParts::choose(const std::vector<char>& chosen) {
+  if (chosen == chosen_) return;
+  chosen_ = chosen;
+  runs_.clear(), blocks_.clear(), patches_.clear(), nodes_at_work_ = 0;
+  for (std::uint32_t p = 0; p < count_; ++p) {
+    if (!chosen_[p]) continue;
+    for (auto k = first_[p]; k < first_[p + 1]; k += most_a_run) runs_.push_back({p, k, std::min(k + most_a_run, first_[p + 1])});
+    nodes_at_work_ += first_[p + 1] - first_[p];
+  }
+  for (std::uint32_t b = 0; b + 1 < block_first_.size(); ++b) {
+    const auto parts = of_block(b);
+    if (std::any_of(parts.begin(), parts.end(), [&](auto p) { return chosen_[p]; })) blocks_.push_back(b);
+  }
+  for (std::uint32_t p = 0; p < all_patches_.count(); ++p)
+    if (chosen_[of_[all_patches_.nodes(p)[0]]]) patches_.push_back(p);
+}
+
+}  // namespace geo

@@ -11,13 +11,18 @@ void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
   for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(u);
 }
 
-double MutualContact::energy(const std::vector<Vec3>& u) const {
-  double sum = 0;
+void MutualContact::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+  for (const Row& row : rows_)
+    for (std::size_t i = 1; i < row.apart.size(); ++i) pairs.emplace_back(row.apart[i - 1].node, row.apart[i].node);
+}
+
+void MutualContact::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sums) const {
   for (const Row& row : rows_) {
+    if (row.apart.empty()) continue;
+    double& sum = sums[part[row.apart[0].node]];
     sum += 0.5 * row.stiffness * std::pow(row.depth(u), 2);
     if (row.pressed > 0) sum += friction_energy(friction_ * row.pressed, row.along(row.at(u) - row.start).norm(), slow_);
   }
-  return sum;
 }
 
 void MutualContact::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {

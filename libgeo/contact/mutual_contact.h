@@ -18,7 +18,8 @@ class MutualContact : public Potential {
   bool empty() const { return rows_.empty(); }
 
   void begin(const std::vector<Vec3>& u, double from, double to) override;
-  double energy(const std::vector<Vec3>& u) const override;
+  void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const override;
+  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
   void blocks(std::vector<Mat3>& out) const override;
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;

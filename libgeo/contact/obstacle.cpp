@@ -75,17 +75,20 @@ Vec3 Obstacle::slide(const Row& row, const Vec3& y) {
 
 double Obstacle::drag(const Row& row, const Vec3& slide) const { return friction_drag(options_.friction * row.pressed, slide.norm(), slow_); }
 
-double Obstacle::energy(const std::vector<Vec3>& u) const {
-  std::vector<double> part(rows_.size(), 0);
+void Obstacle::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+  for (const Row& row : rows_)
+    for (std::size_t i = 1; i < row.weights.size(); ++i) pairs.emplace_back(row.weights[i - 1].node, row.weights[i].node);
+}
+
+void Obstacle::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const {
+  std::vector<double> energy(rows_.size(), 0);
   each_row([&](std::size_t r) {
     const Row& row = rows_[r];
     const Vec3 y = row.rest + at(row, u);
-    part[r] = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
-    if (row.pressed > 0) part[r] += friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_);
+    energy[r] = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
+    if (row.pressed > 0) energy[r] += friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_);
   });
-  double sum = 0;
-  for (const double p : part) sum += p;
-  return sum;
+  for (std::size_t r = 0; r < rows_.size(); ++r) sum[part[rows_[r].weights[0].node]] += energy[r];
 }
 
 void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
@@ -115,11 +118,13 @@ void Obstacle::blocks(std::vector<Mat3>& out) const {
 }
 
 void Obstacle::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
-  for (const Row& row : rows_) {
-    if (row.curvature.isZero(0)) continue;
-    const Vec3 f = row.curvature * at(row, p);
-    for (const auto& e : row.weights) out[e.node] += e.weight * f;
-  }
+  std::vector<Vec3> pull(rows_.size(), Vec3::Zero());
+  each_row([&](std::size_t r) {
+    if (!rows_[r].curvature.isZero(0)) pull[r] = rows_[r].curvature * at(rows_[r], p);
+  });
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    if (!pull[r].isZero(0))
+      for (const auto& e : rows_[r].weights) out[e.node] += e.weight * pull[r];
 }
 
 // The largest sum of absolute values in a row of M⁻¹ Σ k w wᵀ.

@@ -14,15 +14,20 @@ void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth,
   rows_.push_back(one);
 }
 
-double TouchPenalty::energy(const std::vector<Vec3>& u) const {
-  double sum = 0;
+void TouchPenalty::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
+  for (const Row& row : rows_)
+    for (std::size_t i = row.first + 1; i < row.end; ++i) pairs.emplace_back(entries_[i - 1].node, entries_[i].node);
+}
+
+void TouchPenalty::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sums) const {
   for (const Row& row : rows_) {
+    if (row.first == row.end) continue;
+    double& sum = sums[part[entries_[row.first].node]];
     const Vec3 way = at(row, u) - row.start;
     const double along = row.normal.dot(way), depth = std::max(0.0, row.depth - along);
     sum += 0.5 * row.stiffness * depth * depth;
     if (row.depth > 0 && options_.friction > 0) sum += friction_energy(most_friction(row), (way - along * row.normal).norm(), options_.slow);
   }
-  return sum;
 }
 
 std::size_t TouchPenalty::pressing() const {

@@ -51,9 +51,20 @@ void ImplicitStep::precondition() {
   if (s_.penalty_) {
     std::vector<double> penalty(n_, 0);
     s_.penalty_->add_diagonal(s_.rows_, penalty);
-    parts_.each_node([&](std::size_t i) { blocks[i] += penalty[i] * Mat3::Identity(); });
+    for (std::size_t i = 0; i < n_; ++i) blocks[i] += penalty[i] * Mat3::Identity();
   }
-  patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
+  if (!patches_) {
+    patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
+  } else {
+    std::vector<std::uint32_t> changed;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (blocks[i] != blocks_[i])
+        for (const auto& place : s_.patches_.patches_of(i)) changed.push_back(place.patch);
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    patches_->renew(changed, shear, bulk, blocks, env_.fixed);
+  }
+  blocks_ = std::move(blocks);
 }
 
 // Adds nothing: writes what blocks with points of parts at work have for their nodes.

@@ -11,9 +11,18 @@
 
 namespace geo {
 
+// Nodes that contact, or the penalty of mueller04, makes depend on each other.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples(const Environment& env) const {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const Potential* p : env.contact) p->couple(pairs);
+  if (s_.penalty_)
+    for (std::uint32_t i = 1; i < n_; ++i) pairs.emplace_back(i - 1, i);
+  return pairs;
+}
+
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
     : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()),
-      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, !env.contact.empty() || solid.penalty_), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
+      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples(env)), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
       relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
   const double keep = 1 / (1 + s_.material_.damping * dt);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -51,7 +60,7 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   const MaterialPoints& points = s_.points_;
   const auto blocks = parts_.blocks();
   energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()), elastic_.resize(parts_.count());
-  std::vector<double> elastic(parts_.count(), 0);
+  std::vector<double> elastic(parts_.count(), 0), contact(parts_.count(), 0);
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     ElasticBlock work(elastic_constants(s_.material_, dt_));
     for (std::size_t at = begin; at < end; ++at) {
@@ -86,12 +95,12 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
     if (drag_[i] > 0) sum += 0.5 * drag_[i] * tangential(u[i] - state_.displacement[i]).squaredNorm();
     return sum;
   });
+  for (const Potential* p : env_.contact) p->add_energy(u, parts_.of_nodes(), contact);
   for (std::size_t p = 0; p < parts_.count(); ++p) {
     if (!parts_.chosen()[p]) continue;
-    value[p] += elastic[p];
+    value[p] += elastic[p] + contact[p];
     if (force) elastic_[p] = elastic[p];
   }
-  for (const Potential* p : env_.contact) value[0] += p->energy(u);
 }
 
 // Internal forces do not change the mean motion of a part that nothing holds: neither must rounding or an unfinished solve.

@@ -27,6 +27,7 @@ class ImplicitStep {
  private:
   /// The potential of each part at work at u. `force`, where given: the elastic one; then their elastic energy and gradients are kept, too.
   void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const Environment& env) const;
   void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
   std::vector<char> better_at_start(const std::vector<Vec3>& force, const std::vector<double>& value);
   void linearise();
@@ -56,7 +57,8 @@ class ImplicitStep {
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
-  std::vector<Mat3> local_;  // what nodes have that acts on nothing else
+  std::vector<Mat3> local_;   // what nodes have that acts on nothing else
+  std::vector<Mat3> blocks_;  // that and what contact and penalty have for them, as patches_ knows it
   std::vector<double> elastic_;  // per part: energy at its last evaluation
   std::vector<double> energy_;   // per block, of each of its parts
   std::vector<double> pull_;     // what blocks have for their nodes: forces,

@@ -32,6 +32,12 @@ PatchMotion::PatchMotion(const NodePatches& patches, const std::vector<Stiffness
   });
 }
 
+void PatchMotion::renew(std::span<const std::uint32_t> which, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
+  parallel_for(which.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) invert(which[k], shear, bulk, blocks, fixed);
+  });
+}
+
 void PatchMotion::invert(std::size_t patch, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
   const auto nodes = patches_.nodes(patch);
   const std::size_t size = 3 * nodes.size(), row = padded(size);

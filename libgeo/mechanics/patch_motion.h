@@ -17,6 +17,8 @@ class PatchMotion {
   /// `fixed`: as in Environment.
   PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
               const std::vector<std::uint8_t>& fixed);
+  /// Patches that have another block than before, with the rotations that they have.
+  void renew(std::span<const std::uint32_t> which, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   /// Inverses of the patches times r, each on its own; then their sum at a node.
   void solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches);
   Vec3 at(std::size_t node) const {

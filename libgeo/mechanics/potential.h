@@ -1,6 +1,8 @@
 // An energy of node displacements that acts besides elasticity: what contact brings into a time step.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -15,8 +17,16 @@ class Potential {
   /// A part of the time step begins at displacements u: from and to in shares of the whole step, 0 to 1. A part that failed is
   /// begun again, shorter; one from 0 begins the step anew.
   virtual void begin(const std::vector<Vec3>&, double /*from*/, double /*to*/) {}
-  /// J, at displacements u.
-  virtual double energy(const std::vector<Vec3>& u) const = 0;
+  /// Appends pairs of nodes: those that it makes depend on each other hang together by them. The same until the next begin().
+  virtual void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const = 0;
+  /// Adds to sum[part[i]] the energy, J, at displacements u of what it does to node i; nodes that depend on each other are of one part.
+  virtual void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const = 0;
+  /// Of all nodes.
+  double energy(const std::vector<Vec3>& u) const {
+    std::vector<double> sum(1, 0);
+    add_energy(u, std::vector<std::uint32_t>(u.size(), 0), sum);
+    return sum[0];
+  }
   /// Adds −∂E/∂u, N.
   virtual void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) = 0;
   /// Adds the 3×3 diagonal blocks of ∂²E/∂u², N/m.

@@ -14,25 +14,25 @@ std::uint32_t root(std::vector<std::uint32_t>& up, std::uint32_t p) {
 
 }  // namespace
 
-StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components, bool joined)
+StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
+                     std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled)
     : all_patches_(patches), of_(component.size(), 0), node_(component.size()) {
-  // A point may see nodes that see nothing of each other.
   std::vector<std::uint32_t> up(components);
   std::iota(up.begin(), up.end(), 0);
+  const auto join = [&](std::uint32_t i, std::uint32_t j) {
+    const auto a = root(up, component[i]), b = root(up, component[j]);
+    up[std::max(a, b)] = std::min(a, b);
+  };
+  for (const auto& [i, j] : coupled) join(i, j);
+  // A point may see nodes that see nothing of each other.
   for (const PointBlock& block : points.blocks) {
-    if (joined || std::all_of(block.nodes.begin(), block.nodes.end(), [&](auto j) { return component[j] == component[block.nodes[0]]; })) continue;
+    if (std::all_of(block.nodes.begin(), block.nodes.end(), [&](auto j) { return component[j] == component[block.nodes[0]]; })) continue;
     for (std::size_t i = 0; i < block.points.size(); ++i)
-      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) {
-        const auto a = root(up, component[block.nodes[block.to[q - 1]]]), b = root(up, component[block.nodes[block.to[q]]]);
-        up[std::max(a, b)] = std::min(a, b);
-      }
+      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) join(block.nodes[block.to[q - 1]], block.nodes[block.to[q]]);
   }
-  if (!joined) {
-    std::vector<std::uint32_t> number(components, 0);
-    count_ = 0;
-    for (std::uint32_t c = 0; c < components; ++c) number[c] = root(up, c) == c ? static_cast<std::uint32_t>(count_++) : number[root(up, c)];
-    for (std::size_t i = 0; i < of_.size(); ++i) of_[i] = number[component[i]];
-  }
+  std::vector<std::uint32_t> number(components, 0);
+  for (std::uint32_t c = 0; c < components; ++c) number[c] = root(up, c) == c ? static_cast<std::uint32_t>(count_++) : number[root(up, c)];
+  for (std::size_t i = 0; i < of_.size(); ++i) of_[i] = number[component[i]];
   first_.assign(count_ + 1, 0);
   for (const auto p : of_) ++first_[p + 1];
   for (std::size_t p = 0; p < count_; ++p) first_[p + 1] += first_[p];

@@ -1,4 +1,4 @@
-// What of a solid can be solved on its own in a time step: nodes that no material point joins to others. One that has
+// What of a solid can be solved on its own in a time step: nodes that neither material points nor contact join to others. One that has
 // converged costs nothing more, and none waits for another's line search.
 #pragma once
 
@@ -15,10 +15,13 @@ namespace geo {
 
 class StepParts {
  public:
-  /// `component`: per node, of the graph, of so many; `joined`: something else may act between any two, so all is one part.
-  StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components, bool joined);
+  /// `component`: per node, of the graph, of so many; `coupled`: nodes that something else joins. Refers to `patches`.
+  StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
+            std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled);
   std::size_t count() const { return count_; }
   std::uint32_t of(std::size_t node) const { return of_[node]; }
+  /// The same of all nodes.
+  std::span<const std::uint32_t> of_nodes() const { return of_; }
   /// Parts that a block's points belong to, ascending; empty: it has no nodes.
   std::span<const std::uint32_t> of_block(std::size_t block) const { return {&block_part_[block_first_[block]], block_first_[block + 1] - block_first_[block]}; }
   /// Number of a block's first part in a list of all blocks' parts; that list's length after the last.
@@ -76,7 +79,7 @@ class StepParts {
   }
 
   const NodePatches& all_patches_;
-  std::size_t count_ = 1, nodes_at_work_ = 0;
+  std::size_t count_ = 0, nodes_at_work_ = 0;
   std::vector<std::uint32_t> of_, node_, first_;  // per node; nodes by part; per part and one more: its first there
   std::vector<std::uint32_t> block_part_;
   std::vector<std::size_t> block_first_;

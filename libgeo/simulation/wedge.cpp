@@ -33,10 +33,10 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
   }
 }
 
-double Wedge::energy(const std::vector<Vec3>& u) const {
-  double sum = 0;
-  for (const Contact& c : contacts_) sum += 0.5 * c.stiffness * std::pow(std::max(0.0, c.depth(u)), 2);
-  return sum;
+void Wedge::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>&) const {}
+
+void Wedge::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const {
+  for (const Contact& c : contacts_) sum[part[c.node]] += 0.5 * c.stiffness * std::pow(std::max(0.0, c.depth(u)), 2);
 }
 
 void Wedge::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {

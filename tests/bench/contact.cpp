@@ -41,7 +41,7 @@ int contact(const Options& options) {
                                     [&](const geo::Complex& grown, const geo::CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         const double start = cpu_seconds();
-        surface.follow(body, solid);
+        surface.follow(body, solid, delta);
         following += cpu_seconds() - start;
       }
     }

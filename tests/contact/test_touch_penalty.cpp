@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "base/random.h"
 #include "body/agreement.h"
 #include "cases.h"
 #include "contact/crossing.h"
+#include "contact/mutual_contact.h"
 #include "contact/self_contact.h"
 #include "contact/touch_penalty.h"
 #include "contact/triangle_planes.h"
@@ -67,6 +70,55 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
       unit[i] = Vec3::UnitY();
       penalty.multiply(unit, column);
       CHECK((column[i] - blocks[i].col(1)).norm() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("nodes that a penalty makes depend on each other hang together by the pairs that it tells, and each part has its own energy") {
+  const auto [first, count] = seeds(50);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    constexpr std::uint32_t n = 24;
+    std::vector<Vec3> u, at;
+    for (std::uint32_t i = 0; i < n; ++i) u.push_back(random.direction()), at.push_back(u.back() + 0.3 * random.direction());
+    TouchPenalty touch({0.4, 0.05});
+    MutualContact mutual(0.4, 0.05);
+    for (int r = 0; r < 7; ++r) {
+      RelativeRow row;
+      double left = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double w = k < 2 ? random.uniform(-0.5, 0.5) : -left;
+        row.entries.push_back({static_cast<std::uint32_t>(random.below(n)), w}), left += w;
+      }
+      const Vec3 normal = random.direction();
+      touch.add(row, normal, random.uniform(0, 0.5), random.uniform(1, 5), u);
+      mutual.add(row.entries, random.uniform(-0.5, 0) * normal, normal, random.uniform(1, 5));
+    }
+    mutual.begin(u, 0, 1);
+    for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
+      std::vector<std::uint32_t> part(n);
+      std::iota(part.begin(), part.end(), 0);
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+      p->couple(pairs);
+      for (const auto& [i, j] : pairs) std::replace(part.begin(), part.end(), std::uint32_t(part[i]), std::uint32_t(part[j]));
+      std::vector<Vec3> force(n, Vec3::Zero());
+      p->force(at, force);
+      std::vector<double> energy(n, 0), moved(n, 0);
+      p->add_energy(at, part, energy);
+      CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(p->energy(at)).epsilon(1e-12));
+      for (std::uint32_t i = 0; i < n; ++i) {
+        std::vector<Vec3> unit(n, Vec3::Zero()), column(n, Vec3::Zero()), x = at;
+        unit[i] = random.direction(), x[i] += 0.2 * unit[i];
+        p->multiply(unit, column);
+        moved.assign(n, 0);
+        p->add_energy(x, part, moved);
+        for (std::uint32_t j = 0; j < n; ++j)
+          if (part[j] != part[i]) {
+            CHECK(column[j].isZero(0));
+            CHECK(moved[j] == energy[j]);
+          }
+      }
     }
   }
 }

@@ -15,12 +15,12 @@ struct Wishes {
 
 std::string in_words(const geo::Repairs& r) {
   std::string text;
-  const auto add = [&](std::size_t n, const std::string& what, const std::string& done) {
-    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what + (n == 1 ? "" : "s") + " " + done;
+  const auto counted = [](std::size_t n, const std::string& one, const std::string& many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
+  const auto add = [&](std::size_t n, const std::string& one, const std::string& many, const std::string& done) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many) + " " + done;
   };
-  add(r.welded, "vertex", "welded"), add(r.dropped, "triangle", "dropped"), add(r.turned, "triangle", "turned");
-  add(r.holes, "hole", "closed with " + std::to_string(r.added) + " triangle" + (r.added == 1 ? "" : "s")), add(r.hidden, "hidden shell", "left out");
-  for (std::size_t at; (at = text.find("vertexs")) != std::string::npos;) text.replace(at, 7, "vertices");
+  add(r.welded, "vertex", "vertices", "welded"), add(r.dropped, "triangle", "triangles", "dropped"), add(r.turned, "triangle", "triangles", "turned");
+  add(r.holes, "hole", "holes", "closed with " + counted(r.added, "triangle", "triangles")), add(r.hidden, "hidden shell", "hidden shells", "left out");
   return text.empty() ? "nothing to mend" : text;
 }
 

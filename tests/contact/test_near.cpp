@@ -44,7 +44,7 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
   }
 }
 
-TEST_CASE("no two triangles of a fan that opens out cross; of one that goes round twice they do", "[campaign]") {
+TEST_CASE("no two triangles of a fan that opens out cross, but those of one that goes round twice do", "[campaign]") {
   const auto [first, count] = seeds(3000);
   std::size_t open = 0, twice_round = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {

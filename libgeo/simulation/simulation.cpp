@@ -65,6 +65,7 @@ void Simulation::score(const Progress& progress) {
         throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name + "' cannot be made");
     }
   }
+  solid_.settle(body_, state_.motion);
 }
 
 // What acts on nodes, as they are now.

@@ -105,12 +105,11 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
       if (d > 0.02 * spacing) continue;
       const int above = orient3d(t[0], t[1], t[2], x);
       const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-      // A node on the face takes any side, and where faces meet any way out: one that goes straight away from this may pass that.
+      // A node on the face takes any side, and where faces meet any way out.
       std::vector<Vec3> ways{above < 0 ? Vec3(-n) : n};
-      if (above == 0) ways.push_back(-n);
-      for (Random random(i); ways.size() < 16;) {
-        const Vec3 any = random.direction();
-        ways.push_back(above == 0 || any.dot(ways[0]) > 0 ? any : Vec3(-any));
+      if (above == 0) {
+        ways.push_back(-n);
+        for (Random random(i); ways.size() < 16;) ways.push_back(random.direction());
       }
       // As far as there is room, at most a tenth of the spacing. The faces that it is on are left behind, no other is passed.
       std::vector<FaceId> around;

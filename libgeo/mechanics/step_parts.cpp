@@ -1,28 +1,19 @@
 #include "mechanics/step_parts.h"
 
-#include <numeric>
+#include "base/joined.h"
 
 namespace geo {
 namespace {
 
 constexpr std::uint32_t most_a_run = 512;
 
-std::uint32_t root(std::vector<std::uint32_t>& up, std::uint32_t p) {
-  while (up[p] != p) p = up[p] = up[up[p]];
-  return p;
-}
-
 }  // namespace
 
 StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
                      std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled)
     : all_patches_(patches), of_(component.size(), 0), node_(component.size()) {
-  std::vector<std::uint32_t> up(components);
-  std::iota(up.begin(), up.end(), 0);
-  const auto join = [&](std::uint32_t i, std::uint32_t j) {
-    const auto a = root(up, component[i]), b = root(up, component[j]);
-    up[std::max(a, b)] = std::min(a, b);
-  };
+  Joined joined(components);
+  const auto join = [&](std::uint32_t i, std::uint32_t j) { joined.join(component[i], component[j]); };
   for (const auto& [i, j] : coupled) join(i, j);
   // A point may see nodes that see nothing of each other.
   for (const PointBlock& block : points.blocks) {
@@ -31,7 +22,7 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
       for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) join(block.nodes[block.to[q - 1]], block.nodes[block.to[q]]);
   }
   std::vector<std::uint32_t> number(components, 0);
-  for (std::uint32_t c = 0; c < components; ++c) number[c] = root(up, c) == c ? static_cast<std::uint32_t>(count_++) : number[root(up, c)];
+  for (std::uint32_t c = 0; c < components; ++c) number[c] = joined[c] == c ? static_cast<std::uint32_t>(count_++) : number[joined[c]];
   for (std::size_t i = 0; i < of_.size(); ++i) of_[i] = number[component[i]];
   first_.assign(count_ + 1, 0);
   for (const auto p : of_) ++first_[p + 1];

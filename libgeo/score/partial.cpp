@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "base/error.h"
+#include "base/joined.h"
 #include "base/parallel.h"
 
 namespace geo {
@@ -73,19 +73,14 @@ class Rim {
 
   // Triangles that meet in the material across an edge which no other wall has belong together: one level for all.
   void find_levels(const TriangleBvh& skin, double depth) {
-    std::vector<std::uint32_t> root(level_.size());
-    std::iota(root.begin(), root.end(), 0u);
-    const auto find = [&](std::uint32_t t) {
-      while (root[t] != t) t = root[t] = root[root[t]];
-      return t;
-    };
+    Joined joined(level_.size());
     for (const auto& [name, e] : edges_)
-      if (e.triangles.size() == 2 && std::max(deep_[name >> 32], deep_[static_cast<std::uint32_t>(name)]) > 0) root[find(e.triangles[0])] = find(e.triangles[1]);
+      if (e.triangles.size() == 2 && std::max(deep_[name >> 32], deep_[static_cast<std::uint32_t>(name)]) > 0) joined.join(e.triangles[0], e.triangles[1]);
     std::vector<double> deepest(level_.size(), 0);
-    for (std::uint32_t t = 0; t < level_.size(); ++t) deepest[find(t)] = std::max(deepest[find(t)], deepest_of(t));
+    for (std::uint32_t t = 0; t < level_.size(); ++t) deepest[joined[t]] = std::max(deepest[joined[t]], deepest_of(t));
     for (std::uint32_t t = 0; t < level_.size(); ++t) {
       const auto& c = walls_.triangles[t];
-      if (deepest_of(t) > 0) level_[t] = depth * deepest[find(t)];
+      if (deepest_of(t) > 0) level_[t] = depth * deepest[joined[t]];
       else if (skin.inside((walls_.vertices[c[0]] + walls_.vertices[c[1]] + walls_.vertices[c[2]]) / 3)) level_[t] = -whole;  // all of a thin place
     }
   }

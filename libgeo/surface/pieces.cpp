@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "base/joined.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 
@@ -53,19 +53,12 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
 
 // Shells that share faces, in groups: the group of each shell.
 std::vector<std::uint32_t> group(std::size_t shells, const std::vector<std::int32_t>& of_side) {
-  std::vector<std::uint32_t> root(shells);
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::uint32_t s) {
-    while (root[s] != s) s = root[s] = root[root[s]];
-    return s;
-  };
+  Joined joined(shells);
   for (std::size_t f = 0; f + 1 < of_side.size(); f += 2)
-    if (of_side[f] >= 0 && of_side[f + 1] >= 0) {
-      const auto a = find(static_cast<std::uint32_t>(of_side[f])), b = find(static_cast<std::uint32_t>(of_side[f + 1]));
-      root[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t s = 0; s < shells; ++s) root[s] = find(s);
-  return root;
+    if (of_side[f] >= 0 && of_side[f + 1] >= 0) joined.join(static_cast<std::uint32_t>(of_side[f]), static_cast<std::uint32_t>(of_side[f + 1]));
+  std::vector<std::uint32_t> group(shells);
+  for (std::uint32_t s = 0; s < shells; ++s) group[s] = joined[s];
+  return group;
 }
 
 // Of the shells of faces that hang together, one looks outwards at what is around them all: it has corners at the extreme

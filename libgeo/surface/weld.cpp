@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <tuple>
+
+#include "base/joined.h"
 
 namespace geo {
 namespace {
@@ -25,23 +26,6 @@ std::vector<std::uint32_t> open_vertices(const TriangleMesh& mesh) {
   return open;
 }
 
-// The vertex that each becomes: the lowest row of those that hang together.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : row_(count) { std::iota(row_.begin(), row_.end(), 0u); }
-  std::uint32_t operator[](std::uint32_t v) {
-    while (row_[v] != v) v = row_[v] = row_[row_[v]];
-    return v;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = (*this)[a], b = (*this)[b];
-    row_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> row_;
-};
-
 void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open, double reach, Joined& joined) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // of the size of the reach
   for (const auto v : open) {
@@ -59,7 +43,7 @@ void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open,
 
 std::size_t weld_seams(TriangleMesh& mesh, double reach) {
   auto open = open_vertices(mesh);
-  Joined joined(mesh.vertices.size());
+  Joined joined(mesh.vertices.size());  // the vertex that each becomes
   const auto place = [&](std::uint32_t v) { return std::tie(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()); };
   if (reach > 0) {
     join_near(mesh, open, reach, joined);

@@ -84,57 +84,90 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   return count;
 }
 
+namespace {
+
+// The direction whose least part along all of `normals` is about the greatest: between two faces half way, in a corner along its axis.
+Vec3 away_from(const std::vector<Vec3>& normals) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& n : normals) sum += n;
+  for (int i = 0; normals.size() > 1 && i < 64; ++i)
+    sum += *std::min_element(normals.begin(), normals.end(), [&](const Vec3& a, const Vec3& b) { return a.dot(sum) < b.dot(sum); });
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : normals[0];
+}
+
+// A better place for the node that rounding or a cut has put on or very near some of the faces around it: where it is, if there is none.
+Vec3 place_off(const Complex& surface, std::uint32_t node, const Vec3& x, double spacing) {
+  const double close = 0.02 * spacing, most = 0.1 * spacing;
+  std::vector<FaceId> around;
+  surface.near(Box3{x, x}.grown(most + close), around);
+  const auto distance = [&](FaceId f, const Vec3& p) {
+    const auto t = surface.corners(f);
+    return (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm();
+  };
+  // Away from all that are close at once: what goes straight away from one may pass another. On a face either side will do.
+  std::array<std::vector<Vec3>, 2> normals;
+  double clear = most;
+  for (const FaceId f : around) {
+    const double d = distance(f, x);
+    if (d > close) continue;
+    clear = std::min(clear, d);
+    const auto t = surface.corners(f);
+    const int above = orient3d(t[0], t[1], t[2], x);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    normals[0].push_back(above < 0 ? Vec3(-n) : n), normals[1].push_back(above > 0 ? n : Vec3(-n));
+  }
+  if (normals[0].empty()) return x;
+  const auto on = std::partition(around.begin(), around.end(), [&](FaceId f) { return !touches(surface, f, x, x); });
+  if (on != around.end()) clear = -1;  // any place is better
+  std::vector<Vec3> ways{away_from(normals[0]), away_from(normals[1])};
+  for (const auto& side : normals) ways.insert(ways.end(), side.begin(), side.end());
+  for (Random random(node); ways.size() < 2 * normals[0].size() + 16;) ways.push_back(random.direction());
+  // As far as there is room. The faces that it is on are left behind, no other is passed.
+  Vec3 best = x;
+  for (const Vec3& along : ways)
+    for (double step = most; step > 1e-6 * spacing; step *= 0.5) {
+      const Vec3 to = x + step * along;
+      if (std::any_of(around.begin(), on, [&](FaceId f) { return touches(surface, f, x, to); }) ||
+          std::any_of(on, around.end(), [&](FaceId f) { return touches(surface, f, x + 1e-3 * step * along, to); }))
+        continue;
+      double least = most;
+      for (const FaceId f : around) least = std::min(least, distance(f, to));
+      if (least > clear) clear = least, best = to;
+      if (clear > close) return best;
+      break;
+    }
+  return best;
+}
+
+}  // namespace
+
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
-  std::vector<NodeId> moved;
   std::vector<std::uint32_t> near;
   for (const FaceId f : faces) {
     const auto t = body.surface.corners(f);
-    near.clear();
     // Those in cubes along the face: the ball about a large one would be the whole body.
     body.grid.walk(
         [&](int, const Vec3& middle, double half) {
           const double reach = std::numbers::sqrt3 * half + 0.1 * body.grid.cell();
           return (closest_point_on_triangle(middle, t[0], t[1], t[2]) - middle).squaredNorm() <= reach * reach;
         },
-        [&](int, std::uint32_t i) { near.push_back(i); });
-    std::sort(near.begin(), near.end());
-    for (const auto i : near) {
-      const Vec3 x = body.nodes.position[i];
-      const double spacing = body.nodes.spacing[i];
-      const double d = (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm();
-      if (d > 0.02 * spacing) continue;
-      const int above = orient3d(t[0], t[1], t[2], x);
-      const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-      // A node on the face takes any side, and where faces meet any way out.
-      std::vector<Vec3> ways{above < 0 ? Vec3(-n) : n};
-      if (above == 0) {
-        ways.push_back(-n);
-        for (Random random(i); ways.size() < 16;) ways.push_back(random.direction());
-      }
-      // As far as there is room, at most a tenth of the spacing. The faces that it is on are left behind, no other is passed.
-      std::vector<FaceId> around;
-      body.surface.near(Box3{x, x}.grown(0.1 * spacing), around);
-      const auto on = std::partition(around.begin(), around.end(), [&](FaceId g) { return !touches(body.surface, g, x, x); });
-      const auto way = [&](const Vec3& along) {
-        for (double step = 0.1 * spacing; step > 1e-6 * spacing; step *= 0.5)
-          if (std::none_of(around.begin(), on, [&](FaceId g) { return touches(body.surface, g, x, x + step * along); }) &&
-              std::none_of(on, around.end(), [&](FaceId g) { return touches(body.surface, g, x + 1e-3 * step * along, x + step * along); }))
-            return Vec3(step * along);
-        return Vec3(Vec3::Zero());
-      };
-      for (const Vec3& along : ways) {
-        const Vec3 move = way(along);
-        if (move == Vec3::Zero()) continue;
-        body.grid.erase(i, x);
-        body.nodes.position[i] = x + move;
-        body.grid.insert(body.nodes.position, i);
-        moved.push_back(NodeId(i));
-        break;
-      }
-    }
+        [&](int, std::uint32_t i) {
+          const Vec3& x = body.nodes.position[i];
+          if ((closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() <= 0.02 * body.nodes.spacing[i]) near.push_back(i);
+        });
   }
-  std::sort(moved.begin(), moved.end());
-  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::vector<NodeId> moved;
+  for (const auto i : near) {
+    const Vec3 from = body.nodes.position[i], to = place_off(body.surface, i, from, body.nodes.spacing[i]);
+    if (to == from) continue;
+    body.grid.erase(i, from);
+    body.nodes.position[i] = to;
+    body.grid.insert(body.nodes.position, i);
+    moved.push_back(NodeId(i));
+  }
   return moved;
 }
 

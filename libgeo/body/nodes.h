@@ -21,7 +21,8 @@ NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
 std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spacing, std::uint64_t seed,
                         std::size_t limit = std::size_t(-1));
 
-/// Moves nodes that are on or very near one of the faces off it, each to the side it is on. Returns them, ascending.
+/// Moves nodes that are on or very near one of the faces off it, and off all others that are near them: each at most once, past no face
+/// that it is not on. Returns them, ascending.
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);
 
 /// Neighbours spread less in one direction than this share of what they do in another: the smallest over the largest

@@ -89,8 +89,7 @@ std::uint32_t outward(const Complex& k, const std::vector<Shell>& shells, std::v
 // shells that they have, air included (Alexander's duality). All but one of these regions are enclosed by them: a piece of
 // material each, however thin, and whatever rounding makes of its volume. The one around them is air where they have skin
 // that encloses something, else the inside of another piece.
-std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>& shells, const std::vector<std::int32_t>& of_side) {
-  const auto root = group(shells.size(), of_side);
+std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>& shells, const std::vector<std::uint32_t>& root) {
   std::vector<std::vector<std::uint32_t>> groups(shells.size());
   for (std::uint32_t s = 0; s < shells.size(); ++s) groups[root[s]].push_back(s);
   std::vector<std::uint8_t> outer(shells.size(), 1);
@@ -112,12 +111,13 @@ std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>&
 Pieces find_pieces(const Complex& k) {
   std::vector<std::int32_t> shell_of;
   const auto shells = find_shells(k, shell_of);
-  const auto is_outer = find_outer(k, shells, shell_of);
+  const auto root = group(shells.size(), shell_of);
+  const auto is_outer = find_outer(k, shells, root);
   std::vector<std::uint32_t> outer;
   for (std::uint32_t s = 0; s < shells.size(); ++s)
     if (is_outer[s]) outer.push_back(s);
 
-  // Cavities and internal cracks belong to the smallest outer shell around them.
+  // Cavities and internal cracks belong to the smallest outer shell around them, which is none of those that they share faces with.
   std::vector<std::uint32_t> owner(shells.size());
   std::vector<TriangleBvh> trees(shells.size());
   for (std::uint32_t s = 0; s < shells.size(); ++s) {
@@ -125,13 +125,13 @@ Pieces find_pieces(const Complex& k) {
     if (is_outer[s]) continue;
     double best = std::numeric_limits<double>::infinity();
     for (const auto o : outer) {
-      if (shells[o].volume >= best) continue;
+      if (root[o] == root[s] || shells[o].volume >= best) continue;
       if (trees[o].empty()) {
         std::vector<std::array<Vec3, 3>> soup;
         for (const Side side : shells[o].sides) soup.push_back(k.corners(side.face));
         trees[o] = TriangleBvh(soup);
       }
-      // Any vertex will do that is not on the outer shell itself (two shells may touch at a vertex).
+      // Any face will do, by its middle: two shells may touch at vertices and edges.
       for (const Side side : shells[s].sides) {
         const auto c = k.corners(side.face);
         const Vec3 middle = (c[0] + c[1] + c[2]) / 3;

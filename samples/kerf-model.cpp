@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/spelling.h"
 #include "io/front_file.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
@@ -26,7 +27,7 @@ int main(int argc, char** argv) {
   t.option("--points", points, "Of a front");
   t.option("--bend", bend, "Of a front: how far the sheet bends, as a fraction of the diagonal");
   t.option("--tilt", tilt, "Of a front: degrees about the model's longest axis");
-  t.output("PLY or front file");
+  t.output("PLY or front file", {".ply", ".front", ".vdb"});
   return t.run(argc, argv, [&] {
     const std::string target = t.target(kind != "front");
     if (kind == "front") {
@@ -60,7 +61,8 @@ int main(int argc, char** argv) {
     else if (kind == "block") mesh = geo::make_block({2, 1, 1}, edge);
     else if (kind == "plate") mesh = geo::make_block({2, 1, 0.12}, edge);
     else if (kind == "letter" && text.size() == 1) mesh = geo::make_letter(text[0], depth, resolution);
-    else throw tool::UsageError("'" + kind + "' is no model that is known here");
+    else if (kind == "letter") throw tool::UsageError("--text '" + text + "' is no letter from A to Z");
+    else throw tool::UsageError("'" + kind + "' is none of its models" + geo::did_you_mean(kind, {"pumpkin", "apple", "polyp", "sphere", "block", "plate", "letter", "front"}));
     if (target.ends_with(".vdb")) return geo::write_level_set(target, mesh, 0.02 * geo::bounding_box(mesh).diagonal());
     geo::write_all(target, [&](std::ostream& out) { geo::write_ply(out, mesh, {}, "kerf-model " + kind); });
   });

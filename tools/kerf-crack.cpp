@@ -10,6 +10,7 @@
 #include "io/front_file.h"
 #include "io/stream.h"
 #include "model.h"
+#include "surface/pieces.h"
 #include "tool.h"
 
 namespace {
@@ -22,6 +23,7 @@ struct Wishes {
 };
 
 void check(Wishes& w) {
+  if ((w.model == "-") + std::count(w.fronts.begin(), w.fronts.end(), "-") + std::count(w.sheets.begin(), w.sheets.end(), "-") > 1) throw tool::UsageError("only one file can come from standard input");
   if (w.fronts.empty() && w.sheets.empty() && !(w.jagged > 0) && !(w.decimate > 0)) throw tool::UsageError("give at least one --front, --sheet, --jagged or --decimate");
   if (!w.steps.empty()) {
     unsigned long a = 0, b = 0;
@@ -64,10 +66,15 @@ class Cutting {
       const std::size_t last = std::min(w_.to, front.steps.size() - 1);
       if (w_.from >= last) throw geo::InputError("front '" + front.name + "' has only " + std::to_string(front.steps.size()) + " time steps; change --steps");
       const std::size_t row = state_of(front);
+      std::size_t made = 0;
+      geo::Box3 swept;
       for (std::size_t step = w_.from; step < last; ++step) {
         geo::report(progress, "crack " + front.name, done++, total);
-        make_step(front, states_[row], step);
+        made += make_step(front, states_[row], step);
+        for (std::size_t s : {step, step + 1})
+          for (const geo::Vec3& p : front.steps[s]) swept.add(p);
       }
+      if (made == 0 && w_.from == 0 && last + 1 == front.steps.size()) say_missed("front '" + front.name + "'", swept);
     }
     geo::report(progress, "done", total, total);
   }
@@ -82,6 +89,7 @@ class Cutting {
     } catch (const geo::GeometryError& e) {
       throw geo::GeometryError(name + ": " + e.what());
     }
+    if (work.new_crack_faces == 0) say_missed("sheet '" + name + "'", geo::bounding_box(sheet));
     note("\"sheet\":" + tool::quoted(name) + "," + figures(work) + remeshed(delta.new_faces));
   }
 
@@ -98,9 +106,16 @@ class Cutting {
     const auto mesh = cut_surface();
     geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states_, "kerf-crack"); });
     if (t_.json) (target == "-" ? std::cerr : std::cout) << '[' << json_ << "]\n";
+    if (!t_.verbose) return;
+    const auto cracks = static_cast<std::size_t>(complex_.crack_count());
+    t_.say("kerf-crack: " + tool::counted(geo::find_pieces(complex_).count, "piece") + ", " + tool::counted(cracks, "crack") + ", " + tool::counted(mesh.triangles.size(), "triangle"));
   }
 
  private:
+  void say_missed(const std::string& what, const geo::Box3& where) const {
+    const geo::Box3 model = complex_.extent();
+    t_.say("kerf-crack: " + what + " meets no material; it is within (" + tool::rounded(where.lo) + ") to (" + tool::rounded(where.hi) + "), the model within (" + tool::rounded(model.lo) + ") to (" + tool::rounded(model.hi) + ")");
+  }
   geo::TriangleMesh cut_surface() const {
     geo::TriangleMesh mesh = complex_.two_sided();
     geo::carry(file_.mesh, mesh);
@@ -130,7 +145,8 @@ class Cutting {
     return static_cast<std::size_t>(state - states_.begin());
   }
 
-  void make_step(const geo::Front& front, geo::FrontState& state, std::size_t step) {
+  // How many crack triangles the step made.
+  std::size_t make_step(const geo::Front& front, geo::FrontState& state, std::size_t step) {
     std::vector<geo::Vec3> start;
     for (const auto& p : state.points) start.push_back(p.position);
     const auto end = geo::correspond(start, front.steps[step + 1], front.closed);
@@ -155,6 +171,7 @@ class Cutting {
     }
     state.step = static_cast<std::uint32_t>(step + 1);
     note("\"front\":" + tool::quoted(front.name) + ",\"step\":" + std::to_string(step + 1) + "," + figures(work) + remeshed(made));
+    return work.new_crack_faces;
   }
 
   static std::string figures(const geo::CrackWork& work) {
@@ -200,7 +217,7 @@ int main(int argc, char** argv) {
   t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal");
   t.option("--decimate", w.decimate, "First, drop vertices whose surface stays within this fraction of the diagonal");
   t.option("--repro", w.repro, "Where to write model and front when a step fails");
-  t.output("The cut surface (PLY with patch and site; .obj on request)");
+  t.output("The cut surface (PLY with patch and site; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
     check(w);
     const std::string target = t.target(true);

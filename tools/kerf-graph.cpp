@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   t.option("-k", k, "Nearest neighbours per node");
   t.option("--guides", guides, "Guides along concave edges, so many node spacings apart; 0: none");
   t.choice("--method", method, {"auto", "mfw", "dijkstra"}, "Neighbourhoods by the fastest way, the paper's, or Dijkstra's; all give the same");
-  t.output("The body (.kerf)");
+  t.output("The body (.kerf)", {".kerf"});
   return t.run(argc, argv, [&] {
     if (surface_path.empty()) throw tool::UsageError("give the model with --surface");
     if (surface_path == "-" && nodes_path == "-") throw tool::UsageError("nodes and surface cannot both come from standard input");

@@ -75,6 +75,7 @@ void write(const Command& c, const tool::Tool& t) {
   const Exporter put = c.compact ? Exporter() : exporter(c.exported);
   if (c.compact && path != "-" && (t.output_path.empty() || geo::same_file(path, t.output_path))) return geo::KerfUpdate(path).compact();
   const std::string target = c.compact ? t.target(true) : c.exported;
+  geo::require_place(target);
   geo::Input input(path);
   if (!geo::looks_like_kerf(input.text(0, 16))) throw geo::InputError(path + ": is not a .kerf file, which alone can be compacted or exported");
   const geo::KerfFile file(std::move(input));
@@ -146,7 +147,7 @@ int main(int argc, char** argv) {
   t.flag("--diff", c.diff, "Say what differs between two bodies; exit code 1 when anything does");
   t.flag("--compact", c.compact, "Fold what updates appended to a body, in the file itself or into that of --output");
   t.option("--export", c.exported, "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end");
-  t.output("Where --compact writes");
+  t.output("Where --compact writes", {".kerf"});
   return t.run(argc, argv, [&] {
     if (c.paths.empty() && c.edge.size() == 3) c.paths = {c.edge[2]}, c.edge.pop_back();  // --edge I J FILE
     check(c, t);

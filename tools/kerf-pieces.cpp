@@ -73,11 +73,12 @@ int main(int argc, char** argv) {
   t.option("--strength", w.strength, "Force that an area of 1 withstands; a bond's strength is this times its area");
   t.choice("--up", w.up, {"y", "z"}, "Of a .glb: which axis of the model is up");
   t.option("--bonds", w.bonds, "Of a .glb: also write what its scene's extras say of pieces and bonds to this JSON file");
-  t.output("pieces.glb, or a folder; made when it is not there");
+  t.output("pieces.glb, or a folder; made when it is not there", {"a folder", ".glb"});
   return t.run(argc, argv, [&] {
     check(w, t.output_path);
     const bool glb = t.output_path.ends_with(".glb");
     if (!glb && !w.bonds.empty()) throw tool::UsageError("--bonds belongs to a .glb; a folder has pieces.json");
+    glb ? void(t.target(true)) : t.require_ending();
     std::error_code error;
     if (!glb && fs::exists(t.output_path, error)) {
       if (!fs::is_directory(t.output_path, error)) throw geo::OutputError(t.output_path + ": is not a folder; give another name");

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
   t.option("--voxel", w.voxel, "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
-  t.output("The solid (PLY; .obj on request)");
+  t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
     if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
     if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1)) throw tool::UsageError("--voxel must be from 0.0005 to 0.1, or 0");

@@ -24,8 +24,6 @@ geo::TriangleMesh read_checked_volume(const std::string& path, const geo::Volume
   return mesh;
 }
 
-std::string place(const geo::Vec3& p) { return "(" + tool::number(p.x()) + " " + tool::number(p.y()) + " " + tool::number(p.z()) + ")"; }
-
 std::string figures(const geo::NodeSet& nodes, const geo::SampleReport& report, double volume, double read_seconds) {
   std::map<double, std::size_t> levels;
   for (const double spacing : nodes.spacing) ++levels[spacing];
@@ -62,7 +60,7 @@ int main(int argc, char** argv) {
   t.option("--iso", iso, "Of a volume: the surface's level (0 of a level set, 0.5 of a fog volume)");
   t.option("--adaptivity", adaptivity, "Of a volume: 0 to 1, larger triangles where its surface is flat");
   t.option("--surface", surface, "Of a volume: also write its surface (PLY), for kerf-graph and kerf-crack");
-  t.output("Nodes as PCD (or .ply)");
+  t.output("Nodes as PCD (or .ply)", {".pcd", ".ply"});
   return t.run(argc, argv, [&] {
     geo::SampleOptions options;
     options.levels = levels, options.jitter = jitter, options.seed = t.seed, options.across = across, options.support = support;
@@ -113,7 +111,7 @@ int main(int argc, char** argv) {
     if (!surface.empty()) geo::write_all(surface, [&](std::ostream& out) { geo::write_ply(out, mesh, {}, "kerf-sample " + model); });
     geo::write_all(target, [&](std::ostream& out) { target.ends_with(".ply") ? geo::write_nodes_ply(out, nodes) : geo::write_pcd(out, nodes); });
     if (report.unresolved > 0)
-      t.say("kerf-sample: the material is only " + tool::number(report.unresolved) + " thick at " + place(report.unresolved_at) + ", with fewer than " + std::to_string(across) + " nodes across; " +
+      t.say("kerf-sample: the material is only " + tool::rounded(report.unresolved) + " thick at (" + tool::rounded(report.unresolved_at) + "), with fewer than " + std::to_string(across) + " nodes across; " +
             (count > 0 ? "ask for more nodes" : "choose a smaller --spacing") + ", or --min-across 0 if that is meant");
     if (t.verbose) t.say("kerf-sample: " + std::to_string(nodes.size()) + " nodes");
     if (t.json) (target == "-" ? std::cerr : std::cout) << figures(nodes, report, geo::signed_volume(mesh), read_seconds) << '\n';

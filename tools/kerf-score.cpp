@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   t.option("--grain", w.grain, "wood: how many times longer than thick cells are");
   t.option("--curves", w.curves, "Polylines to sweep: OBJ, or the steps of front files");
   t.option("--sheets", w.sheets, "Surfaces, open or closed, which may cross each other");
-  t.output("The front file");
+  t.output("The front file", {".front"});
   return t.run(argc, argv, [&] {
     const auto options = options_of(w, t.seed);
     const std::string target = t.target(false);

@@ -84,6 +84,25 @@ Plan read_plan(const std::string& path, const geo::SceneOverrides& overrides) {
   return plan;
 }
 
+// When blades are there, and where, for one who wonders why they cut nothing.
+std::string way_of(const std::vector<geo::Blade>& blades) {
+  double from = blades[0].motion.keys.front().time, to = blades[0].motion.keys.back().time;
+  geo::Box3 box;
+  for (const geo::Blade& blade : blades) {
+    from = std::min(from, blade.motion.keys.front().time), to = std::max(to, blade.motion.keys.back().time);
+    for (const auto& key : blade.motion.keys)
+      for (const geo::Vec3& p : blade.at(key.time)) box.add(p);
+  }
+  return "by their keys, blades are there from " + tool::rounded(from) + " to " + tool::rounded(to) + " s, within (" + tool::rounded(box.lo) + ") to (" + tool::rounded(box.hi) + ")";
+}
+
+// Models in millimetres are mountains in metres.
+void say_large(const Plan& plan, const tool::Tool& t) {
+  const double across = geo::bounding_box(plan.model.mesh).diagonal();
+  const bool as_it_is = std::all_of(plan.scene.bodies.begin(), plan.scene.bodies.end(), [](const geo::SceneBody& b) { return b.scale == 1; });
+  if (across >= 100 && as_it_is) t.say("kerf-sim: the bodies are " + tool::rounded(across) + " m across, as units are metres; give them scale = 0.001 if they are in mm");
+}
+
 std::string in_words(const geo::Vec3& p) { return tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()); }
 
 geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
@@ -113,10 +132,12 @@ int main(int argc, char** argv) {
   t.option("--frames", frames, "How many frames; 0: as the scene says");
   t.option("--set", settings, "Override a key of the scene, as KEY=VALUE; rows of lists by number, as blade.0.divide");
   t.flag("--resume", resume, "Go on from the last checkpoint in the output folder, or begin where there is none");
-  t.output("Folder of the run");
+  t.output("Folder of the run", {"a folder"});
   return t.run(argc, argv, [&] {
     if (t.output_path.empty() || t.output_path == "-") throw tool::UsageError("give a folder with -o");
+    t.require_ending();
     const Plan plan = read_plan(path, overrides_of(settings));
+    say_large(plan, t);
     const int last = frames > 0 ? frames : plan.scene.frames;
     const sim::RunFolder folder{t.output_path};
     std::error_code error;
@@ -177,8 +198,8 @@ int main(int argc, char** argv) {
     const std::size_t nodes = run.body().nodes.size(), edges = run.body().graph.edge_count(), pieces = geo::find_pieces(run.body().surface).count;
     const auto of = [](const char* name, std::size_t n) { return std::string(",\"") + name + "\":" + std::to_string(n); };
     folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) + of("edges", edges) + of("pieces", pieces) + "," + sim::counts(run.state().total) + "}\n");
-    if (!plan.scene.blades.empty() && run.state().total.fronts == 0) t.say("kerf-sim: no blade met the material; its keys move it from where its points are");
-    t.say("kerf-sim: " + std::to_string(last) + " frames, " + std::to_string(nodes) + " nodes, " + std::to_string(edges) + " edges, " + std::to_string(total.split.crack.triangles_cut) + " triangles cut, " +
-          std::to_string(pieces) + (pieces == 1 ? " piece" : " pieces") + sim::seconds_in_words(total));
+    if (!plan.scene.blades.empty() && run.state().total.fronts == 0) t.say("kerf-sim: no blade met the material in " + tool::rounded(run.state().time) + " s; " + way_of(plan.scene.blades));
+    t.say("kerf-sim: " + tool::counted(static_cast<std::size_t>(last), "frame") + ", " + tool::counted(nodes, "node") + ", " + tool::counted(edges, "edge") + ", " +
+          tool::counted(total.split.crack.triangles_cut, "triangle") + " cut, " + tool::counted(pieces, "piece") + sim::seconds_in_words(total));
   });
 }

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   t.argument("BODY", body_path, "The body before (.kerf)");
   t.option("--surface", surface_path, "The cut surface from kerf-crack");
   t.flag("--no-resample", no_resample, "No new nodes near cracks");
-  t.output("The body after (.kerf); BODY itself: what changed is appended to it");
+  t.output("The body after (.kerf); BODY itself: what changed is appended to it", {".kerf"});
   return t.run(argc, argv, [&] {
     if (surface_path.empty()) throw tool::UsageError("give the cut surface with --surface");
     if (surface_path == "-" && body_path == "-") throw tool::UsageError("body and surface cannot both come from standard input");
@@ -51,5 +51,8 @@ int main(int argc, char** argv) {
       (target == "-" ? std::cerr : std::cout) << "{\"triangles_cut\":" << triangles_cut << ",\"edges_cut\":" << work.edges_cut << ",\"edges_added\":" << work.edges_added << ",\"nodes_updated\":" << work.nodes_updated
                                               << ",\"nodes_added\":" << work.nodes_added << ",\"nodes_moved\":" << work.nodes_moved << ",\"seconds\":{\"resample\":" << tool::number(work.resample_seconds)
                                               << ",\"graph\":" << tool::number(work.graph_seconds) << ",\"binding\":" << tool::number(work.binding_seconds) << ",\"total\":" << tool::number(seconds) << "}}\n";
+    if (t.verbose)
+      t.say("kerf-update: " + tool::counted(triangles_cut, "triangle") + " and " + tool::counted(work.edges_cut, "edge") + " cut, " + tool::counted(work.nodes_added, "node") + " added; " + tool::counted(body.nodes.size(), "node") + ", " +
+            tool::counted(body.graph.edge_count(), "edge"));
   });
 }

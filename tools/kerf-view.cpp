@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
   t.option("--rate", w.rate, "Frames a second, of animations and pages");
   t.option("--samples", w.samples, "Rays a pixel and direction");
   t.option("--megabytes", w.megabytes, "A page stays below; what is too large for it is made coarser");
-  t.output("PNG, WebP, MP4 or HTML file, told by the name's end");
+  t.output("PNG, WebP, MP4 or HTML file, told by the name's end", {".png", ".webp", ".mp4", ".html"});
   return t.run(argc, argv, [&] {
     if (w.paths.empty()) throw tool::UsageError("give a file, or the folder of a run");
     look = checked(w, look);

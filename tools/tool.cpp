@@ -8,11 +8,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <new>
+#include <set>
 #include <thread>
 
 #include "base/error.h"
@@ -60,6 +63,15 @@ bool reader_gone() {
   return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
 }
 
+// How files end whose format many programs know: what ends so had better be so.
+const std::set<std::string> formats = {".3mf", ".abc", ".avi", ".bmp", ".csv", ".dae", ".exr", ".fbx", ".front", ".gif", ".glb", ".gltf", ".html", ".jpeg", ".jpg", ".json", ".kerf", ".mov", ".mp4", ".obj", ".off", ".pcd", ".pdf",
+                                       ".ply", ".png", ".stl", ".svg", ".tif", ".tiff", ".toml", ".usd", ".usda", ".usdc", ".usdz", ".vdb", ".vtk", ".vtp", ".vtu", ".webm", ".webp", ".xyz", ".zip"};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 // What the words of the command line mean: behind "--" all are files, whatever they begin with; long options are known.
 std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words(argv + 1, argv + argc), known;
@@ -73,6 +85,28 @@ std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   for (auto word = end == words.end() ? end : end + 1; word != words.end(); ++word)
     if (word->size() > 1 && word->front() == '-') word->insert(0, "./");
   return words;
+}
+
+// The same words where the last one behind an option that takes several ("--front halve.front bear.off") is the file that the tool
+// is about, put first; none where that could be more than one.
+std::vector<std::string> file_first(const std::vector<std::string>& words, const CLI::App& app) {
+  std::vector<std::size_t> last;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const CLI::Option* option = words[i].starts_with("-") ? app.get_option_no_throw(words[i]) : nullptr;
+    if (!option || option->get_items_expected_max() < CLI::detail::expected_max_vector_size) continue;
+    std::size_t end = i + 1;
+    while (end < words.size() && (words[end] == "-" || !words[end].starts_with("-"))) ++end;
+    if (end > i + 2) last.push_back(end - 1);
+  }
+  if (last.size() != 1) return {};
+  std::vector<std::string> other = words;
+  std::rotate(other.begin(), other.begin() + static_cast<std::ptrdiff_t>(last[0]), other.begin() + static_cast<std::ptrdiff_t>(last[0]) + 1);
+  return other;
+}
+
+void parse(CLI::App& app, std::vector<std::string> words) {
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  app.parse(std::move(words));
 }
 
 }  // namespace
@@ -116,7 +150,10 @@ void Tool::choice(const std::string& names, std::string& value, const std::vecto
   parser_->app.add_option(names, value, help)->capture_default_str()->check(CLI::IsMember(choices));
 }
 void Tool::flag(const std::string& names, bool& value, const std::string& help) { parser_->app.add_flag(names, value, help); }
-void Tool::output(const std::string& help) { parser_->app.add_option("-o,--output", output_path, help); }
+void Tool::output(const std::string& help, std::vector<std::string> endings) {
+  parser_->app.add_option("-o,--output", output_path, help);
+  endings_ = std::move(endings);
+}
 
 int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   try {
@@ -124,9 +161,14 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
       std::cout << describe(parser_->app, argv[2]);
       return flush_output() ? 0 : 73;
     }
-    auto words = words_of(argc, argv, parser_->app);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    parser_->app.parse(std::move(words));
+    const auto words = words_of(argc, argv, parser_->app);
+    try {
+      parse(parser_->app, words);
+    } catch (const CLI::RequiredError&) {
+      const auto other = file_first(words, parser_->app);
+      if (other.empty()) throw;
+      parse(parser_->app, other);
+    }
   } catch (const UsageError& e) {
     std::cerr << name_ << ": " << e.what() << "; see " << name_ << " --help\n";
     return 2;
@@ -180,7 +222,17 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
 std::string Tool::target(bool binary) const {
   const std::string path = output_path.empty() ? "-" : output_path;
   if (path == "-" && binary && ::isatty(1)) throw UsageError("binary output does not go to a terminal: give -o FILE or a pipe");
+  require_ending();
+  geo::require_place(path);
   return path;
+}
+
+void Tool::require_ending() const {
+  const std::string ending = std::filesystem::path(output_path).extension().string();
+  if (endings_.empty() || std::find(endings_.begin(), endings_.end(), ending) != endings_.end() || !formats.contains(lower(ending))) return;
+  std::string known = endings_[0];
+  for (std::size_t i = 1; i < endings_.size(); ++i) known += (i + 1 < endings_.size() ? ", " : " or ") + endings_[i];
+  throw UsageError("'" + output_path + "': " + name_ + " writes " + known + ", not " + ending);
 }
 
 geo::Progress Tool::progress() const {
@@ -209,6 +261,15 @@ std::string number(double x) {
   const auto end = std::to_chars(text, text + sizeof text, x).ptr;
   return std::string(text, end);
 }
+
+std::string rounded(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+std::string rounded(const geo::Vec3& p) { return rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()); }
+
+std::string counted(std::size_t n, const std::string& noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";

@@ -133,6 +133,17 @@ std::string read_all(const std::string& path) {
   return bytes;
 }
 
+void require_place(const std::string& path) {
+  if (path == "-") return;
+  struct stat info {};
+  const bool there = ::stat(path.c_str(), &info) == 0;
+  if (there && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");
+  // A device or a pipe is written to as it is; anything else is made aside, in its folder.
+  const auto folder = std::filesystem::path(path).parent_path() / ".";
+  const bool possible = there && !S_ISREG(info.st_mode) ? ::access(path.c_str(), W_OK) == 0 : ::access(folder.c_str(), W_OK | X_OK) == 0;
+  if (!possible) throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
+}
+
 void write_all(const std::string& path, const std::function<void(std::ostream&)>& write) {
   if (path == "-") {
     DescriptorBuffer buffer(1);

@@ -16,6 +16,9 @@ std::string read_all(const std::string& path);
 /// behind and what was there before stays. "-" writes to standard output. Throws OutputError.
 void write_all(const std::string& path, const std::function<void(std::ostream&)>& write);
 
+/// Throws OutputError, as write_all would, where no file of this name can be made: to be called before long work.
+void require_place(const std::string& path);
+
 /// Something that is being written aside, a file or a folder: removed with all it holds by the destructor, unless it
 /// was committed before.
 class Unfinished {

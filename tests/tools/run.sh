@@ -116,6 +116,28 @@ contract)
   expect 73 "cannot" kerf-sample block.ply --spacing 12% -o none/x.pcd
   expect 73 "cannot" kerf-crack block.ply --front ok.front -o none/x.ply
   expect 73 "cannot be written" kerf-crack block.ply --front ok.front -o /dev/full
+  # Where nothing can be written is found out before the work; what ends as another format's files do is not written.
+  expect 73 "cannot be made (Not a directory)" timeout 10 kerf-view block.ply --size 4000x4000 -o block.ply/x.png
+  expect 2 "writes .ply or .obj, not .stl" kerf-crack block.ply --front ok.front -o x.stl
+  expect 2 "writes .png, .webp, .mp4 or .html, not .gif" kerf-view block.ply -o x.gif
+  expect 2 "writes a folder or .glb, not .fbx" kerf-pieces block.ply -o x.fbx
+  expect 2 "writes a folder, not .mp4" kerf-sim scene.toml -o x.mp4
+  expect 2 "writes .pcd or .ply, not .xyz" kerf-sample block.ply -o x.xyz
+  expect 2 "writes .kerf, not .ply" kerf-update ok.kerf --surface block.ply -o x.ply
+  quietly kerf-crack block.ply --front ok.front -o cut.2 && quietly kerf-info -q cut.2 && rm cut.2
+  # A front that misses the model is told of, with where both are; a sheet, too. What has been done, with -v.
+  printf 'front far\nstep 0\n9 0 0\n9 1 0\nstep 1\n9.5 0 1\n9.5 1 1\nsheet off\nv 9 0 0\nv 9 1 0\nv 9 0 1\nf 1 2 3\n' >far.front
+  kerf-crack block.ply --front far.front -o x.ply 2>said.txt || fail "a front that misses: $(cat said.txt)"
+  grep -q "front 'far' meets no material; it is within (9, 0, 0) to (9.5, 1, 1), the model within (0, 0, 0) to (2, 1, 1)" said.txt || fail "of a front that misses: $(cat said.txt)"
+  grep -q "sheet 'off' meets no material" said.txt || fail "of a sheet that misses: $(cat said.txt)"
+  kerf-crack -v block.ply --front ok.front -o x.ply 2>&1 | grep -q '^kerf-crack: 2 pieces, 1 crack, [0-9]* triangles$' || fail "kerf-crack -v"
+  kerf-update -v ok.kerf --surface x.ply -o x.kerf 2>&1 | grep -q '^kerf-update: [0-9]* triangles and [0-9]* edges cut, ' || fail "kerf-update -v"
+  # The model may come last, behind an option that takes several values.
+  quietly kerf-crack --front ok.front block.ply -o y.ply && cmp -s x.ply y.ply && rm y.ply || fail "kerf-crack with the model last"
+  expect 2 "MESH is required" kerf-crack --front ok.front -o y.ply
+  expect 2 "only one file can come from standard input" kerf-crack - --front - -o y.ply
+  expect 2 "none of its models; did you mean 'sphere'" kerf-model sphre -o y.ply
+  rm x.ply x.kerf said.txt
   for line in "kerf-sample block.ply --spacing 12%" "kerf-crack block.ply --front ok.front" "kerf-update ok.kerf --surface block.ply" "kerf-view block.ply --size 64x48"; do
     script -qec "$line" /dev/null </dev/null >tty.txt
     [ $? = 2 ] || fail "$line writes binary to a terminal"
@@ -452,6 +474,11 @@ simulation)
   # What would be noticed too late otherwise.
   expect 73 "are free" kerf-sim s.toml -o x --frames 100000000
   expect 73 "cannot be made" kerf-sim s.toml -o /proc/x
+  # A model in millimetres, taken for metres.
+  printf 'v 0 0 0\nv 400 0 0\nv 0 400 0\nv 0 0 400\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >mm.obj
+  printf '[body]\nmesh = "mm.obj"\nnodes = 60\n[time]\nframes = 1\n' >mm.toml
+  kerf-sim mm.toml -o mm 2>said.txt && grep -q '692.8 m across.*scale = 0.001' said.txt || fail "kerf-sim says of a model in mm: $(cat said.txt)"
+  kerf-sim mm.toml --set body.scale=0.001 -o small 2>said.txt && ! grep -q across said.txt || fail "kerf-sim says of a scaled one: $(cat said.txt)"
   ;;
 killed)
   # Ten kills at random moments, and a few polite ones (143: before it listens), with contact and without: the same bytes as a run that nobody disturbed.

@@ -66,7 +66,7 @@ bool report_difference(const geo::Body& a, const geo::Body& b, Report& report) {
   const geo::TriangleMesh first = a.surface.two_sided(), second = b.surface.two_sided();
   const bool same_surface = first.vertices == second.vertices && first.triangles == second.triangles && first.patch == second.patch;
   const bool same = same_surface && moved.size() + resized.size() + rows.size() + added.size() + removed.size() == 0 && a.graph == b.graph && a.binding == b.binding;
-  report.headline = same ? "The same body." : "From the first to the second: " + counted(pieces_a, "piece") + " → " + std::to_string(pieces_b) + ", " + counted(cut.size(), "edge") + " cut, " + std::to_string(drawn.size()) + " drawn, " +
+  report.headline = same ? "The same body." : "From the first to the second: " + counted(pieces_a, "piece") + " → " + std::to_string(pieces_b) + ", " + counted(cut.size(), "edge") + " cut, " + grouped(drawn.size()) + " drawn, " +
                     counted(added.size(), "node") + " added, " + counted(rows.size(), "node") + " with other edges or neighbours.";
   report.add("same", same);
   report.add("pieces", numbers(std::vector{pieces_a, pieces_b}));

@@ -59,10 +59,14 @@ void Report::print(bool as_json) const {
   for (const auto& bars : bars_) std::cout << '\n' << bars;
 }
 
-std::string counted(std::size_t n, const std::string& noun, const std::string& plural) {
+std::string grouped(std::size_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits + " " + (n == 1 ? noun : plural.empty() ? noun + "s" : plural);
+  return digits;
+}
+
+std::string counted(std::size_t n, const std::string& noun, const std::string& plural) {
+  return grouped(n) + " " + (n == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
 std::string rounded(double x) {

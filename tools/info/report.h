@@ -36,6 +36,8 @@ class Report {
 
 /// "3 pieces", "1 piece"; thousands set off.
 std::string counted(std::size_t n, const std::string& noun, const std::string& plural = {});
+/// "3,000".
+std::string grouped(std::size_t n);
 /// "1.25 × 0.8 × 2", rounded to four digits.
 std::string rounded(double x);
 /// JSON lists.

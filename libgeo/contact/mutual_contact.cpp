@@ -11,9 +11,8 @@ void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
   for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(u);
 }
 
-void MutualContact::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
-  for (const Row& row : rows_)
-    for (std::size_t i = 1; i < row.apart.size(); ++i) pairs.emplace_back(row.apart[i - 1].node, row.apart[i].node);
+void MutualContact::each_row(const VisitRow& visit) const {
+  for (const Row& row : rows_) visit(row.apart, row.curvature);
 }
 
 void MutualContact::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sums) const {
@@ -38,19 +37,6 @@ void MutualContact::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
       row.curvature += drag * (Mat3::Identity() - across);
     }
     if (f.isZero(0)) continue;
-    for (const auto& e : row.apart) out[e.node] += e.weight * f;
-  }
-}
-
-void MutualContact::blocks(std::vector<Mat3>& out) const {
-  for (const Row& row : rows_)
-    for (const auto& e : row.apart) out[e.node] += e.weight * e.weight * row.curvature;
-}
-
-void MutualContact::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
-  for (const Row& row : rows_) {
-    if (row.curvature.isZero(0)) continue;
-    const Vec3 f = row.curvature * row.at(p);
     for (const auto& e : row.apart) out[e.node] += e.weight * f;
   }
 }

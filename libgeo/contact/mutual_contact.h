@@ -18,11 +18,9 @@ class MutualContact : public Potential {
   bool empty() const { return rows_.empty(); }
 
   void begin(const std::vector<Vec3>& u, double from, double to) override;
-  void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const override;
+  void each_row(const VisitRow& visit) const override;
   void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  void blocks(std::vector<Mat3>& out) const override;
-  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
   double stiffest(const std::vector<double>& inverse_mass) const override;
   void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
 

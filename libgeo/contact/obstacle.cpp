@@ -13,7 +13,7 @@ Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOption
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
 template <class Work>
-void Obstacle::each_row(const Work& work) const {
+void Obstacle::in_parallel(const Work& work) const {
   parallel_for(rows_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) work(r);
   });
@@ -47,7 +47,7 @@ void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
   else if (from == ended_ && !impulses_) add_reaction(u, sum_);
   const Eigen::Isometry3d start = pose(from), back = start.inverse();
   begun_ = from, ended_ = to, now_ = pose(to);
-  each_row([&](std::size_t r) {
+  in_parallel([&](std::size_t r) {
     Row& row = rows_[r];
     row.start = row.rest + at(row, u);
     const Vec3 local = back * row.start;
@@ -75,14 +75,13 @@ Vec3 Obstacle::slide(const Row& row, const Vec3& y) {
 
 double Obstacle::drag(const Row& row, const Vec3& slide) const { return friction_drag(options_.friction * row.pressed, slide.norm(), slow_); }
 
-void Obstacle::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const {
-  for (const Row& row : rows_)
-    for (std::size_t i = 1; i < row.weights.size(); ++i) pairs.emplace_back(row.weights[i - 1].node, row.weights[i].node);
+void Obstacle::each_row(const VisitRow& visit) const {
+  for (const Row& row : rows_) visit(row.weights, row.curvature);
 }
 
 void Obstacle::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const {
   std::vector<double> energy(rows_.size(), 0);
-  each_row([&](std::size_t r) {
+  in_parallel([&](std::size_t r) {
     const Row& row = rows_[r];
     const Vec3 y = row.rest + at(row, u);
     energy[r] = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
@@ -93,7 +92,7 @@ void Obstacle::add_energy(const std::vector<Vec3>& u, std::span<const std::uint3
 
 void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
   std::vector<Vec3> part(rows_.size(), Vec3::Zero());
-  each_row([&](std::size_t r) {
+  in_parallel([&](std::size_t r) {
     Row& row = rows_[r];
     const Vec3 y = row.rest + at(row, u);
     const RigidShape::Field field = inside(row, y);
@@ -108,23 +107,6 @@ void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
   for (std::size_t r = 0; r < rows_.size(); ++r)
     if (!part[r].isZero(0))
       for (const auto& e : rows_[r].weights) out[e.node] += e.weight * part[r];
-}
-
-void Obstacle::blocks(std::vector<Mat3>& out) const {
-  for (const Row& row : rows_) {
-    if (row.curvature.isZero(0)) continue;
-    for (const auto& e : row.weights) out[e.node] += e.weight * e.weight * row.curvature;
-  }
-}
-
-void Obstacle::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
-  std::vector<Vec3> pull(rows_.size(), Vec3::Zero());
-  each_row([&](std::size_t r) {
-    if (!rows_[r].curvature.isZero(0)) pull[r] = rows_[r].curvature * at(rows_[r], p);
-  });
-  for (std::size_t r = 0; r < rows_.size(); ++r)
-    if (!pull[r].isZero(0))
-      for (const auto& e : rows_[r].weights) out[e.node] += e.weight * pull[r];
 }
 
 // The largest sum of absolute values in a row of M⁻¹ Σ k w wᵀ.
@@ -145,7 +127,7 @@ void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<d
   std::vector<RigidShape::Field> fields(rows_.size());
   const double share = ended_ - begun_;
   impulses_ = true;
-  each_row([&](std::size_t r) { fields[r] = inside(rows_[r], rows_[r].rest + at(rows_[r], u)); });
+  in_parallel([&](std::size_t r) { fields[r] = inside(rows_[r], rows_[r].rest + at(rows_[r], u)); });
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row& row = rows_[r];
     if (!(fields[r].distance < 0)) continue;

@@ -29,11 +29,9 @@ class Obstacle : public Potential {
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 
   void begin(const std::vector<Vec3>& u, double from, double to) override;
-  void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const override;
+  void each_row(const VisitRow& visit) const override;
   void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  void blocks(std::vector<Mat3>& out) const override;
-  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
   double stiffest(const std::vector<double>& inverse_mass) const override;
   /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction can.
   void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
@@ -68,7 +66,7 @@ class Obstacle : public Potential {
   double drag(const Row& row, const Vec3& slide) const;
   void add_reaction(const std::vector<Vec3>& u, Reaction& to) const;
   template <class Work>
-  void each_row(const Work& work) const;
+  void in_parallel(const Work& work) const;
 
   std::shared_ptr<const RigidShape> shape_;
   ObstacleOptions options_;

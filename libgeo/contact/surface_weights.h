@@ -6,21 +6,10 @@
 #include <vector>
 
 #include "body/body.h"
+#include "mechanics/potential.h"
 #include "mechanics/solid.h"
 
 namespace geo {
-
-/// A node, and by how much it counts.
-struct NodeWeight {
-  std::uint32_t node;
-  double weight;
-};
-/// Σ weight × value: what the nodes' values come to.
-inline Vec3 weighed(std::span<const NodeWeight> entries, const std::vector<Vec3>& values) {
-  Vec3 sum = Vec3::Zero();
-  for (const auto& e : entries) sum += e.weight * values[e.node];
-  return sum;
-}
 
 /// A row per surface vertex: nodes, and weights that sum to 1. A vertex's velocity follows from the nodes' by the same weights,
 /// and an impulse on it is spread over the nodes by them (§ 3.3).

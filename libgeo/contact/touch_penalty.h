@@ -24,11 +24,9 @@ class TouchPenalty : public Potential {
   /// How many press on each other, at the displacements of the last force() call.
   std::size_t pressing() const;
 
-  void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const override;
+  void each_row(const VisitRow& visit) const override;
   void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  void blocks(std::vector<Mat3>& out) const override;
-  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
 
  private:
   struct Row {
@@ -40,21 +38,13 @@ class TouchPenalty : public Potential {
     Mat3 curvature;          // of the last force()
     bool pressing;           // then
   };
-  Vec3 at(const Row& row, const std::vector<Vec3>& values) const { return weighed({entries_.data() + row.first, entries_.data() + row.end}, values); }
+  std::span<const NodeWeight> entries(const Row& row) const { return {entries_.data() + row.first, entries_.data() + row.end}; }
+  Vec3 at(const Row& row, const std::vector<Vec3>& values) const { return weighed(entries(row), values); }
   double most_friction(const Row& row) const { return options_.friction * row.stiffness * row.depth; }
-
-  void gather_by_node(std::size_t nodes);
 
   TouchPenaltyOptions options_;
   std::vector<Row> rows_;
   std::vector<SurfaceWeights::Entry> entries_;
-  // Of the last force(): rows with a curvature, and their entries by node, so that threads need not wait for each other.
-  struct Share {
-    std::uint32_t active;
-    double weight;
-  };
-  std::vector<std::uint32_t> active_, first_share_;
-  std::vector<Share> shares_;
 };
 
 }  // namespace geo

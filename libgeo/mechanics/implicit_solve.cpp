@@ -41,7 +41,8 @@ void ImplicitStep::precondition() {
   const Material& m = s_.material_;
   const float shear = float(m.mu() + m.viscosity / dt_ / 2), bulk = float(m.lambda() + m.volume_term);
   std::vector<Mat3> blocks = local_;
-  for (const Potential* p : env_.contact) p->blocks(blocks);
+  rows_.read();
+  rows_.add_blocks(blocks);
   if (!coarse_) {
     std::vector<Vec3> at(n_);
     for (std::size_t i = 0; i < n_; ++i) at[i] = s_.position_[i] + u_[i];
@@ -97,7 +98,7 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
   if (env_.contact.empty() && !s_.penalty_) return parts_.sums(curvature, 0.0, [&](std::size_t i) { return p[i].dot(out[i] = elastic(i)); });
   parts_.each_node([&](std::size_t i) { out[i] = elastic(i); });
   if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
-  for (const Potential* c : env_.contact) c->multiply(p, out);
+  rows_.add_product(p, out);
   parts_.sums(curvature, 0.0, [&](std::size_t i) {
     if (is_fixed(env_, i)) out[i].setZero();
     return p[i].dot(out[i]);

@@ -12,17 +12,16 @@
 namespace geo {
 
 // Nodes that contact, or the penalty of mueller04, makes depend on each other.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples(const Environment& env) const {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (const Potential* p : env.contact) p->couple(pairs);
+std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() const {
+  auto pairs = rows_.couples();
   if (s_.penalty_)
     for (std::uint32_t i = 1; i < n_; ++i) pairs.emplace_back(i - 1, i);
   return pairs;
 }
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
-    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()),
-      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples(env)), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
+    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), rows_(env.contact, n_),
+      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
       relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
   const double keep = 1 / (1 + s_.material_.damping * dt);
   for (std::size_t i = 0; i < n_; ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mechanics/coarse_motion.h"
+#include "mechanics/contact_rows.h"
 #include "mechanics/patch_motion.h"
 #include "mechanics/solid.h"
 #include "mechanics/step_parts.h"
@@ -27,7 +28,7 @@ class ImplicitStep {
  private:
   /// The potential of each part at work at u. `force`, where given: the elastic one; then their elastic energy and gradients are kept, too.
   void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const Environment& env) const;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
   void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
   std::vector<char> better_at_start(const std::vector<Vec3>& force, const std::vector<double>& value);
   void linearise();
@@ -49,6 +50,7 @@ class ImplicitStep {
   const Environment& env_;
   double dt_, accuracy_;
   std::size_t n_;
+  ContactRows rows_;
   StepParts parts_;
   std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -9,17 +10,32 @@
 
 namespace geo {
 
-/// One value per node in all vectors. The curvature that block() and multiply() speak of is that at the displacements of the
-/// last force() call, and never negative.
+/// A node, and by how much it counts.
+struct NodeWeight {
+  std::uint32_t node;
+  double weight;
+};
+/// Σ weight × value: what the nodes' values come to.
+inline Vec3 weighed(std::span<const NodeWeight> entries, const std::vector<Vec3>& values) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& e : entries) sum += e.weight * values[e.node];
+  return sum;
+}
+
+/// A sum of energies, each of a weighed sum of displacements: its rows. One value per node in all vectors.
 class Potential {
  public:
+  /// A row's nodes, none twice, and its curvature, N/m: of the energy over their weighed displacement. Never negative.
+  using VisitRow = std::function<void(std::span<const NodeWeight>, const Mat3& curvature)>;
+
   virtual ~Potential() = default;
   /// A part of the time step begins at displacements u: from and to in shares of the whole step, 0 to 1. A part that failed is
   /// begun again, shorter; one from 0 begins the step anew.
   virtual void begin(const std::vector<Vec3>&, double /*from*/, double /*to*/) {}
-  /// Appends pairs of nodes: those that it makes depend on each other hang together by them. The same until the next begin().
-  virtual void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const = 0;
-  /// Adds to sum[part[i]] the energy, J, at displacements u of what it does to node i; nodes that depend on each other are of one part.
+  /// All rows, the same ones in the same order until the next begin(), where they are until then, with their curvatures at the
+  /// displacements of the last force() call; zero for a row that does nothing.
+  virtual void each_row(const VisitRow& visit) const = 0;
+  /// Adds to sum[part[i]] the energy, J, at displacements u of what it does to node i; nodes of a row are of one part.
   virtual void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const = 0;
   /// Of all nodes.
   double energy(const std::vector<Vec3>& u) const {
@@ -29,10 +45,6 @@ class Potential {
   }
   /// Adds −∂E/∂u, N.
   virtual void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) = 0;
-  /// Adds the 3×3 diagonal blocks of ∂²E/∂u², N/m.
-  virtual void blocks(std::vector<Mat3>& out) const = 0;
-  /// Adds ∂²E/∂u² p.
-  virtual void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const = 0;
 
   /// Of the explicit step, where nodes that are held have no inverse mass. No less than the largest eigenvalue of M⁻¹ ∂²E/∂u²,
   /// 1/s²; 0: it does not act there.

@@ -17,7 +17,7 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
     const Vec3 world = x[i] + u[i];
     if (!box.meets({world, world})) continue;
     // The segment behind which the node is, the nearest one of several.
-    Contact found{i, blade, Vec3::Zero(), mass[i] * stiffness, 0};
+    Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), mass[i] * stiffness, 0};
     double least = 0.5 * shape.thickness + clearance[i];
     for (std::size_t s = 0; s < segments; ++s) {
       const Vec3 a = pose * shape.points[s], along = pose * shape.points[(s + 1) % n] - a, normal = along.cross(back).normalized(), r = world - a;
@@ -33,27 +33,19 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
   }
 }
 
-void Wedge::couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>&) const {}
+void Wedge::each_row(const VisitRow& visit) const {
+  for (const Contact& c : contacts_) visit({&c.at, 1}, c.deep ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero()));
+}
 
 void Wedge::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const {
-  for (const Contact& c : contacts_) sum[part[c.node]] += 0.5 * c.stiffness * std::pow(std::max(0.0, c.depth(u)), 2);
+  for (const Contact& c : contacts_) sum[part[c.at.node]] += 0.5 * c.stiffness * std::pow(std::max(0.0, c.depth(u)), 2);
 }
 
 void Wedge::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
   for (Contact& c : contacts_) {
     c.deep = c.depth(u) > 0;
-    if (c.deep) out[c.node] += c.stiffness * c.depth(u) * c.normal;
+    if (c.deep) out[c.at.node] += c.stiffness * c.depth(u) * c.normal;
   }
-}
-
-void Wedge::blocks(std::vector<Mat3>& out) const {
-  for (const Contact& c : contacts_)
-    if (c.deep) out[c.node] += c.stiffness * c.normal * c.normal.transpose();
-}
-
-void Wedge::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
-  for (const Contact& c : contacts_)
-    if (c.deep) out[c.node] += c.stiffness * c.normal.dot(p[c.node]) * c.normal;
 }
 
 std::vector<Vec3> Wedge::reaction(const std::vector<Vec3>& u, std::size_t blades) const {

@@ -18,22 +18,21 @@ class Wedge : public Potential {
            const std::vector<double>& clearance, const std::vector<double>& mass, double stiffness);
   bool empty() const { return contacts_.empty(); }
 
-  void couple(std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const override;
+  void each_row(const VisitRow& visit) const override;
   void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  void blocks(std::vector<Mat3>& out) const override;
-  void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out) const override;
   /// What the material does to each of so many blades at displacements u, N.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
 
  private:
   struct Contact {
-    std::size_t node, blade;
+    NodeWeight at;      // the node, 1
+    std::size_t blade;
     Vec3 normal;        // out of the blade
     double stiffness;   // N/m
     double offset;      // depth = offset − normal · u
     bool deep = false;  // at the last force()
-    double depth(const std::vector<Vec3>& u) const { return offset - normal.dot(u[node]); }
+    double depth(const std::vector<Vec3>& u) const { return offset - normal.dot(u[at.node]); }
   };
   std::vector<Contact> contacts_;
 };

@@ -4,6 +4,7 @@
 #include "cases.h"
 #include "contact/obstacle.h"
 #include "geometry/distance.h"
+#include "mechanics/contact_rows.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -92,7 +93,10 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
       // Central differences; where a vertex passes a ridge of the field between, the derivative jumps.
       const double slope = (o.energy(moved(h)) - o.energy(moved(-h))) / (2 * h);
       CHECK(-along(force) == Approx(slope).epsilon(1e-4));
-      o.multiply(way, turned);
+      Potential* const all[] = {&o};
+      ContactRows rows(all, n);
+      rows.read();
+      rows.add_product(way, turned);
       if (plane) CHECK(along(turned) >= -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
       CHECK(along(turned) > 0);
     }

@@ -1,0 +1,44 @@
+// The rows of all that acts on nodes besides elasticity in a time step, beside each other: what they make depend on each other, and their product.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "mechanics/potential.h"
+
+namespace geo {
+
+class ContactRows {
+ public:
+  /// Of all of these, which outlive it, after their begin(); until read() no row does anything.
+  ContactRows(std::span<Potential* const> potentials, std::size_t nodes);
+  /// Pairs that join all nodes of each row.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
+  /// Takes over the curvatures of the potentials' last force().
+  void read();
+  /// Adds ∂²E/∂u² p.
+  void add_product(const std::vector<Vec3>& p, std::vector<Vec3>& out) const;
+  /// Adds for each node a 3×3 block, N/m, for a preconditioner: that of ∂²E/∂u², and more where a row's weight is spread over many nodes, as those near
+  /// each other move together.
+  void add_blocks(std::vector<Mat3>& out) const;
+
+ private:
+  std::span<const NodeWeight> entries(std::size_t row) const { return {&entries_[first_[row]], first_[row + 1] - first_[row]}; }
+
+  std::span<Potential* const> potentials_;
+  std::vector<std::size_t> first_{0};
+  std::vector<NodeWeight> entries_;
+  std::vector<Mat3> curvature_;
+  // Of rows that do something, by node, so that threads need not wait for each other.
+  struct Share {
+    std::uint32_t active;
+    float weight;
+  };
+  std::vector<std::uint32_t> active_;
+  std::vector<std::size_t> first_share_;
+  std::vector<Share> shares_;
+};
+
+}  // namespace geo

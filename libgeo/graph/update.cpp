@@ -9,6 +9,7 @@
 #include "graph/guides.h"
 #include "graph/id_flags.h"
 #include "graph/lane_search.h"
+#include "graph/old_sight.h"
 #include "graph/row_search.h"
 #include "graph/severed.h"
 
@@ -92,32 +93,6 @@ RowSearch& own_search() {
   thread_local RowSearch search;
   return search;
 }
-
-// Who saw a node, and does still.
-class OldSight {
- public:
-  static constexpr std::uint8_t none = 0, goes_on = 1, lost = 2;
-  /// For each of some entries (ascending): whether it was there and seen in the old row, and whether it is lost. Nothing else is
-  /// in the way of the row's sight. Without branches, since which entry comes next can't be foretold.
-  std::span<const std::uint8_t> of(std::span<const std::uint32_t> to, const RowView& old, std::span<const Severed::Entry> lost) {
-    lost_.clear();
-    for (const auto& entry : lost)
-      if (VisibilityGraph::is_neighbor(entry.bits)) lost_.push_back(entry.to);  // others have left the old row
-    lost_.push_back(~0u);
-    seen_.assign(to.size(), none);
-    for (std::size_t e = 0, o = 0, l = 0; e < to.size() && o < old.to.size();) {
-      const auto a = to[e], b = old.to[o];
-      const std::uint8_t is_lost = lost_[l] == b, saw = (a == b) & !(old.bits[o] & VisibilityGraph::path_bit);
-      seen_[e] = static_cast<std::uint8_t>(saw << is_lost);
-      e += a <= b, o += b <= a, l += is_lost & (b <= a);
-    }
-    return seen_;
-  }
-
- private:
-  std::vector<std::uint32_t> lost_;
-  std::vector<std::uint8_t> seen_;
-};
 
 // Rows, kept until all are found.
 class RowBatch {
@@ -261,7 +236,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   const auto is_fresh = [&](std::uint32_t i) { return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i)); };
   const auto find_rows = [&](std::span<const std::uint32_t> some, const RowSearch::Put& put) {
     PairSight asked(nodes, graph, obstacle_near);
-    OldSight old_sight;
+    std::vector<std::uint32_t> lost, unsure;
     auto next_row = std::lower_bound(severed.rows.begin(), severed.rows.end(), some.empty() ? 0 : some.front(), [](const auto& row, std::uint32_t id) { return row.id < id; });
     auto ahead = some.begin();
     const auto prefetch_next = [&] {
@@ -273,12 +248,19 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
       prefetch_next();
       while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
-      const auto lost = next_row != severed.rows.end() && next_row->id == i ? severed.of(*next_row) : std::span<const Severed::Entry>();
-      const auto seen = old_sight.of(to, is_fresh(i) ? RowView() : graph.rows().entries(i), lost);
-      for (std::size_t e = 0; e < to.size(); ++e) {
-        if (VisibilityGraph::is_edge(bits[e]) || (seen[e] == OldSight::goes_on && !is_fresh(to[e]))) continue;  // nearly all
-        if ((seen[e] == OldSight::lost && !is_fresh(to[e])) || asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
+      lost.clear();
+      if (next_row != severed.rows.end() && next_row->id == i)
+        for (const auto& entry : severed.of(*next_row))
+          if (VisibilityGraph::is_neighbor(entry.bits)) lost.push_back(entry.to);  // others have left the old row
+      if (unsure.size() < to.size()) unsure.resize(2 * to.size());
+      const auto count = unsure_entries(to, bits, is_fresh(i) ? RowView() : graph.rows().entries(i), lost, unsure.data());
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto e = unsure[k] & ~lost_bit;
+        if (((unsure[k] & lost_bit) && !is_fresh(to[e])) || asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
       }
+      if (moved.empty()) return;
+      for (std::size_t e = 0; e < to.size(); ++e)  // what is seen of those is not what it was
+        if (!VisibilityGraph::is_edge(bits[e]) && to[e] < first_new.value && is_fresh(to[e]) && asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
     };
     own_search().run(nodes, graph, some, mark_hidden, put);
   };

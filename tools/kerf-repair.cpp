@@ -3,6 +3,7 @@
 
 #include "io/volume_file.h"
 #include "model.h"
+#include "surface/refine.h"
 #include "surface/repair.h"
 #include "tool.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 struct Wishes {
   std::string model;
-  double weld = 0, voxel = 0;
+  double weld = 0, voxel = 0, edge = 0;
 };
 
 std::string in_words(const geo::Repairs& r) {
@@ -28,15 +29,17 @@ std::string in_words(const geo::Repairs& r) {
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-repair", "Makes a solid of a surface: welds, turns triangles the same way, closes holes; or wraps it in a new surface.",
-               "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
+               "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 -o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
   Wishes w;
   t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
   t.option("--voxel", w.voxel, "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
+  t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
   t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
     if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
     if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1)) throw tool::UsageError("--voxel must be from 0.0005 to 0.1, or 0");
+    if (w.edge != 0 && !(w.edge >= 0.0005 && w.edge <= 1)) throw tool::UsageError("--edge must be from 0.0005 to 1, or 0");
     const std::string target = t.target(true);
     geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
     if (mesh.two_sided()) throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
@@ -45,6 +48,7 @@ int main(int argc, char** argv) {
     if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
     try {
       if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
+      if (w.edge > 0) mesh = geo::refined(mesh, w.edge * diagonal);
       geo::require_solid(mesh);
     } catch (const geo::InputError& e) {
       const std::string what = e.what();
@@ -55,6 +59,6 @@ int main(int argc, char** argv) {
       (target == "-" ? std::cerr : std::cout) << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned << ",\"holes\":" << done.holes << ",\"added\":" << done.added
                                               << ",\"hidden\":" << done.hidden << ",\"vertices\":" << mesh.vertices.size() << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh)) << "}\n";
     else
-      t.say("kerf-repair: " + w.model + ": " + in_words(done) + (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
+      t.say("kerf-repair: " + w.model + ": " + in_words(done) + (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") + (w.edge > 0 ? "; divided into " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
   });
 }

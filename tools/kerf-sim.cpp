@@ -103,6 +103,20 @@ void say_large(const Plan& plan, const tool::Tool& t) {
   if (across >= 100 && as_it_is) t.say("kerf-sim: the bodies are " + tool::rounded(across) + " m across, as units are metres; give them scale = 0.001 if they are in mm");
 }
 
+// Models from CAD have a few large triangles, which neither bend nor touch but at their corners.
+void say_coarse(const Plan& plan, const geo::Body& body, const tool::Tool& t) {
+  const double coarsest = *std::max_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
+  for (std::size_t b = 0; b < plan.model.parts.size(); ++b) {
+    double longest = 0;
+    for (const auto& [p, q, r] : geo::corners_of(plan.model.parts[b])) longest = std::max({longest, (q - p).norm(), (r - q).norm(), (p - r).norm()});
+    if (longest <= 4 * coarsest) continue;
+    char share[16];
+    std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(plan.model.parts[b]).diagonal());
+    t.say("kerf-sim: " + fs::path(plan.scene.bodies[b].mesh).filename().string() + " has edges of up to " + tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
+          " apart; a surface bends and touches at its vertices: kerf-repair --edge " + share + " gives it more");
+  }
+}
+
 std::string in_words(const geo::Vec3& p) { return tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()); }
 
 geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
@@ -156,6 +170,7 @@ int main(int argc, char** argv) {
       }
     };
     geo::Simulation run = begun ? take_up(plan, folder) : begin();
+    if (!begun) say_coarse(plan, run.body(), t);
     const auto& positions = run.body().nodes.position;
     for (const geo::Grip& g : plan.scene.grips)
       if (!begun && std::none_of(positions.begin(), positions.end(), [&](const geo::Vec3& p) { return (p.array() >= g.lo.array() && p.array() <= g.hi.array()).all(); }))

@@ -478,6 +478,9 @@ simulation)
   printf 'v 0 0 0\nv 400 0 0\nv 0 400 0\nv 0 0 400\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >mm.obj
   printf '[body]\nmesh = "mm.obj"\nnodes = 60\n[time]\nframes = 1\n' >mm.toml
   kerf-sim mm.toml -o mm 2>said.txt && grep -q '692.8 m across.*scale = 0.001' said.txt || fail "kerf-sim says of a model in mm: $(cat said.txt)"
+  # One with a few large triangles.
+  kerf-repair -q mm.obj --edge 0.1 -o fine.ply && kerf-sim mm.toml --set body.mesh=fine.ply -o fine 2>fine.txt || fail "kerf-repair --edge: $(cat fine.txt)"
+  grep -q 'mm.obj has edges of up to 565.7, .* kerf-repair --edge 0.1 gives it more' said.txt && ! grep -q 'has edges' fine.txt || fail "kerf-sim says of large triangles: $(cat said.txt fine.txt)"
   kerf-sim mm.toml --set body.scale=0.001 -o small 2>said.txt && ! grep -q across said.txt || fail "kerf-sim says of a scaled one: $(cat said.txt)"
   ;;
 killed)

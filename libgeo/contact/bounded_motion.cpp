@@ -15,8 +15,8 @@ namespace {
 
 class Mover {
  public:
-  Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, BoundedMotion& report)
-      : m_(m), two_sided_(two_sided), near_(near), report_(report), surface_(m), fans_(m.triangles, m.together), at_(m.from) {
+  Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, const VertexFans& fans, BoundedMotion& report)
+      : m_(m), two_sided_(two_sided), near_(near), fans_(fans), report_(report), surface_(m), at_(m.from) {
     for (const auto& [a, b, c] : surface_.triangles) edge_ += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
     edge_ /= std::max(1.0, 3 * double(surface_.triangles.size()));
     double size = 0;
@@ -57,7 +57,7 @@ class Mover {
     }
     next = wanted(start);
     cover(start, next);
-    FailingPairs check(surface_.triangles, fans_, two_sided_, start, next, rounding_);
+    FailingPairs check(surface_.triangles, fans_, m_.together, two_sided_, start, next, rounding_);
     std::optional<Carried> carried;
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int growth = 0;; ++growth) {
@@ -89,7 +89,7 @@ class Mover {
   // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     GiveWay couples(surface_.triangles, start, m_.gap);
-    FailingPairs check(surface_.triangles, fans_, two_sided_, start, next, rounding_);
+    FailingPairs check(surface_.triangles, fans_, m_.together, two_sided_, start, next, rounding_);
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int round = 0; round < most_mendings; ++round) {
       const auto failing = check.among(near_.pairs(), changed, nullptr);
@@ -107,39 +107,50 @@ class Mover {
 
   // Triangles of which a corner has another place.
   void mark(const std::vector<Vec3>& before, const std::vector<Vec3>& next, std::vector<std::uint8_t>& changed) const {
-    for (std::size_t t = 0; t < changed.size(); ++t)
-      changed[t] = std::any_of(surface_.triangles[t].begin(), surface_.triangles[t].end(), [&](auto v) { return next[v] != before[v]; });
+    std::vector<std::uint8_t> moved(next.size(), 0);
+    for (const auto v : surface_.rows) moved[v] = next[v] != before[v];
+    for (std::size_t t = 0; t < changed.size(); ++t) {
+      const auto& [a, b, c] = surface_.triangles[t];
+      changed[t] = moved[a] | moved[b] | moved[c];
+    }
   }
 
   // As one body, unless rounding forbids even that.
   void together(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     next = start;
     cover(next, next);
-    report_.held = !find_crossings(near_.pairs(), surface_.triangles, next, m_.together, two_sided_).empty();
+    std::vector<NearPairs::Pair> pairs = near_.pairs();
+    for (std::uint32_t v = 0; v < fans_.size(); ++v)
+      fans_.each_pair(v, [v](std::uint32_t w) { return w < v; }, [&](std::uint32_t s, std::uint32_t t) { pairs.push_back({s, t}); });
+    report_.held = !find_crossings(pairs, surface_.triangles, next, m_.together, two_sided_).empty();
     if (report_.held) next = at_;
   }
 
   // Sees to it that all pairs are there that may come together from `start` to `next`; only these triangles have another `next`.
   void cover(const std::vector<Vec3>& start, const std::vector<Vec3>& next, const std::vector<std::uint8_t>* changed = nullptr) {
-    near_.cover(surface_.triangles.size(), [&](std::size_t t) { return surface_.swept(t, start, next); }, spare * edge_, changed);
+    near_.cover(m_.triangles, [&](std::size_t t) { return surface_.swept(t, start, next); }, spare * edge_, changed);
   }
 
   const SurfaceMotion& m_;
   bool two_sided_;
   NearPairs& near_;
+  const VertexFans& fans_;
   BoundedMotion& report_;
   StandingRows surface_;
-  VertexFans fans_;
   std::vector<Vec3> at_;
   double edge_ = 0, rounding_ = 0;
 };
 
 }  // namespace
 
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* told, NearPairs* near) {
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* told, NearPairs* near, const VertexFans* fans) {
   BoundedMotion own;
   NearPairs pairs;
-  return Mover(motion, two_sided, near ? *near : pairs, told ? *told : own).run();
+  if (!fans) {
+    const VertexFans made(motion.triangles, motion.from.size());
+    return move_without_crossing(motion, two_sided, told, near, &made);
+  }
+  return Mover(motion, two_sided, near ? *near : pairs, *fans, told ? *told : own).run();
 }
 
 }  // namespace geo

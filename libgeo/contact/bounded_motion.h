@@ -3,6 +3,7 @@
 
 #include "contact/near_pairs.h"
 #include "contact/surface_motion.h"
+#include "contact/vertex_fans.h"
 
 namespace geo {
 
@@ -19,7 +20,8 @@ struct BoundedMotion {
 /// neither side of a narrow gap passes the other; what crosses all the same, since triangles are flat and the field is not, moves
 /// as rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing does. From there, then, each vertex for itself
 /// goes straight on where nothing is in its way, and as far as planes between near parts let it (settle.h). `near`: what is known of
-/// the same triangles from watch(), about this motion or one like it.
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr, NearPairs* near = nullptr);
+/// the same triangles from watch(), about this motion or one like it; `fans`: of them.
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr, NearPairs* near = nullptr,
+                                        const VertexFans* fans = nullptr);
 
 }  // namespace geo

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -37,6 +38,24 @@ HWY_INLINE std::uint32_t meeting(const BoxTree::Block& boxes, const BoxTree::Blo
   return bits;
 }
 
+// Which triangles of a block have a corner in common with one of another block.
+HWY_INLINE std::uint32_t sharing(const BoxTree::Corners& block, const BoxTree::Corners& other, std::uint32_t lane) {
+  const hn::CappedTag<std::uint32_t, BoxTree::width> d;
+  std::uint32_t bits = 0;
+  for (std::size_t at = 0; at < BoxTree::width; at += hn::Lanes(d)) {
+    const auto a = hn::Load(d, block.v[0] + at), b = hn::Load(d, block.v[1] + at), c = hn::Load(d, block.v[2] + at);
+    const auto in_any = [&](int k) HWY_ATTR {
+      const auto corner = hn::Set(d, other.v[k][lane]);
+      return hn::Or(hn::Eq(a, corner), hn::Or(hn::Eq(b, corner), hn::Eq(c, corner)));
+    };
+    const auto mask = hn::Or(in_any(0), hn::Or(in_any(1), in_any(2)));
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    bits |= (bytes[0] | std::uint32_t(bytes[1]) << 8) << at;
+  }
+  return bits;
+}
+
 // Blocks of the lowest level that meet the box around block `own` of it, from block `first` on.
 void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t first, std::vector<std::uint32_t>& out) {
   constexpr std::uint32_t width = BoxTree::width;
@@ -57,16 +76,18 @@ void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::ui
 
 }  // namespace
 
-// Pairs of places in the tree, of one block with all: with places behind each, or with all but those behind it that are marked.
-void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t asked, const std::uint8_t* marked,
+// Pairs of places in the tree, of one block with all: with places behind each, or with all but those behind it that are marked. None
+// with a corner in common, where these are given (null: not).
+void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, const BoxTree::Corners* corners, std::uint32_t own, std::uint32_t asked, const std::uint8_t* marked,
                     std::vector<std::uint32_t>& near, std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) {
   constexpr std::uint32_t width = BoxTree::width;
   blocks_near(levels, own, marked ? 0 : own, near);
   for (const auto block : near)
-    for (auto lanes = asked; lanes != 0; lanes &= lanes - 1) {
+    for (auto lanes = asked & meeting(levels[0][own], levels[1][block / width], block % width); lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), place = own * width + lane;
       auto met = meeting(levels[0][block], levels[0][own], lane);
       if (block == own && !marked) met &= ~((2u << lane) - 1);
+      if (corners && met != 0) met &= ~sharing(corners[block], corners[own], lane);
       for (; met != 0; met &= met - 1)
         if (const auto other = block * width + static_cast<std::uint32_t>(std::countr_zero(met)); !marked || !(marked[other] && other <= place)) out.push_back({place, other});
     }
@@ -83,7 +104,9 @@ namespace {
 
 float below(double x) {
   const auto f = static_cast<float>(x);
-  return f > x ? std::nextafter(f, -INFINITY) : f;
+  if (!(f > x)) return f;
+  const auto bits = std::bit_cast<std::uint32_t>(f);
+  return f == 0 ? -std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(f > 0 ? bits - 1 : bits + 1);
 }
 float above(double x) { return -below(-x); }
 
@@ -179,7 +202,7 @@ void BoxTree::enlarge(std::uint32_t row, const Box3& box) {
   }
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::vector<std::uint8_t>* only) const {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::vector<std::uint8_t>* only, std::span<const Triangle> corners) const {
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   if (levels_.empty()) return {};
   std::vector<std::uint8_t> marked;
@@ -189,6 +212,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::v
   }
   constexpr std::size_t stretch = 16;  // blocks
   const std::size_t blocks = levels_[0].size();
+  std::vector<Corners> in_order(corners.empty() ? 0 : blocks);
+  for (std::size_t i = 0; i < order_.size() && !corners.empty(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) in_order[i / width].v[k][i % width] = corners[order_[i]][k];
   std::vector<Pairs> found((blocks + stretch - 1) / stretch);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
@@ -198,7 +224,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::v
       for (std::size_t b = s * stretch; b < std::min(blocks, (s + 1) * stretch); ++b) {
         std::uint32_t asked = 0;
         for (std::size_t i = b * width; i < std::min(order_.size(), (b + 1) * width); ++i) asked |= std::uint32_t(!only || marked[i]) << i % width;
-        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, some);
+        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, corners.empty() ? nullptr : in_order.data(), static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, some);
       }
       std::size_t count = 0;
       for (const auto& [p, q] : some)

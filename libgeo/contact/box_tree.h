@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,10 @@ class BoxTree {
   struct Block {
     alignas(64) float lo[3][width], hi[3][width];
   };
+  /// Corners of the triangles whose boxes are in a block.
+  struct Corners {
+    alignas(64) std::uint32_t v[3][width];
+  };
 
   BoxTree() = default;
   /// Finite boxes; empty ones meet none.
@@ -26,8 +31,9 @@ class BoxTree {
   /// Makes a box larger, so that it holds this one, too.
   void enlarge(std::uint32_t row, const Box3& box);
   /// All pairs (i < j) of boxes that meet, each once, neighbours near each other, in an order that depends on the boxes alone. Only
-  /// pairs with a box marked in `only`, where given. By all threads; cost follows the boxes that are asked for, and the pairs.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
+  /// pairs with a box marked in `only`, where given; none of two boxes whose `corners`, where given, have one in common. By all
+  /// threads; cost follows the boxes that are asked for, and the pairs.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr, std::span<const Triangle> corners = {}) const;
 
   /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].
   const std::vector<std::vector<Block>>& levels() const { return levels_; }

@@ -36,16 +36,15 @@ double area_about(const Complex& k, SurfaceVertexId v) {
   return area;
 }
 
-std::vector<Vec3> vertex_normals(const ContactSurface& surface, const Copies& copies, const std::vector<Vec3>& p) {
-  std::vector<std::uint8_t> asked(p.size(), 0);
-  for (std::size_t v = 0; v < copies.size(); ++v)
-    if (copies[v].size() > 1)
-      for (const auto c : copies[v]) asked[c] = 1;
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies, const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
-  for (const auto& [a, b, c] : surface.triangles) {
-    if (!asked[a] && !asked[b] && !asked[c]) continue;
-    const Vec3 n = (p[b] - p[a]).cross(p[c] - p[a]);
-    normals[a] += n, normals[b] += n, normals[c] += n;
+  for (std::size_t v = 0; v < copies.size(); ++v) {
+    if (copies[v].size() == 1) continue;
+    for (const auto one : copies[v])
+      for (const auto& l : fans.about(one)) {
+        const auto& [a, b, c] = surface.triangles[l.triangle];
+        normals[one] += (p[b] - p[a]).cross(p[c] - p[a]);
+      }
   }
   return normals;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contact/copies.h"
+#include "contact/vertex_fans.h"
 #include "surface/complex.h"
 
 namespace geo {
@@ -23,8 +24,8 @@ ContactSurface contact_surface(const Complex& complex);
 /// A third of the triangles at rest about a vertex of the derived surface, model units².
 double area_about(const Complex& complex, SurfaceVertexId v);
 
-/// Per vertex that is together with others the sum of the normals of its triangles, twice their areas long, at the given positions.
-std::vector<Vec3> vertex_normals(const ContactSurface& surface, const Copies& copies, const std::vector<Vec3>& positions);
+/// Per vertex that is together with others the sum of the normals of its triangles (`fans`), twice their areas long, at the given positions.
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies, const std::vector<Vec3>& positions);
 /// The same of triangles alone that touch the other side of their face (`together`: vertices_together()); zero where there is none.
 std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together, const std::vector<Vec3>& positions);
 

@@ -9,16 +9,31 @@
 
 namespace geo {
 
-FailingPairs::FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, bool two_sided, const std::vector<Vec3>& start, const std::vector<Vec3>& next,
-                           double rounding)
-    : triangles_(triangles), fans_(fans), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(triangles, start, next), opens_out_(start.size(), 0) {}
+FailingPairs::FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided,
+                           const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding)
+    : triangles_(triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(triangles, start, next),
+      opens_out_(start.size(), 0) {}
 
 std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried) {
   renew(changed);
-  constexpr std::size_t stretch = 1024;
-  std::vector<std::vector<Pair>> found((pairs.size() + stretch - 1) / stretch);
+  constexpr std::size_t stretch = 1024, vertices = 64;
+  const std::size_t stretches = (pairs.size() + stretch - 1) / stretch, groups = (shut_.size() + vertices - 1) / vertices;
+  std::vector<std::vector<Pair>> found(stretches + groups);
+  // Neighbours cannot pass without crossing others.
+  const auto look_around = [&](std::size_t group, std::vector<Pair>& out) {
+    for (std::size_t i = group * vertices; i < std::min(shut_.size(), (group + 1) * vertices); ++i) {
+      const auto v = shut_[i];
+      fans_.each_pair(v, [&](std::uint32_t w) { return w < v || opens_out_[w]; }, [&](std::uint32_t s, std::uint32_t t) {
+        if ((changed[s] || changed[t]) && triangles_cross(triangles_[s], triangles_[t], next_, two_sided_)) out.push_back({s, t});
+      });
+    }
+  };
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
+      if (f >= stretches) {
+        look_around(f - stretches, found[f]);
+        continue;
+      }
       const auto test = [&](const Pair& p) {
         if (triangles_cross(triangles_[p.first], triangles_[p.second], next_, two_sided_)) found[f].push_back(p);
       };
@@ -41,10 +56,9 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
         const auto &s = triangles_[p], &t = triangles_[q];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
         if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) {
-          if (!in_open_fan(p, q)) test(pairs[i]);  // neighbours cannot pass without crossing others
-        } else if (!planes_.part(p, q, rounding_, rounding_)) {
-          const Couple both = couple(pairs[i]);
-          if (const Parting across = part_across(both, start_, next_); !apart(across.first, across.last)) couples.add(both, i);
+          test(pairs[i]);
+        } else if (!planes_.part_across(p, q, rounding_, rounding_) && !planes_.part(p, q, rounding_, rounding_)) {
+          couples.add(couple(pairs[i]), i);
         }
       }
       couples.finish();
@@ -56,21 +70,18 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
   return result;
 }
 
-// Whether a vertex of both has a fan that opens out.
-bool FailingPairs::in_open_fan(std::uint32_t p, std::uint32_t q) const {
-  const auto &s = fans_.triangles()[p], &t = fans_.triangles()[q];
-  return std::any_of(s.begin(), s.end(), [&](auto v) { return opens_out_[v] && (v == t[0] || v == t[1] || v == t[2]); });
-}
-
 void FailingPairs::renew(const std::vector<std::uint8_t>& changed) {
   std::vector<std::uint8_t> asked(opens_out_.size(), 0);
-  for (std::size_t t = 0; t < changed.size(); ++t)
-    if (changed[t])
-      for (const auto v : fans_.triangles()[t]) asked[v] = 1;
   parallel_for(asked.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      if (asked[v]) opens_out_[v] = fans_.open_out(static_cast<std::uint32_t>(v), next_);
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto links = fans_.about(v);
+      asked[v] = std::any_of(links.begin(), links.end(), [&](const VertexFans::Link& l) { return changed[l.triangle]; });
+      if (asked[v]) opens_out_[v] = fans_.open_out(static_cast<std::uint32_t>(v), together_, next_);
+    }
   });
+  shut_.clear();
+  for (std::uint32_t v = 0; v < asked.size(); ++v)
+    if (asked[v] && !opens_out_[v]) shut_.push_back(v);
   parallel_for(changed.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       if (changed[t]) planes_.renew_end(t);

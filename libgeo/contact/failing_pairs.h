@@ -15,25 +15,28 @@ namespace geo {
 class FailingPairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  /// Refers to all of them. Rows of triangles are those that stand for others (vertices_together()). `rounding`: of products, model units.
-  FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, bool two_sided, const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding);
+  /// Refers to all of them. Rows of triangles are those that stand for others (`together`: vertices_together()), fans are of the surface
+  /// as it is. `rounding`: of products, model units.
+  FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided, const std::vector<Vec3>& start,
+               const std::vector<Vec3>& next, double rounding);
 
-  /// Of those pairs that have a triangle marked in `changed` (whose end is another than at the call before; at the first all must be):
-  /// those that cross at the end, by the exact test of crossing.h, or may have passed through each other on the way. That they have not
+  /// Of those pairs, and of all that share a vertex of the surface, which need not be among them, that have a triangle marked in `changed`
+  /// (whose end is another than at the call before; at the first all must be): those that cross at the end, by the exact test of crossing.h, or may have passed through each other on the way. That they have not
   /// is clear where one direction parts them at both ends, and where they are carried (may be null). Ascending.
   std::vector<Pair> among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried);
 
  private:
-  bool in_open_fan(std::uint32_t p, std::uint32_t q) const;
   void renew(const std::vector<std::uint8_t>& changed);
 
   const std::vector<Triangle>& triangles_;
   const VertexFans& fans_;
+  std::span<const std::uint32_t> together_;
   bool two_sided_;
   const std::vector<Vec3>&start_, &next_;
   double rounding_;
   TrianglePlanes planes_;
   std::vector<std::uint8_t> opens_out_;  // per vertex: VertexFans::open_out() at the end
+  std::vector<std::uint32_t> shut_;      // vertices of triangles that have changed whose fans do not
 };
 
 }  // namespace geo

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "contact/dividers.h"
 #include "contact/tilted.h"
 
@@ -22,7 +23,7 @@ void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
     for (int k = 0; k < Partings::count; ++k) offer({p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]}, p.first[k][lane], p.last[k][lane]);
     if (!neighbours) some_tilted({c.a, c.b}, p, lane, start_, next, offer);
   };
-  CouplesInLanes<decltype(choose)> in_lanes(start_, next, true, choose);
+  std::vector<std::size_t> chosen;
   for (const auto& pair : pairs) {
     std::pair<Simplex, Simplex> parts[2];
     const auto count = static_cast<std::size_t>(parts_apart(triangles_[pair.first], triangles_[pair.second], parts));
@@ -30,10 +31,14 @@ void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
     if (at == couples_.size()) couples_.resize(at + count);
     for (std::size_t k = 0; k < count; ++k) {
       couples_[at + k] = {parts[k].first, parts[k].second, Vec3::Zero(), 0};
-      in_lanes.add({parts[k].first, parts[k].second}, at + k);
+      chosen.push_back(at + k);
     }
   }
-  in_lanes.finish();
+  parallel_for(chosen.size(), 64, [&](std::size_t begin, std::size_t end) {
+    CouplesInLanes<decltype(choose)> in_lanes(start_, next, true, choose);
+    for (std::size_t i = begin; i < end; ++i) in_lanes.add({couples_[chosen[i]].a, couples_[chosen[i]].b}, chosen[i]);
+    in_lanes.finish();
+  });
 }
 
 void GiveWay::push(std::vector<Vec3>& at) const {
@@ -49,29 +54,32 @@ void GiveWay::push(std::vector<Vec3>& at) const {
   std::vector<std::uint32_t> of(first.back()), end(first.begin(), first.end() - 1);
   for (std::uint32_t i = 0; i < couples_.size(); ++i) each_corner(couples_[i], [&](std::uint32_t v) { of[end[v]++] = i; });
   // Only couples are looked at again of which something has moved.
-  std::vector<std::uint32_t> asked(couples_.size()), next;
+  std::vector<std::uint32_t> asked(couples_.size()), moved;
   std::iota(asked.begin(), asked.end(), 0u);
-  std::vector<std::uint8_t> waits(couples_.size(), 0);
+  std::vector<std::uint8_t> waits(couples_.size(), 0), has_moved(at.size(), 0);
   for (int sweep = 0; sweep < most_sweeps && !asked.empty(); ++sweep) {
     for (const auto i : asked) {
       const Kept& c = couples_[i];
-      double least = std::numeric_limits<double>::infinity(), most = -least;
-      for (int k = 0; k < c.a.size; ++k) least = std::min(least, c.normal.dot(at[c.a.v[k]]));
-      for (int k = 0; k < c.b.size; ++k) most = std::max(most, c.normal.dot(at[c.b.v[k]]));
+      double least = std::numeric_limits<double>::infinity(), most = -least, of_a[3], of_b[3];
+      for (int k = 0; k < c.a.size; ++k) least = std::min(least, of_a[k] = c.normal.dot(at[c.a.v[k]]));
+      for (int k = 0; k < c.b.size; ++k) most = std::max(most, of_b[k] = c.normal.dot(at[c.b.v[k]]));
       if (least - most >= c.apart) continue;
       const double plane = 0.5 * (least + most), half = 0.5 * (1 + spare) * c.apart;
       const auto move = [&](std::uint32_t v, double lack, double sign) {
         if (!(lack > 0)) return;
         at[v] += sign * lack * c.normal;
-        for (auto j = first[v]; j < first[v + 1]; ++j)
-          if (!waits[of[j]]) waits[of[j]] = 1, next.push_back(of[j]);
+        if (!has_moved[v]) has_moved[v] = 1, moved.push_back(v);
       };
-      for (int k = 0; k < c.a.size; ++k) move(c.a.v[k], plane + half - c.normal.dot(at[c.a.v[k]]), 1);
-      for (int k = 0; k < c.b.size; ++k) move(c.b.v[k], c.normal.dot(at[c.b.v[k]]) - plane + half, -1);
+      for (int k = 0; k < c.a.size; ++k) move(c.a.v[k], plane + half - of_a[k], 1);
+      for (int k = 0; k < c.b.size; ++k) move(c.b.v[k], of_b[k] - plane + half, -1);
     }
-    std::sort(next.begin(), next.end());
-    asked.swap(next), next.clear();
-    for (const auto i : asked) waits[i] = 0;
+    for (const auto v : moved) {
+      has_moved[v] = 0;
+      for (auto j = first[v]; j < first[v + 1]; ++j) waits[of[j]] = 1;
+    }
+    moved.clear(), asked.clear();
+    for (std::uint32_t i = 0; i < waits.size(); ++i)
+      if (waits[i]) waits[i] = 0, asked.push_back(i);
   }
 }
 

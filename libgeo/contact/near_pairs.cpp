@@ -11,12 +11,12 @@ bool within(const Box3& box, const Box3& other) { return (box.lo.array() >= othe
 
 }  // namespace
 
-void NearPairs::cover(std::size_t triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed) {
+void NearPairs::cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed) {
   constexpr std::size_t most_outside = 4;  // one of so many
-  const bool known = tree_.boxes().size() == triangles;
-  std::vector<Box3> boxes(triangles);
-  std::vector<std::uint8_t> outside(triangles, 0);
-  parallel_for(triangles, 512, [&](std::size_t begin, std::size_t end) {
+  const bool known = tree_.boxes().size() == triangles.size();
+  std::vector<Box3> boxes(triangles.size());
+  std::vector<std::uint8_t> outside(triangles.size(), 0);
+  parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       if (known && changed && !(*changed)[t]) continue;
       boxes[t] = box(t);
@@ -25,14 +25,14 @@ void NearPairs::cover(std::size_t triangles, const std::function<Box3(std::size_
   });
   const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
   if (known && count == 0) return;
-  if (!known || (count * most_outside > triangles && !changed)) {
-    tree_ = BoxTree(std::move(boxes)), pairs_ = tree_.pairs();
+  if (!known || (count * most_outside > triangles.size() && !changed)) {
+    tree_ = BoxTree(std::move(boxes)), pairs_ = tree_.pairs(nullptr, triangles);
     return;
   }
-  for (std::uint32_t t = 0; t < triangles; ++t)
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
     if (outside[t]) tree_.enlarge(t, boxes[t].grown(spare));
   std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
-  const auto more = tree_.pairs(&outside);
+  const auto more = tree_.pairs(&outside, triangles);
   pairs_.insert(pairs_.end(), more.begin(), more.end());
 }
 

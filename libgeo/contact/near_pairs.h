@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -9,15 +10,15 @@
 
 namespace geo {
 
-/// Every pair of triangles whose boxes meet is among those that cover() leaves, and some more: a triangle that stays within the box
-/// that it had before costs nothing. Boxes are relative to a point that goes along with the surface.
+/// Every pair of triangles that share no corner and whose boxes meet is among those that cover() leaves, and some more: a triangle that
+/// stays within the box that it had before costs nothing. Boxes are relative to a point that goes along with the surface.
 class NearPairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-  /// `box`: of triangle t of so many; only those marked in `changed` have another than at the call before, where given. `spare`: model
+  /// `box`: of triangle t; only those marked in `changed` have another than at the call before, where given. `spare`: model
   /// units, by which what has left its box is given a larger one. All pairs are looked for at the first call and after many have left.
-  void cover(std::size_t triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed = nullptr);
+  void cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed = nullptr);
 
   /// i < j, each once, in an order that depends on the calls alone.
   const std::vector<Pair>& pairs() const { return pairs_; }

@@ -24,6 +24,12 @@ struct Places {
   alignas(64) double which[Partings::width], s[Partings::width], t[Partings::width];
 };
 
+// What tilted directions are made of, and the corners of a and b that they may part, at the beginning and at the end.
+struct Tilts {
+  alignas(64) double normal[3][TiltedPartings::width], tilt[TiltedPartings::width];
+  double closest[3], at[2][6][3];
+};
+
 }  // namespace
 }  // namespace geo
 #endif
@@ -143,6 +149,24 @@ void find_eight(const Corners& from, const Corners& to, bool end, Partings& out,
   }
 }
 
+void find_fifteen(const Tilts& tilts, TiltedPartings& out) {
+  const Doubles d;
+  for (std::size_t lane = 0; lane < TiltedPartings::width; lane += hn::Lanes(d)) {
+    const V tilt = hn::Load(d, tilts.tilt + lane);
+    V n[3];
+    for (int k = 0; k < 3; ++k) n[k] = hn::Add(hn::Load(d, tilts.normal[k] + lane), hn::Mul(tilt, hn::Set(d, tilts.closest[k])));
+    const auto along = [&](const V& x, const V& y, const V& z) HWY_ATTR { return hn::Add(hn::Add(hn::Mul(n[0], x), hn::Mul(n[1], y)), hn::Mul(n[2], z)); };
+    const V squared = along(n[0], n[1], n[2]);
+    const V length = hn::IfThenElse(hn::Gt(squared, hn::Zero(d)), hn::Sqrt(squared), hn::Set(d, 1.0));
+    for (int k = 0; k < 3; ++k) n[k] = hn::Div(n[k], length), hn::Store(n[k], d, out.normal[k] + lane);
+    for (int end = 0; end < 2; ++end) {
+      const auto at = [&](int corner) HWY_ATTR { return along(hn::Set(d, tilts.at[end][corner][0]), hn::Set(d, tilts.at[end][corner][1]), hn::Set(d, tilts.at[end][corner][2])); };
+      const V least = hn::Min(hn::Min(at(0), at(1)), at(2)), most = hn::Max(hn::Max(at(3), at(4)), at(5));
+      hn::Store(hn::Sub(least, most), d, (end == 0 ? out.first : out.last) + lane);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace geo
 HWY_AFTER_NAMESPACE();
@@ -150,6 +174,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(find_eight);
+HWY_EXPORT(find_fifteen);
+
+void find_tilted(const Couple& couple, const Partings& p, std::size_t lane, const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedPartings& out) {
+  constexpr double tilt[] = {0, 0.01, 0.03, 0.09, 0.27, 0};
+  Tilts tilts;
+  for (std::size_t i = 0; i < TiltedPartings::width; ++i) tilts.tilt[i] = tilt[i / 3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = p.normal[Partings::a_normal][axis][lane], b = p.normal[Partings::b_normal][axis][lane], of[3] = {a, b, a + b};
+    for (std::size_t i = 0; i < TiltedPartings::width; ++i) tilts.normal[axis][i] = of[i % 3];
+    tilts.closest[axis] = p.normal[Partings::closest][axis][lane];
+    for (int k = 0; k < 6; ++k) {
+      const Simplex& s = k < 3 ? couple.a : couple.b;
+      const auto row = s.v[std::min(k % 3, s.size - 1)];
+      tilts.at[0][k][axis] = from[row][axis], tilts.at[1][k][axis] = to[row][axis];
+    }
+  }
+  HWY_DYNAMIC_DISPATCH(find_fifteen)(tilts, out);
+}
 
 void find_partings(const Couple* couples, std::size_t size, const std::vector<Vec3>& from, const std::vector<Vec3>& to, bool end, Partings& out) {
   Corners first, last;

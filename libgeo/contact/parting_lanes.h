@@ -43,6 +43,17 @@ inline Parting part_across(const Couple& c, const std::vector<Vec3>& from, const
 /// The same for any processor. Floating point.
 void find_partings(const Couple* couples, std::size_t size, const std::vector<Vec3>& from, const std::vector<Vec3>& to, bool end, Partings& out);
 
+/// Directions between the normals of a couple and the way between its closest places: the normals of a and b and their sum, each as it is
+/// and then tilted more and more.
+struct TiltedPartings {
+  static constexpr int count = 15;
+  static constexpr std::size_t width = 16;  ///< the last says nothing
+  alignas(64) double normal[3][width], first[width], last[width];  ///< as in Partings
+};
+
+/// Of a couple whose partings `p` has in `lane`. The same for any processor.
+void find_tilted(const Couple& couple, const Partings& p, std::size_t lane, const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedPartings& out);
+
 /// Hands couples over as they come: use(number, partings, lane) for each, in order, the last ones after finish().
 template <class Use>
 class CouplesInLanes {

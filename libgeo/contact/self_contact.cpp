@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -41,26 +42,42 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
   if (positions_.size() != surface_.site.size()) positions_ = targets(body, std::vector<Vec3>(solid.size(), Vec3::Zero()));
 }
 
-template <std::size_t count>
-std::array<std::vector<Vec3>, count> SelfContact::targets(const Body& body, const std::array<const std::vector<Vec3>*, count>& u) const {
-  std::array<std::vector<Vec3>, count> result;
-  for (auto& r : result) r.assign(weights_.size(), Vec3::Zero());
-  parallel_for(weights_.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      if (const SurfaceVertexId id(v); body.surface.alive(id))
-        for (std::size_t k = 0; k < count; ++k) result[k][v] = body.surface.point(body.surface.site(id)) + weights_.at(v, *u[k]);
-  });
+const VertexFans& SelfContact::fans() {
+  if (fans_.size() != positions_.size()) fans_ = VertexFans(surface_.triangles, positions_.size());
+  return fans_;
+}
+
+std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>& u) const {
+  std::vector<std::uint32_t> all(weights_.size());
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<Vec3> result = weights_.at_each(all, u);
+  for (std::size_t v = 0; v < result.size(); ++v)
+    if (const SurfaceVertexId id(v); body.surface.alive(id)) result[v] = body.surface.point(body.surface.site(id)) + result[v];
   return result;
 }
 
-std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>& u) const { return std::move(targets<1>(body, {&u})[0]); }
+// The same. Where nodes are where they were at the last call, only what has other weights since is worked out.
+const std::vector<Vec3>& SelfContact::known_targets(const Body& body, const std::vector<Vec3>& u) {
+  if (last_.of.size() <= u.size() && !last_.of.empty() && std::equal(last_.of.begin(), last_.of.end(), u.begin())) {
+    last_.targets.resize(weights_.size(), Vec3::Zero());
+    const auto moved = weights_.at_each(last_.stale, u);
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const SurfaceVertexId v(last_.stale[i]);
+      last_.targets[v.index()] = body.surface.alive(v) ? Vec3(body.surface.point(body.surface.site(v)) + moved[i]) : Vec3(Vec3::Zero());
+    }
+  } else {
+    last_.targets = targets(body, u);
+  }
+  last_.of = u, last_.stale.clear();
+  return last_.targets;
+}
 
 // Copies whose targets come apart, or slide along each other, are moved apart by half a gap each into their own material: away
 // from what they share, or along the sum of their normals where that does not help. Where a triangle would cross another for it
 // they stay together.
 std::size_t SelfContact::open(const std::vector<Vec3>& to, const Copies& copies) {
   const double gap = options_.gap * surface_.edge, opens = options_.opening * surface_.edge;
-  const std::vector<Vec3> normals = vertex_normals(surface_, copies, positions_);
+  const std::vector<Vec3> normals = vertex_normals(surface_, fans(), copies, positions_);
   std::vector<std::uint32_t> opening;
   for (std::uint32_t v = 0; v < copies.size(); ++v)
     for (std::size_t i = 0; i < copies[v].size(); ++i)
@@ -78,15 +95,16 @@ std::size_t SelfContact::open(const std::vector<Vec3>& to, const Copies& copies)
   for (const auto v : opening)
     for (const auto c : copies[v]) moving[c] = 1;
   std::vector<Box3> boxes(surface_.triangles.size());
+  std::vector<std::uint8_t> asked(boxes.size(), 0);
   Box3 region;
   for (std::size_t t = 0; t < boxes.size(); ++t) {
     const auto& [a, b, c] = surface_.triangles[t];
     boxes[t] = box_of(positions_[a], positions_[b], positions_[c]).grown(0.5 * gap);
-    if (moving[a] || moving[b] || moving[c]) region.add(boxes[t]);
+    if (moving[a] || moving[b] || moving[c]) region.add(boxes[t]), asked[t] = 1;
   }
   for (Box3& box : boxes)
     if (!box.meets(region)) box = Box3();
-  const auto pairs = close_pairs(boxes);
+  const auto pairs = close_pairs(boxes, &asked);
   // Smaller steps for those that would cross; what is left stays together.
   std::vector<Vec3> shared = shared_normals(surface_, vertices_together(surface_.site, positions_), positions_);
   for (std::size_t v = 0; v < shared.size(); ++v)
@@ -152,10 +170,11 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   }
   const auto together = vertices_together(surface_.site, positions_);
   const Copies copies(together);
-  const auto [now, free] = targets<2>(body, {&state.displacement, &u});
+  const std::vector<Vec3>& now = known_targets(body, state.displacement);
+  const std::vector<Vec3> free = targets(body, u);
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
-  touch_ = TouchPenalty({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
+  touch_.restart({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
   const double stiffness = firmness * solid.material().young / (solid.material().density * spacing * spacing) + 1 / (dt * dt);  // 1/s²
   // How far along their normal places were made apart: what is less than they should keep stays so.
   const auto made_apart = [&](const TouchingPlaces& t) {
@@ -168,17 +187,24 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   };
   const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for, const std::vector<Vec3>& at, double distance) {
     const std::vector<RelativeRow> rows = relative_rows(weights_, touching, stands_for, inverse_mass);
+    std::vector<double> depth(rows.size());
+    std::vector<Vec3> start(rows.size());
+    parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const double limit = distance > 0 ? std::min(distance, made_apart(touching[i])) : 0;
+        const double lack = limit - touching[i].normal.dot(place(touching[i].a, at) - place(touching[i].b, at));
+        depth[i] = lack > 0 ? recovered * lack : lack, start[i] = weighed(rows[i].entries, state.displacement);
+      }
+    });
+    touch_.reserve(rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double alone = rows[i].of_a + rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
-      if (!(alone > 0)) continue;
-      const double limit = distance > 0 ? std::min(distance, made_apart(touching[i])) : 0;
-      const double lack = limit - touching[i].normal.dot(place(touching[i].a, at) - place(touching[i].b, at));
-      touch_.add(rows[i], touching[i].normal, lack > 0 ? recovered * lack : lack, stiffness / alone, state.displacement);
+      if (alone > 0) touch_.add(rows[i], touching[i].normal, depth[i], stiffness / alone, start[i]);
     }
   };
   add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);
   std::vector<TouchingPlaces> sides;
-  touching_copies(copies, free, vertex_normals(surface_, copies, positions_), -reach, {dt}, sides);
+  touching_copies(copies, free, vertex_normals(surface_, fans(), copies, positions_), -reach, {dt}, sides);
   add(deepest(sides, weights_, most_between), Copies::each_alone(copies.size()), now, 0);
   begun_ = true;
   return touch_.size() > 0 ? &touch_ : nullptr;
@@ -195,7 +221,7 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
     inverse_mass[i] = fixed.empty() || !fixed[i] ? 1 / solid.mass(NodeId(i)) : 0;
     velocity[i] = (state.displacement[i] - before[i]) / dt;
   }
-  const std::vector<Vec3> free = velocity, normals = vertex_normals(surface_, copies, positions_);
+  const std::vector<Vec3> free = velocity, normals = vertex_normals(surface_, fans(), copies, positions_);
   const Copies alone = Copies::each_alone(copies.size());
   // What touches in the motion to where u has the surface, and the change of velocities that keeps it from approaching.
   std::vector<Watched> watched;
@@ -238,12 +264,12 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   auto together = vertices_together(surface_.site, positions_);
   Copies copies(together);
   work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, together, copies, state);
-  const std::vector<Vec3> to = targets(body, state.displacement);
+  const std::vector<Vec3>& to = known_targets(body, state.displacement);
   if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;
   BoundedMotion bounded;
-  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap}, true, &bounded, &near_);
+  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap}, true, &bounded, &near_, &fans());
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (std::size_t v = 0; v < to.size(); ++v)
     if (body.surface.alive(SurfaceVertexId(v))) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
@@ -259,7 +285,9 @@ void SelfContact::expect(const Body& body, const Solid& solid, const State& stat
 void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
   if (delta.crack.empty()) return;
   surface_ = std::move(birth_.surface), positions_ = std::move(birth_.positions);
-  weights_.follow(body, solid, delta);
+  fans_ = {};
+  const auto stale = weights_.follow(body, solid, delta);
+  last_.stale.insert(last_.stale.end(), stale.begin(), stale.end());
 }
 
 }  // namespace geo

@@ -9,8 +9,6 @@
 // along their own normals once Eq. 1 pulls them apart or along each other by more than its own noise.
 #pragma once
 
-#include <array>
-
 #include "contact/birth.h"
 #include "contact/bounded_motion.h"
 #include "contact/contact_options.h"
@@ -46,11 +44,11 @@ class SelfContact {
 
  private:
   /// Where displacements of nodes have the surface.
-  template <std::size_t count>
-  std::array<std::vector<Vec3>, count> targets(const Body& body, const std::array<const std::vector<Vec3>*, count>& u) const;
   std::vector<Vec3> targets(const Body& body, const std::vector<Vec3>& u) const;
+  const std::vector<Vec3>& known_targets(const Body& body, const std::vector<Vec3>& u);
   std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                                    std::span<const std::uint32_t> together, const Copies& copies, State& state);
+  const VertexFans& fans();
   std::size_t open(const std::vector<Vec3>& targets, const Copies& copies);
 
   ContactOptions options_;
@@ -59,6 +57,12 @@ class SelfContact {
   std::vector<Vec3> positions_;
   TouchPenalty touch_{TouchPenaltyOptions{}};
   NearPairs near_;       // of the step that is worked on
+  VertexFans fans_;      // of the surface; empty: not asked for yet
+  // What targets() said last, of which displacements, and the vertices whose weights have changed since.
+  struct {
+    std::vector<Vec3> targets, of;
+    std::vector<std::uint32_t> stale;
+  } last_;
   bool begun_ = false;  // a step that touch_ acts in
   Birth birth_;  // of the step that was expected last
 };

@@ -1,6 +1,7 @@
 #include "contact/surface_weights.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -15,7 +16,7 @@ void SurfaceWeights::update(const Body& body, const Solid& solid) {
   make(body, solid, all);
 }
 
-void SurfaceWeights::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
+std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
   // A row is of what the vertex's node and its neighbours have as neighbours.
   std::vector<std::uint8_t> stale(body.nodes.size(), 0);
   for (const NodeId i : delta.updated_nodes) {
@@ -32,16 +33,43 @@ void SurfaceWeights::follow(const Body& body, const Solid& solid, const BodyDelt
     if (asked[v] || !master.valid() || stale[body.binding.master_node[master.index()].index()]) vertices.push_back(v);
   }
   make(body, solid, vertices);
+  return vertices;
+}
+
+std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const {
+  std::vector<Eigen::Vector4d> padded(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) padded[i] << values[i], 0;
+  std::vector<Vec3> result(vertices.size());
+  constexpr std::size_t together = 4;
+  parallel_for((vertices.size() + together - 1) / together, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      const std::size_t first = g * together, count = std::min(together, vertices.size() - first);
+      std::span<const Entry> rows[together];
+      Eigen::Vector4d sum[together];
+      std::size_t least = ~std::size_t(0);
+      for (std::size_t r = 0; r < together; ++r) {
+        rows[r] = rows_[vertices[first + std::min(r, count - 1)]], sum[r].setZero();
+        least = std::min(least, rows[r].size());
+      }
+      for (std::size_t k = 0; k < least; ++k)
+        for (std::size_t r = 0; r < together; ++r) sum[r] += rows[r][k].weight * padded[rows[r][k].node];
+      for (std::size_t r = 0; r < count; ++r) {
+        for (std::size_t k = least; k < rows[r].size(); ++k) sum[r] += rows[r][k].weight * padded[rows[r][k].node];
+        result[first + r] = sum[r].head<3>();
+      }
+    }
+  });
+  return result;
 }
 
 void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
   rows_.resize(body.surface.surface_vertex_count());
   heaviest_.resize(rows_.size(), ~0u);
-  parallel_for(vertices.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
     std::vector<double> weight(solid.size(), 0);
-    std::vector<std::uint32_t> used;
+    std::vector<std::uint64_t> used((solid.size() + 63) / 64, 0);  // a bit a node
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
@@ -53,22 +81,28 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
       double total = 0;
       for (auto& [i, d] : bound) total += d = kernel(d / body.nodes.radius[i.index()], 1.0);
       if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
+      std::size_t low = used.size(), high = 0;
       const auto add = [&](NodeId j, double w) {
-        if (weight[j.index()] == 0) used.push_back(j.value);
+        const std::size_t word = j.index() / 64;
+        low = std::min(low, word), high = std::max(high, word);
+        used[word] |= std::uint64_t(1) << j.index() % 64;
         weight[j.index()] += w;
       };
-      used.clear();
       for (const auto& [i, w] : bound) {
         add(i, w / total);
         gradient.clear();
         solid.gradient_row(i, gradient);
         for (const auto& [j, g] : gradient) add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
       }
-      std::sort(used.begin(), used.end());
-      for (const auto j : used) {
-        if (weight[j] != 0) rows_[v].push_back({j, weight[j]});
-        weight[j] = 0;
-      }
+      std::size_t size = 0;
+      for (auto word = low; word <= high; ++word) size += static_cast<std::size_t>(std::popcount(used[word]));
+      rows_[v].reserve(size);
+      for (auto word = low; word <= high; ++word)
+        for (auto& bits = used[word]; bits != 0; bits &= bits - 1) {
+          const auto j = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
+          if (weight[j] != 0) rows_[v].push_back({j, weight[j]});
+          weight[j] = 0;
+        }
       const auto most = std::max_element(rows_[v].begin(), rows_[v].end(), [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
       if (most != rows_[v].end()) heaviest_[v] = most->node;
     }

@@ -19,8 +19,8 @@ class SurfaceWeights {
   /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's gradient, those of its
   /// neighbours. Cost follows the surface.
   void update(const Body& body, const Solid& solid);
-  /// After a split that was made since: the same, but only rows are made anew that it can have changed.
-  void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
+  /// After a split that was made since: the same, but only rows are made anew that it can have changed. Returns which, ascending.
+  std::vector<std::uint32_t> follow(const Body& body, const Solid& solid, const BodyDelta& delta);
 
   std::size_t size() const { return rows_.size(); }
   std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
@@ -28,6 +28,8 @@ class SurfaceWeights {
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
   /// What the nodes' values are at surface vertex v; zero for a vertex that no node carries.
   Vec3 at(std::size_t v, const std::vector<Vec3>& values) const { return weighed(rows_[v], values); }
+  /// The same of many, by all threads, some rows side by side: sums wait for each other less.
+  std::vector<Vec3> at_each(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;
 
  private:
   void make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);

@@ -6,11 +6,15 @@
 
 namespace geo {
 
-void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u) {
-  Row one{entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness, Vec3::Zero(), Mat3::Zero(), false};
+void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
+  rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness, start, Mat3::Zero(), false});
   entries_.insert(entries_.end(), row.entries.begin(), row.entries.end());
-  one.start = at(one, u);
-  rows_.push_back(one);
+}
+
+void TouchPenalty::reserve(std::span<const RelativeRow> rows) {
+  std::size_t entries = entries_.size();
+  for (const RelativeRow& row : rows) entries += row.entries.size();
+  entries_.reserve(entries), rows_.reserve(rows_.size() + rows.size());
 }
 
 void TouchPenalty::each_row(const VisitRow& visit) const {

@@ -17,9 +17,17 @@ struct TouchPenaltyOptions {
 class TouchPenalty : public Potential {
  public:
   explicit TouchPenalty(const TouchPenaltyOptions& options) : options_(options) {}
+  /// As if it were new; the memory is kept.
+  void restart(const TouchPenaltyOptions& options) { options_ = options, rows_.clear(), entries_.clear(); }
 
   /// A couple whose places, along its normal, have passed the limit by `depth` (negative: not yet) at displacements u.
-  void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u);
+  void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u) {
+    add(row, normal, depth, stiffness, weighed(row.entries, u));
+  }
+  /// The same, given the row's relative displacement.
+  void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start);
+  /// Room for as many more.
+  void reserve(std::span<const RelativeRow> rows);
   std::size_t size() const { return rows_.size(); }
   /// How many press on each other, at the displacements of the last force() call.
   std::size_t pressing() const;

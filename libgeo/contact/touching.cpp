@@ -9,10 +9,11 @@
 namespace geo {
 
 std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m, const Constraint& how) {
-  std::vector<TouchingPlaces> result;
-  std::vector<std::array<std::uint32_t, 6>> keys;
-  for (const Watched& w : watched) {
-    if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) continue;
+  using Key = std::array<std::uint32_t, 6>;
+  constexpr std::size_t stretch = 256;
+  std::vector<std::pair<std::vector<TouchingPlaces>, std::vector<Key>>> some((watched.size() + stretch - 1) / stretch);
+  const auto look_at = [&](const Watched& w, std::vector<TouchingPlaces>& result, std::vector<Key>& keys) {
+    if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) return;
     const ClosestPlaces& c = w.closest;
     TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
     const auto take = [](SurfacePlace& place, const Simplex& s, const Vec3& weights) {
@@ -27,13 +28,20 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
     t.depth = w.gap - t.normal.dot(apart);
     if (how.share > 0) t.approach = -how.share * std::max(0.0, t.depth) / how.dt;
     // Neighbouring triangles have places in common: they are named by the vertices that carry them.
-    std::array<std::uint32_t, 6> key;
+    Key key;
     key.fill(~0u);
     std::copy(t.a.vertex, t.a.vertex + t.a.size, key.begin()), std::copy(t.b.vertex, t.b.vertex + t.b.size, key.begin() + 3);
     std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
     if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3)) std::rotate(key.begin(), key.begin() + 3, key.end());
     keys.push_back(key), result.push_back(t);
-  }
+  };
+  parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      for (std::size_t i = s * stretch; i < std::min(watched.size(), (s + 1) * stretch); ++i) look_at(watched[i], some[s].first, some[s].second);
+  });
+  std::vector<TouchingPlaces> result;
+  std::vector<Key> keys;
+  for (const auto& [places, named] : some) result.insert(result.end(), places.begin(), places.end()), keys.insert(keys.end(), named.begin(), named.end());
   std::vector<std::uint32_t> order(result.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(keys[i], i) < std::tie(keys[j], j); });

@@ -12,7 +12,7 @@ TrianglePlanes::TrianglePlanes(std::span<const Triangle> triangles, const std::v
       Vec3 n = (from_[b] - from_[a]).cross(from_[c] - from_[a]);
       if (const double length = n.norm(); length > 0) n /= length;
       const double x = n.dot(from_[a]), y = n.dot(from_[b]), z = n.dot(from_[c]);
-      planes_[t] = {n, std::min({x, y, z}), std::max({x, y, z}), 0, 0};
+      planes_[t] = {n, (from_[a] + from_[b] + from_[c]) / 3, std::min({x, y, z}), std::max({x, y, z}), 0, 0};
       renew_end(t);
     }
   });

@@ -24,9 +24,22 @@ class TrianglePlanes {
   /// when they pass through each other.
   double left(std::size_t i, std::size_t j) const { return std::max(left_by(i, j), left_by(j, i)); }
 
+  /// Whether the way from the middle of j to that of i, where the motion begins, parts them by more than `first` there and by more
+  /// than `last` where it ends: of triangles that lie beside each other in a surface it does, where their planes do not.
+  bool part_across(std::size_t i, std::size_t j, double first, double last) const {
+    const auto &s = triangles_[i], &t = triangles_[j];
+    const Vec3 n = planes_[i].middle - planes_[j].middle;
+    const double length = n.norm();
+    const auto apart = [&](const std::vector<Vec3>& at) {
+      return std::min({n.dot(at[s[0]]), n.dot(at[s[1]]), n.dot(at[s[2]])}) - std::max({n.dot(at[t[0]]), n.dot(at[t[1]]), n.dot(at[t[2]])});
+    };
+    return apart(from_) > first * length && apart(to_) > last * length;
+  }
+
  private:
   struct Plane {
     Vec3 normal;                    // unit; of a triangle without area zero
+    Vec3 middle;                    // where the motion begins
     double first_low, first_high;   // of its corners along the normal, at the beginning: of slivers not the same
     double last_low, last_high;     // at the end
   };

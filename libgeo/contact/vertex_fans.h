@@ -12,23 +12,39 @@ namespace geo {
 /// Of the triangles of a surface, each vertex for itself.
 class VertexFans {
  public:
-  /// `together`: per vertex the row that says where it is (vertices_together()).
-  VertexFans(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> together);
+  /// A triangle about a vertex, and the edge across, as the triangle goes round.
+  struct Link {
+    std::uint32_t from, to, triangle;
+  };
 
+  VertexFans() = default;
+  VertexFans(const std::vector<Triangle>& triangles, std::size_t vertices);
+
+  std::size_t size() const { return closed_.size(); }
+  /// Triangles about vertex v, ascending.
+  std::span<const Link> about(std::size_t v) const { return {link_.data() + first_[v], first_[v + 1] - first_[v]}; }
   /// Whether some direction looks at the front of all triangles around v, which close around it once: then no two of them have
-  /// more in common than corners and edges. Floating point, but never true where that is not so.
-  bool open_out(std::uint32_t v, const std::vector<Vec3>& at) const;
-  const std::vector<Triangle>& triangles() const { return triangles_; }
+  /// more in common than corners and edges. `together`: per vertex the row of `at` that says where it is (vertices_together()).
+  /// Floating point, but never true where that is not so.
+  bool open_out(std::uint32_t v, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const;
+
+  /// use(s, t) for each pair of triangles about v (s < t), but for those that have another vertex in common that `instead` accepts.
+  template <class Instead, class Use>
+  void each_pair(std::uint32_t v, const Instead& instead, const Use& use) const {
+    const auto links = about(v);
+    for (std::size_t i = 0; i < links.size(); ++i)
+      for (std::size_t j = i + 1; j < links.size(); ++j) {
+        const auto &s = links[i], &t = links[j];
+        const auto in_both = [&](std::uint32_t w) { return w == t.from || w == t.to; };
+        if ((in_both(s.from) && instead(s.from)) || (in_both(s.to) && instead(s.to))) continue;
+        use(s.triangle, t.triangle);
+      }
+  }
 
  private:
-  struct Link {
-    std::uint32_t from, to;
-  };
-  const std::vector<Triangle>& triangles_;
-  std::span<const std::uint32_t> together_;
   std::vector<std::uint32_t> first_;
-  std::vector<Link> link_;             // per vertex and triangle: the edge across, in rows
-  std::vector<std::uint8_t> closed_;   // each end of an edge across is another's beginning, and no beginning is twice there
+  std::vector<Link> link_;
+  std::vector<std::uint8_t> closed_;  // each end of an edge across is another's beginning, and no beginning is twice there
 };
 
 }  // namespace geo

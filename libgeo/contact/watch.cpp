@@ -33,39 +33,55 @@ bool examine(const SurfaceMotion& m, const Partings& p, std::size_t lane, Watche
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-Pairs closest_between(const Pairs& pairs, const std::vector<Triangle>& corners, std::span<const std::uint32_t> owner, const TrianglePlanes& planes, std::size_t most) {
+// What of a pair decides whether others between the same owners are closer.
+struct Between {
+  std::uint32_t low, high;  // the two owners
+  double left;              // TrianglePlanes::left()
+};
+
+Pairs closest_between(const Pairs& pairs, const std::vector<Between>& between, std::span<const std::uint32_t> owner, std::size_t most) {
   struct Entry {
-    std::uint32_t other;  // the higher of the two owners
-    std::uint32_t pair;
     double left;
+    std::uint32_t pair;
+    bool operator<(const Entry& o) const { return std::tie(left, pair) < std::tie(o.left, o.pair); }
+  };
+  struct Closest {
+    std::uint32_t other;  // the higher of the two owners
+    std::vector<Entry> few;  // the closest, ascending
   };
   // By the lower owner first; row 0 is of triangles that have none.
-  const auto low = [&](std::size_t i) { return std::size_t(std::min(owner[corners[pairs[i].first][0]], owner[corners[pairs[i].second][0]]) + 1u); };
   std::size_t owners = 1;
   for (const auto o : owner) owners = std::max<std::size_t>(owners, o + 2u);
   std::vector<std::uint32_t> first(owners + 1, 0);
-  for (std::size_t i = 0; i < pairs.size(); ++i) ++first[low(i) + 1];
+  for (const Between& b : between) ++first[b.low + 1u + 1];
   for (std::size_t o = 0; o < owners; ++o) first[o + 1] += first[o];
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1), order(pairs.size());
-  for (std::uint32_t i = 0; i < pairs.size(); ++i) order[next[low(i)]++] = i;
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) order[next[between[i].low + 1u]++] = i;
   std::vector<std::uint8_t> keep(pairs.size(), 0);
   parallel_for(owners, 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<Entry> some;
+    std::vector<Closest> closest;
     for (std::size_t o = begin; o < end; ++o) {
       if (first[o + 1] - first[o] <= most) {
         for (auto k = first[o]; k < first[o + 1]; ++k) keep[order[k]] = 1;
         continue;
       }
-      some.clear();
+      std::size_t others = 0;
       for (auto k = first[o]; k < first[o + 1]; ++k) {
-        const auto& [s, t] = pairs[order[k]];
-        some.push_back({std::max(owner[corners[s][0]], owner[corners[t][0]]), order[k], planes.left(s, t)});
+        const Between& b = between[order[k]];
+        const Entry entry{b.left, order[k]};
+        std::size_t c = 0;
+        while (c < others && closest[c].other != b.high) ++c;
+        if (c == others) {
+          if (++others > closest.size()) closest.emplace_back();
+          closest[c].other = b.high, closest[c].few.clear();
+        }
+        auto& few = closest[c].few;
+        if (few.size() == most && !(entry < few.back())) continue;
+        if (few.size() == most) few.pop_back();
+        few.insert(std::upper_bound(few.begin(), few.end(), entry), entry);
       }
-      std::sort(some.begin(), some.end(), [](const Entry& p, const Entry& q) { return std::tie(p.other, p.left, p.pair) < std::tie(q.other, q.left, q.pair); });
-      for (std::size_t i = 0, same = 0; i < some.size(); ++i) {
-        if (some[i].other != some[same].other) same = i;
-        keep[some[i].pair] = i - same < most;
-      }
+      for (std::size_t c = 0; c < others; ++c)
+        for (const Entry& e : closest[c].few) keep[e.pair] = 1;
     }
   });
   Pairs result;
@@ -85,7 +101,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   // What is held stays, though the motion does not know of it.
   Vec3 middle = Vec3::Zero();
   for (const auto v : surface.rows) middle += m.from[v] / double(surface.rows.size());
-  known.cover(corners.size(), [&](std::size_t t) {
+  known.cover(m.triangles, [&](std::size_t t) {
     Box3 box = surface.swept(t, carried, m.to);
     for (const auto v : corners[t]) box.add(m.from[v] - middle);
     return box.grown(0.5 * m.reach);
@@ -93,19 +109,27 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   const TrianglePlanes planes(corners, m.from, m.to);
   constexpr std::size_t stretch = 1024;
   std::vector<Pairs> some((known.pairs().size() + stretch - 1) / stretch);
+  std::vector<std::vector<Between>> some_between(some.size());
   parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       for (std::size_t i = k * stretch; i < std::min(known.pairs().size(), (k + 1) * stretch); ++i) {
         const auto& [p, q] = known.pairs()[i];
         const auto &s = corners[p], &t = corners[q];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (!in_t(s[0]) && !in_t(s[1]) && !in_t(s[2]) && !planes.part(p, q, m.gap, m.reach)) some[k].push_back({p, q});
+        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2]) || planes.part(p, q, m.gap, m.reach)) continue;
+        some[k].push_back({p, q});
+        if (owner.empty()) continue;
+        const auto [low, high] = std::minmax(owner[s[0]], owner[t[0]]);
+        some_between[k].push_back({low, high, planes.left(p, q)});
       }
   });
   Pairs pairs;
+  std::vector<Between> between;
   for (const auto& s : some) pairs.insert(pairs.end(), s.begin(), s.end());
-  if (!owner.empty()) pairs = closest_between(pairs, corners, owner, planes, most);
+  for (const auto& s : some_between) between.insert(between.end(), s.begin(), s.end());
+  if (!owner.empty()) pairs = closest_between(pairs, between, owner, most);
   constexpr std::size_t in_lanes = 256;
+  constexpr double sure = 1 + 1e-9;  // so that examine() would say the same
   std::vector<std::vector<Watched>> found((pairs.size() + in_lanes - 1) / in_lanes);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -119,7 +143,8 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
         if (examine(m, p, lane, w)) found[s].push_back(w);
       };
       CouplesInLanes<decltype(judge)> couples(m.from, m.to, false, judge);
-      for (std::size_t i = s * in_lanes; i < std::min(pairs.size(), (s + 1) * in_lanes); ++i) couples.add(couple(i), i);
+      for (std::size_t i = s * in_lanes; i < std::min(pairs.size(), (s + 1) * in_lanes); ++i)
+        if (!planes.part_across(pairs[i].first, pairs[i].second, sure * m.gap, sure * m.reach)) couples.add(couple(i), i);
       couples.finish();
     }
   });

@@ -1,6 +1,7 @@
 // What spares contact most pairs: lists of near pairs that are kept, and fans that open out.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -22,17 +23,24 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
       b.add(Vec3(random.uniform(0, 3), random.uniform(0, 3), random.uniform(0, 3)));
       b = b.grown(random.uniform(0, 0.3));
     }
+    // Some triangles share a corner.
+    std::vector<Triangle> triangles;
+    for (std::uint32_t t = 0; t < boxes.size(); ++t) triangles.push_back({3 * t, 3 * t + 1, random.below(2) == 0 ? 3 * t + 2 : 3 * random.below(static_cast<std::uint32_t>(boxes.size()))});
+    const auto neighbours = [&](std::uint32_t i, std::uint32_t j) {
+      return std::any_of(triangles[i].begin(), triangles[i].end(), [&](auto v) { return std::find(triangles[j].begin(), triangles[j].end(), v) != triangles[j].end(); });
+    };
     NearPairs near;
     std::vector<std::uint8_t> changed(boxes.size(), 1);
     for (int call = 0; call < 8; ++call) {
       const bool told = call > 0 && random.below(2) == 0;
-      near.cover(boxes.size(), [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1), told ? &changed : nullptr);
+      near.cover(triangles, [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1), told ? &changed : nullptr);
       const std::set<NearPairs::Pair> pairs(near.pairs().begin(), near.pairs().end());
       CHECK(pairs.size() == near.pairs().size());
       std::size_t missing = 0;
       for (std::uint32_t i = 0; i < boxes.size(); ++i)
-        for (std::uint32_t j = i + 1; j < boxes.size(); ++j) missing += boxes[i].meets(boxes[j]) && !pairs.contains({i, j});
+        for (std::uint32_t j = i + 1; j < boxes.size(); ++j) missing += boxes[i].meets(boxes[j]) && !neighbours(i, j) && !pairs.contains({i, j});
       CHECK(missing == 0);
+      CHECK(std::none_of(pairs.begin(), pairs.end(), [&](const auto& p) { return neighbours(p.first, p.second); }));
       // Few or many go elsewhere.
       const double share = random.below(3) == 0 ? 0.5 : 0.03;
       for (std::size_t t = 0; t < boxes.size(); ++t) {
@@ -42,6 +50,25 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
       }
     }
   }
+}
+
+TEST_CASE("fans name each pair of triangles that share a vertex once") {
+  Random random(7);
+  const std::uint32_t vertices = 12;
+  std::vector<Triangle> triangles;
+  while (triangles.size() < 40) {
+    const Triangle t{random.below(vertices), random.below(vertices), random.below(vertices)};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+  const VertexFans fans(triangles, vertices);
+  std::vector<NearPairs::Pair> named, wanted;
+  for (std::uint32_t v = 0; v < vertices; ++v)
+    fans.each_pair(v, [v](std::uint32_t w) { return w < v; }, [&](std::uint32_t s, std::uint32_t t) { named.push_back({s, t}); });
+  for (std::uint32_t s = 0; s < triangles.size(); ++s)
+    for (std::uint32_t t = s + 1; t < triangles.size(); ++t)
+      if (std::any_of(triangles[s].begin(), triangles[s].end(), [&](auto v) { return std::find(triangles[t].begin(), triangles[t].end(), v) != triangles[t].end(); })) wanted.push_back({s, t});
+  std::sort(named.begin(), named.end());
+  CHECK(named == wanted);
 }
 
 TEST_CASE("no two triangles of a fan that opens out cross, but those of one that goes round twice do", "[campaign]") {
@@ -62,14 +89,14 @@ TEST_CASE("no two triangles of a fan that opens out cross, but those of one that
       at.push_back(turn * (random.uniform(0.5, 2) * Vec3(std::cos(angle), std::sin(angle), rough * random.uniform(-1, 1))));
       triangles.push_back({0, 1 + i, 1 + (i + 1) % n}), together.push_back(1 + i);
     }
-    const bool opens = VertexFans(triangles, together).open_out(0, at);
+    const bool opens = VertexFans(triangles, at.size()).open_out(0, together, at);
     const std::size_t crossings = find_crossings(triangles, at, together, false).size();
     if (opens) CHECK(crossings == 0);
     if (rounds == 2) CHECK(!opens);
     open += opens, twice_round += rounds == 2;
     // One that does not close says nothing.
     triangles.pop_back();
-    CHECK(!VertexFans(triangles, together).open_out(0, at));
+    CHECK(!VertexFans(triangles, at.size()).open_out(0, together, at));
   }
   if (count > 100) CHECK((open > static_cast<std::size_t>(count) / 5 && twice_round > 0));
 }

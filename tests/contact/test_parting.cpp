@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include <catch2/catch.hpp>
 
@@ -60,7 +61,24 @@ TEST_CASE("directions part eight couples as far as they say, the closest places'
       CHECK(std::abs(between.norm() - p.first[Partings::closest][lane]) < 1e-9);
       ++apart;
     }
+    // Tilted directions: the normals, their sum, and these turned towards the closest places.
+    TiltedPartings tilted;
+    find_tilted(couples[0], p, 0, from, to, tilted);
+    const auto direction = [&](int k) { return Vec3(p.normal[k][0][0], p.normal[k][1][0], p.normal[k][2][0]); };
+    const Vec3 normals[] = {direction(Partings::a_normal), direction(Partings::b_normal), direction(Partings::a_normal) + direction(Partings::b_normal)};
+    for (int k = 0; k < TiltedPartings::count; ++k) {
+      const Vec3 n(tilted.normal[0][k], tilted.normal[1][k], tilted.normal[2][k]), wanted = normals[k % 3] + std::array{0.0, 0.01, 0.03, 0.09, 0.27}[static_cast<std::size_t>(k / 3)] * direction(Partings::closest);
+      CHECK((n - wanted.normalized()).norm() < 1e-12);
+      CHECK(std::abs(parted(n, couples[0].a, couples[0].b, from) - tilted.first[k]) < 1e-12);
+      CHECK(std::abs(parted(n, couples[0].a, couples[0].b, to) - tilted.last[k]) < 1e-12);
+    }
     on_every_target([&] {
+      TiltedPartings same;
+      find_tilted(couples[0], p, 0, from, to, same);
+      for (int k = 0; k < TiltedPartings::count; ++k) {
+        for (int axis = 0; axis < 3; ++axis) CHECK(same.normal[axis][k] == tilted.normal[axis][k]);
+        CHECK((same.first[k] == tilted.first[k] && same.last[k] == tilted.last[k]));
+      }
       Partings other;
       find_partings(couples.data(), couples.size(), from, to, true, other);
       for (std::size_t lane = 0; lane < couples.size(); ++lane)

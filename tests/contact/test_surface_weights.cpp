@@ -38,6 +38,15 @@ TEST_CASE("after each step of a cut the weights are those of a surface looked at
         other += !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NodeWeight& p, const NodeWeight& q) { return p.node == q.node && p.weight == q.weight; });
       }
       CHECK(other == 0);
+      // Many at once are what each is alone, to the bit, in any order.
+      std::vector<Vec3> values;
+      for (std::size_t i = 0; i < solid.size(); ++i) values.push_back(random.direction());
+      std::vector<std::uint32_t> asked;
+      for (std::size_t k = 0; k < whole.size() + 1; ++k) asked.push_back(random.below(static_cast<std::uint32_t>(whole.size())));
+      const std::vector<Vec3> many = whole.at_each(asked, values);
+      std::size_t differ = 0;
+      for (std::size_t k = 0; k < asked.size(); ++k) differ += many[k] != whole.at(asked[k], values);
+      CHECK(differ == 0);
     }
   }
 }

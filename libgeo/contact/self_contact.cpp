@@ -134,11 +134,17 @@ std::size_t SelfContact::open(const std::vector<Vec3>& to, const Copies& copies)
   }
   // One after another, as the others' may have been in the way.
   auto together = vertices_together(surface_.site, positions_);
-  std::erase_if(opening, [&](auto v) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> about;
-    const auto of = [&](std::uint32_t t) { return std::any_of(surface_.triangles[t].begin(), surface_.triangles[t].end(), [&](auto c) { return std::find(copies[v].begin(), copies[v].end(), c) != copies[v].end(); }); };
+  std::vector<std::uint32_t> turn(positions_.size(), ~0u);  // per vertex, whose it is
+  for (std::uint32_t k = 0; k < opening.size(); ++k)
+    for (const auto c : copies[opening[k]]) turn[c] = k;
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs_about(opening.size());
+  if (!opening.empty())
     for (const auto& pair : pairs)
-      if (of(pair.first) || of(pair.second)) about.push_back(pair);
+      for (const auto t : {pair.first, pair.second})
+        for (const auto c : surface_.triangles[t])
+          if (turn[c] != ~0u && (pairs_about[turn[c]].empty() || pairs_about[turn[c]].back() != pair)) pairs_about[turn[c]].push_back(pair);
+  std::erase_if(opening, [&](auto v) {
+    const auto& about = pairs_about[turn[copies[v][0]]];
     for (int trial = 0; trial < 20; ++trial) {
       const double step = std::ldexp(0.5 * gap, -2 * (trial / 4));
       // Both, or one of them alone.

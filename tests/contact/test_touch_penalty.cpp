@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "base/joined.h"
 #include "base/random.h"
 #include "body/agreement.h"
 #include "cases.h"
@@ -15,6 +16,21 @@
 #include "surface/shapes.h"
 
 using namespace geo;
+
+namespace {
+
+// A row of these nodes with random weights that sum to zero.
+RelativeRow row_of(const std::vector<std::uint32_t>& nodes, Random& random) {
+  RelativeRow row;
+  double left = 0;
+  for (const auto node : nodes) {
+    const double w = row.entries.size() + 1 < nodes.size() ? random.uniform(-0.5, 0.5) : -left;
+    row.entries.push_back({node, w}), left += w;
+  }
+  return row;
+}
+
+}  // namespace
 
 TEST_CASE("the touch penalty's force is the energy's slope, its product the force's, and it moves no middle") {
   const auto [first, count] = seeds(20);
@@ -30,12 +46,9 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
     const std::vector<Vec3> u = vectors(1);
     TouchPenalty penalty({0.4, 0.05});
     for (int i = 0; i < 6; ++i) {
-      RelativeRow row;
-      double left = 0;
-      for (std::uint32_t node = 0; node < n; ++node) {
-        const double w = node + 1 < n ? random.uniform(-0.5, 0.5) : -left;
-        row.entries.push_back({node, w}), left += w;
-      }
+      std::vector<std::uint32_t> all_nodes(n);
+      std::iota(all_nodes.begin(), all_nodes.end(), 0);
+      const RelativeRow row = row_of(all_nodes, random);
       penalty.add(row, random.direction(), random.uniform(-0.2, 0.5), random.uniform(1, 5), u);
     }
     std::vector<Vec3> at = u, way = vectors(1);
@@ -91,22 +104,20 @@ TEST_CASE("nodes that a penalty makes depend on each other hang together by the 
     TouchPenalty touch({0.4, 0.05});
     MutualContact mutual(0.4, 0.05);
     for (int r = 0; r < 7; ++r) {
-      RelativeRow row;
-      double left = 0;
-      for (int k = 0; k < 3; ++k) {
-        const double w = k < 2 ? random.uniform(-0.5, 0.5) : -left;
-        row.entries.push_back({static_cast<std::uint32_t>(random.below(n)), w}), left += w;
-      }
+      std::vector<std::uint32_t> some;
+      for (int k = 0; k < 3; ++k) some.push_back(static_cast<std::uint32_t>(random.below(n)));
+      const RelativeRow row = row_of(some, random);
       const Vec3 normal = random.direction();
       touch.add(row, normal, random.uniform(0, 0.5), random.uniform(1, 5), u);
       mutual.add(row.entries, random.uniform(-0.5, 0) * normal, normal, random.uniform(1, 5));
     }
     mutual.begin(u, 0, 1);
     for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
-      std::vector<std::uint32_t> part(n);
-      std::iota(part.begin(), part.end(), 0);
       ContactRows rows(std::span(&p, 1), n);
-      for (const auto& [i, j] : rows.couples()) std::replace(part.begin(), part.end(), std::uint32_t(part[i]), std::uint32_t(part[j]));
+      Joined joined(n);
+      for (const auto& [i, j] : rows.couples()) joined.join(i, j);
+      std::vector<std::uint32_t> part;
+      for (std::uint32_t i = 0; i < n; ++i) part.push_back(joined[i]);
       std::vector<Vec3> force(n, Vec3::Zero());
       p->force(at, force);
       rows.read();

@@ -5,9 +5,30 @@
 
 #include "base/parallel.h"
 #include "contact/close_pairs.h"
+#include "contact/triangle_sides.h"
 #include "surface/check.h"
 
 namespace geo {
+namespace {
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+// Those that are not clear at once.
+Pairs unclear(const Pairs& pairs, const TriangleSides& sides) {
+  constexpr std::size_t stretch = 1024;
+  std::vector<Pairs> some((pairs.size() + stretch - 1) / stretch);
+  parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      some[k].assign(pairs.begin() + static_cast<std::ptrdiff_t>(k * stretch), pairs.begin() + static_cast<std::ptrdiff_t>(std::min(pairs.size(), (k + 1) * stretch)));
+      sides.keep_unclear(some[k]);
+    }
+  });
+  Pairs result;
+  for (const Pairs& s : some) result.insert(result.end(), s.begin(), s.end());
+  return result;
+}
+
+}  // namespace
 
 std::vector<std::uint32_t> vertices_together(std::span<const std::uint32_t> site, const std::vector<Vec3>& positions) {
   constexpr std::uint32_t none = ~0u;
@@ -45,7 +66,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
   if (only)
     for (Box3& b : boxes)
       if (!b.meets(region)) b = Box3();
-  auto result = find_crossings(close_pairs(boxes, only), triangles, positions, together, two_sided, only);
+  auto pairs = close_pairs(std::move(boxes), only);
+  if (!only) pairs = unclear(pairs, TriangleSides(triangles, together, positions));
+  auto result = find_crossings(pairs, triangles, positions, together, two_sided, only);
   std::sort(result.begin(), result.end());
   return result;
 }

@@ -37,6 +37,17 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
       const auto test = [&](const Pair& p) {
         if (triangles_cross(triangles_[p.first], triangles_[p.second], next_, two_sided_)) found[f].push_back(p);
       };
+      std::vector<Pair> some;
+      for (std::size_t i = f * stretch; i < std::min(pairs.size(), (f + 1) * stretch); ++i) {
+        const auto& [p, q] = pairs[i];
+        if (!changed[p] && !changed[q]) continue;
+        const auto &s = triangles_[p], &t = triangles_[q];
+        const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
+        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) test(pairs[i]);
+        else some.push_back(pairs[i]);
+      }
+      planes_.keep_unparted(some, rounding_, rounding_);
+      planes_.keep_unparted_across(some, rounding_, rounding_);
       const auto couple = [&](const Pair& p) {
         const auto simplex = [&](std::uint32_t t) { return Simplex{{triangles_[t][0], triangles_[t][1], triangles_[t][2]}, 3}; };
         return Couple{simplex(p.first), simplex(p.second)};
@@ -45,22 +56,12 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
       const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
         for (int k = 0; k < Partings::count; ++k)
           if (apart(p.first[k][lane], p.last[k][lane])) return;
-        if (some_tilted(couple(pairs[i]), p, lane, start_, next_, [&](const Vec3&, double first, double last) { return apart(first, last); })) return;
-        if (carried && carried->keep_apart(pairs[i].first, pairs[i].second, p.first[Partings::closest][lane])) test(pairs[i]);
-        else found[f].push_back(pairs[i]);
+        if (some_tilted(couple(some[i]), p, lane, start_, next_, [&](const Vec3&, double first, double last) { return apart(first, last); })) return;
+        if (carried && carried->keep_apart(some[i].first, some[i].second, p.first[Partings::closest][lane])) test(some[i]);
+        else found[f].push_back(some[i]);
       };
       CouplesInLanes<decltype(judge)> couples(start_, next_, true, judge);
-      for (std::size_t i = f * stretch; i < std::min(pairs.size(), (f + 1) * stretch); ++i) {
-        const auto& [p, q] = pairs[i];
-        if (!changed[p] && !changed[q]) continue;
-        const auto &s = triangles_[p], &t = triangles_[q];
-        const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) {
-          test(pairs[i]);
-        } else if (!planes_.part_across(p, q, rounding_, rounding_) && !planes_.part(p, q, rounding_, rounding_)) {
-          couples.add(couple(pairs[i]), i);
-        }
-      }
+      for (std::size_t i = 0; i < some.size(); ++i) couples.add(couple(some[i]), i);
       couples.finish();
     }
   });

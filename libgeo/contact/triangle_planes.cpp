@@ -1,18 +1,137 @@
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time. No sum is
+// fused with a product, so all give the same.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "contact/triangle_planes.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
 #include "contact/triangle_planes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace geo {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+using Plane = TrianglePlanes::Plane;
+using Pair = TrianglePlanes::Pair;
+using Four = hn::CappedTag<double, 4>;
+using V = hn::Vec<Four>;
+
+// Corners k and on along n.
+HWY_INLINE V along(const double (&n)[3], const double (&at)[3][4], std::size_t k) {
+  const Four d;
+  return hn::Add(hn::Add(hn::Mul(hn::Set(d, n[0]), hn::Load(d, at[0] + k)), hn::Mul(hn::Set(d, n[1]), hn::Load(d, at[1] + k))),
+                 hn::Mul(hn::Set(d, n[2]), hn::Load(d, at[2] + k)));
+}
+
+HWY_INLINE double least(const double (&n)[3], const double (&at)[3][4]) {
+  const Four d;
+  V v = along(n, at, 0);
+  for (std::size_t k = hn::Lanes(d); k < 4; k += hn::Lanes(d)) v = hn::Min(v, along(n, at, k));
+  return hn::GetLane(hn::MinOfLanes(d, v));
+}
+HWY_INLINE double most(const double (&n)[3], const double (&at)[3][4]) {
+  const Four d;
+  V v = along(n, at, 0);
+  for (std::size_t k = hn::Lanes(d); k < 4; k += hn::Lanes(d)) v = hn::Max(v, along(n, at, k));
+  return hn::GetLane(hn::MaxOfLanes(d, v));
+}
+
+HWY_INLINE bool above(const Plane& p, const Plane& o, int end, double by) {
+  const Four d;
+  bool all = true;
+  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) all = all && hn::AllTrue(d, hn::Gt(hn::Sub(along(p.normal, o.at[end], k), hn::Set(d, p.high[end])), hn::Set(d, by)));
+  return all;
+}
+HWY_INLINE bool below(const Plane& p, const Plane& o, int end, double by) {
+  const Four d;
+  bool all = true;
+  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) all = all && hn::AllTrue(d, hn::Gt(hn::Sub(hn::Set(d, p.low[end]), along(p.normal, o.at[end], k)), hn::Set(d, by)));
+  return all;
+}
+
+HWY_INLINE bool parts(const Plane& p, const Plane& o, double first, double last) {
+  if (above(p, o, 0, first)) return above(p, o, 1, last);
+  return below(p, o, 0, first) && below(p, o, 1, last);
+}
+
+HWY_INLINE double left_by(const Plane& p, const Plane& o) {
+  double sum[3];
+  for (int axis = 0; axis < 3; ++axis) sum[axis] = o.at[0][axis][0] + o.at[0][axis][1] + o.at[0][axis][2];
+  const double beginning = p.normal[0] * sum[0] + p.normal[1] * sum[1] + p.normal[2] * sum[2];
+  return beginning > 1.5 * (p.low[0] + p.high[0]) ? least(p.normal, o.at[1]) - p.high[1] : p.low[1] - most(p.normal, o.at[1]);
+}
+
+HWY_INLINE bool parted_across(const Plane& p, const Plane& o, double first, double last) {
+  const double n[3] = {p.middle[0] - o.middle[0], p.middle[1] - o.middle[1], p.middle[2] - o.middle[2]};
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  return least(n, p.at[0]) - most(n, o.at[0]) > first * length && least(n, p.at[1]) - most(n, o.at[1]) > last * length;
+}
+
+}  // namespace
+
+bool planes_part(const Plane& p, const Plane& o, double first, double last) { return parts(p, o, first, last) || parts(o, p, first, last); }
+
+// Those kept come first; returns how many.
+std::size_t not_parted(const Plane* planes, Pair* pairs, std::size_t count, double first, double last) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pair pair = pairs[i];
+    pairs[kept] = pair;
+    kept += !(parts(planes[pair.first], planes[pair.second], first, last) || parts(planes[pair.second], planes[pair.first], first, last));
+  }
+  return kept;
+}
+
+std::size_t not_parted_across(const Plane* planes, Pair* pairs, std::size_t count, double first, double last) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pair pair = pairs[i];
+    pairs[kept] = pair;
+    kept += !parted_across(planes[pair.first], planes[pair.second], first, last);
+  }
+  return kept;
+}
+
+void ways_left(const Plane* planes, const Pair* pairs, std::size_t count, double* left) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Plane &p = planes[pairs[i].first], &o = planes[pairs[i].second];
+    left[i] = std::max(left_by(p, o), left_by(o, p));
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace geo
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 
 namespace geo {
+HWY_EXPORT(planes_part);
+HWY_EXPORT(not_parted);
+HWY_EXPORT(not_parted_across);
+HWY_EXPORT(ways_left);
 
 TrianglePlanes::TrianglePlanes(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to)
-    : triangles_(triangles), from_(from), to_(to), planes_(triangles.size()) {
+    : triangles_(triangles), to_(to), planes_(triangles.size()) {
   parallel_for(planes_.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = triangles_[t];
-      Vec3 n = (from_[b] - from_[a]).cross(from_[c] - from_[a]);
+      Plane& p = planes_[t];
+      const Vec3 &a = from[triangles_[t][0]], &b = from[triangles_[t][1]], &c = from[triangles_[t][2]];
+      Vec3 n = (b - a).cross(c - a);
       if (const double length = n.norm(); length > 0) n /= length;
-      const double x = n.dot(from_[a]), y = n.dot(from_[b]), z = n.dot(from_[c]);
-      planes_[t] = {n, (from_[a] + from_[b] + from_[c]) / 3, std::min({x, y, z}), std::max({x, y, z}), 0, 0};
+      const Vec3 middle = (a + b + c) / 3;
+      for (int axis = 0; axis < 3; ++axis) {
+        p.normal[axis] = n[axis], p.middle[axis] = middle[axis];
+        p.at[0][axis][0] = a[axis], p.at[0][axis][1] = b[axis], p.at[0][axis][2] = p.at[0][axis][3] = c[axis];
+      }
+      const double x = n.dot(a), y = n.dot(b), z = n.dot(c);
+      p.low[0] = std::min({x, y, z}), p.high[0] = std::max({x, y, z});
       renew_end(t);
     }
   });
@@ -20,16 +139,27 @@ TrianglePlanes::TrianglePlanes(std::span<const Triangle> triangles, const std::v
 
 void TrianglePlanes::renew_end(std::size_t i) {
   Plane& p = planes_[i];
-  const auto& [a, b, c] = triangles_[i];
-  const double x = p.normal.dot(to_[a]), y = p.normal.dot(to_[b]), z = p.normal.dot(to_[c]);
-  p.last_low = std::min({x, y, z}), p.last_high = std::max({x, y, z});
+  const Vec3 n(p.normal[0], p.normal[1], p.normal[2]), &a = to_[triangles_[i][0]], &b = to_[triangles_[i][1]], &c = to_[triangles_[i][2]];
+  for (int axis = 0; axis < 3; ++axis) p.at[1][axis][0] = a[axis], p.at[1][axis][1] = b[axis], p.at[1][axis][2] = p.at[1][axis][3] = c[axis];
+  const double x = n.dot(a), y = n.dot(b), z = n.dot(c);
+  p.low[1] = std::min({x, y, z}), p.high[1] = std::max({x, y, z});
 }
 
-double TrianglePlanes::left_by(std::size_t i, std::size_t j) const {
-  const Plane& p = planes_[i];
-  const auto& [a, b, c] = triangles_[j];
-  const double x = p.normal.dot(to_[a]), y = p.normal.dot(to_[b]), z = p.normal.dot(to_[c]);
-  return p.normal.dot(from_[a] + from_[b] + from_[c]) > 1.5 * (p.first_low + p.first_high) ? std::min({x, y, z}) - p.last_high : p.last_low - std::max({x, y, z});
+bool TrianglePlanes::part(std::uint32_t i, std::uint32_t j, double first, double last) const { return HWY_DYNAMIC_DISPATCH(planes_part)(planes_[i], planes_[j], first, last); }
+
+void TrianglePlanes::keep_unparted(std::vector<Pair>& pairs, double first, double last) const {
+  pairs.resize(HWY_DYNAMIC_DISPATCH(not_parted)(planes_.data(), pairs.data(), pairs.size(), first, last));
+}
+
+void TrianglePlanes::keep_unparted_across(std::vector<Pair>& pairs, double first, double last) const {
+  pairs.resize(HWY_DYNAMIC_DISPATCH(not_parted_across)(planes_.data(), pairs.data(), pairs.size(), first, last));
+}
+
+std::vector<double> TrianglePlanes::left(std::span<const Pair> pairs) const {
+  std::vector<double> result(pairs.size());
+  HWY_DYNAMIC_DISPATCH(ways_left)(planes_.data(), pairs.data(), pairs.size(), result.data());
+  return result;
 }
 
 }  // namespace geo
+#endif

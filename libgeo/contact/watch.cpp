@@ -111,17 +111,20 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   std::vector<Pairs> some((known.pairs().size() + stretch - 1) / stretch);
   std::vector<std::vector<Between>> some_between(some.size());
   parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
+    for (std::size_t k = begin; k < end; ++k) {
       for (std::size_t i = k * stretch; i < std::min(known.pairs().size(), (k + 1) * stretch); ++i) {
-        const auto& [p, q] = known.pairs()[i];
-        const auto &s = corners[p], &t = corners[q];
+        const auto &s = corners[known.pairs()[i].first], &t = corners[known.pairs()[i].second];
         const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2]) || planes.part(p, q, m.gap, m.reach)) continue;
-        some[k].push_back({p, q});
-        if (owner.empty()) continue;
-        const auto [low, high] = std::minmax(owner[s[0]], owner[t[0]]);
-        some_between[k].push_back({low, high, planes.left(p, q)});
+        if (!in_t(s[0]) && !in_t(s[1]) && !in_t(s[2])) some[k].push_back(known.pairs()[i]);
       }
+      planes.keep_unparted(some[k], m.gap, m.reach);
+      if (owner.empty()) continue;
+      const std::vector<double> left = planes.left(some[k]);
+      for (std::size_t i = 0; i < some[k].size(); ++i) {
+        const auto [low, high] = std::minmax(owner[corners[some[k][i].first][0]], owner[corners[some[k][i].second][0]]);
+        some_between[k].push_back({low, high, left[i]});
+      }
+    }
   });
   Pairs pairs;
   std::vector<Between> between;
@@ -133,8 +136,10 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   std::vector<std::vector<Watched>> found((pairs.size() + in_lanes - 1) / in_lanes);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
+      Pairs few(pairs.begin() + static_cast<std::ptrdiff_t>(s * in_lanes), pairs.begin() + static_cast<std::ptrdiff_t>(std::min(pairs.size(), (s + 1) * in_lanes)));
+      planes.keep_unparted_across(few, sure * m.gap, sure * m.reach);
       const auto couple = [&](std::size_t i) {
-        const auto &a = corners[pairs[i].first], &b = corners[pairs[i].second];
+        const auto &a = corners[few[i].first], &b = corners[few[i].second];
         return Couple{{{a[0], a[1], a[2]}, 3}, {{b[0], b[1], b[2]}, 3}};
       };
       const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
@@ -143,8 +148,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
         if (examine(m, p, lane, w)) found[s].push_back(w);
       };
       CouplesInLanes<decltype(judge)> couples(m.from, m.to, false, judge);
-      for (std::size_t i = s * in_lanes; i < std::min(pairs.size(), (s + 1) * in_lanes); ++i)
-        if (!planes.part_across(pairs[i].first, pairs[i].second, sure * m.gap, sure * m.reach)) couples.add(couple(i), i);
+      for (std::size_t i = 0; i < few.size(); ++i) couples.add(couple(i), i);
       couples.finish();
     }
   });

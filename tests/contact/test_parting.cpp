@@ -5,10 +5,133 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "contact/crossing.h"
 #include "contact/parting_lanes.h"
+#include "contact/triangle_planes.h"
+#include "contact/triangle_sides.h"
 #include "vectors.h"
 
 using namespace geo;
+
+namespace {
+
+// Triangles of few points, some on a grid: many share corners, lie in one plane, or have no area.
+struct Soup {
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> from, to;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  explicit Soup(Random& random) {
+    const bool grid = random.below(2) == 0;
+    for (int v = 0; v < 24; ++v) {
+      from.push_back(grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3))) : Vec3(random.uniform(0, 2) * random.direction()));
+      to.push_back(grid && random.below(2) == 0 ? from.back() : Vec3(from.back() + random.uniform(0, 0.5) * random.direction()));
+    }
+    for (int t = 0; t < 24; ++t) {
+      Triangle one;
+      for (int k = 0; k < 3; ++k)
+        do one[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(random.below(24));
+        while ((k > 0 && one[static_cast<std::size_t>(k)] == one[0]) || (k > 1 && one[2] == one[1]));
+      triangles.push_back(one);
+    }
+    for (std::uint32_t s = 0; s < triangles.size(); ++s)
+      for (std::uint32_t t = s + 1; t < triangles.size(); ++t) pairs.push_back({s, t});
+  }
+};
+
+Vec3 middle_of(const Triangle& t, const std::vector<Vec3>& at) { return (at[t[0]] + at[t[1]] + at[t[2]]) / 3; }
+
+Simplex simplex_of(const Triangle& t) { return {{t[0], t[1], t[2]}, 3}; }
+
+}  // namespace
+
+TEST_CASE("planes of triangles, and ways between their middles, part those pairs that they should, the same for all vectors") {
+  const auto [first, count] = seeds(40);
+  std::size_t parted_by_planes = 0, parted_across = 0, unparted = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Soup soup(random);
+    const double at_first = 0.2 * random.uniform(0, 1), at_last = 0.2 * random.uniform(0, 1);
+    TrianglePlanes planes(soup.triangles, soup.from, soup.to);
+    for (std::size_t v = 0; v < soup.to.size(); ++v)
+      if (random.below(4) == 0) soup.to[v] += Vec3(0, 0, 0.1);
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) planes.renew_end(t);
+    // How far a direction parts two, at both ends; of their planes the better one on the side where the motion begins.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> by_planes, across;
+    const auto left = planes.left(soup.pairs);
+    for (std::size_t i = 0; i < soup.pairs.size(); ++i) {
+      const auto& [p, q] = soup.pairs[i];
+      const Triangle &s = soup.triangles[p], &t = soup.triangles[q];
+      bool any = false;
+      double farthest = -1e300;
+      for (const auto& [a, b] : {std::pair(s, t), std::pair(t, s)}) {
+        Vec3 n = (soup.from[a[1]] - soup.from[a[0]]).cross(soup.from[a[2]] - soup.from[a[0]]);
+        if (n.norm() > 0) n.normalize();
+        for (const double sign : {1.0, -1.0}) any |= parted(sign * n, simplex_of(b), simplex_of(a), soup.from) > at_first && parted(sign * n, simplex_of(b), simplex_of(a), soup.to) > at_last;
+        // Only rounding could tell the side else.
+        const double side = n.dot(middle_of(b, soup.from) - middle_of(a, soup.from));
+        farthest = std::abs(side) > 1e-9 ? std::max(farthest, parted(side > 0 ? n : Vec3(-n), simplex_of(b), simplex_of(a), soup.to)) : 1e300;
+      }
+      if (farthest < 1e300) CHECK(std::abs(left[i] - farthest) < 1e-12);
+      if (!any) by_planes.push_back(soup.pairs[i]);
+      CHECK(planes.part(p, q, at_first, at_last) == any);
+      const Vec3 way = middle_of(s, soup.from) - middle_of(t, soup.from);
+      if (!(parted(way, simplex_of(s), simplex_of(t), soup.from) > at_first * way.norm() && parted(way, simplex_of(s), simplex_of(t), soup.to) > at_last * way.norm())) across.push_back(soup.pairs[i]);
+    }
+    parted_by_planes += soup.pairs.size() - by_planes.size(), parted_across += soup.pairs.size() - across.size(), unparted += by_planes.size();
+    on_every_target([&] {
+      auto kept = soup.pairs;
+      planes.keep_unparted(kept, at_first, at_last);
+      CHECK(kept == by_planes);
+      kept = soup.pairs;
+      planes.keep_unparted_across(kept, at_first, at_last);
+      CHECK(kept == across);
+      CHECK(planes.left(soup.pairs) == left);
+    });
+  }
+  CHECK(parted_by_planes > 100);
+  CHECK(parted_across > 100);
+  CHECK(unparted > 100);
+}
+
+TEST_CASE("pairs of triangles that are clear by the sides of their planes do not cross, most that do not are clear, the same for all vectors") {
+  const auto [first, count] = seeds(100);
+  std::size_t clear = 0, neighbours = 0, neither = 0, crossing = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Soup soup(random);
+    if (random.below(2) == 0)  // within rounding of a plane
+      for (Vec3& p : soup.from) p[2] = 1 + 0.5 * p[0] + (random.below(3) == 0 ? 1e-16 : 0) * p[1];
+    std::vector<std::uint32_t> together(soup.from.size());
+    for (std::uint32_t v = 0; v < together.size(); ++v) {
+      together[v] = v;
+      for (std::uint32_t w = 0; w < v; ++w)
+        if (random.below(3) != 0 && soup.from[v] == soup.from[w]) together[v] = together[w];
+    }
+    const TriangleSides sides(soup.triangles, together, soup.from);
+    auto kept = soup.pairs;
+    sides.keep_unclear(kept);
+    const auto rows = [&](std::uint32_t t) { return Triangle{together[soup.triangles[t][0]], together[soup.triangles[t][1]], together[soup.triangles[t][2]]}; };
+    for (const auto& pair : soup.pairs) {
+      const Triangle s = rows(pair.first), t = rows(pair.second);
+      if (s[0] == s[1] || s[1] == s[2] || s[2] == s[0] || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      const bool is_clear = !std::binary_search(kept.begin(), kept.end(), pair), crosses = triangles_cross(s, t, soup.from, true);
+      if (is_clear) CHECK_FALSE(crosses);
+      const auto common = std::count_if(s.begin(), s.end(), [&](auto v) { return v == t[0] || v == t[1] || v == t[2]; });
+      clear += is_clear, neighbours += is_clear && common > 0, neither += !is_clear && !crosses, crossing += crosses;
+    }
+    on_every_target([&] {
+      auto same = soup.pairs;
+      sides.keep_unclear(same);
+      CHECK(same == kept);
+    });
+  }
+  CHECK(clear > 1000);
+  CHECK(neighbours > 100);
+  CHECK(neither > 0);
+  CHECK(crossing > 100);
+}
 
 TEST_CASE("directions part eight couples as far as they say, the closest places' farthest, the same for all vectors") {
   const auto [first, count] = seeds(200);

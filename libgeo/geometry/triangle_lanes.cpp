@@ -94,23 +94,19 @@ std::uint32_t meeting(const Packet& packet, const TriangleLanes::Boxes& boxes, s
   return bits;
 }
 
-// Which triangles of a block a segment may touch: their boxes meet, and their slabs do not tell them apart.
-std::uint32_t suspects(const TriangleLanes::Boxes& boxes, const TriangleLanes::Slabs& slabs, const Packet& packet, std::size_t s) {
-  const float lo[3] = {packet.lo[0][s], packet.lo[1][s], packet.lo[2][s]}, hi[3] = {packet.hi[0][s], packet.hi[1][s], packet.hi[2][s]};
-  std::uint32_t bits = meeting(boxes, lo, hi);
-  if (bits == 0 || !packet.near) return bits;
+// Which of a packet's segments may touch a triangle, of those that `boxes` (its own) meet: its slab does not tell them apart.
+std::uint32_t within_slab(const Packet& packet, const TriangleLanes::Slabs& slabs, std::uint32_t lane) {
   const Floats d;
+  const auto x = hn::Set(d, slabs.normal[0][lane]), y = hn::Set(d, slabs.normal[1][lane]), z = hn::Set(d, slabs.normal[2][lane]);
+  const auto along = [&](const auto& px, const auto& py, const auto& pz) { return hn::Add(hn::Mul(x, px), hn::Add(hn::Mul(y, py), hn::Mul(z, pz))); };
+  const auto p = along(hn::Set(d, packet.p[0]), hn::Set(d, packet.p[1]), hn::Set(d, packet.p[2]));
+  const auto from = hn::Set(d, slabs.from[lane]), to = hn::Set(d, slabs.to[lane]);
   std::uint32_t apart = 0;
-  for (std::size_t at = 0; at < TriangleLanes::width; at += hn::Lanes(d)) {
-    const auto x = hn::Load(d, slabs.normal[0] + at), y = hn::Load(d, slabs.normal[1] + at), z = hn::Load(d, slabs.normal[2] + at);
-    const auto along = [&](float px, float py, float pz) {
-      return hn::Add(hn::Mul(x, hn::Set(d, px)), hn::Add(hn::Mul(y, hn::Set(d, py)), hn::Mul(z, hn::Set(d, pz))));
-    };
-    const auto p = along(packet.p[0], packet.p[1], packet.p[2]), q = along(packet.end[0][s], packet.end[1][s], packet.end[2][s]);
-    const auto mask = hn::Or(hn::Gt(hn::Min(p, q), hn::Load(d, slabs.to + at)), hn::Lt(hn::Max(p, q), hn::Load(d, slabs.from + at)));
-    apart |= bits_of(mask) << at;
+  for (std::size_t at = 0; at < packet.count; at += hn::Lanes(d)) {
+    const auto q = along(hn::Load(d, packet.end[0] + at), hn::Load(d, packet.end[1] + at), hn::Load(d, packet.end[2] + at));
+    apart |= bits_of(hn::Or(hn::Gt(hn::Min(p, q), to), hn::Lt(hn::Max(p, q), from))) << at;
   }
-  return bits & ~apart;
+  return ~apart;
 }
 
 // The segments from p to some points, in the frame; lanes behind them are p itself.
@@ -209,16 +205,10 @@ void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, con
         stack[top++] = {level - 1, child};
         continue;
       }
-      std::uint32_t suspicious[TriangleLanes::width] = {}, triangles = 0;  // segments that may touch each triangle; any do
-      for (auto segments = meeting(packet, boxes, lane) & open; segments != 0; segments &= segments - 1) {
-        const auto s = static_cast<std::uint32_t>(std::countr_zero(segments));
-        const auto rest = suspects(levels[0][child], tree.slabs()[child], packet, s);
-        triangles |= rest;
-        for (auto bits = rest; bits != 0; bits &= bits - 1) suspicious[std::countr_zero(bits)] |= 1u << s;
-      }
-      for (; triangles != 0; triangles &= triangles - 1) {
+      for (auto triangles = meeting(levels[0][child], packet.all_lo, packet.all_hi); triangles != 0 && open != 0; triangles &= triangles - 1) {
         const auto k = static_cast<std::uint32_t>(std::countr_zero(triangles));
-        const auto asked = suspicious[k] & open;
+        auto asked = meeting(packet, levels[0][child], k) & open;
+        if (asked != 0 && packet.near) asked &= within_slab(packet, tree.slabs()[child], k);
         if (asked == 0) continue;
         const auto& t = corners[order[child * TriangleLanes::width + k]];
         const Crossing clear = crossing(packet, p, t, asked);

@@ -3,6 +3,7 @@
 #include "graph/update.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.h"
 #include "geometry/predicates.h"
@@ -139,7 +140,14 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   Users users(nodes, graph, update);
   for (const auto& row : severed.rows)
     if (const auto lost = severed.of(row); std::any_of(lost.begin(), lost.end(), [](const auto& entry) { return VisibilityGraph::is_neighbor(entry.bits); })) update.add(row.id);
+  const auto fetch = [&](const Severed::Row* row) {  // those that come next
+    constexpr std::ptrdiff_t ahead = 4;
+    const auto left = severed.rows.data() + severed.rows.size() - row;
+    if (left > 2 * ahead) std::as_const(graph).store(row[2 * ahead].id).prefetch_place(VisibilityGraph::place(row[2 * ahead].id));
+    if (left > ahead) std::as_const(graph).store(row[ahead].id).prefetch(VisibilityGraph::place(row[ahead].id));
+  };
   for (const auto& row : severed.rows) {
+    fetch(&row);
     std::uint32_t shortest = unit_radius;
     for (const auto& entry : severed.of(row)) shortest = std::min(shortest, VisibilityGraph::is_edge(entry.bits) ? VisibilityGraph::bound(entry.bits) : unit_radius);
     if (shortest < unit_radius) users.add(row.id, shortest);
@@ -165,6 +173,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   }
   std::vector<std::uint32_t> ends;
   for (const auto& row : severed.rows) {
+    fetch(&row);
     ends.clear();
     for (const auto& entry : severed.of(row)) {
       if (!VisibilityGraph::is_edge(entry.bits)) continue;

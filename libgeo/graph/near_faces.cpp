@@ -1,0 +1,194 @@
+#include "graph/near_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace geo {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+// A triangle's plane, with a bound of the rounding of heights over it.
+class Plane {
+ public:
+  explicit Plane(const Corners& t) : origin_(t[0]) {
+    const Vec3 u = t[1] - t[0], v = t[2] - t[0];
+    normal_ = u.cross(v);
+    length_ = normal_.norm();
+    // A height takes a dozen operations on products of these sizes, each with an error of 2⁻⁵³: 2⁻⁴⁸ is more than enough.
+    rounding_ = 0x1p-48 * u.lpNorm<1>() * v.lpNorm<1>();
+  }
+  /// False only when x is farther from the plane than `distance`.
+  bool within(const Vec3& x, double distance) const {
+    const double a = x.x() - origin_.x(), b = x.y() - origin_.y(), c = x.z() - origin_.z();
+    const double height = (a * normal_.x() + b * normal_.y()) + c * normal_.z(), error = rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c));
+    return std::abs(height) <= error + (length_ + rounding_) * distance;
+  }
+
+ private:
+  Vec3 origin_, normal_;
+  double length_, rounding_;
+};
+
+// Which nodes a face may cut something of: those within `reach` of it, and some more.
+struct Surroundings {
+  Surroundings(const Corners& t, double reach) : plane(t), around(box_of(t[0], t[1], t[2]).grown(reach)), reach(reach) {}
+  /// False only for what is farther than `distance`, which is `reach` at most.
+  bool holds(const Vec3& x, double distance) const {
+    const double less = reach - distance;
+    return x.x() >= around.lo.x() + less && x.x() <= around.hi.x() - less && x.y() >= around.lo.y() + less && x.y() <= around.hi.y() - less &&
+           x.z() >= around.lo.z() + less && x.z() <= around.hi.z() - less && plane.within(x, distance);
+  }
+  /// True unless it holds nothing of the cube.
+  bool reaches(const Vec3& middle, double half) const {
+    const Box3 cube{middle - Vec3::Constant(half), middle + Vec3::Constant(half)};
+    return cube.meets(around) && plane.within(middle, reach + std::sqrt(3.0) * half);
+  }
+  Plane plane;
+  Box3 around;
+  double reach;
+};
+
+class Search {
+ public:
+  Search(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const Corners> faces, const TriangleBvh& tree)
+      : nodes_(nodes), graph_(graph), faces_(faces), tree_(tree), reach_(graph.reach() * (1 + 1e-6)), support_(std::min(graph.support() * (1 + 1e-6), reach_)) {
+    // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
+    for (const Corners& face : faces) around_.emplace_back(face, 0.5 * reach_);
+  }
+  Near run(const NodeGrid& grid, NodeId first_new) {
+    if (!(reach_ > 0)) return {};  // no edge yet
+    walk(grid, 0, first_new.value);
+    walk(graph_.guides().grid(), VisibilityGraph::first_guide, ~0u);
+    return std::move(near_);
+  }
+
+ private:
+  struct Cube {
+    Vec3 middle;
+    double half;
+    std::size_t begin, end;    // of the faces that reach into it
+    std::uint32_t slab = ~0u;  // none yet
+  };
+  struct Suspect {
+    std::uint32_t id, cube;
+  };
+
+  // The rows of a grid, from `base` on, before `end`.
+  void walk(const NodeGrid& grid, std::uint32_t base, std::uint32_t end) {
+    constexpr int none = std::numeric_limits<int>::max();
+    faces_at_.resize(std::max<std::size_t>(faces_at_.size(), 1));
+    faces_at_[0].resize(faces_.size());
+    std::iota(faces_at_[0].begin(), faces_at_[0].end(), 0u);
+    Vec3 cube = Vec3::Zero();  // the one that was looked at last
+    double cube_half = 0;
+    std::size_t depth_of_cube = 0;
+    bool is_new = false;
+    int whole = none;  // depth of a cube so small that all in it is taken
+    const auto into = [&](int depth, const Vec3& middle, double half) {
+      if (depth > whole) return true;
+      const auto at = static_cast<std::size_t>(depth) + 1;
+      if (faces_at_.size() <= at) faces_at_.resize(at + 1);
+      faces_at_[at].clear();
+      for (const auto f : faces_at_[at - 1])
+        if (around_[f].reaches(middle, half * (1 + 1e-12))) faces_at_[at].push_back(f);
+      const bool enters = !faces_at_[at].empty();
+      whole = enters && 2 * half <= support_ ? depth : none;
+      if (enters) cube = middle, cube_half = half, depth_of_cube = at, is_new = true;
+      return enters;
+    };
+    grid.walk(into, [&](int, std::uint32_t row) {
+      if (row >= end) return;
+      if (is_new) {
+        if (suspects_.size() >= batch) settle();
+        const auto& here = faces_at_[depth_of_cube];
+        cubes_.push_back({cube, cube_half, cube_faces_.size(), cube_faces_.size() + here.size()});
+        cube_faces_.insert(cube_faces_.end(), here.begin(), here.end());
+        is_new = false;
+      }
+      suspects_.push_back({base + row, static_cast<std::uint32_t>(cubes_.size() - 1)});
+      __builtin_prefetch(&graph_.position(nodes_, base + row));
+    });
+    settle();
+  }
+
+  // Takes those of the suspects that are near, and forgets them all.
+  void settle() {
+    in_doubt_.clear();
+    std::size_t count = 0;
+    for (const auto& suspect : suspects_) {
+      const Vec3& x = graph_.position(nodes_, suspect.id);
+      Cube& cube = cubes_[suspect.cube];
+      const Slab& slab = slab_of(cube);
+      if (!slab.within(slab.height(x), 0.5 * reach_)) continue;
+      const auto within = [&](double length) {
+        for (auto f = cube.begin; f < cube.end; ++f)
+          if (around_[cube_faces_[f]].holds(x, 0.5 * length)) return true;
+        return false;
+      };
+      // Only few nodes have edges longer than the support.
+      const bool is_near = within(support_);
+      if (!is_near && !(reach_ > support_ && within(reach_))) continue;
+      graph_.store(suspect.id).prefetch_place(VisibilityGraph::place(suspect.id));
+      in_doubt_.push_back(!is_near);
+      suspects_[count++] = suspect;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto id = suspects_[k].id;
+      if (in_doubt_[k] && !graph_.store(id).has_bare_edges(VisibilityGraph::place(id))) continue;
+      near_.ids.push_back(id), near_.slabs.push_back(cubes_[suspects_[k].cube].slab);
+    }
+    suspects_.clear(), cubes_.clear(), cube_faces_.clear();
+  }
+
+  const Slab& slab_of(Cube& cube) {
+    if (cube.slab == ~0u) {
+      rows_.clear();
+      const Vec3 way = Vec3::Constant(cube.half + reach_);
+      tree_.near({cube.middle - way, cube.middle + way}, rows_);
+      cube.slab = static_cast<std::uint32_t>(near_.slab.size());
+      near_.slab.emplace_back(faces_, rows_, cube.middle, 2 * way.x());
+    }
+    return near_.slab[cube.slab];
+  }
+
+  static constexpr std::size_t batch = 256;  // suspects: enough for what is known of them to be fetched meanwhile
+  const NodeSet& nodes_;
+  const VisibilityGraph& graph_;
+  std::span<const Corners> faces_;
+  const TriangleBvh& tree_;
+  double reach_, support_;
+  std::vector<Surroundings> around_;
+  std::vector<std::vector<std::uint32_t>> faces_at_;  // by depth, from 1: those that reach into the cube
+  std::vector<Cube> cubes_;
+  std::vector<std::uint32_t> cube_faces_, rows_;
+  std::vector<Suspect> suspects_;
+  std::vector<std::uint8_t> in_doubt_;
+  Near near_;
+};
+
+}  // namespace
+
+Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, const Vec3& origin, double reach) : origin(origin) {
+  double largest = -1, far = reach;
+  for (const auto f : rows)
+    if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest) largest = n.squaredNorm(), normal = n;
+  for (const auto f : rows)
+    for (const Vec3& corner : faces[f]) {
+      const double h = height(corner);
+      from = std::min(from, h), to = std::max(to, h), far = std::max(far, (corner - origin).lpNorm<Eigen::Infinity>());
+    }
+  // A height takes six operations, each with an error of 2⁻⁵³ of a sum no larger than this.
+  const double rounding = 0x1p-49 * normal.lpNorm<1>() * far;
+  from -= rounding, to += rounding;
+  length = normal.norm() * (1 + 1e-12);
+}
+
+Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+                std::span<const Corners> faces, const TriangleBvh& tree) {
+  return Search(nodes, graph, faces, tree).run(grid, first_new);
+}
+
+}  // namespace geo

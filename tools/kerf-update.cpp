@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     const auto start = std::chrono::steady_clock::now();
     std::size_t triangles_cut = 0;
     try {
-      triangles_cut = geo::follow(body, tool::complex_of(file, surface_path), &work).crack.removed_faces.size();
+      triangles_cut = geo::follow(body, tool::complex_of(file, surface_path), &work, t.progress()).crack.removed_faces.size();
     } catch (const geo::InputError& e) {
       throw geo::InputError(surface_path + ": " + e.what());
     }

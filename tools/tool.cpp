@@ -28,8 +28,13 @@
 namespace tool {
 namespace {
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> interrupted{false}, bar_shown{false};
 constexpr int closed_pipe = 141;  // what a shell says of programs that SIGPIPE ends
+
+// Takes the bar away, so that what comes next begins a line.
+void clear_bar() {
+  if (bar_shown.exchange(false)) std::fputs("\r\033[K", stderr);
+}
 
 // A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a second Ctrl-C comes,
 // it removes what is half written and ends the program.
@@ -48,6 +53,7 @@ void watch_signals(const std::string& name, double patience) {
     wait.tv_nsec = static_cast<long>((std::min(patience, 1e9) - double(wait.tv_sec)) * 1e9);
     sigtimedwait(&signals, nullptr, &wait);
     geo::discard_unfinished();
+    clear_bar();
     const std::string line = name + ": interrupted\n";
     [[maybe_unused]] const auto written = ::write(2, line.data(), line.size());
     ::_exit(130);
@@ -190,11 +196,13 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   watch_signals(name_, patience);
   if (threads_ > 0) geo::set_threads(threads_);
   const auto fail = [&](const std::string& what, int code) {
+    clear_bar();
     std::cerr << name_ << ": " << what << '\n';
     return code;
   };
   try {
     work();
+    clear_bar();
     if (!flush_output()) throw geo::OutputError("-: cannot be written; is the disk full?");
     return 0;
   } catch (const UsageError& e) {
@@ -241,13 +249,16 @@ geo::Progress Tool::progress() const {
     if (bar) {
       const int percent = total > 0 ? static_cast<int>(100 * done / total) : 0;
       std::fprintf(stderr, "\r\033[K%3d %% %.*s%s", percent, static_cast<int>(phase.size()), phase.data(), done == total ? "\r\033[K" : "");
+      bar_shown = done != total;
     }
     return !interrupted;
   };
 }
 
 void Tool::say(const std::string& line) const {
-  if (!quiet) std::cerr << line << '\n';
+  if (quiet) return;
+  clear_bar();
+  std::cerr << line << '\n';
 }
 
 std::string named_hash(const std::string& path, std::uint64_t fingerprint) {

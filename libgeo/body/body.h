@@ -98,8 +98,9 @@ struct BodyDelta {
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
                 SplitWork* work = nullptr);
 
-/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own.
-BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr);
+/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own. Where `progress`
+/// stops the work, body is of no more use.
+BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr, const Progress& progress = {});
 
 /// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its master's node, the node
 /// itself included, that are within their support radius.

@@ -1,5 +1,6 @@
 // § 6.5 after a step: closest vertices of nodes near the change, then the trees that lost or found a root.
 #include <algorithm>
+#include <numbers>
 #include <queue>
 #include <set>
 #include <tuple>
@@ -8,12 +9,12 @@
 #include "base/parallel.h"
 #include "body/binding.h"
 #include "body/upkeep.h"
-#include "geometry/distance.h"
+#include "geometry/bvh.h"
 
 namespace geo {
 namespace {
 
-constexpr std::uint32_t no_depth = ~0u;
+constexpr std::uint32_t no_depth = ~0u, none = ~0u;
 
 class Rebinding {
  public:
@@ -79,18 +80,16 @@ class Rebinding {
 void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
   const auto& x = body_.nodes.position;
   const double reach = longest_reach(body_);
-  std::vector<std::uint32_t> near, stale;
-  for (const FaceId f : delta.new_faces) {
-    const auto t = k_.corners(f);
-    const Ball ball = ball_around(t);
-    near.clear();
-    body_.grid.within(x, ball.center, ball.radius + 1.06 * reach, near);
-    for (const auto i : near) {
-      const auto closest = b_.closest[i];
-      const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
-      if ((closest_point_on_triangle(x[i], t[0], t[1], t[2]) - x[i]).norm() <= 1.06 * far) stale.push_back(i);
-    }
-  }
+  std::vector<std::array<Vec3, 3>> faces;
+  for (const FaceId f : delta.new_faces) faces.push_back(k_.corners(f));
+  const TriangleBvh changed(faces);
+  std::vector<std::uint32_t> stale;
+  body_.grid.walk([&](int, const Vec3& middle, double half) { return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).row != none; },
+                  [&](int, std::uint32_t i) {
+                    const auto closest = b_.closest[i];
+                    const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
+                    if (changed.closest(x[i], 1.06 * far).row != none) stale.push_back(i);
+                  });
   for (std::uint32_t i = first_new.value; i < x.size(); ++i) stale.push_back(i);
   for (const NodeId i : moved) stale.push_back(i.value);
   std::sort(stale.begin(), stale.end());

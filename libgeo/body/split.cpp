@@ -19,7 +19,7 @@ double since(std::chrono::steady_clock::time_point& last) {
   return seconds;
 }
 
-BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
+BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work, const Progress& progress = {}) {
   auto clock = std::chrono::steady_clock::now();
   BodyDelta delta;
   delta.crack = std::move(crack);
@@ -34,11 +34,12 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
     triangles_near(body.surface, box, out);
   };
 
+  report(progress, "new nodes", 0, delta.crack.new_crack_faces.size());
   delta.moved_nodes = move_off(body, delta.crack.new_crack_faces);
   if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 0, body.updates);
   const double resample = since(clock);
   auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid,
-                             body.graph, {}, guides_after(body, delta.crack));
+                             body.graph, {}, guides_after(body, delta.crack), progress);
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
   // Each piece that the crack cut off needs nodes, connected among themselves.
   bool recounted = false;
@@ -56,6 +57,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work) {
   delta.updated_nodes.assign(updated.begin(), updated.end());
   mark_debris(body, delta.updated_nodes);
   const double graph = since(clock);
+  report(progress, "binding", 0, delta.crack.new_faces.size());
   delta.rebound = rebind(body, delta.crack, delta.first_new_node, delta.moved_nodes);
   delta.donors = body.donors;
   ++body.updates;
@@ -96,9 +98,10 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
   return follow_delta(body, std::move(crack), work);
 }
 
-BodyDelta follow(Body& body, const Complex& surface, SplitWork* work) {
+BodyDelta follow(Body& body, const Complex& surface, SplitWork* work, const Progress& progress) {
+  report(progress, "surface", 0, 1);
   begin_upkeep(body);
-  return follow_delta(body, body.surface.apply(body.surface.difference(surface)), work);
+  return follow_delta(body, body.surface.apply(body.surface.difference(surface)), work, progress);
 }
 
 }  // namespace geo

@@ -20,10 +20,11 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 using ObstacleNear = std::function<void(const Box3&, std::vector<Corners>&)>;
 
-// Whether faces lie between two nodes, for pairs that mostly have one node in common.
+// Whether faces lie between two nodes, for pairs that mostly have one node in common: faces are read around it, not farther than
+// there are few.
 class PairSight {
  public:
-  PairSight(const NodeSet& nodes, const VisibilityGraph& graph, const ObstacleNear& near) : nodes_(nodes), graph_(graph), near_(near), reach_(graph.reach()) {}
+  PairSight(const NodeSet& nodes, const VisibilityGraph& graph, const ObstacleNear& near) : nodes_(nodes), graph_(graph), near_(near), most_(graph.reach()), reach_(most_) {}
   bool blocked(std::uint32_t i, std::uint32_t j) {
     const Vec3 &p = graph_.position(nodes_, std::min(i, j)), &q = graph_.position(nodes_, std::max(i, j));
     Box3 segment{p, p};
@@ -35,6 +36,8 @@ class PairSight {
       triangles_.clear(), boxes_.clear();
       near_(known_, triangles_);
       for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
+      if (triangles_.size() > 32 && reach_ > (segment.hi - segment.lo).maxCoeff()) reach_ *= 0.5;
+      else if (triangles_.size() < 8) reach_ = std::min(2 * reach_, most_);
     }
     for (std::size_t k = 0; k < triangles_.size(); ++k)
       if (boxes_[k].meets(segment) && segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2])) return true;
@@ -45,7 +48,7 @@ class PairSight {
   const NodeSet& nodes_;
   const VisibilityGraph& graph_;
   const ObstacleNear& near_;
-  double reach_;
+  double most_, reach_;
   Box3 known_;  // all triangles that meet this are here
   std::vector<Corners> triangles_;
   std::vector<Box3> boxes_;
@@ -127,7 +130,7 @@ class RowBatch {
 
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved, std::span<const Corners> new_faces,
                          const ObstacleNear& obstacle_near, int k, const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides) {
+                         std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides, const Progress& progress) {
   GraphUpdate result;
   RowSearch& search = own_search();
   const auto& x = nodes.position;
@@ -136,6 +139,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   update.clear();
 
   // What the faces cut, and all that hangs on the moved nodes.
+  report(progress, "cut edges", 0, new_faces.size());
   const Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
   Users users(nodes, graph, update);
   for (const auto& row : severed.rows)
@@ -198,7 +202,9 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   const auto join = [&](NodeId i, NodeId j) {
     if (graph.add(nodes, i, j)) result.added_edges.push_back(std::minmax(i, j));
   };
-  for (const auto i : fresh) {
+  for (std::size_t f = 0; f < fresh.size(); ++f) {
+    if (f % 256 == 0) report(progress, "new edges", f, fresh.size());
+    const auto i = fresh[f];
     int seen = 0;
     for (const auto j : grid.nearest(x, x[i], static_cast<std::size_t>(3 * k), i, [](auto) { return true; })) {
       if (seen == k) break;
@@ -239,6 +245,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   });
   std::vector<std::uint32_t> sources = update.ids();
   std::sort(sources.begin(), sources.end());
+  report(progress, "neighbourhoods", 0, sources.size());
 
   // Who saw each other goes on doing so unless a new face came between them. Who did not is asked again: faces that were
   // divided have rounded corners, and a segment that only just touched one may pass now.

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
 #include "graph/visibility_graph.h"
 #include "sampling/node_grid.h"
 
@@ -24,11 +25,11 @@ struct GraphUpdate {
 /// connected anew. `grid` holds all nodes where they are now. `joins`: pairs with a new node that see each other and get
 /// an edge however far apart they are. `guides`: those that the graph gets, which see past the new faces, and those that it
 /// needs no longer. Precondition: `nodes` already holds the new nodes; `graph` is as before the step. The cost follows what
-/// changes, not what there is.
+/// changes, not what there is. Where `progress` stops the work, graph is of no more use.
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
                          std::span<const std::array<Vec3, 3>> new_faces,
                          const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near, int k,
                          const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins = {}, const GuideChange& guides = {});
+                         std::span<const std::pair<NodeId, NodeId>> joins = {}, const GuideChange& guides = {}, const Progress& progress = {});
 
 }  // namespace geo

@@ -369,7 +369,9 @@ ComplexEdit Complex::difference(const Complex& other) const {
       edit.removed_faces.push_back(FaceId(f));
       gone.insert(f, box(FaceId(f)));
     }
-  const double scale = extent_.diagonal();
+  // Corners of a divided face are off it by rounding, which far off the origin is coarse.
+  const double rounding = 0x1p-50 * extent_.hi.cwiseAbs().cwiseMax(extent_.lo.cwiseAbs()).maxCoeff();
+  const double beside = 1e-9 * extent_.diagonal() + rounding, off = 1e-7 * extent_.diagonal() + rounding;
   std::vector<std::uint32_t> candidates;
   std::map<std::uint64_t, std::pair<VertexId, VertexId>> touched;
   for (const FaceId f : fresh) {
@@ -378,9 +380,9 @@ ComplexEdit Complex::difference(const Complex& other) const {
     const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
     // The removed face of the same crack that the middle lies on.
     candidates.clear();
-    gone.find(Box3{middle, middle}.grown(1e-9 * scale), candidates);
+    gone.find(Box3{middle, middle}.grown(beside), candidates);
     FaceId parent;
-    double best = 1e-7 * scale;
+    double best = off;
     for (const auto id : candidates) {
       if (faces_[id].crack != shape.crack) continue;
       const auto p = corners(FaceId(id));
@@ -399,10 +401,10 @@ ComplexEdit Complex::difference(const Complex& other) const {
     const auto c = corners(f);
     const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
     candidates.clear();
-    made.find(Box3{middle, middle}.grown(1e-7 * scale), candidates);
+    made.find(Box3{middle, middle}.grown(off), candidates);
     const bool found = std::any_of(candidates.begin(), candidates.end(), [&](std::uint32_t id) {
       const auto p = other.corners(FaceId(id));
-      return other.face(FaceId(id)).crack == face(f).crack && (closest_point_on_triangle(middle, p[0], p[1], p[2]) - middle).norm() < 1e-7 * scale;
+      return other.face(FaceId(id)).crack == face(f).crack && (closest_point_on_triangle(middle, p[0], p[1], p[2]) - middle).norm() < off;
     });
     if (!found)
       throw InputError(face(f).crack > 0 ? "crack " + std::to_string(face(f).crack) + " of the body was moved since; build the body anew from the new surface"

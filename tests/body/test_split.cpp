@@ -101,6 +101,38 @@ TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[b
   CHECK(check_body(body).graph_components == 2);
 }
 
+TEST_CASE("Following a surface goes as well far off the origin, where corners of divided faces are off them by rounding", "[body]") {
+  const Vec3 there(0x1p30, 0, -0x1p30);
+  TriangleMesh pumpkin = make_pumpkin(5);
+  for (Vec3& v : pumpkin.vertices) v += there;
+  Body body = make_body(pumpkin, 0.25);
+  Complex cut = body.surface;
+  auto front = begin_front(std::vector<Vec3>{there + Vec3(-2, 0.1, -2), there + Vec3(2, 0.2, -2)}, false, 1);
+  advance(cut, front, std::vector<Vec3>{there + Vec3(-2, 0.1, 2), there + Vec3(2, 0.2, 2)});
+  follow(body, cut);
+  CHECK(check_body(body).first_problem == "");
+  CHECK(find_pieces(body.surface).count == 2);
+}
+
+TEST_CASE("Following a surface tells how far it is, and stops where it is asked to", "[body]") {
+  const Body model = make_body(make_block({1, 1, 1}, 0.25), 0.2);
+  Complex cut = model.surface;
+  auto front = begin_front(std::vector<Vec3>{{0.47, -1, -1}, {0.47, 2, -1}}, false, 1);
+  advance(cut, front, std::vector<Vec3>{{0.47, -1, 2}, {0.47, 2, 2}});
+  Body body = model;
+  std::vector<std::string> phases;
+  follow(body, cut, nullptr, [&](std::string_view phase, std::size_t done, std::size_t total) {
+    CHECK(done < total);
+    if (phases.empty() || phases.back() != phase) phases.emplace_back(phase);
+    return true;
+  });
+  CHECK(phases == std::vector<std::string>{"surface", "new nodes", "cut edges", "new edges", "neighbourhoods", "binding"});
+  for (const std::string& last : phases) {
+    body = model;
+    CHECK_THROWS_AS(follow(body, cut, nullptr, [&](std::string_view phase, std::size_t, std::size_t) { return phase != last; }), Interrupted);
+  }
+}
+
 TEST_CASE("Random cuts keep a pumpkin's body in step", "[body]") {
   const Body model = make_body(make_pumpkin(5), 0.25);
   const double volume = total(model.nodes.volume);

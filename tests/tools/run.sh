@@ -414,6 +414,7 @@ assert a == c' "$here" || fail "appended, folded and whole bodies differ"
   ;;
 stops)
   kerf-model block --edge 0.06 -o block.ply
+  kerf-model block --edge 0.5 -o small.ply
   kerf-model front --around block.ply --steps 2 -o ok.front
   kerf-sample block.ply --spacing 6% | kerf-graph --surface block.ply -o ok.kerf
   kerf-crack block.ply --front ok.front -o cut.ply
@@ -431,6 +432,14 @@ stops)
     [ $status = 0 ] && rm -f x.kerf x.pcd
     [ "$before" = "$(ls -A)" ] || fail "$line, stopped, leaves something behind: $(ls -A)"
   done
+  # A bar where it is asked for, gone before anything else is said.
+  for line in "kerf-graph --surface block.ply nodes.pcd -o y.kerf" "kerf-update ok.kerf --surface cut.ply -o y.kerf"; do
+    kerf-sample -q block.ply --spacing 6% -o nodes.pcd && $line -v --progress always 2>bar.txt || fail "$line: $(cat bar.txt)"
+    tr '\r' '\n' <bar.txt | grep -q ' % binding$' || fail "$line shows no progress: $(cat -v bar.txt)"
+    tr '\r' '\n' <bar.txt | tail -n 1 | grep -q "^.\[K${line%% *}: [0-9]" || fail "$line leaves its bar: $(cat -v bar.txt)"
+    $line 2>bar.txt && [ ! -s bar.txt ] || fail "$line says: $(cat bar.txt)"
+  done
+  expect 65 "fewer vertices" kerf-update ok.kerf --surface small.ply -o x.kerf
   # A full disk under standard output, and a configuration that does not fit.
   for line in "kerf-info block.ply" "kerf-info --help" "kerf-crack --version"; do
     $line >/dev/full 2>err.txt

@@ -150,12 +150,12 @@ int main(int argc, char** argv) {
   return t.run(argc, argv, [&] {
     if (t.output_path.empty() || t.output_path == "-") throw tool::UsageError("give a folder with -o");
     t.require_ending();
+    const sim::RunFolder folder{t.output_path};
+    folder.require_room(resume);
     const Plan plan = read_plan(path, overrides_of(settings));
     say_large(plan, t);
     const int last = frames > 0 ? frames : plan.scene.frames;
-    const sim::RunFolder folder{t.output_path};
     std::error_code error;
-    if (!resume && fs::exists(folder.frames(), error)) throw geo::OutputError(folder.path.string() + ": holds a run already; go on with --resume, remove it, or give another folder");
     const bool begun = resume && fs::exists(folder.checkpoint(), error);
     const double frame_bytes = sim::bytes_of_frames(plan.model.mesh, last);
     if (!begun) folder.require_space(frame_bytes);
@@ -209,7 +209,7 @@ int main(int argc, char** argv) {
     }
     total.write_seconds += waited;
     geo::report(progress, "done", 1, 1);
-    sim::write_whole_run(folder, last, plan.scene.frame_rate);
+    sim::write_whole_run(folder, last, plan.scene.frame_rate, sim::up_axis(plan.scene.gravity));
     const std::size_t nodes = run.body().nodes.size(), edges = run.body().graph.edge_count(), pieces = geo::find_pieces(run.body().surface).count;
     const auto of = [](const char* name, std::size_t n) { return std::string(",\"") + name + "\":" + std::to_string(n); };
     folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) + of("edges", edges) + of("pieces", pieces) + "," + sim::counts(run.state().total) + "}\n");

@@ -121,7 +121,7 @@ void begin_mesh(std::ostream& out, const std::string& name, const std::string& m
 }  // namespace
 
 void write_usda(std::ostream& out, const UsdRun& run) {
-  out << "#usda 1.0\n(\n    defaultPrim = \"run\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n    startTimeCode = 0\n    endTimeCode = " << (run.frames > 0 ? run.frames - 1 : 0)
+  out << "#usda 1.0\n(\n    defaultPrim = \"run\"\n    metersPerUnit = 1\n    upAxis = \"" << run.up << "\"\n    startTimeCode = 0\n    endTimeCode = " << (run.frames > 0 ? run.frames - 1 : 0)
       << "\n    timeCodesPerSecond = " << run.frame_rate << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";

@@ -477,6 +477,18 @@ simulation)
   expect 65 "names no row" kerf-sim s.toml -o x --set blade.first.thickness=1
   expect 65 "another scene" kerf-sim s.toml -o whole --resume --set material.young=2e5
   expect 73 "holds a run already" kerf-sim s.toml -o whole
+  # Up is where gravity comes from.
+  kerf-sim -q s.toml -o upright --frames 1 --set gravity=[0,-9.81,0] && kerf-sim -q s.toml -o aslant --frames 1 --set gravity=[0,-9.81,1] || fail "gravity along y"
+  grep -q 'upAxis = "Y"' upright/run.usda && grep -q 'upAxis = "Z"' aslant/run.usda && grep -q 'upAxis = "Z"' whole/run.usda || fail "which axis is up in USD"
+  # A run's folder is its own: nothing goes beside other files, or in place of one.
+  mkdir empty others && touch empty/.hidden others/notes.txt
+  expect 73 "others: holds other files, as 'notes.txt'; give another folder, or empty it" kerf-sim s.toml -o others
+  expect 73 "holds other files" kerf-sim s.toml -o others/ --resume
+  expect 73 "holds other files" kerf-sim s.toml -o .
+  expect 73 "is not a folder" kerf-sim s.toml -o others/notes.txt
+  [ "$(ls others)" = notes.txt ] || fail "others now has $(ls others)"
+  quietly kerf-sim -q s.toml -o empty --frames 1
+  touch empty/sheet.txt && quietly kerf-sim -q s.toml -o empty --frames 2 --resume
   # Boxes and blades that reach nothing are told.
   kerf-sim s.toml -o astray --frames 1 --set 'body.fixed=[[5,5,5,6,6,6]]' --set 'blade.0.keys=[[0,9,9,9,0,0,1,0],[1,9,9,9,0,0,1,0]]' 2>said.txt || fail "boxes that hold nothing"
   grep -q 'no node is in the box from (5, 5, 5) to (6, 6, 6)' said.txt && grep -q 'no blade met' said.txt || fail "kerf-sim says: $(cat said.txt)"

@@ -26,6 +26,18 @@ std::string RunFolder::nodes(int i) const { return (nodes() / numbered("nodes_%0
 
 std::string RunFolder::obstacles_name(int i) { return numbered("obstacles/obstacles_%04d.ply", i); }
 
+void RunFolder::require_room(bool resume) const {
+  std::error_code error;
+  if (!fs::exists(path, error)) return;
+  if (!fs::is_directory(path, error)) throw geo::OutputError(path.string() + ": is not a folder; give another name");
+  if (fs::exists(frames(), error)) {
+    if (resume) return;
+    throw geo::OutputError(path.string() + ": holds a run already; go on with --resume, remove it, or give another folder");
+  }
+  for (const auto& entry : fs::directory_iterator(path, error))
+    if (const auto name = entry.path().filename().string(); name[0] != '.') throw geo::OutputError(path.string() + ": holds other files, as '" + name + "'; give another folder, or empty it");
+}
+
 void RunFolder::make(bool with_obstacles) const {
   std::error_code error;
   fs::create_directories(frames(), error);

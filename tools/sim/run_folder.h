@@ -22,6 +22,8 @@ struct RunFolder {
   static std::string obstacles_name(int i);
   std::string obstacles(int i) const { return (path / obstacles_name(i)).string(); }
 
+  /// Throws OutputError unless a run may begin here: the folder is new or empty, but for hidden files. With `resume` one that holds a run, or began to, will do.
+  void require_room(bool resume) const;
   /// `with_obstacles`: a folder for them, too. Throws OutputError.
   void make(bool with_obstacles) const;
   /// Removes what make() made, where nothing came of it.

@@ -9,7 +9,9 @@
 
 namespace sim {
 
-void write_whole_run(const RunFolder& folder, int last, double frame_rate) {
+char up_axis(const geo::Vec3& gravity) { return gravity.x() == 0 && gravity.z() == 0 && gravity.y() < 0 ? 'Y' : 'Z'; }
+
+void write_whole_run(const RunFolder& folder, int last, double frame_rate, char up) {
   const bool obstacles = std::filesystem::exists(folder.obstacles(0));
   std::vector<std::vector<std::string>> parts(obstacles ? 2 : 1);
   for (int i = 0; i <= last; ++i) {
@@ -21,7 +23,7 @@ void write_whole_run(const RunFolder& folder, int last, double frame_rate) {
   const auto frames = [&](std::size_t part) {
     return [&, part](std::size_t i) { return geo::read_surface((folder.path / parts[part][i]).string()).mesh; };
   };
-  geo::UsdRun usd{parts[0].size(), frame_rate, frames(0), {}};
+  geo::UsdRun usd{parts[0].size(), frame_rate, up, frames(0), {}};
   if (obstacles) usd.obstacles = frames(1);
   geo::write_all((folder.path / "run.usda").string(), [&](std::ostream& out) { geo::write_usda(out, usd); });
 }

@@ -6,7 +6,8 @@
 
 #include "io/chunk_file.h"
 #include "io/stream.h"
-#include "model.h"
+#include "io/surface_file.h"
+#include "pieces/subject.h"
 #include "surface/chunks.h"
 #include "surface/convex_parts.h"
 #include "tool.h"
@@ -62,9 +63,9 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-pieces", "Writes each piece of a cut surface as a closed mesh, with bonds between them: all in one .glb, or as a folder.",
-               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/");
+               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/\n  kerf-pieces out/halve/frames/frame_0036.ply -o frame36.glb");
   Wishes w;
-  t.argument("SURFACE", w.model, "A cut surface from kerf-crack");
+  t.argument("SURFACE", w.model, "A cut surface (kerf-crack), a body (.kerf), or a frame in the folder of a run");
   t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");
   t.flag("--hulls", w.hulls, "Also the convex hull of each piece, for a physics engine: nodes UCX_piece_... or files hull_...");
   t.option("--hull-corners", w.hull_corners, "How many corners a hull has at most");
@@ -84,11 +85,11 @@ int main(int argc, char** argv) {
       if (!fs::is_directory(t.output_path, error)) throw geo::OutputError(t.output_path + ": is not a folder; give another name");
       if (!fs::is_empty(t.output_path, error)) throw geo::OutputError(t.output_path + ": is not empty; remove it or give another name");
     }
-    const auto file = tool::read_solid(w.model);
-    const geo::Complex complex = tool::complex_of(file, w.model);
-    const geo::Pieces pieces = geo::find_pieces(complex);
-    const auto bonds = geo::find_bonds(complex, pieces);
-    const auto chunks = geo::make_chunks(complex, pieces, file.mesh, w.tile * complex.extent().diagonal());
+    const pieces::Subject subject = pieces::read_subject(w.model);
+    const geo::Complex& complex = subject.complex;
+    const geo::Pieces found = geo::find_pieces(complex);
+    const auto bonds = geo::find_bonds(complex, found);
+    const auto chunks = geo::make_chunks(complex, found, subject.mesh, w.tile * complex.extent().diagonal(), subject.moved);
     geo::ChunkNotes notes{glb ? "node" : "file", {}, w.strength};
     if (!glb) {
       write_folder(t.output_path, w, chunks, bonds, notes);
@@ -97,7 +98,7 @@ int main(int argc, char** argv) {
       geo::write_all(t.output_path, [&](std::ostream& out) { geo::write_glb(out, chunks, bonds, notes, {w.hulls ? static_cast<std::size_t>(w.hull_corners) : 0, static_cast<std::size_t>(w.hull_parts), w.up == "z"}); });
       if (!w.bonds.empty()) geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
     }
-    if (t.json) std::printf("{\"pieces\":%u,\"bonds\":%zu}\n", pieces.count, bonds.size());
-    if (t.verbose) t.say("kerf-pieces: " + std::to_string(pieces.count) + " pieces, " + std::to_string(bonds.size()) + " bonds");
+    if (t.json) std::printf("{\"pieces\":%u,\"bonds\":%zu}\n", found.count, bonds.size());
+    if (t.verbose) t.say("kerf-pieces: " + tool::counted(found.count, "piece") + ", " + tool::counted(bonds.size(), "bond"));
   });
 }

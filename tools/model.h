@@ -11,14 +11,19 @@
 
 namespace tool {
 
-/// A surface, checked: closed, manifold, oriented outwards, free of self-intersection.
+/// Throws InputError unless a surface is closed, manifold, oriented outwards, free of self-intersection.
+inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path) {
+  try {
+    geo::require_solid(mesh);
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(path + ": " + e.what() + (mesh.two_sided() ? "" : ", or try kerf-repair"));
+  }
+}
+
+/// A surface, checked by require_solid().
 inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string& path) {
   geo::SurfaceFile file = geo::parse_surface(bytes, path);
-  try {
-    geo::require_solid(file.mesh);
-  } catch (const geo::InputError& e) {
-    throw geo::InputError(path + ": " + e.what() + (file.mesh.two_sided() ? "" : ", or try kerf-repair"));
-  }
+  require_solid(file.mesh, path);
   return file;
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }

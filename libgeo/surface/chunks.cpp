@@ -50,7 +50,7 @@ std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces) {
   return bonds;
 }
 
-std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile) {
+std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile, std::span<const Vec3> moved) {
   const auto walls = walls_of(complex, pieces);
   // The walls that the triangles of each piece belong to, in the order in which piece_mesh() gives them.
   std::vector<std::vector<std::pair<const Wall*, bool>>> wall_at(pieces.count);
@@ -63,12 +63,12 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
       wall_at[std::size_t(piece)].push_back({crack ? &walls.at(std::minmax(std::uint32_t(piece), std::uint32_t(other))) : nullptr, other < piece || (other == piece && which == 1)});
     }
   std::vector<Chunk> chunks;
+  std::vector<SurfaceVertexId> rows;
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
-    Chunk chunk{piece_mesh(complex, pieces, p), pieces.volume[p], Vec3::Zero()};
+    Chunk chunk{piece_mesh(complex, pieces, p, &rows), pieces.volume[p], Vec3::Zero()};
     TriangleMesh& mesh = chunk.mesh;
     carry(original, mesh);
     mesh.site.clear();
-    chunk.centroid = centroid_of(mesh);
     Attributes& a = mesh.attributes;
     if (a.group.empty()) {
       a.group_names = {"skin", crack_group};
@@ -85,6 +85,11 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
         a.uv[t][k] = Vec2((turned ? -u : u).dot(q), v.dot(q)) / tile;
       }
     }
+    if (!moved.empty()) {
+      for (std::size_t v = 0; v < rows.size(); ++v) mesh.vertices[v] = moved[rows[v].index()];
+      chunk.volume = signed_volume(mesh);
+    }
+    chunk.centroid = centroid_of(mesh);
     chunks.push_back(std::move(chunk));
   }
   return chunks;

@@ -1,6 +1,8 @@
 // Pieces as a game or a renderer wants them: closed meshes, and the bonds that held them together (§ 7).
 #pragma once
 
+#include <span>
+
 #include "surface/pieces.h"
 
 namespace geo {
@@ -25,7 +27,8 @@ struct Chunk {
 /// The pieces, in descending order of volume, with the attributes of `original`, the surface that `complex` was made
 /// from. Each triangle has a group, inner ones "crack", all others "skin" where the original has no groups. Inner
 /// triangles without texture coordinates (0 0) get them along the mean plane of the wall that they belong to, one for
-/// `tile` model units; skin that had none has 0 0.
-std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile);
+/// `tile` model units; skin that had none has 0 0. `moved`: where each surface vertex of a deformed body is; then volumes and
+/// centroids are those of the deformed pieces.
+std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile, std::span<const Vec3> moved = {});
 
 }  // namespace geo

@@ -158,8 +158,9 @@ Pieces find_pieces(const Complex& k) {
   return pieces;
 }
 
-TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t piece) {
+TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t piece, std::vector<SurfaceVertexId>* of) {
   TriangleMesh mesh;
+  if (of) of->clear();
   std::vector<std::uint32_t> row(k.surface_vertex_count(), ~0u);
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     for (int which = 0; which < 2; ++which) {
@@ -172,6 +173,7 @@ TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t pi
           row[v.index()] = static_cast<std::uint32_t>(mesh.vertices.size());
           mesh.vertices.push_back(k.point(k.site(v)));
           mesh.site.push_back(k.site(v).value);
+          if (of) of->push_back(v);
         }
         t[c] = row[v.index()];
       }

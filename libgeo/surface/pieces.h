@@ -20,7 +20,7 @@ struct Pieces {
 /// Pieces in descending order of volume (ties: by lowest face id).
 Pieces find_pieces(const Complex& complex);
 
-/// The closed boundary of one piece as a mesh of its own (patch, site and source filled).
-TriangleMesh piece_mesh(const Complex& complex, const Pieces& pieces, std::uint32_t piece);
+/// The closed boundary of one piece as a mesh of its own (patch, site and source filled). `of`: which surface vertex each row is.
+TriangleMesh piece_mesh(const Complex& complex, const Pieces& pieces, std::uint32_t piece, std::vector<SurfaceVertexId>* of = nullptr);
 
 }  // namespace geo

@@ -100,3 +100,33 @@ TEST_CASE("A flat wall's texture keeps its shape on both sides", "[chunks]") {
     CHECK(area == Approx(1 / (0.25 * 0.25)));
   }
 }
+
+TEST_CASE("Chunks of a deformed body are the same triangles where their vertices are now", "[chunks]") {
+  const TriangleMesh block = make_block({2, 1, 1}, 0.5);
+  Complex complex = Complex::from_skin(block);
+  auto front = begin_front(std::vector<Vec3>{{0.7, -1, -1}, {0.7, -1, 2}}, false, 1);
+  advance(complex, front, std::vector<Vec3>{{0.7, 2, -1}, {0.7, 2, 2}});
+  const Pieces pieces = find_pieces(complex);
+  const auto still = make_chunks(complex, pieces, block, 0.25);
+  // Each surface vertex by itself: both are stretched, and the one beyond the crack goes a way off.
+  std::vector<Vec3> moved(complex.surface_vertex_count(), Vec3::Zero());
+  std::vector<SurfaceVertexId> rows;
+  const auto place = [](const Vec3& x, std::uint32_t piece) { return Vec3(3 * x.x() + 5 * piece, x.y() + 0.5 * x.x(), 2 * x.z()); };
+  for (std::uint32_t p = 0; p < pieces.count; ++p) {
+    const TriangleMesh mesh = piece_mesh(complex, pieces, p, &rows);
+    REQUIRE(rows.size() == mesh.vertices.size());
+    for (std::size_t v = 0; v < rows.size(); ++v) {
+      CHECK(complex.point(complex.site(rows[v])) == mesh.vertices[v]);
+      moved[rows[v].index()] = place(mesh.vertices[v], p);
+    }
+  }
+  const auto chunks = make_chunks(complex, pieces, block, 0.25, moved);
+  REQUIRE(chunks.size() == 2);
+  for (std::uint32_t p = 0; p < 2; ++p) {
+    CHECK(chunks[p].mesh.triangles == still[p].mesh.triangles);
+    CHECK(chunks[p].mesh.attributes.uv == still[p].mesh.attributes.uv);  // of the undeformed wall
+    CHECK(chunks[p].volume == Approx(6 * still[p].volume));
+    CHECK((chunks[p].centroid - place(still[p].centroid, p)).norm() < 1e-12);
+    for (std::size_t v = 0; v < chunks[p].mesh.vertices.size(); ++v) CHECK(chunks[p].mesh.vertices[v] == place(still[p].mesh.vertices[v], p));
+  }
+}

@@ -248,6 +248,10 @@ chunks)
     sed 's/"file":"\(piece_[0-9]*\)\.[a-z]*/"node":"\1/g' folder/pieces.json | cmp - bonds.json || fail "bonds differ"
     rm -r folder
   done
+  # The same of a body that follows the cut.
+  kerf-sample pumpkin.ply --spacing 8% | kerf-graph --surface pumpkin.ply -o body.kerf && quietly kerf-update body.kerf --surface broken.ply -o body.kerf
+  quietly kerf-pieces body.kerf --hulls --strength 2 --bonds body.json -o body.glb
+  python3 "$here/check_glb.py" body.glb body.json "$volume" 12 || fail "the .glb of a body"
   for options in "--up x" "--tile 0" "--strength -1" "--hull-corners 3" "--hull-parts 0"; do
     expect 2 "${options%% *}" kerf-pieces broken.ply $options -o x.glb
   done
@@ -470,6 +474,16 @@ simulation)
   grep -q '"pieces":2' whole/summary.json || fail "not two pieces: $(cat whole/summary.json)"
   kerf-info --check -q whole/checkpoint.kerf || fail "the body is not sound"
   kerf-view whole --size 80x60 --samples 1 -o sheet.png || fail "contact sheet"
+  # Pieces of a frame: where they are there, with the topology that the material has.
+  quietly kerf-pieces whole/frames/frame_0006.ply -o there && quietly kerf-pieces whole/checkpoint.kerf -o before
+  [ "$(ls there before | grep -c ply)" = 4 ] || fail "not two pieces of a frame and of a body"
+  for file in before/*.ply; do quietly kerf-info --check -q $file; done
+  for file in there/*.ply; do kerf-info --json $file | grep -q '"closed":true,"manifold":true,"oriented":true' || fail "$file is not closed"; done  # without contact they may cross
+  cmp -s there/piece_000.ply before/piece_000.ply && fail "a frame's pieces are not where the frame is"
+  cp whole/frames/frame_0006.ply astray.ply
+  expect 65 "no frame in the folder of its run" kerf-pieces astray.ply -o x
+  kerf-sim -q s.toml -o late --frames 2 && cp whole/frames/frame_0006.ply late/frames/ || fail "a run of two frames"
+  expect 65 "was cut after its run's checkpoint" kerf-pieces late/frames/frame_0006.ply -o x
   # A row of a list, told by its number; what is not there.
   kerf-sim -q s.toml -o cut --set blade.0.keys.1.3=0.4 --set blade.0.divide=5 || fail "--set of a row"
   grep -q '"pieces":1' cut/summary.json || fail "the blade stops half way, but: $(cat cut/summary.json)"

@@ -1,0 +1,63 @@
+#include "pieces/subject.h"
+
+#include <filesystem>
+
+#include "io/body_file.h"
+#include "model.h"
+
+namespace pieces {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Copies of one vertex are apart.
+bool is_deformed(const geo::TriangleMesh& mesh) {
+  std::vector<const geo::Vec3*> at;
+  for (std::size_t v = 0; v < mesh.site.size(); ++v) {
+    const auto site = mesh.site[v];
+    if (site > 64 * mesh.vertices.size()) return false;  // no frame; who reads it says so
+    if (site >= at.size()) at.resize(site + 1);
+    if (at[site] && *at[site] != mesh.vertices[v]) return true;
+    at[site] = &mesh.vertices[v];
+  }
+  return false;
+}
+
+// The vertices of a frame where the body that the run ends with has them. Runs only add vertices to a body and move none.
+std::vector<geo::Vec3> material_points(const geo::TriangleMesh& frame, const std::string& path) {
+  const fs::path checkpoint = fs::absolute(path).parent_path().parent_path() / "checkpoint.kerf";
+  std::error_code error;
+  if (path == "-" || !fs::exists(checkpoint, error))
+    throw geo::InputError(path + ": is deformed, and no frame in the folder of its run, whose checkpoint.kerf says where it was; give the undeformed surface");
+  const geo::Complex surface = geo::read_body(checkpoint.string()).surface;
+  std::vector<geo::Vec3> points;
+  for (const auto site : frame.site) {
+    if (site >= surface.vertex_count() || surface.faces_at(geo::VertexId(site)).empty())
+      throw geo::InputError(path + ": was cut after its run's checkpoint.kerf was written, or is of another run; bring the run to its end with kerf-sim --resume");
+    points.push_back(surface.point(geo::VertexId(site)));
+  }
+  return points;
+}
+
+}  // namespace
+
+Subject read_subject(const std::string& path) {
+  const std::string bytes = geo::read_all(path);
+  Subject subject;
+  if (geo::looks_like_kerf(bytes)) {
+    subject.mesh = geo::parse_body(bytes, path).surface.two_sided();
+    subject.complex = geo::Complex::from_two_sided(subject.mesh);
+    return subject;
+  }
+  geo::SurfaceFile file = geo::parse_surface(bytes, path);
+  if (is_deformed(file.mesh)) {
+    subject.moved = material_points(file.mesh, path);
+    subject.moved.swap(file.mesh.vertices);
+  }
+  tool::require_solid(file.mesh, path);
+  subject.complex = tool::complex_of(file, path);
+  subject.mesh = std::move(file.mesh);
+  return subject;
+}
+
+}  // namespace pieces

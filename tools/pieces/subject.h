@@ -1,0 +1,22 @@
+// What is divided into pieces: a surface, the surface of a body, or a frame of a run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surface/complex.h"
+#include "surface/triangle_mesh.h"
+
+namespace pieces {
+
+struct Subject {
+  geo::TriangleMesh mesh;        ///< undeformed, with its attributes; `complex` was made from it
+  geo::Complex complex;
+  std::vector<geo::Vec3> moved;  ///< of a deformed frame: where its vertices are, by their rows in `mesh`; else empty
+};
+
+/// Reads any of them. A frame whose cracks have opened is put back to where its run's checkpoint.kerf, in the folder above it, has its
+/// vertices: topology is decided there. Throws InputError.
+Subject read_subject(const std::string& path);
+
+}  // namespace pieces

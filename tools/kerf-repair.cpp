@@ -12,6 +12,7 @@ namespace {
 struct Wishes {
   std::string model;
   double weld = 0, voxel = 0, edge = 0;
+  bool smooth = false;
 };
 
 std::string in_words(const geo::Repairs& r) {
@@ -21,18 +22,27 @@ std::string in_words(const geo::Repairs& r) {
     if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many) + " " + done;
   };
   add(r.welded, "vertex", "vertices", "welded"), add(r.dropped, "triangle", "triangles", "dropped"), add(r.turned, "triangle", "triangles", "turned");
-  add(r.holes, "hole", "holes", "closed with " + counted(r.added, "triangle", "triangles")), add(r.hidden, "hidden shell", "hidden shells", "left out");
+  add(r.holes, "hole", "holes", (r.smooth == 0 ? "" : r.smooth == r.holes ? "smoothly " : "(" + std::to_string(r.smooth) + " smoothly) ") + "closed with " + counted(r.added, "triangle", "triangles")), add(r.hidden, "hidden shell", "hidden shells", "left out");
   return text.empty() ? "nothing to mend" : text;
+}
+
+geo::Repairs mended(geo::TriangleMesh& mesh, const Wishes& w, double diagonal) {
+  try {
+    return geo::repair(mesh, w.weld * diagonal, w.smooth);
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(w.model + ": " + e.what());
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-repair", "Makes a solid of a surface: welds, turns triangles the same way, closes holes; or wraps it in a new surface.",
-               "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 -o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
+               "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair scan.ply --smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 -o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
   Wishes w;
   t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
+  t.flag("--smooth", w.smooth, "Close holes by patches that go on from the surface around them, as fine as their rims");
   t.option("--voxel", w.voxel, "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
   t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
@@ -44,7 +54,7 @@ int main(int argc, char** argv) {
     geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
     if (mesh.two_sided()) throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     const double diagonal = geo::bounding_box(mesh).diagonal();
-    const geo::Repairs done = geo::repair(mesh, w.weld * diagonal);
+    const geo::Repairs done = mended(mesh, w, diagonal);
     if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
     try {
       if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
@@ -52,11 +62,11 @@ int main(int argc, char** argv) {
       geo::require_solid(mesh);
     } catch (const geo::InputError& e) {
       const std::string what = e.what();
-      throw tool::Failure(w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) + (w.voxel > 0 ? "; try another --voxel" : "; wrap it in a new surface: --voxel 0.005"));
+      throw tool::Failure(w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) + (w.voxel > 0 ? "; try another --voxel" : std::string(done.holes > 0 && !w.smooth ? "; try --smooth, or wrap" : "; wrap") + " it in a new surface: --voxel 0.005"));
     }
     geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair"); });
     if (t.json)
-      (target == "-" ? std::cerr : std::cout) << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned << ",\"holes\":" << done.holes << ",\"added\":" << done.added
+      (target == "-" ? std::cerr : std::cout) << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned << ",\"holes\":" << done.holes << ",\"smooth\":" << done.smooth << ",\"added\":" << done.added
                                               << ",\"hidden\":" << done.hidden << ",\"vertices\":" << mesh.vertices.size() << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh)) << "}\n";
     else
       t.say("kerf-repair: " + w.model + ": " + in_words(done) + (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") + (w.edge > 0 ? "; divided into " + std::to_string(mesh.triangles.size()) + " triangles" : ""));

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 #include <tuple>
 
 #include "geometry/bvh.h"
+#include "geometry/predicates.h"
+#include "geometry/triangle_index.h"
+#include "surface/check.h"
+#include "surface/fair_patch.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"
 
@@ -159,32 +164,154 @@ std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
   return rims;
 }
 
-void close_holes(TriangleMesh& mesh, Parts& parts, Repairs& done) {
+// Adds a patch over the hole that the rim runs along; what its corners have goes from the rim inwards.
+void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch& patch) {
+  const auto corners = static_cast<std::uint32_t>(rim.size()), first = static_cast<std::uint32_t>(mesh.vertices.size()), rows = static_cast<std::uint32_t>(mesh.triangles.size());
+  mesh.vertices.insert(mesh.vertices.end(), patch.inner.begin(), patch.inner.end());
+  const auto vertex_of = [&](std::uint32_t c) { return c < corners ? mesh.triangles[rim[c].triangle][(rim[c].corner + 1) % 3] : first + c - corners; };
+  const auto rim_of = [&](std::uint32_t c) {
+    while (c >= corners) c = patch.between[c - corners][0];
+    return rim[c].triangle;
+  };
+  for (const auto& [a, b, c] : patch.triangles) mesh.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
+  const auto spread = [&](auto& values, const auto& at_inner) {
+    if (values.empty()) return;
+    std::vector<typename std::decay_t<decltype(values[0])>::value_type> at;
+    for (const Side& s : rim) at.push_back(values[s.triangle][(s.corner + 1) % 3]);
+    at_inner(at);
+    for (const auto& [a, b, c] : patch.triangles) values.push_back({at[a], at[b], at[c]});
+  };
+  const auto means = [&](auto& at) {
+    for (const auto& [a, b, c] : patch.between) at.push_back((at[a] + at[b] + at[c]) / 3);
+  };
   Attributes& a = mesh.attributes;
-  for (const auto& rim : rims_of(mesh)) {
-    if (rim.size() < 3) continue;
-    std::vector<std::uint32_t> polygon;
-    for (const Side& s : rim) polygon.push_back(mesh.triangles[s.triangle][(s.corner + 1) % 3]);
-    for (const auto& corner : triangles_of(mesh.vertices, polygon)) {
-      const Side* side[3];
-      for (int k = 0; k < 3; ++k) side[k] = &rim[corner[k]];
-      const auto at_rim = [&](auto& values) {
-        if (values.empty()) return;
-        auto row = values[0];
-        for (int k = 0; k < 3; ++k) row[k] = values[side[k]->triangle][(side[k]->corner + 1) % 3];
-        values.push_back(row);
-      };
-      mesh.triangles.push_back({polygon[corner[0]], polygon[corner[1]], polygon[corner[2]]});
-      const auto& [i, j, k] = mesh.triangles.back();
-      at_rim(a.uv), at_rim(a.color);
-      if (!a.normal.empty()) a.normal.emplace_back().fill(face_normal(mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]));
-      if (!a.group.empty()) a.group.push_back(a.group[side[0]->triangle]);
-      if (!mesh.source.empty()) mesh.source.push_back(~0u);
-      parts.of.push_back(parts.of[side[0]->triangle]);
-      ++done.added;
-    }
-    ++done.holes;
+  spread(a.uv, means), spread(a.color, means);
+  const auto normal_of = [&](std::uint32_t t) { return face_normal(mesh.vertices[mesh.triangles[t][0]], mesh.vertices[mesh.triangles[t][1]], mesh.vertices[mesh.triangles[t][2]]); };
+  if (patch.inner.empty()) {
+    for (auto t = rows; t < mesh.triangles.size() && !a.normal.empty(); ++t) a.normal.push_back({normal_of(t), normal_of(t), normal_of(t)});
+  } else {
+    spread(a.normal, [&](auto& at) {
+      at.resize(corners + patch.inner.size(), Vec3::Zero());
+      for (std::uint32_t t = 0; t < patch.triangles.size(); ++t)
+        for (const auto c : patch.triangles[t])
+          if (c >= corners) at[c] += normal_of(rows + t);
+      for (std::size_t c = corners; c < at.size(); ++c) at[c].normalize();
+    });
   }
+  for (const auto& corner : patch.triangles) {
+    if (!a.group.empty()) a.group.push_back(a.group[rim_of(corner[0])]);
+    if (!mesh.source.empty()) mesh.source.push_back(~0u);
+  }
+}
+
+// Smooth patches in place of flat ones, as long as no triangle comes to cross another one, and no edge has more than two.
+class SmoothPatches {
+ public:
+  explicit SmoothPatches(TriangleMesh& mesh) : mesh_(mesh), around_(mesh.vertices.size()) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) add(t);
+  }
+  /// The surface without patches: `rows` of it are there.
+  void look_around(std::uint32_t rows) {
+    for (std::uint32_t t = 0; t < rows; ++t)
+      for (int k = 0; k < 3; ++k) around_[mesh_.triangles[t][k]].insert({mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][(k + 2) % 3]});
+  }
+  /// Adds one for the hole whose flat patch is in rows `first` to `last`, which count no longer then; false: it does not fit.
+  bool replace(const std::vector<Side>& rim, const std::vector<std::uint32_t>& polygon, std::uint32_t first, std::uint32_t last) {
+    for (auto t = first; t < last; ++t) forget(t);
+    const FairPatch patch = fair_patch(positions(polygon), beyond(polygon), [&](std::uint32_t i, std::uint32_t j) { return edges_.count(std::minmax(polygon[i], polygon[j])) > 0; });
+    if (!fits(polygon, patch)) {
+      for (auto t = first; t < last; ++t) add(t);
+      return false;
+    }
+    const auto rows = static_cast<std::uint32_t>(mesh_.triangles.size());
+    add_patch(mesh_, rim, patch);
+    for (auto t = rows; t < mesh_.triangles.size(); ++t) add(t);
+    return true;
+  }
+
+ private:
+  std::array<Vec3, 3> corners(std::uint32_t t) const { return {mesh_.vertices[mesh_.triangles[t][0]], mesh_.vertices[mesh_.triangles[t][1]], mesh_.vertices[mesh_.triangles[t][2]]}; }
+  Edge edge(std::uint32_t t, int k) const { return std::minmax(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]); }
+  void add(std::uint32_t t) {
+    const auto p = corners(t);
+    index_.insert(t, box_of(p[0], p[1], p[2]));
+    for (int k = 0; k < 3; ++k) ++edges_[edge(t, k)];
+  }
+  void forget(std::uint32_t t) {
+    index_.erase(t);
+    for (int k = 0; k < 3; ++k)
+      if (const auto at = edges_.find(edge(t, k)); --at->second == 0) edges_.erase(at);
+  }
+  std::vector<Vec3> positions(const std::vector<std::uint32_t>& polygon) const {
+    std::vector<Vec3> at;
+    for (const auto v : polygon) at.push_back(mesh_.vertices[v]);
+    return at;
+  }
+  std::vector<std::vector<Vec3>> beyond(const std::vector<std::uint32_t>& polygon) const {
+    const auto n = polygon.size();
+    std::vector<std::vector<Vec3>> points(n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (const auto v : around_[polygon[i]])
+        if (v != polygon[(i + 1) % n] && v != polygon[(i + n - 1) % n]) points[i].push_back(mesh_.vertices[v]);
+    return points;
+  }
+  // Adds the patch for as long as it takes to look.
+  bool fits(const std::vector<std::uint32_t>& polygon, const FairPatch& patch) {
+    const auto n = static_cast<std::uint32_t>(polygon.size()), rows = static_cast<std::uint32_t>(mesh_.triangles.size());
+    const auto vertices = mesh_.vertices.size();
+    for (const auto& t : patch.triangles)
+      for (int k = 0; k < 3; ++k)
+        if (const auto i = t[k], j = t[(k + 1) % 3]; i < n && j < n && (i + 1) % n != j && (j + 1) % n != i && edges_.count(std::minmax(polygon[i], polygon[j]))) return false;
+    mesh_.vertices.insert(mesh_.vertices.end(), patch.inner.begin(), patch.inner.end());
+    const auto row_of = [&](std::uint32_t c) { return c < n ? polygon[c] : static_cast<std::uint32_t>(vertices) + c - n; };
+    for (const auto& [a, b, c] : patch.triangles) mesh_.triangles.push_back({row_of(a), row_of(b), row_of(c)});
+    auto t = rows;
+    for (bool fit = true; fit && t < mesh_.triangles.size(); t += fit) {
+      const auto p = corners(t);
+      near_.clear();
+      index_.find(box_of(p[0], p[1], p[2]), near_);
+      fit = !collinear(p[0], p[1], p[2]) && std::none_of(near_.begin(), near_.end(), [&](std::uint32_t other) { return faces_cross(mesh_.triangles[t], p, mesh_.triangles[other], corners(other)); });
+      if (fit) index_.insert(t, box_of(p[0], p[1], p[2]));
+    }
+    const bool all = t == mesh_.triangles.size();
+    while (t > rows) index_.erase(--t);
+    mesh_.vertices.resize(vertices), mesh_.triangles.resize(rows);
+    return all;
+  }
+
+  TriangleMesh& mesh_;
+  TriangleIndex index_;
+  std::map<Edge, int> edges_;                  // how many triangles they have
+  std::vector<std::set<std::uint32_t>> around_;  // of the vertices of the surface without patches
+  std::vector<std::uint32_t> near_;
+};
+
+void close_holes(TriangleMesh& mesh, Repairs& done, bool smooth) {
+  auto rims = rims_of(mesh);
+  std::erase_if(rims, [](const auto& rim) { return rim.size() < 3; });
+  if (rims.empty()) return;
+  const auto count = [&] { return static_cast<std::uint32_t>(mesh.triangles.size()); };
+  std::vector<std::vector<std::uint32_t>> polygons;
+  std::vector<std::uint32_t> first{count()};
+  for (const auto& rim : rims) {
+    auto& polygon = polygons.emplace_back();
+    for (const Side& s : rim) polygon.push_back(mesh.triangles[s.triangle][(s.corner + 1) % 3]);
+    add_patch(mesh, rim, {{}, {}, triangles_of(mesh.vertices, polygon)});
+    first.push_back(count());
+  }
+  done.holes += rims.size(), done.added += count() - first[0];
+  if (!smooth) return;
+  SmoothPatches patches(mesh);
+  patches.look_around(first[0]);
+  std::vector<char> kept(count(), 1);
+  for (std::size_t hole = 0; hole < rims.size(); ++hole) {
+    if (polygons[hole].size() == 3 || !patches.replace(rims[hole], polygons[hole], first[hole], first[hole + 1])) continue;
+    std::fill(kept.begin() + first[hole], kept.begin() + first[hole + 1], 0);
+    ++done.smooth;
+  }
+  kept.resize(count(), 1);
+  done.added = static_cast<std::size_t>(std::count(kept.begin() + first[0], kept.end(), 1));
+  keep(mesh, kept);
 }
 
 // Shells outwards; those wholly inside another are cavities where they ran the other way than that one, else hidden and left out.
@@ -241,12 +368,13 @@ void drop_loose_vertices(TriangleMesh& mesh) {
 
 }  // namespace
 
-Repairs repair(TriangleMesh& mesh, double reach) {
+Repairs repair(TriangleMesh& mesh, double reach, bool smooth) {
   Repairs done;
   done.welded = weld_seams(mesh, reach);
   done.dropped = drop_void(mesh);
   Parts parts = orient(mesh, done.turned);
-  close_holes(mesh, parts, done);
+  close_holes(mesh, done, smooth);
+  if (done.holes > 0) parts = orient(mesh, done.turned);  // what was apart may hang together by a patch
   arrange_shells(mesh, parts, done);
   drop_loose_vertices(mesh);
   return done;

@@ -14,15 +14,17 @@ struct Repairs {
   std::size_t turned = 0;   ///< triangles
   std::size_t holes = 0;    ///< closed, with so many
   std::size_t added = 0;    ///< triangles
+  std::size_t smooth = 0;   ///< of the holes, those closed by smooth patches
   std::size_t hidden = 0;   ///< shells left out: solid ones wholly inside another solid one
   bool nothing() const { return welded + dropped + turned + holes + hidden == 0; }
 };
 
 /// Turns a plain mesh (no sites) into a solid as far as its topology is what is wrong: welds seams (weld_seams), open ones also where
 /// they are up to `reach` apart (model units); drops triangles that bound nothing; makes neighbours run the same way; closes holes,
-/// each by triangles between its corners; turns shells outwards, and inwards those that are cavities of another. Attributes stay with
+/// each by triangles between its corners, or, where `smooth` asks for it and nothing crosses, by a patch that goes on from the surface
+/// around it (fair_patch); turns shells outwards, and inwards those that are cavities of another. Attributes stay with
 /// their triangles; a hole's have those of its rim. Vertices that no triangle has go. Triangles that cross, and edges of more than two,
 /// stay: check_surface() tells.
-Repairs repair(TriangleMesh& mesh, double reach = 0);
+Repairs repair(TriangleMesh& mesh, double reach = 0, bool smooth = false);
 
 }  // namespace geo

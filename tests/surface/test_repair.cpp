@@ -97,6 +97,73 @@ TEST_CASE("a hole of many corners is closed, its dress that of its rim") {
   check_dress(mesh);
 }
 
+TEST_CASE("a hole closed smoothly goes on from what is around it, as fine as its rim") {
+  // A ball without its cap: the plane through the rim is far below where the cap was.
+  const TriangleMesh ball = make_sphere(12);
+  for (const double from : {0.9, 0.6, 0.2}) {
+    CAPTURE(from);
+    TriangleMesh open = dressed(ball);
+    for (std::size_t t = open.triangles.size(); t-- > 0;)
+      if (const auto& [a, b, c] = open.triangles[t]; open.vertices[a].z() > from && open.vertices[b].z() > from && open.vertices[c].z() > from) drop_row(open, t);
+    const std::size_t rows = open.triangles.size();
+    TriangleMesh flat = open, mesh = open;
+    repair(flat);
+    const Repairs done = repair(mesh, 0, true);
+    CHECK(done.holes == 1);
+    CHECK(done.smooth == 1);
+    CHECK(check_surface(mesh, true).first_problem == "");
+    CHECK(mesh.attributes.uv.size() == mesh.triangles.size());
+    CHECK(mesh.attributes.group.size() == mesh.triangles.size());
+    const double missing = signed_volume(ball) - signed_volume(flat);
+    CHECK(std::abs(signed_volume(ball) - signed_volume(mesh)) < 0.4 * missing);
+    // Edges about as long as the ball's, and no triangle as thin as those between corners of the rim.
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (t < rows) continue;
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+      CHECK(std::max({(p - q).norm(), (q - r).norm(), (r - p).norm()}) < 0.5);
+    }
+    CHECK(mesh.triangles.size() - rows > 3 * (flat.triangles.size() - rows));
+  }
+}
+
+TEST_CASE("a smooth patch that would cross something is not taken") {
+  // An open box beside whose opening a ball lies: the dome would pass through it.
+  TriangleMesh mesh = make_block({1, 1, 1}, 0.1);
+  for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (mesh.vertices[a].z() == 1 && mesh.vertices[b].z() == 1 && mesh.vertices[c].z() == 1) mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
+  }
+  TriangleMesh dome = mesh;
+  CHECK(repair(dome, 0, true).smooth == 1);
+  CHECK(check_surface(dome, true).first_problem == "");
+  CHECK(signed_volume(dome) > 1.05);
+  add(mesh, make_sphere(6), 0.3, {0.5, 0.5, 1.32}, false);
+  const Repairs done = repair(mesh, 0, true);
+  CHECK(done.holes == 1);
+  CHECK(done.smooth == 0);
+  CHECK(check_surface(mesh, true).first_problem == "");
+}
+
+TEST_CASE("random holes are closed smoothly or flat, without a crossing where there was none") {
+  const auto [first, count] = seeds(12);
+  const std::uint64_t seed = first + static_cast<std::uint64_t>(GENERATE_COPY(range(0, count)));
+  CAPTURE(seed);
+  Random random(seed);
+  TriangleMesh mesh = seed % 2 ? make_pumpkin(8) : make_sphere(9);
+  // Everything in some balls, and some triangles by themselves.
+  std::vector<std::pair<Vec3, double>> balls;
+  for (int i = 0; i < 3; ++i) balls.push_back({mesh.vertices[random.below(mesh.vertices.size())], 0.15 + 0.4 * random.uniform()});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return random.below(60) == 0 || std::any_of(balls.begin(), balls.end(), [&](const auto& b) { return (mesh.vertices[t[0]] - b.first).norm() < b.second; });
+  });
+  TriangleMesh flat = mesh;
+  repair(flat);
+  const Repairs done = repair(mesh, 0, true);
+  CAPTURE(done.holes, done.smooth);
+  if (check_surface(flat, true).first_problem == "") CHECK(check_surface(mesh, true).first_problem == "");
+}
+
 TEST_CASE("seams that are a little apart are welded within reach") {
   const TriangleMesh ball = make_sphere(4);
   TriangleMesh soup;

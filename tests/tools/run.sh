@@ -183,6 +183,12 @@ repairs)
   sed '$d' box.obj | kerf-repair -q - | kerf-info --check --json - | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["volume"] == 1 and r["faces"] == 12, r' || fail "an open box in a pipe"
   kerf-repair --json box.obj -o box.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["holes"] == 0 and r["volume"] == 1' || fail "kerf-repair --json"
   quietly kerf-repair -q two.obj --voxel 0.01 -j1 -o one.ply
+  # A scan with a hole, closed as the surface around it goes on.
+  kerf-model sphere --frequency 8 -o ball.ply && kerf-repair -q ball.ply -o ball.obj || fail "a ball"
+  awk '/^v / { z[++n] = $4 } /^f / { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); if (z[a[1]] > 0.7 && z[b[1]] > 0.7 && z[c[1]] > 0.7) next } { print }' ball.obj >scan.obj
+  kerf-repair scan.obj --smooth -o smooth.ply 2>said.txt && kerf-repair -q scan.obj -o flat.ply || fail "kerf-repair --smooth: $(cat said.txt)"
+  grep -q '1 hole smoothly closed with [0-9]* triangles' said.txt || fail "kerf-repair --smooth says: $(cat said.txt)"
+  for file in ball smooth flat; do kerf-info --check --json $file.ply | grep -o '"volume":[0-9.]*'; done | python3 -c 'import sys; v = [float(l.split(":")[1]) for l in sys.stdin]; assert len(v) == 3 and v[2] < v[1] - 0.1 and abs(v[1] - v[0]) < 0.05, v' || fail "the smooth patch"
   cmp two.ply one.ply || fail "threads change bytes"
   for options in "--weld -1" "--voxel 0.2" "--voxel nan"; do expect 2 "${options%% *}" kerf-repair box.obj $options -o x.ply; done
   expect 66 "cannot" kerf-repair missing.obj -o x.ply

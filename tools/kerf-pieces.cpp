@@ -63,9 +63,9 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-pieces", "Writes each piece of a cut surface as a closed mesh, with bonds between them: all in one .glb, or as a folder.",
-               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/\n  kerf-pieces out/halve/frames/frame_0036.ply -o frame36.glb");
+               "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/\n  kerf-pieces out/halve -o halves.glb\n  kerf-pieces out/halve/frames/frame_0020.ply -o frame20.glb");
   Wishes w;
-  t.argument("SURFACE", w.model, "A cut surface (kerf-crack), a body (.kerf), or a frame in the folder of a run");
+  t.argument("SURFACE", w.model, "A cut surface (kerf-crack), a body (.kerf), a run's folder, or a frame in it");
   t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");
   t.flag("--hulls", w.hulls, "Also the convex hull of each piece, for a physics engine: nodes UCX_piece_... or files hull_...");
   t.option("--hull-corners", w.hull_corners, "How many corners a hull has at most");

@@ -11,11 +11,13 @@
 
 namespace tool {
 
-/// Throws InputError unless a surface is closed, manifold, oriented outwards, free of self-intersection.
-inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path) {
+/// Throws InputError unless a surface, read from these bytes, is closed, manifold, oriented outwards, free of self-intersection.
+inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path, const std::string& bytes) {
   try {
     geo::require_solid(mesh);
   } catch (const geo::InputError& e) {
+    if (!mesh.two_sided() && bytes.find("\ng patch_-") != bytes.npos)
+      throw geo::InputError(path + ": is a cut surface as OBJ, which cannot say how the two sides of a crack belong together; give the PLY of it");
     throw geo::InputError(path + ": " + e.what() + (mesh.two_sided() ? "" : ", or try kerf-repair"));
   }
 }
@@ -23,7 +25,7 @@ inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path
 /// A surface, checked by require_solid().
 inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string& path) {
   geo::SurfaceFile file = geo::parse_surface(bytes, path);
-  require_solid(file.mesh, path);
+  require_solid(file.mesh, path, bytes);
   return file;
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 
+#include "io/kerf_reader.h"
 #include "io/ply_internal.h"
 #include "io/stream.h"
 #include "io/text_internal.h"
@@ -138,6 +139,7 @@ void put_rows(std::ostream& out, const NodeSet& nodes) {
 NodeSet read_nodes(const std::string& path) { return parse_nodes(read_all(path), path); }
 
 NodeSet parse_nodes(const std::string& bytes, const std::string& name) {
+  if (looks_like_kerf(bytes)) throw InputError(name + ": is a body (.kerf), which has its nodes already; give those of kerf-sample");
   NodeSet nodes = bytes.rfind("ply", 0) == 0 ? from_ply(bytes, name) : from_pcd(bytes, name);
   if (nodes.size() == 0) throw InputError(name + ": holds no nodes");
   return nodes;

@@ -254,7 +254,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const SceneO
   try {
     root = toml::parse(text);
   } catch (const toml::parse_error& e) {
-    throw InputError(name + ":" + std::to_string(e.source().begin.line) + ":" + std::to_string(e.source().begin.column) + ": " + shown(e.description(), 250));
+    throw InputError(name + ":" + std::to_string(e.source().begin.line) + ":" + std::to_string(e.source().begin.column) + ": " + shown(e.description(), 250) + (name == "-" || name.ends_with(".toml") || name.ends_with(".json") ? "" : "; a scene is a text file, as those in samples/scenes"));
   }
   for (const auto& [key, value] : overrides) override_key(root, key, value);
   Scene scene;

@@ -1,5 +1,6 @@
 #include "io/surface_file.h"
 
+#include "io/kerf_reader.h"
 #include "io/stream.h"
 #include "io/surface_internal.h"
 #include "io/text_internal.h"
@@ -57,6 +58,8 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
     file.mesh = parse_off(bytes, name);
   else if (looks_like_obj(bytes))
     file.mesh = parse_obj(bytes, name);
+  else if (looks_like_kerf(bytes))
+    throw InputError(name + ": is a body (.kerf); give the surface that it was made of, or that it was cut by");
   else if (const char* other = other_format(bytes))
     throw InputError(name + ": is " + other + " file; save it as PLY, OBJ, STL or OFF, or convert it: assimp export " + name + " model.obj");
   else

@@ -89,6 +89,12 @@ refusals)
   done
   expect 65 "1 point" kerf-crack block.ply --front point.front -o x.ply
   expect 66 "cannot" kerf-crack block.ply --front missing.front -o x.ply
+  # Files that are taken for others.
+  expect 65 "ok.kerf: is a body (.kerf); give the surface" kerf-crack ok.kerf --front ok.front -o x.ply
+  expect 65 "is a body (.kerf), which has its nodes already" kerf-graph ok.kerf --surface block.ply -o x.kerf
+  expect 65 "a scene is a text file" kerf-sim open.off -o x
+  kerf-crack block.ply --front ok.front -o cut.obj && expect 65 "is a cut surface as OBJ, .*give the PLY" kerf-pieces cut.obj -o x
+  rm cut.obj
   expect 1 "inside out" kerf-info --check -q inside.off
   expect 1 "open" kerf-info --check -q open.off
   expect 1 "intersect" kerf-info --check -q crossing.off
@@ -486,6 +492,8 @@ simulation)
   for file in before/*.ply; do quietly kerf-info --check -q $file; done
   for file in there/*.ply; do kerf-info --json $file | grep -q '"closed":true,"manifold":true,"oriented":true' || fail "$file is not closed"; done  # without contact they may cross
   cmp -s there/piece_000.ply before/piece_000.ply && fail "a frame's pieces are not where the frame is"
+  quietly kerf-pieces whole -o last && diff -r there last || fail "a run's folder is not its last frame"
+  expect 65 "without frames" kerf-pieces there -o x
   cp whole/frames/frame_0006.ply astray.ply
   expect 65 "no frame in the folder of its run" kerf-pieces astray.ply -o x
   kerf-sim -q s.toml -o late --frames 2 && cp whole/frames/frame_0006.ply late/frames/ || fail "a run of two frames"

@@ -39,9 +39,21 @@ std::vector<geo::Vec3> material_points(const geo::TriangleMesh& frame, const std
   return points;
 }
 
+// The last frame of a run's folder; any other path as it is.
+std::string file_of(const std::string& path) {
+  std::error_code error;
+  std::string last;
+  if (!fs::is_directory(path, error)) return path;
+  for (const auto& entry : fs::directory_iterator(fs::path(path) / "frames", error))
+    if (entry.path().extension() == ".ply") last = std::max(last, entry.path().string());
+  if (last.empty()) throw geo::InputError(path + ": is a folder without frames of a run; give a file");
+  return last;
+}
+
 }  // namespace
 
-Subject read_subject(const std::string& path) {
+Subject read_subject(const std::string& given) {
+  const std::string path = file_of(given);
   const std::string bytes = geo::read_all(path);
   Subject subject;
   if (geo::looks_like_kerf(bytes)) {
@@ -54,7 +66,7 @@ Subject read_subject(const std::string& path) {
     subject.moved = material_points(file.mesh, path);
     subject.moved.swap(file.mesh.vertices);
   }
-  tool::require_solid(file.mesh, path);
+  tool::require_solid(file.mesh, path, bytes);
   subject.complex = tool::complex_of(file, path);
   subject.mesh = std::move(file.mesh);
   return subject;

@@ -15,7 +15,7 @@ struct Subject {
   std::vector<geo::Vec3> moved;  ///< of a deformed frame: where its vertices are, by their rows in `mesh`; else empty
 };
 
-/// Reads any of them. A frame whose cracks have opened is put back to where its run's checkpoint.kerf, in the folder above it, has its
+/// Reads any of them; of a run's folder the last frame. A frame whose cracks have opened is put back to where its run's checkpoint.kerf, in the folder above it, has its
 /// vertices: topology is decided there. Throws InputError.
 Subject read_subject(const std::string& path);
 

@@ -57,7 +57,7 @@ class Mover {
     }
     next = wanted(start);
     cover(start, next);
-    FailingPairs check(surface_.triangles, fans_, m_.together, two_sided_, start, next, rounding_);
+    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
     std::optional<Carried> carried;
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int growth = 0;; ++growth) {
@@ -89,7 +89,7 @@ class Mover {
   // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     GiveWay couples(surface_.triangles, start, m_.gap);
-    FailingPairs check(surface_.triangles, fans_, m_.together, two_sided_, start, next, rounding_);
+    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int round = 0; round < most_mendings; ++round) {
       const auto failing = check.among(near_.pairs(), changed, nullptr);

@@ -9,9 +9,9 @@
 
 namespace geo {
 
-FailingPairs::FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided,
+FailingPairs::FailingPairs(const StandingRows& surface, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided,
                            const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding)
-    : triangles_(triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(triangles, start, next),
+    : surface_(surface), triangles_(surface.triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(surface.triangles, start, next),
       opens_out_(start.size(), 0) {}
 
 std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried) {
@@ -41,9 +41,7 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
       for (std::size_t i = f * stretch; i < std::min(pairs.size(), (f + 1) * stretch); ++i) {
         const auto& [p, q] = pairs[i];
         if (!changed[p] && !changed[q]) continue;
-        const auto &s = triangles_[p], &t = triangles_[q];
-        const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (in_t(s[0]) || in_t(s[1]) || in_t(s[2])) test(pairs[i]);
+        if (surface_.touch(p, q)) test(pairs[i]);
         else some.push_back(pairs[i]);
       }
       planes_.keep_unparted(some, rounding_, rounding_);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contact/carried.h"
+#include "contact/surface_motion.h"
 #include "contact/triangle_planes.h"
 #include "contact/vertex_fans.h"
 
@@ -15,12 +16,11 @@ namespace geo {
 class FailingPairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  /// Refers to all of them. Rows of triangles are those that stand for others (`together`: vertices_together()), fans are of the surface
-  /// as it is. `rounding`: of products, model units.
-  FailingPairs(const std::vector<Triangle>& triangles, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided, const std::vector<Vec3>& start,
+  /// Refers to all of them. `together`: vertices_together(); fans are of the surface as it is. `rounding`: of products, model units.
+  FailingPairs(const StandingRows& surface, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided, const std::vector<Vec3>& start,
                const std::vector<Vec3>& next, double rounding);
 
-  /// Of those pairs, and of all that share a vertex of the surface, which need not be among them, that have a triangle marked in `changed`
+  /// Of those pairs, which share no vertex of the surface, and of all that share one, that have a triangle marked in `changed`
   /// (whose end is another than at the call before; at the first all must be): those that cross at the end, by the exact test of crossing.h, or may have passed through each other on the way. That they have not
   /// is clear where one direction parts them at both ends, and where they are carried (may be null). Ascending.
   std::vector<Pair> among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried);
@@ -28,6 +28,7 @@ class FailingPairs {
  private:
   void renew(const std::vector<std::uint8_t>& changed);
 
+  const StandingRows& surface_;
   const std::vector<Triangle>& triangles_;
   const VertexFans& fans_;
   std::span<const std::uint32_t> together_;

@@ -24,7 +24,15 @@ struct StandingRows {
   explicit StandingRows(const SurfaceMotion& motion);
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> rows;  ///< of all triangles, ascending
+  std::vector<std::uint8_t> joined; ///< per triangle: a corner stands for others, so that it may be one of a triangle that shares none on the surface
   Vec3 middle = Vec3::Zero();       ///< of where they want to be
+
+  /// Whether two triangles that share no corner on the surface have one in common.
+  bool touch(std::size_t s, std::size_t t) const {
+    if (!joined[s] || !joined[t]) return false;
+    const auto in_t = [&, of = triangles[t]](std::uint32_t v) { return v == of[0] || v == of[1] || v == of[2]; };
+    return in_t(triangles[s][0]) || in_t(triangles[s][1]) || in_t(triangles[s][2]);
+  }
 
   /// The box of what triangle t passes through on straight ways, relative to the middle.
   Box3 swept(std::size_t t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {

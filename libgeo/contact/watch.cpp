@@ -112,11 +112,8 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   std::vector<std::vector<Between>> some_between(some.size());
   parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      for (std::size_t i = k * stretch; i < std::min(known.pairs().size(), (k + 1) * stretch); ++i) {
-        const auto &s = corners[known.pairs()[i].first], &t = corners[known.pairs()[i].second];
-        const auto in_t = [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; };
-        if (!in_t(s[0]) && !in_t(s[1]) && !in_t(s[2])) some[k].push_back(known.pairs()[i]);
-      }
+      for (std::size_t i = k * stretch; i < std::min(known.pairs().size(), (k + 1) * stretch); ++i)
+        if (const auto& [s, t] = known.pairs()[i]; !surface.touch(s, t)) some[k].push_back({s, t});
       planes.keep_unparted(some[k], m.gap, m.reach);
       if (owner.empty()) continue;
       const std::vector<double> left = planes.left(some[k]);

@@ -102,11 +102,13 @@ namespace geo {
 HWY_EXPORT(pairs_of_block);
 namespace {
 
+// The largest float that is not above x; floats follow each other as their bits do, below zero backwards.
 float below(double x) {
   const auto f = static_cast<float>(x);
-  if (!(f > x)) return f;
-  const auto bits = std::bit_cast<std::uint32_t>(f);
-  return f == 0 ? -std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(f > 0 ? bits - 1 : bits + 1);
+  const auto bits = std::bit_cast<std::int32_t>(f);
+  constexpr auto least = std::numeric_limits<std::int32_t>::min();
+  const std::int32_t place = (bits < 0 ? least - bits : bits) - (f > x);
+  return std::bit_cast<float>(place < 0 ? least - place : place);
 }
 float above(double x) { return -below(-x); }
 
@@ -150,7 +152,7 @@ bool add(BoxTree::Block& block, std::size_t lane, const float* lo, const float* 
 
 }  // namespace
 
-BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), place_(boxes_.size(), ~0u) {
+BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) : boxes_(std::move(boxes)), place_(boxes_.size(), ~0u) {
   Box3 all;
   for (const Box3& b : boxes_)
     if (!b.empty()) all.add(b);
@@ -166,12 +168,14 @@ BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), place_(box
   sort_along(along);
   order_.resize(along.size());
   levels_.push_back(empty_blocks(along.size()));
+  if (!triangles.empty()) corners_.resize(levels_[0].size());
   parallel_for(along.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = along[i].second;
       order_[i] = row, place_[row] = static_cast<std::uint32_t>(i);
       const Floats b = local(boxes_[row]);
       add(levels_[0][i / width], i % width, b.lo, b.hi);
+      for (std::size_t k = 0; k < 3 && !triangles.empty(); ++k) corners_[i / width].v[k][i % width] = triangles[row][k];
     }
   });
   while (levels_.size() < 2 || levels_.back().size() > 1) {
@@ -202,7 +206,7 @@ void BoxTree::enlarge(std::uint32_t row, const Box3& box) {
   }
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::vector<std::uint8_t>* only, std::span<const Triangle> corners) const {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::vector<std::uint8_t>* only) const {
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   if (levels_.empty()) return {};
   std::vector<std::uint8_t> marked;
@@ -212,9 +216,6 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::v
   }
   constexpr std::size_t stretch = 16;  // blocks
   const std::size_t blocks = levels_[0].size();
-  std::vector<Corners> in_order(corners.empty() ? 0 : blocks);
-  for (std::size_t i = 0; i < order_.size() && !corners.empty(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) in_order[i / width].v[k][i % width] = corners[order_[i]][k];
   std::vector<Pairs> found((blocks + stretch - 1) / stretch);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
@@ -224,7 +225,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::v
       for (std::size_t b = s * stretch; b < std::min(blocks, (s + 1) * stretch); ++b) {
         std::uint32_t asked = 0;
         for (std::size_t i = b * width; i < std::min(order_.size(), (b + 1) * width); ++i) asked |= std::uint32_t(!only || marked[i]) << i % width;
-        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, corners.empty() ? nullptr : in_order.data(), static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, some);
+        if (asked != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, corners_.empty() ? nullptr : corners_.data(), static_cast<std::uint32_t>(b), asked, only ? marked.data() : nullptr, near, some);
       }
       std::size_t count = 0;
       for (const auto& [p, q] : some)

@@ -24,16 +24,16 @@ class BoxTree {
   };
 
   BoxTree() = default;
-  /// Finite boxes; empty ones meet none.
-  explicit BoxTree(std::vector<Box3> boxes);
+  /// Finite boxes; empty ones meet none. `triangles`: whose boxes they are, or empty.
+  explicit BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles = {});
 
   const std::vector<Box3>& boxes() const { return boxes_; }
   /// Makes a box larger, so that it holds this one, too.
   void enlarge(std::uint32_t row, const Box3& box);
   /// All pairs (i < j) of boxes that meet, each once, neighbours near each other, in an order that depends on the boxes alone. Only
-  /// pairs with a box marked in `only`, where given; none of two boxes whose `corners`, where given, have one in common. By all
-  /// threads; cost follows the boxes that are asked for, and the pairs.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr, std::span<const Triangle> corners = {}) const;
+  /// pairs with a box marked in `only`, where given; none of two triangles with a corner in common. By all threads; cost follows the
+  /// boxes that are asked for, and the pairs.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
 
   /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].
   const std::vector<std::vector<Block>>& levels() const { return levels_; }
@@ -49,6 +49,7 @@ class BoxTree {
   Vec3 middle_ = Vec3::Zero();
   std::vector<std::uint32_t> order_, place_;  // rows in the order of the tree, and where each is
   std::vector<std::vector<Block>> levels_;
+  std::vector<Corners> corners_;  // a block each of the lowest level; empty: of none
 };
 
 }  // namespace geo

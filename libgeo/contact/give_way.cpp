@@ -30,6 +30,8 @@ void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
     const std::size_t at = known_.try_emplace(std::uint64_t(pair.first) << 32 | pair.second, couples_.size()).first->second;
     if (at == couples_.size()) couples_.resize(at + count);
     for (std::size_t k = 0; k < count; ++k) {
+      for (Simplex* one : {&parts[k].first, &parts[k].second})
+        for (int i = one->size; i < 3; ++i) one->v[i] = one->v[0];
       couples_[at + k] = {parts[k].first, parts[k].second, Vec3::Zero(), 0};
       chosen.push_back(at + k);
     }
@@ -60,9 +62,9 @@ void GiveWay::push(std::vector<Vec3>& at) const {
   for (int sweep = 0; sweep < most_sweeps && !asked.empty(); ++sweep) {
     for (const auto i : asked) {
       const Kept& c = couples_[i];
-      double least = std::numeric_limits<double>::infinity(), most = -least, of_a[3], of_b[3];
-      for (int k = 0; k < c.a.size; ++k) least = std::min(least, of_a[k] = c.normal.dot(at[c.a.v[k]]));
-      for (int k = 0; k < c.b.size; ++k) most = std::max(most, of_b[k] = c.normal.dot(at[c.b.v[k]]));
+      double of_a[3], of_b[3];
+      for (int k = 0; k < 3; ++k) of_a[k] = c.normal.dot(at[c.a.v[k]]), of_b[k] = c.normal.dot(at[c.b.v[k]]);
+      const double least = std::min({of_a[0], of_a[1], of_a[2]}), most = std::max({of_b[0], of_b[1], of_b[2]});
       if (least - most >= c.apart) continue;
       const double plane = 0.5 * (least + most), half = 0.5 * (1 + spare) * c.apart;
       const auto move = [&](std::uint32_t v, double lack, double sign) {
@@ -77,9 +79,10 @@ void GiveWay::push(std::vector<Vec3>& at) const {
       has_moved[v] = 0;
       for (auto j = first[v]; j < first[v + 1]; ++j) waits[of[j]] = 1;
     }
-    moved.clear(), asked.clear();
-    for (std::uint32_t i = 0; i < waits.size(); ++i)
-      if (waits[i]) waits[i] = 0, asked.push_back(i);
+    moved.clear(), asked.resize(waits.size());
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < waits.size(); ++i) asked[count] = i, count += waits[i], waits[i] = 0;
+    asked.resize(count);
   }
 }
 

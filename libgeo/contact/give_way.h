@@ -27,7 +27,7 @@ class GiveWay {
 
  private:
   struct Kept {
-    Simplex a, b;
+    Simplex a, b; // corners that are not there are the first again
     Vec3 normal;  // from b to a
     double apart;
   };

@@ -38,22 +38,17 @@ HWY_INLINE double most(const double (&n)[3], const double (&at)[3][4]) {
   return hn::GetLane(hn::MaxOfLanes(d, v));
 }
 
-HWY_INLINE bool above(const Plane& p, const Plane& o, int end, double by) {
-  const Four d;
-  bool all = true;
-  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) all = all && hn::AllTrue(d, hn::Gt(hn::Sub(along(p.normal, o.at[end], k), hn::Set(d, p.high[end])), hn::Set(d, by)));
-  return all;
-}
-HWY_INLINE bool below(const Plane& p, const Plane& o, int end, double by) {
-  const Four d;
-  bool all = true;
-  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) all = all && hn::AllTrue(d, hn::Gt(hn::Sub(hn::Set(d, p.low[end]), along(p.normal, o.at[end], k)), hn::Set(d, by)));
-  return all;
-}
-
+// Without branches, as which side it is cannot be foretold.
 HWY_INLINE bool parts(const Plane& p, const Plane& o, double first, double last) {
-  if (above(p, o, 0, first)) return above(p, o, 1, last);
-  return below(p, o, 0, first) && below(p, o, 1, last);
+  const Four d;
+  bool above = true, below = true;
+  for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) {
+    const V begin = along(p.normal, o.at[0], k), end = along(p.normal, o.at[1], k), least_first = hn::Set(d, first), least_last = hn::Set(d, last);
+    const auto over = hn::And(hn::Gt(hn::Sub(begin, hn::Set(d, p.high[0])), least_first), hn::Gt(hn::Sub(end, hn::Set(d, p.high[1])), least_last));
+    const auto under = hn::And(hn::Gt(hn::Sub(hn::Set(d, p.low[0]), begin), least_first), hn::Gt(hn::Sub(hn::Set(d, p.low[1]), end), least_last));
+    above &= hn::AllTrue(d, over), below &= hn::AllTrue(d, under);
+  }
+  return above | below;
 }
 
 HWY_INLINE double left_by(const Plane& p, const Plane& o) {
@@ -71,7 +66,7 @@ HWY_INLINE bool parted_across(const Plane& p, const Plane& o, double first, doub
 
 }  // namespace
 
-bool planes_part(const Plane& p, const Plane& o, double first, double last) { return parts(p, o, first, last) || parts(o, p, first, last); }
+bool planes_part(const Plane& p, const Plane& o, double first, double last) { return parts(p, o, first, last) | parts(o, p, first, last); }
 
 // Those kept come first; returns how many.
 std::size_t not_parted(const Plane* planes, Pair* pairs, std::size_t count, double first, double last) {
@@ -79,7 +74,7 @@ std::size_t not_parted(const Plane* planes, Pair* pairs, std::size_t count, doub
   for (std::size_t i = 0; i < count; ++i) {
     const Pair pair = pairs[i];
     pairs[kept] = pair;
-    kept += !(parts(planes[pair.first], planes[pair.second], first, last) || parts(planes[pair.second], planes[pair.first], first, last));
+    kept += !(parts(planes[pair.first], planes[pair.second], first, last) | parts(planes[pair.second], planes[pair.first], first, last));
   }
   return kept;
 }

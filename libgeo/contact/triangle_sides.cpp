@@ -34,11 +34,11 @@ HWY_INLINE bool on_one_side(const Corners& p, const Corners& o) {
     const V permanent = hn::Add(hn::Add(hn::Mul(hn::Abs(x), hn::Set(d, p.terms[0])), hn::Mul(hn::Abs(y), hn::Set(d, p.terms[1]))), hn::Mul(hn::Abs(z), hn::Set(d, p.terms[2])));
     const V bound = hn::Mul(hn::Set(d, bound_of_permanent), permanent);
     const auto sure = hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
-    above = above && hn::AllTrue(d, hn::Or(shared, hn::And(sure, hn::Gt(det, bound))));
-    below = below && hn::AllTrue(d, hn::Or(shared, hn::And(sure, hn::Lt(det, hn::Neg(bound)))));
-    all_shared = all_shared && hn::AllTrue(d, shared);
+    above &= hn::AllTrue(d, hn::Or(shared, hn::And(sure, hn::Gt(det, bound))));
+    below &= hn::AllTrue(d, hn::Or(shared, hn::And(sure, hn::Lt(det, hn::Neg(bound)))));
+    all_shared &= hn::AllTrue(d, shared);
   }
-  return (above || below) && !all_shared;
+  return (above | below) & !all_shared;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "contact/untangle.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
@@ -151,6 +152,19 @@ class Midwife {
     double distance;
   };
 
+  struct Surroundings {
+    double reach = 0;  // as far as the new faces go
+    std::vector<Near> near;
+  };
+  Surroundings surroundings(VertexId site, const std::vector<std::uint8_t>& is_new) const {
+    Surroundings result;
+    const Vec3& x = k_.point(site);
+    for (const FaceId f : k_.faces_at(site))
+      for (const Vec3& c : k_.corners(f)) result.reach = std::max(result.reach, (c - x).norm());
+    result.near = near(x, 1.01 * result.reach, is_new);
+    return result;
+  }
+
   // Inside, the deformed surface goes on: what is nearest says most.
   void inside(const CrackDelta& crack) {
     std::vector<std::uint8_t> is_new(k_.face_count(), 0);
@@ -159,24 +173,29 @@ class Midwife {
     for (const auto v : crack.new_surface_vertices)
       if (k_.alive(v) && !placed_[v.index()]) waiting.push_back({birth_.surface.site[v.index()], v});
     std::sort(waiting.begin(), waiting.end());
+    std::vector<std::size_t> first;  // of each site, and the end
+    for (std::size_t i = 0; i < waiting.size(); ++i)
+      if (i == 0 || waiting[i].first != waiting[i - 1].first) first.push_back(i);
+    std::vector<Surroundings> about(first.size());
+    parallel_for(about.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) about[i] = surroundings(VertexId(waiting[first[i]].first), is_new);
+    });
+    first.push_back(waiting.size());
     std::vector<Vec3> places(waiting.size());
     std::vector<SurfaceVertexId> likes(waiting.size());
-    for (std::size_t i = 0, j = 0; i < waiting.size(); i = j) {
-      const VertexId site(waiting[i].first);
-      const Vec3& x = k_.point(site);
-      double reach = 0;  // as far as the new faces go
-      for (const FaceId f : k_.faces_at(site))
-        for (const Vec3& c : k_.corners(f)) reach = std::max(reach, (c - x).norm());
-      Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < about.size(); ++i) {
+      const Vec3& x = k_.point(VertexId(waiting[first[i]].first));
+      Vec3 sum = Vec3::Zero(), at;
+      SurfaceVertexId like;
       double total = 0, nearest = std::numeric_limits<double>::infinity();
-      for (const Near& n : near(x, 1.01 * reach, is_new)) {
+      for (const Near& n : about[i].near) {
         const auto nodes = nodes_of(n.like);
-        const double weight = std::pow(n.distance / reach, -4);
+        const double weight = std::pow(n.distance / about[i].reach, -4);
         sum += weight * (n.now + x - n.rest + displacement(x, nodes) - displacement(n.rest, nodes)), total += weight;
-        if (n.distance < nearest) nearest = n.distance, likes[i] = n.like;
+        if (n.distance < nearest) nearest = n.distance, like = n.like;
       }
-      places[i] = total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x)));
-      for (j = i; j < waiting.size() && waiting[j].first == waiting[i].first; ++j) places[j] = places[i], likes[j] = likes[i];
+      at = total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x)));
+      for (auto j = first[i]; j < first[i + 1]; ++j) places[j] = at, likes[j] = like;
     }
     for (std::size_t i = 0; i < waiting.size(); ++i) place(waiting[i].second, places[i], likes[i]);
   }
@@ -192,9 +211,11 @@ class Midwife {
       const double distance = (x - c).norm();
       if (!(distance < reach) || !(distance > 0)) continue;
       const Vec3 almost = x + 0.999 * (c - x);
+      Box3 way;
+      way.add(x), way.add(almost);
       if (std::any_of(faces.begin(), faces.end(), [&](FaceId g) {
             const auto t = k_.corners(g);
-            return g != f && segment_meets_triangle(x, almost, t[0], t[1], t[2]);
+            return g != f && way.meets(box_of(t[0], t[1], t[2])) && segment_meets_triangle(x, almost, t[0], t[1], t[2]);
           }))
         continue;
       const Side side{f, k_.face(f).crack > 0 && orient3d(rest[0], rest[1], rest[2], x) > 0 ? 1 : 0};  // material is behind side 0

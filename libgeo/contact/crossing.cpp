@@ -57,15 +57,16 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
                                                                     std::span<const std::uint32_t> together, bool two_sided,
                                                                     const std::vector<std::uint8_t>* only) {
   std::vector<Box3> boxes(triangles.size());
-  Box3 region;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t];
-    boxes[t] = box_of(positions[a], positions[b], positions[c]);
-    if (only && (*only)[t]) region.add(boxes[t]);
-  }
-  if (only)
+  parallel_for(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) boxes[t] = box_of(positions[triangles[t][0]], positions[triangles[t][1]], positions[triangles[t][2]]);
+  });
+  if (only) {
+    Box3 region;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if ((*only)[t]) region.add(boxes[t]);
     for (Box3& b : boxes)
       if (!b.meets(region)) b = Box3();
+  }
   auto pairs = close_pairs(std::move(boxes), only);
   if (!only) pairs = unclear(pairs, TriangleSides(triangles, together, positions));
   auto result = find_crossings(pairs, triangles, positions, together, two_sided, only);

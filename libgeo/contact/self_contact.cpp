@@ -6,8 +6,8 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "contact/close_pairs.h"
 #include "contact/crossing.h"
+#include "contact/open_sheets.h"
 #include "contact/touching.h"
 
 namespace geo {
@@ -70,95 +70,6 @@ const std::vector<Vec3>& SelfContact::known_targets(const Body& body, const std:
   }
   last_.of = u, last_.stale.clear();
   return last_.targets;
-}
-
-// Copies whose targets come apart, or slide along each other, are moved apart by half a gap each into their own material: away
-// from what they share, or along the sum of their normals where that does not help. Where a triangle would cross another for it
-// they stay together.
-std::size_t SelfContact::open(const std::vector<Vec3>& to, const Copies& copies) {
-  const double gap = options_.gap * surface_.edge, opens = options_.opening * surface_.edge;
-  const std::vector<Vec3> normals = vertex_normals(surface_, fans(), copies, positions_);
-  std::vector<std::uint32_t> opening;
-  for (std::uint32_t v = 0; v < copies.size(); ++v)
-    for (std::size_t i = 0; i < copies[v].size(); ++i)
-      for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
-        const auto a = copies[v][i], b = copies[v][j];
-        const Vec3 n = (normals[b].normalized() - normals[a].normalized()).normalized(), apart = to[a] - to[b];
-        const double along = n.dot(apart);
-        if ((along > opens || (apart - along * n).norm() > 3 * opens) && (opening.empty() || opening.back() != v)) opening.push_back(v);
-      }
-  const std::size_t wanted = opening.size();
-  if (wanted == 0) return 0;
-  const std::vector<Vec3> closed = positions_;
-  // Triangles that may come together while none of these vertices goes further than half a gap.
-  std::vector<std::uint8_t> moving(positions_.size(), 0);
-  for (const auto v : opening)
-    for (const auto c : copies[v]) moving[c] = 1;
-  std::vector<Box3> boxes(surface_.triangles.size());
-  std::vector<std::uint8_t> asked(boxes.size(), 0);
-  Box3 region;
-  for (std::size_t t = 0; t < boxes.size(); ++t) {
-    const auto& [a, b, c] = surface_.triangles[t];
-    boxes[t] = box_of(positions_[a], positions_[b], positions_[c]).grown(0.5 * gap);
-    if (moving[a] || moving[b] || moving[c]) region.add(boxes[t]), asked[t] = 1;
-  }
-  for (Box3& box : boxes)
-    if (!box.meets(region)) box = Box3();
-  const auto pairs = close_pairs(boxes, &asked);
-  // Smaller steps for those that would cross; what is left stays together.
-  std::vector<Vec3> shared = shared_normals(surface_, vertices_together(surface_.site, positions_), positions_);
-  for (std::size_t v = 0; v < shared.size(); ++v)
-    if (shared[v].isZero(0)) shared[v] = normals[v];
-  for (int trial = 0; !opening.empty() && trial < 10; ++trial) {
-    const double step = std::ldexp(0.5 * gap, -2 * (trial / 2));
-    std::vector<std::uint32_t> refused;
-    std::vector<std::uint8_t> moved(positions_.size(), 0), marked(surface_.triangles.size(), 0), bad(positions_.size(), 0);
-    for (const auto v : opening)
-      for (const auto c : copies[v]) positions_[c] -= step * (trial % 2 == 0 ? shared[c] : normals[c]).normalized(), moved[c] = 1;
-    for (;;) {
-      for (std::size_t t = 0; t < marked.size(); ++t) marked[t] = std::any_of(surface_.triangles[t].begin(), surface_.triangles[t].end(), [&](auto v) { return moved[v]; });
-      const auto crossings = find_crossings(pairs, surface_.triangles, positions_, vertices_together(surface_.site, positions_), true, &marked);
-      if (crossings.empty()) break;
-      for (const auto& [s, t] : crossings)
-        for (const auto& triangle : {surface_.triangles[s], surface_.triangles[t]})
-          for (const auto v : triangle) bad[v] = 1;
-      bool undone = false;
-      for (const auto v : opening)
-        if (std::any_of(copies[v].begin(), copies[v].end(), [&](auto c) { return bad[c] && moved[c]; })) {
-          for (const auto c : copies[v]) positions_[c] = closed[v], moved[c] = 0;
-          refused.push_back(v), undone = true;
-        }
-      if (!undone) break;
-    }
-    opening.swap(refused);
-  }
-  // One after another, as the others' may have been in the way.
-  auto together = vertices_together(surface_.site, positions_);
-  std::vector<std::uint32_t> turn(positions_.size(), ~0u);  // per vertex, whose it is
-  for (std::uint32_t k = 0; k < opening.size(); ++k)
-    for (const auto c : copies[opening[k]]) turn[c] = k;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs_about(opening.size());
-  if (!opening.empty())
-    for (const auto& pair : pairs)
-      for (const auto t : {pair.first, pair.second})
-        for (const auto c : surface_.triangles[t])
-          if (turn[c] != ~0u && (pairs_about[turn[c]].empty() || pairs_about[turn[c]].back() != pair)) pairs_about[turn[c]].push_back(pair);
-  std::erase_if(opening, [&](auto v) {
-    const auto& about = pairs_about[turn[copies[v][0]]];
-    for (int trial = 0; trial < 20; ++trial) {
-      const double step = std::ldexp(0.5 * gap, -2 * (trial / 4));
-      // Both, or one of them alone.
-      for (const auto c : copies[v]) {
-        const std::vector<Vec3>& along = trial % 4 < 2 ? shared : normals;
-        positions_[c] = trial % 2 == 1 && c == copies[v][0] ? closed[v] : Vec3(closed[v] - step * along[c].normalized());
-        together[c] = c;
-      }
-      if (find_crossings(about, surface_.triangles, positions_, together, true).empty()) return true;
-    }
-    for (const auto c : copies[v]) positions_[c] = closed[v], together[c] = v;
-    return false;
-  });
-  return wanted - opening.size();
 }
 
 Potential* SelfContact::begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
@@ -271,7 +182,7 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   Copies copies(together);
   work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, together, copies, state);
   const std::vector<Vec3>& to = known_targets(body, state.displacement);
-  if (work.opened = open(to, copies); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
+  if (work.opened = open_sheets(surface_, fans(), copies, to, options_.gap * surface_.edge, options_.opening * surface_.edge, positions_); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;
   BoundedMotion bounded;

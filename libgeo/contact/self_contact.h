@@ -49,7 +49,6 @@ class SelfContact {
   std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                                    std::span<const std::uint32_t> together, const Copies& copies, State& state);
   const VertexFans& fans();
-  std::size_t open(const std::vector<Vec3>& targets, const Copies& copies);
 
   ContactOptions options_;
   ContactSurface surface_;

@@ -41,14 +41,8 @@ void MutualContact::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
   }
 }
 
-double MutualContact::stiffest(const std::vector<double>& inverse_mass) const {
-  std::vector<double> sum(inverse_mass.size(), 0);
-  for (const Row& row : rows_) {
-    double all = 0;
-    for (const auto& e : row.apart) all += std::abs(e.weight);
-    for (const auto& e : row.apart) sum[e.node] += row.stiffness * std::abs(e.weight) * all * inverse_mass[e.node];
-  }
-  return sum.empty() ? 0 : *std::max_element(sum.begin(), sum.end());
+void MutualContact::each_stiffness(const VisitStiffness& visit) const {
+  for (const Row& row : rows_) visit(row.apart, row.stiffness);
 }
 
 void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {

@@ -109,17 +109,8 @@ void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
       for (const auto& e : rows_[r].weights) out[e.node] += e.weight * part[r];
 }
 
-// The largest sum of absolute values in a row of M⁻¹ Σ k w wᵀ.
-double Obstacle::stiffest(const std::vector<double>& inverse_mass) const {
-  std::vector<double> sum(inverse_mass.size(), 0);
-  for (const Row& row : rows_) {
-    double all = 0;
-    for (const auto& e : row.weights) all += std::abs(e.weight);
-    for (const auto& e : row.weights) sum[e.node] += row.stiffness * std::abs(e.weight) * all;
-  }
-  double most = 0;
-  for (std::size_t i = 0; i < sum.size(); ++i) most = std::max(most, sum[i] * inverse_mass[i]);
-  return most;
+void Obstacle::each_stiffness(const VisitStiffness& visit) const {
+  for (const Row& row : rows_) visit(row.weights, row.stiffness);
 }
 
 void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {

@@ -32,7 +32,7 @@ class Obstacle : public Potential {
   void each_row(const VisitRow& visit) const override;
   void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
   void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  double stiffest(const std::vector<double>& inverse_mass) const override;
+  void each_stiffness(const VisitStiffness& visit) const override;
   /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction can.
   void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
 

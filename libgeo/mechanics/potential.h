@@ -46,9 +46,13 @@ class Potential {
   /// Adds −∂E/∂u, N.
   virtual void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) = 0;
 
-  /// Of the explicit step, where nodes that are held have no inverse mass. No less than the largest eigenvalue of M⁻¹ ∂²E/∂u²,
-  /// 1/s²; 0: it does not act there.
-  virtual double stiffest(const std::vector<double>& /*inverse_mass*/) const { return 0; }
+  /// A row's nodes, and the most that its curvature may come to, N/m.
+  using VisitStiffness = std::function<void(std::span<const NodeWeight>, double stiffness)>;
+  /// Rows that act in the explicit step.
+  virtual void each_stiffness(const VisitStiffness&) const {}
+  /// Of these, where nodes that are held have no inverse mass: the largest sum of absolute values in a row of M⁻¹ Σ k w wᵀ, no less
+  /// than the largest eigenvalue of M⁻¹ ∂²E/∂u², 1/s²; 0: there are none.
+  double stiffest(const std::vector<double>& inverse_mass) const;
   /// Changes velocities by what it does in h seconds from displacements u on.
   virtual void impulse(const std::vector<Vec3>&, double /*h*/, const std::vector<double>& /*inverse_mass*/, std::vector<Vec3>& /*velocity*/) {}
 };

@@ -1,6 +1,7 @@
 #include "simulation/collide.h"
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 
 namespace geo {
 
@@ -22,9 +23,18 @@ void Collisions::begin(const Body& body, const Solid& solid, const State& motion
   if (Potential* touch = surface_->begin(body, solid, motion, dt, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
 }
 
-Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion) {
+Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion, double& seconds) {
   if (!surface_) return {};
-  return [&](const Complex& grown, const CrackDelta& crack) { surface_->expect(body, solid, motion, grown, crack); };
+  return [&](const Complex& grown, const CrackDelta& crack) {
+    Stopwatch watch;
+    try {
+      surface_->expect(body, solid, motion, grown, crack);
+    } catch (...) {
+      seconds += watch.lap();
+      throw;
+    }
+    seconds += watch.lap();
+  };
 }
 
 void Collisions::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {

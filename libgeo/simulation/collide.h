@@ -17,8 +17,8 @@ class Collisions {
 
   /// Before a step: puts what the surface does to itself into the environment, where the step is implicit.
   void begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment);
-  /// What has to agree to a crack step; empty: nothing.
-  Agreement agreement(const Body& body, const Solid& solid, const State& motion);
+  /// What has to agree to a crack step; empty: nothing. `seconds`: what it takes is added.
+  Agreement agreement(const Body& body, const Solid& solid, const State& motion, double& seconds);
   /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
   void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion, ContactWork& work);

@@ -110,7 +110,7 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
   CrackOptions options;
   options.seed = scene_.seed;
   try {
-    adopt(split(body_, front, next, options, &work.split, collisions_ ? collisions_->agreement(body_, solid_, state_.motion) : Agreement()), work);
+    adopt(split(body_, front, next, options, &work.split, collisions_ ? collisions_->agreement(body_, solid_, state_.motion, work.contact_seconds) : Agreement()), work);
     return true;
   } catch (const GeometryError&) {
     ++work.refused;

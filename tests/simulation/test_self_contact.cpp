@@ -3,6 +3,7 @@
 
 #include "contact/crossing.h"
 #include "io/scene_file.h"
+#include "simulation/collide.h"
 #include "simulation/simulation.h"
 #include "surface/pieces.h"
 #include "surface/shapes.h"
@@ -59,6 +60,18 @@ TEST_CASE("a block that is cut while it is pressed together and dropped has no c
   CHECK(taken_up.surface().vertices == sim.surface().vertices);
   taken_up.advance_frame(), sim.advance_frame();
   CHECK(taken_up.surface().vertices == sim.surface().vertices);
+}
+
+TEST_CASE("what a crack step needs of contact before it is made counts as contact's time") {
+  const Scene scene = parse_scene(scene_text("2e4", "0.021"), "s.toml");
+  Body body = Simulation(scene, make_block({1, 1, 1}, 0.25)).body();
+  const Solid solid(body, scene.material);
+  const State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
+  Collisions collisions(scene, body, solid, {});
+  double seconds = 0;
+  auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 1.3, 0.53}}, false, 1);
+  split(body, front, {{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}}, {}, nullptr, collisions.agreement(body, solid, state, seconds));
+  CHECK(seconds > 0);
 }
 
 TEST_CASE("nor with the time step doubled or halved, nor in softer or stiffer material", "[campaign]") {

@@ -38,7 +38,7 @@ Kind kind_of_output(const std::string& path) {
 
 struct Wishes {
   std::vector<std::string> paths;
-  std::string size, camera = "30,22", cutaway, color = "patch", up = "z", skin = "#e0803a", before, steps;
+  std::string size, camera = "30,22", cutaway, color = "patch", up = "auto", skin = "#e0803a", before, steps;
   bool no_ground = false, hollow = false;
   int columns = 4, frames = 0, samples = 3, node = -1;
   double zoom = 1, rate = 24, megabytes = 20;
@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
   t.option("--size", w.size, "Width x height in pixels (960x720; 480x360 on a sheet and animated)");
   t.option("--camera", w.camera, "Azimuth, elevation in degrees");
   t.option("--zoom", w.zoom, "1 shows everything; above it the node of --node is in the middle");
-  t.choice("--up", w.up, {"z", "y"}, "Which axis of the model is up; y in most OBJ and glTF files");
+  t.choice("--up", w.up, {"auto", "z", "y"}, "Which axis of the model is up, y in most OBJ and glTF files; auto: of a run what gravity says, else z");
   t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
   t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
   t.choice("--color", w.color, {"patch", "piece", "plain"}, "Colours: of skin and the two sheets of cracks, of pieces, or one");
@@ -202,14 +202,14 @@ int main(int argc, char** argv) {
       throw tool::UsageError("--size '" + w.size + "' is not WIDTHxHEIGHT");
     view::Camera eye;
     const auto angles = numbers(w.camera, 2, 2, "--camera '" + w.camera + "' is not AZIMUTH,ELEVATION");
-    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = w.zoom, eye.y_up = w.up == "y";
+    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = w.zoom, eye.y_up = w.up == "y" || (w.up == "auto" && folder && view::find_run(w.paths[0]).y_up);
     const std::string target = t.target(true);
     const auto progress = t.progress();
     std::optional<geo::Body> before;
     if (!w.before.empty()) before = geo::read_body(w.before), look.before = &*before;
 
     if (kind == Kind::html) {
-      const view::PageOptions page_options{w.megabytes, look.before, w.rate, w.up == "y"};
+      const view::PageOptions page_options{w.megabytes, look.before, w.rate, eye.y_up};
       const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress) : view::page_of(view::read_subject(w.paths), page_options, progress);
       geo::report(progress, "done", 1, 1);
       geo::write_all(target, [&](std::ostream& out) { out << page.html; });

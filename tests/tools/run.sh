@@ -440,6 +440,8 @@ stops)
     setsid $line >/dev/null 2>/dev/null </dev/null &
     pid=$!
     sleep 0.03
+    # In the background Ctrl-C is not heard before the tool waits for it (bit 1 of what it blocks).
+    for i in $(seq 100); do grep -qs '^SigBlk:.*[2367abef]$' /proc/$pid/status || [ ! -d /proc/$pid ] && break || sleep 0.01; done
     kill -INT $pid 2>/dev/null
     wait $pid
     status=$?
@@ -508,6 +510,8 @@ simulation)
   # Up is where gravity comes from.
   kerf-sim -q s.toml -o upright --frames 1 --set gravity=[0,-9.81,0] && kerf-sim -q s.toml -o aslant --frames 1 --set gravity=[0,-9.81,1] || fail "gravity along y"
   grep -q 'upAxis = "Y"' upright/run.usda && grep -q 'upAxis = "Z"' aslant/run.usda && grep -q 'upAxis = "Z"' whole/run.usda || fail "which axis is up in USD"
+  for up in auto y z; do kerf-view upright --up $up --size 80x60 --samples 1 -o up-$up.png || fail "kerf-view --up $up"; done
+  cmp up-auto.png up-y.png && ! cmp -s up-auto.png up-z.png || fail "kerf-view does not stand a run up"
   # A run's folder is its own: nothing goes beside other files, or in place of one.
   mkdir empty others && touch empty/.hidden others/notes.txt
   expect 73 "others: holds other files, as 'notes.txt'; give another folder, or empty it" kerf-sim s.toml -o others

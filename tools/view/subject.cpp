@@ -109,6 +109,10 @@ Run find_run(const std::string& folder) {
   run.nodes.resize(run.nodes.size() < run.frames.size() ? 0 : run.frames.size());  // a run that was stopped may be one ahead
   if (run.frames.empty()) throw geo::InputError(folder + ": holds no frames; give the folder that kerf-sim wrote");
   if (fs::exists(top / "checkpoint.kerf")) run.body = (top / "checkpoint.kerf").string();
+  if (const fs::path usd = top / "run.usda"; fs::exists(usd)) {
+    const geo::Input input(usd.string());
+    run.y_up = input.text(0, std::min<std::uint64_t>(input.size(), 256)).find("upAxis = \"Y\"") != std::string::npos;
+  }
   run.title = fs::absolute(top).lexically_normal().filename().string();
   if (run.title.empty()) run.title = fs::absolute(top).lexically_normal().parent_path().filename().string();
   return run;

@@ -34,6 +34,7 @@ struct Run {
   std::vector<std::string> frames;  ///< paths, in order
   std::vector<std::string> nodes;   ///< paths of each frame's nodes, or empty
   std::string body;                 ///< the checkpoint's path, or empty
+  bool y_up = false;                ///< as its run.usda says
 };
 /// Throws InputError when the folder holds no frames.
 Run find_run(const std::string& folder);

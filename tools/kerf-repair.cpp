@@ -26,14 +26,6 @@ std::string in_words(const geo::Repairs& r) {
   return text.empty() ? "nothing to mend" : text;
 }
 
-geo::Repairs mended(geo::TriangleMesh& mesh, const Wishes& w, double diagonal) {
-  try {
-    return geo::repair(mesh, w.weld * diagonal, w.smooth);
-  } catch (const geo::InputError& e) {
-    throw geo::InputError(w.model + ": " + e.what());
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -54,7 +46,7 @@ int main(int argc, char** argv) {
     geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
     if (mesh.two_sided()) throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     const double diagonal = geo::bounding_box(mesh).diagonal();
-    const geo::Repairs done = mended(mesh, w, diagonal);
+    const geo::Repairs done = geo::repair(mesh, w.weld * diagonal, w.smooth);
     if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
     try {
       if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);

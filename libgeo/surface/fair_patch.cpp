@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 
-#include "base/error.h"
 #include "surface/polygon.h"
 
 namespace geo {
@@ -15,7 +15,7 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the lesser first
-constexpr std::size_t most_triangles = 1'000'000;
+constexpr double most_triangles = 1e6;
 
 // The greatest cosine of a triangle's angles: of its least angle; 1 where it has no area.
 double sharpness(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -42,6 +42,15 @@ class Patch {
     }
   }
   void fair();
+  /// There are too many triangles, or, as their areas tell, will be.
+  bool too_fine() const {
+    double count = 0;
+    for (const auto& [a, b, c] : triangles_) {
+      const double size = (size_[a] + size_[b] + size_[c]) / 3;  // of equilateral ones
+      count += std::max(1.0, 2 / std::numbers::sqrt3 * (at_[b] - at_[a]).cross(at_[c] - at_[a]).norm() / (size * size));
+    }
+    return !(count <= most_triangles);
+  }
 
   FairPatch result() const { return {{at_.begin() + static_cast<std::ptrdiff_t>(rim_), at_.end()}, between_, triangles_}; }
 
@@ -123,7 +132,7 @@ bool Patch::divide() {
     triangles_[t] = {a, b, m};
     triangles_.insert(triangles_.end(), {{b, c, m}, {c, a, m}});
     link(t), link(static_cast<std::uint32_t>(triangles_.size()) - 2), link(static_cast<std::uint32_t>(triangles_.size()) - 1);
-    if (triangles_.size() > most_triangles) throw InputError("closing a hole as finely as its rim would take more than a million triangles; close it by those between its corners");
+    if (double(triangles_.size()) > most_triangles) return false;
     divided = true;
   }
   return divided;
@@ -169,7 +178,9 @@ FairPatch fair_patch(const std::vector<Vec3>& rim, const std::vector<std::vector
                      const std::function<bool(std::uint32_t, std::uint32_t)>& joined) {
   Patch patch(rim, beyond, joined);
   for (int round = 0; round < 2; ++round) {  // what was flat has become wider
+    if (patch.too_fine()) return {};
     patch.refine();
+    if (patch.too_fine()) return {};
     patch.fair();
   }
   return patch.result();

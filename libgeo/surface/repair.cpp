@@ -259,6 +259,7 @@ class SmoothPatches {
   bool fits(const std::vector<std::uint32_t>& polygon, const FairPatch& patch) {
     const auto n = static_cast<std::uint32_t>(polygon.size()), rows = static_cast<std::uint32_t>(mesh_.triangles.size());
     const auto vertices = mesh_.vertices.size();
+    if (patch.triangles.empty()) return false;
     for (const auto& t : patch.triangles)
       for (int k = 0; k < 3; ++k)
         if (const auto i = t[k], j = t[(k + 1) % 3]; i < n && j < n && (i + 1) % n != j && (j + 1) % n != i && edges_.count(std::minmax(polygon[i], polygon[j]))) return false;

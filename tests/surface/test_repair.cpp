@@ -211,3 +211,22 @@ TEST_CASE("anything in gives an end") {
       for (const auto v : t) REQUIRE(v < mesh.vertices.size());
   }
 }
+
+TEST_CASE("a hole whose smooth patch would have millions of triangles is closed flat") {
+  // A drum without its top, of a rim with very many corners.
+  TriangleMesh mesh;
+  constexpr std::uint32_t n = 4000;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / n;
+    for (const double z : {0.0, 1.0}) mesh.vertices.push_back({std::cos(angle), std::sin(angle), z});
+  }
+  mesh.vertices.push_back(Vec3::Zero());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, a + 1}, {b, b + 1, a + 1}, {b, a, 2 * n}});
+  }
+  const Repairs done = repair(mesh, 0, true);
+  CHECK(done.holes == 1);
+  CHECK(done.smooth == 0);
+  CHECK(check_surface(mesh, false).first_problem == "");
+}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -16,6 +17,15 @@ std::vector<Mat3> matrices(const Columns<double>& columns, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     for (int c = 0; c < 3; ++c) all[i].col(c) = Eigen::Map<const Vec3>(&columns.column[c][4 * i]);
   return all;
+}
+
+// Where four points that stand side by side come from, if they did so there.
+std::optional<PointBlock::Source> whole_four(std::span<const PointBlock::Source> sources, std::size_t four) {
+  if (4 * four + 4 > sources.size()) return {};
+  const PointBlock::Source& from = sources[4 * four];
+  for (std::size_t k = 0; k < 4; ++k)
+    if (const auto& s = sources[4 * four + k]; s.row || s.block != from.block || s.point != from.point + k || from.point % 4 != 0) return {};
+  return from;
 }
 
 std::vector<PointBlock::Source> sources_of(std::span<const ShapeRow> rows) {
@@ -67,32 +77,58 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
   }
   rounded.assign(gradient.begin(), gradient.end());
   rounded.push_back(0);  // entries are read by fours
-  packed.assign(4 * (to.size() + 1), 0), unit.assign((points.size() + 7) / 8 * 8, 0);  // entries are read by twos
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (const Source& s = sources[i]; s.row)
-      pack(i);
+  unit.assign((points.size() + 7) / 8 * 8, 0), four_first.assign(1, 0);
+  for (std::size_t four = 0; 4 * four < unit.size(); ++four) {
+    if (const auto from = whole_four(sources, four))
+      copy_packed(four, *from, place[from->block]);
     else
-      std::copy_n(&s.block->packed[4 * s.block->first[s.point]], 4 * (first[i + 1] - first[i]), &packed[4 * first[i]]), unit[i] = s.block->unit[s.point];
-    for (auto q = first[i]; q < first[i + 1]; ++q) packed[4 * q + 3] = static_cast<std::int16_t>(to[q]);
-    box.add(points[i].position);
+      pack(four);
+    four_first.push_back(static_cast<std::uint32_t>(four_to.size()));
   }
+  for (const MaterialPoint& p : points) box.add(p.position);
 }
 
 // What rounding leaves of one entry is the next one's, so that a field that is constant has no gradient.
-void PointBlock::pack(std::size_t point) {
+void PointBlock::pack(std::size_t four) {
   constexpr double full = 32766;
-  double most = 0;
-  for (std::size_t k = 3 * first[point]; k < 3 * first[point + 1]; ++k) most = std::max(most, std::abs(gradient[k]));
-  if (!(most > 0)) return;
-  unit[point] = float(most / full);
-  Vec3 sum = Vec3::Zero(), taken = Vec3::Zero();
-  for (std::size_t q = first[point]; q < first[point + 1]; ++q)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto k = static_cast<Eigen::Index>(c);
-      sum[k] += full / most * gradient[3 * q + c];
-      const double whole = std::nearbyint(sum[k]) - taken[k];
-      packed[4 * q + c] = static_cast<std::int16_t>(whole), taken[k] += whole;
+  struct Row {
+    std::uint32_t at = 0, end = 0;
+    double scale = 0;
+    Vec3 sum = Vec3::Zero(), taken = Vec3::Zero();
+  };
+  std::array<Row, 4> rows;
+  for (std::size_t k = 0; k < 4 && 4 * four + k < points.size(); ++k) {
+    const std::size_t point = 4 * four + k;
+    double most = 0;
+    for (std::size_t q = 3 * first[point]; q < 3 * first[point + 1]; ++q) most = std::max(most, std::abs(gradient[q]));
+    if (most > 0) rows[k] = {first[point], first[point + 1], full / most}, unit[point] = float(most / full);
+  }
+  constexpr std::uint32_t none = 1 << 16;
+  const auto next = [&](const Row& r) { return r.at < r.end ? std::uint32_t(to[r.at]) : none; };
+  for (std::uint32_t node; (node = std::min({next(rows[0]), next(rows[1]), next(rows[2]), next(rows[3])})) != none;) {
+    const std::size_t begin = 12 * (four_to.size() / 2 * 2) + 4 * (four_to.size() % 2);
+    four_to.push_back(static_cast<std::uint16_t>(node)), packed.resize(12 * ((four_to.size() + 1) / 2 * 2), 0);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Row& r = rows[k];
+      if (next(r) != node) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto i = static_cast<Eigen::Index>(c);
+        r.sum[i] += r.scale * gradient[3 * r.at + c];
+        const double whole = std::nearbyint(r.sum[i]) - r.taken[i];
+        packed[begin + 8 * c + k] = static_cast<std::int16_t>(whole), r.taken[i] += whole;
+      }
+      ++r.at;
     }
+  }
+  if (four_to.size() % 2) four_to.push_back(four_to.back());
+}
+
+void PointBlock::copy_packed(std::size_t four, const Source& from, const std::vector<std::uint16_t>& to_here) {
+  const PointBlock& b = *from.block;
+  const auto begin = b.four_first[from.point / 4], end = b.four_first[from.point / 4 + 1];
+  for (auto k = begin; k < end; ++k) four_to.push_back(to_here[b.four_to[k]]);
+  packed.insert(packed.end(), b.packed.begin() + 12 * std::ptrdiff_t(begin), b.packed.begin() + 12 * std::ptrdiff_t(end));
+  std::copy_n(&b.unit[from.point], 4, &unit[4 * four]);
 }
 
 ShapeRow PointBlock::row(std::size_t point) const {
@@ -108,7 +144,7 @@ bool operator==(const PointBlock& a, const PointBlock& b) {
   const auto same = [](const MaterialPoint& p, const MaterialPoint& q) {
     return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.reach == q.reach && p.measured == q.measured;
   };
-  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && a.packed == b.packed && a.unit == b.unit && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
+  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && a.four_first == b.four_first && a.four_to == b.four_to && a.packed == b.packed && a.unit == b.unit && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }
 
 void MaterialPoints::connect(std::size_t nodes) {

@@ -31,8 +31,13 @@ struct PointBlock {
   std::vector<std::uint16_t> to;     ///< entries: places in `nodes`
   std::vector<double> gradient;      ///< three an entry
   std::vector<float> rounded;        ///< the same
-  std::vector<std::int16_t> packed;  ///< the same, in multiples of the point's unit, such that they still sum to zero, and `to`
-  std::vector<float> unit;           ///< per point, a multiple of eight of them
+  // The same for products, four points side by side: places of their nodes in `nodes`, as all of them have them, an even number; of two of
+  // these 24 numbers, x of the first for four points, x of the second, then y, then z, in multiples of the point's unit, such that they
+  // still sum to zero.
+  std::vector<std::uint32_t> four_first;  ///< per four points: the first of their nodes; one more at the end
+  std::vector<std::uint16_t> four_to;
+  std::vector<std::int16_t> packed;
+  std::vector<float> unit;  ///< per point, a multiple of eight of them
   Box3 box;                          ///< of the points
 
   /// Where a point's row comes from: its own, or that of a point of another block.
@@ -50,7 +55,8 @@ struct PointBlock {
   friend bool operator==(const PointBlock& a, const PointBlock& b);
 
  private:
-  void pack(std::size_t point);
+  void pack(std::size_t four);
+  void copy_packed(std::size_t four, const Source& from, const std::vector<std::uint16_t>& to_here);
 };
 
 /// What a cut did to points.

@@ -13,116 +13,105 @@
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 
-// Entries of a point are taken in turn by two sums, whatever the vectors' width. Shape gradients are read as the upper halves of 32 bits.
+// Of this many points what is between the three steps stays at hand: number 3 c + r of all of them, then the next.
+constexpr std::size_t batch = 32;
+
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE void gradients(const PointBlock& block, std::size_t from, std::size_t end_point, const float* values, float* const* out) {
-  for (std::size_t i = from; i < end_point; ++i)
+HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT values, float* HWY_RESTRICT out) {
+  for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) {
         float sums[2] = {0, 0};
-        for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q)
-          sums[(q - block.first[i]) % 2] += values[4 * std::size_t(block.to[q]) + r] * (65536.0f * block.packed[4 * q + c]);
-        out[c][4 * (i - from) + r] = sums[0] + sums[1];
+        for (std::size_t k = block.four_first[four]; k < block.four_first[four + 1]; ++k)
+          sums[k % 2] += values[4 * std::size_t(block.four_to[k]) + r] * float(block.packed[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]);
+        out[batch * (3 * c + r) + i] = sums[0] + sums[1];
       }
 }
-HWY_INLINE void divergence(const PointBlock& block, std::size_t from, std::size_t end_point, const float* const* stress, float* out) {
-  for (std::size_t i = from; i < end_point; ++i)
-    for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q)
-      for (std::size_t r = 0; r < 3; ++r) {
-        const auto part = [&](std::size_t c) { return stress[c][4 * (i - from) + r] * (65536.0f * block.packed[4 * q + c]); };
-        out[4 * std::size_t(block.to[q]) + r] += part(0) + part(1) + part(2);
-      }
+HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT stress, float* HWY_RESTRICT out) {
+  for (std::size_t k = block.four_first[four]; k < block.four_first[four + 1]; ++k)
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto of = [&](std::size_t i) {
+        const auto part = [&](std::size_t c) { return stress[batch * (3 * c + r) + i] * float(block.packed[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]); };
+        return part(0) + part(1) + part(2);
+      };
+      out[4 * std::size_t(block.four_to[k]) + r] += (of(0) + of(2)) + (of(1) + of(3));
+    }
 }
 #else
-// One or two entries side by side, the coordinates of each in four lanes.
+// One or two nodes side by side, in each lane of four a point. Nodes are taken in turn by two sums, whatever the vectors' width.
+using Eight = hn::CappedTag<float, 8>;
+using Four = hn::CappedTag<float, 4>;
+
 template <class Wide>
-struct Spread {
-  using Bytes = hn::Repartition<std::uint8_t, Wide>;
-  hn::Vec<Bytes> at[3];
-  HWY_INLINE Spread() {
-    HWY_ALIGN std::uint8_t order[32];
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t k = 0; k < 8; ++k) {
-        order[4 * k] = order[4 * k + 1] = 0x80;
-        for (std::size_t b = 0; b < 2; ++b) order[4 * k + 2 + b] = static_cast<std::uint8_t>(8 * (k / 4) + 2 * c + b);
-      }
-      at[c] = hn::LoadU(Bytes(), order);
-    }
-  }
-  HWY_INLINE hn::Vec<Bytes> entries(const PointBlock& block, std::size_t q) const {
-    return hn::BitCast(Bytes(), hn::LoadDup128(hn::Repartition<std::int16_t, Wide>(), block.packed.data() + 4 * q));
-  }
-  /// Coordinate c of entries, times 2¹⁶.
-  HWY_INLINE hn::Vec<Wide> operator()(hn::Vec<Bytes> entries, std::size_t c) const {
-    return hn::ConvertTo(Wide(), hn::BitCast(hn::Rebind<std::int32_t, Wide>(), hn::TableLookupBytesOr0(entries, at[c])));
-  }
-};
+HWY_INLINE hn::Vec<Wide> shape(const std::int16_t* HWY_RESTRICT at) {
+  return hn::ConvertTo(Wide(), hn::PromoteTo(hn::Rebind<std::int32_t, Wide>(), hn::LoadU(hn::Rebind<std::int16_t, Wide>(), at)));
+}
 
-// Of the node's numbers, which are by fours, for entry q.
-HWY_INLINE std::size_t place_of(const PointBlock& block, std::size_t q) { return 4 * std::size_t(static_cast<std::uint16_t>(block.packed[4 * q + 3])); }
-
-template <class Wide = hn::CappedTag<float, 8>>
-HWY_INLINE void gradients(const PointBlock& block, std::size_t from, std::size_t end_point, const float* values, float* const* out) {
-  constexpr std::size_t beside = hn::MaxLanes(Wide()) / 4;
-  const Wide d;
-  const hn::CappedTag<float, 4> d4;
-  const Spread<Wide> spread;
-  for (std::size_t i = from; i < end_point; ++i) {
-    hn::Vec<Wide> sum[2 / beside][3];
-    for (auto& s : sum)
-      for (auto& x : s) x = hn::Zero(d);
-    const std::size_t end = block.first[i + 1];
-    const auto add = [&](hn::Vec<Wide>* to_sum, std::size_t q, hn::Vec<Wide> u) HWY_ATTR {
-      const auto g = spread.entries(block, q);
-      for (std::size_t c = 0; c < 3; ++c) to_sum[c] = hn::Add(to_sum[c], hn::Mul(u, spread(g, c)));
-    };
-    std::size_t q = block.first[i];
-    if constexpr (beside == 2) {
-      for (; q + 2 <= end; q += 2) add(sum[0], q, hn::Combine(d, hn::LoadU(d4, values + place_of(block, q + 1)), hn::LoadU(d4, values + place_of(block, q))));
-      if (q < end) add(sum[0], q, hn::ZeroExtendVector(d, hn::LoadU(d4, values + place_of(block, q))));
-      for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(hn::LowerHalf(d4, sum[0][c]), hn::UpperHalf(d4, sum[0][c])), d4, out[c] + 4 * (i - from));
-    } else {
-      for (; q + 2 <= end; q += 2) add(sum[0], q, hn::LoadU(d, values + place_of(block, q))), add(sum[1], q + 1, hn::LoadU(d, values + place_of(block, q + 1)));
-      if (q < end) add(sum[0], q, hn::LoadU(d, values + place_of(block, q)));
-      for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(sum[0][c], sum[1][c]), d, out[c] + 4 * (i - from));
-    }
+template <class Wide>
+HWY_INLINE void add_node(hn::Vec<Wide> u, const std::int16_t* HWY_RESTRICT at, hn::Vec<Wide>* HWY_RESTRICT sum) {
+  const hn::Vec<Wide> of[3] = {hn::Broadcast<0>(u), hn::Broadcast<1>(u), hn::Broadcast<2>(u)};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto g = shape<Wide>(at + 8 * c);
+    for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] = hn::Add(sum[3 * c + r], hn::Mul(of[r], g));
   }
 }
 
-template <class Wide = hn::CappedTag<float, 8>>
-HWY_INLINE void divergence(const PointBlock& block, std::size_t from, std::size_t end_point, const float* const* stress, float* out) {
+template <class Wide = Eight>
+HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT values, float* HWY_RESTRICT out) {
   constexpr std::size_t beside = hn::MaxLanes(Wide()) / 4;
   const Wide d;
-  const hn::CappedTag<float, 4> d4;
-  const Spread<Wide> spread;
-  for (std::size_t i = from; i < end_point; ++i) {
-    hn::Vec<Wide> s[3];
-    for (std::size_t c = 0; c < 3; ++c) s[c] = hn::LoadDup128(d, stress[c] + 4 * (i - from));
-    const auto part = [&](std::size_t q) HWY_ATTR {
-      const auto g = spread.entries(block, q);
-      return hn::Add(hn::Add(hn::Mul(s[0], spread(g, 0)), hn::Mul(s[1], spread(g, 1))), hn::Mul(s[2], spread(g, 2)));
-    };
-    const auto add = [&](std::size_t q, hn::Vec<decltype(d4)> f) HWY_ATTR {
-      float* const at = out + place_of(block, q);
-      hn::StoreU(hn::Add(hn::LoadU(d4, at), f), d4, at);
-    };
-    std::size_t q = block.first[i];
-    const std::size_t end = block.first[i + 1];
+  const Four d4;
+  const std::uint16_t* HWY_RESTRICT to = block.four_to.data();
+  const std::int16_t* HWY_RESTRICT packed = block.packed.data();
+  const std::size_t begin = block.four_first[four], end = block.four_first[four + 1];
+  hn::Vec<Wide> sum[2 / beside][9];
+  for (auto& s : sum)
+    for (auto& x : s) x = hn::Zero(d);
+  if constexpr (beside == 2) {
+    for (std::size_t k = begin; k < end; k += 2)
+      add_node<Wide>(hn::Combine(d, hn::LoadU(d4, values + 4 * std::size_t(to[k + 1])), hn::LoadU(d4, values + 4 * std::size_t(to[k]))), packed + 12 * k, sum[0]);
+    for (std::size_t n = 0; n < 9; ++n) hn::StoreU(hn::Add(hn::LowerHalf(d4, sum[0][n]), hn::UpperHalf(d4, sum[0][n])), d4, out + batch * n);
+  } else {
+    for (std::size_t k = begin; k < end; k += 2)
+      for (std::size_t h = 0; h < 2; ++h) add_node<Wide>(hn::LoadU(d, values + 4 * std::size_t(to[k + h])), packed + 12 * k + 4 * h, sum[h]);
+    for (std::size_t n = 0; n < 9; ++n) hn::StoreU(hn::Add(sum[0][n], sum[1][n]), d, out + batch * n);
+  }
+}
+
+template <class Wide = Eight>
+HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT stress, float* HWY_RESTRICT out) {
+  constexpr std::size_t beside = hn::MaxLanes(Wide()) / 4;
+  const Wide d;
+  const Four d4;
+  const std::uint16_t* HWY_RESTRICT to = block.four_to.data();
+  const std::int16_t* HWY_RESTRICT packed = block.packed.data();
+  hn::Vec<Wide> s[9];
+  for (std::size_t n = 0; n < 9; ++n) s[n] = hn::LoadDup128(d, stress + batch * n);
+  // Coordinates of the force, each the sum over four points.
+  const auto force = [&](const std::int16_t* at) HWY_ATTR {
+    const hn::Vec<Wide> g[3] = {shape<Wide>(at), shape<Wide>(at + 8), shape<Wide>(at + 16)};
+    const auto of = [&](std::size_t r) HWY_ATTR { return hn::Add(hn::Add(hn::Mul(s[r], g[0]), hn::Mul(s[3 + r], g[1])), hn::Mul(s[6 + r], g[2])); };
+    const auto x = of(0), y = of(1), z = of(2), zero = hn::Zero(d);
+    const auto xz = hn::Add(hn::InterleaveLower(d, x, z), hn::InterleaveUpper(d, x, z)), y0 = hn::Add(hn::InterleaveLower(d, y, zero), hn::InterleaveUpper(d, y, zero));
+    return hn::Add(hn::InterleaveLower(d, xz, y0), hn::InterleaveUpper(d, xz, y0));
+  };
+  const auto add = [&](std::size_t k, hn::Vec<Four> f) HWY_ATTR {
+    float* const at = out + 4 * std::size_t(to[k]);
+    hn::StoreU(hn::Add(hn::LoadU(d4, at), f), d4, at);
+  };
+  for (std::size_t k = block.four_first[four]; k < block.four_first[four + 1]; k += 2) {
     if constexpr (beside == 2) {
-      for (; q + 2 <= end; q += 2) {
-        const auto f = part(q);
-        add(q, hn::LowerHalf(d4, f)), add(q + 1, hn::UpperHalf(d4, f));
-      }
-      if (q < end) add(q, hn::LowerHalf(d4, part(q)));
+      const auto f = force(packed + 12 * k);
+      add(k, hn::LowerHalf(d4, f)), add(k + 1, hn::UpperHalf(d4, f));
     } else {
-      for (; q < end; ++q) add(q, part(q));
+      add(k, force(packed + 12 * k)), add(k + 1, force(packed + 12 * k + 4));
     }
   }
 }
 #endif
 
 // Gradients of points from `first` on, in multiples of their unit, become the stresses that belong to them, times it.
-HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes, std::size_t first, std::size_t count, float* const* gradient) {
+HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes, std::size_t first, std::size_t count, float* HWY_RESTRICT gradient) {
   const Lanes<float> d;
   const hn::Rebind<std::int32_t, Lanes<float>> d32;
   const hn::Rebind<std::int16_t, Lanes<float>> d16;
@@ -134,8 +123,11 @@ HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes
     Matrix<float> u, v;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) u.at[c][r] = frame(3 * c + r), v.at[c][r] = frame(9 + 3 * c + r);
-    const auto unit = hn::Mul(hn::LoadU(d, block.unit.data() + first + i), hn::Set(d, 1 / (65536 * StiffnessModes::full * StiffnessModes::full)));
-    Matrix<float> in = product(transposed(u), product(load(gradient, i), v)), out;
+    const auto unit = hn::Mul(hn::LoadU(d, block.unit.data() + first + i), hn::Set(d, 1 / (StiffnessModes::full * StiffnessModes::full)));
+    Matrix<float> at, out;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t r = 0; r < 3; ++r) at.at[c][r] = hn::LoadU(d, gradient + batch * (3 * c + r) + i);
+    Matrix<float> in = product(transposed(u), product(at, v));
     for (auto& column : in.at)
       for (auto& x : column) x = hn::Mul(x, unit);
     const V<float> a[3][3] = {{number(0), number(3), number(4)}, {number(3), number(1), number(5)}, {number(4), number(5), number(2)}};
@@ -148,20 +140,19 @@ HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes
     }
     for (auto& column : out.at)
       for (auto& x : column) x = hn::Mul(x, unit);
-    store(product(product(u, out), transposed(v)), gradient, i);
+    at = product(product(u, out), transposed(v));
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t r = 0; r < 3; ++r) hn::StoreU(at.at[c][r], d, gradient + batch * (3 * c + r) + i);
   }
 }
 
-// A few points at a time, so that what is between the three steps stays at hand.
-void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out) {
-  constexpr std::size_t batch = 16;
-  HWY_ALIGN float numbers[3][4 * batch] = {};
-  float* const columns[3] = {numbers[0], numbers[1], numbers[2]};
-  for (std::size_t i = 0; i < block.points.size(); i += batch) {
-    const std::size_t end = std::min(i + batch, block.points.size());
-    gradients(block, i, end, values, columns);
-    apply_modes(block, modes, i, std::min(batch, modes.points - i), columns);
-    divergence(block, i, end, columns, out);
+void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float* HWY_RESTRICT values, float* HWY_RESTRICT out) {
+  HWY_ALIGN float numbers[9 * batch];
+  for (std::size_t first = 0; first < modes.points; first += batch) {
+    const std::size_t count = std::min(batch, modes.points - first);
+    for (std::size_t i = 0; i < count; i += 4) gradients(block, (first + i) / 4, values, numbers + i);
+    apply_modes(block, modes, first, count, numbers);
+    for (std::size_t i = 0; i < count; i += 4) divergence(block, (first + i) / 4, numbers + i, out);
   }
 }
 

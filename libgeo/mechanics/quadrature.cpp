@@ -184,13 +184,19 @@ std::vector<std::size_t> QuadratureCells::groups(std::size_t most) const {
       return;
     }
     const std::uint64_t part = std::uint64_t(1) << 3 * (level - 1);
+    std::size_t gathered = begin;  // children from here on are not in a group yet
     for (std::uint64_t k = 0; k < 8; ++k) {
       std::size_t to = begin;
       for (std::size_t step = end - begin; step > 0; step /= 2)
         while (to + step <= end && code(to + step - 1) < corner + (k + 1) * part) to += step;
-      self(self, begin, to, corner + k * part, level - 1);
+      if (to - gathered > most) {
+        if (gathered < begin) first.push_back(gathered);
+        gathered = begin;
+        if (to - begin > most) self(self, begin, to, corner + k * part, level - 1), gathered = to;
+      }
       begin = to;
     }
+    if (gathered < end) first.push_back(gathered);
   };
   divide(divide, 0, cells_.size(), 0, root_);
   first.push_back(cells_.size());

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <memory>
 
@@ -28,6 +29,12 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
   if (threads() == 1 || count <= grain) return body(0, count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+}
+
+void at_once(const std::function<void()>& one, const std::function<void()>& other) {
+  if (threads() > 1) return tbb::parallel_invoke(one, other);
+  one();
+  other();
 }
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// Threads: one loop, deterministic for any number of them because each index writes only its own slots.
+// Threads: one loop and one pair, deterministic for any number of them because each index writes only its own slots.
 #pragma once
 
 #include <cstddef>
@@ -15,5 +15,8 @@ int threads();
 /// Calls body(begin, end) for disjoint ranges that cover [0, count), in any order and from any thread.
 /// `grain` is the smallest range worth a task. Exceptions thrown by `body` are passed on to the caller.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Calls both, in any order and from any thread. Exceptions are passed on as by parallel_for().
+void at_once(const std::function<void()>& one, const std::function<void()>& other);
 
 }  // namespace geo

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "mechanics/coarse_lanes.h"
+#include "mechanics/band_lanes.h"
 
 namespace geo {
 
@@ -15,7 +15,7 @@ BandFactor::BandFactor(const std::vector<std::size_t>& last) : last_(last), rang
     last_[g] = std::max(last_[g], g);
     if (g > ranges_.back()) last_[g] = std::max(last_[g], last_[g - 1]);
     if (last_[g] == g) ranges_.push_back(g + 1);
-    for (std::size_t k = 0; k < 6; ++k) begin_.push_back(size), size += 6 * (last_[g] + 1) - (6 * g + k);
+    begin_.push_back(size), stride_.push_back(length(g) + band_room), size += 6 * stride_.back();
   }
   values_.assign(size, 0);
 }
@@ -28,20 +28,29 @@ void BandFactor::factor() {
 
 void BandFactor::factor(std::size_t from, std::size_t to) {
   std::vector<float> diagonal;
-  for (std::size_t i = 6 * from; i < 6 * to; ++i) diagonal.push_back(*row(i));
+  for (std::size_t i = 6 * from; i < 6 * to; ++i) diagonal.push_back(at(i, i));
   for (std::size_t g = from; g < to; ++g) {
-    const std::size_t end = 6 * (last_[g] + 1);
-    for (std::size_t i = 6 * g; i < 6 * g + 6; ++i) {
-      for (std::size_t k = 6 * g; k < i; ++k) subtract(end - i, row(k)[i - k], row(k) + (i - k), row(i));
-      const float pivot = *row(i);
-      inverse_[i] = pivot > 1e-5f * diagonal[i - 6 * from] ? 1 / std::sqrt(pivot) : 0;
-      for (std::size_t j = i; j < end; ++j) row(i)[j - i] *= inverse_[i];
+    float* const rows = tile_row(g);
+    const std::size_t stride = stride_[g], n = length(g);
+    float* const inverse = &inverse_[6 * g];
+    // The diagonal tile, then what is right of it.
+    float upper[36] = {};
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = i; j < 6; ++j) {
+        upper[6 * i + j] = rows[i * stride + j];
+        for (std::size_t k = 0; k < i; ++k) upper[6 * i + j] -= upper[6 * k + i] * upper[6 * k + j];
+      }
+      const float pivot = upper[6 * i + i];
+      inverse[i] = pivot > 1e-5f * diagonal[6 * (g - from) + i] ? 1 / std::sqrt(pivot) : 0;
+      for (std::size_t j = i; j < 6; ++j) rows[i * stride + j] = upper[6 * i + j] *= inverse[i];
     }
-    for (std::size_t i = 6 * g + 6; i < end; ++i) {
-      float by[6];
-      const float* rows[6];
-      for (std::size_t k = 0; k < 6; ++k) rows[k] = row(6 * g + k) + (i - 6 * g - k), by[k] = *rows[k];
-      subtract_six(end - i, by, rows, row(i));
+    eliminate_six(n - 6, stride, upper, inverse, rows + 6);
+    for (std::size_t h = g + 1; h <= last_[g]; ++h) {
+      const float* const right = rows + 6 * (h - g);
+      float by[36];
+      for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t k = 0; k < 6; ++k) by[6 * i + k] = right[k * stride + i];
+      subtract_six(n - 6 * (h - g), by, stride, right, stride_[h], tile_row(h));
     }
   }
 }
@@ -53,12 +62,30 @@ void BandFactor::solve(float* x) const {
   });
 }
 
-void BandFactor::solve(std::size_t from, std::size_t to, float* x) const {
-  for (std::size_t i = 6 * from; i < 6 * to; ++i) {
-    x[i] *= inverse_[i];
-    if (x[i] != 0) subtract(6 * (last_[i / 6] + 1) - i - 1, x[i], row(i) + 1, x + i + 1);
+void BandFactor::solve(std::size_t from, std::size_t to, float* all) const {
+  // On its own, as vectors read and write behind its end.
+  std::vector<float> own(all + 6 * from, all + 6 * to);
+  own.resize(own.size() + band_room, 0.0f);
+  for (std::size_t g = from; g < to; ++g) {
+    const float *const rows = tile_row(g), *const inverse = &inverse_[6 * g];
+    float* const x = &own[6 * (g - from)];
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t k = 0; k < i; ++k) x[i] -= rows[k * stride_[g] + i] * x[k];
+      x[i] *= inverse[i];
+    }
+    subtract_rows(length(g) - 6, x, stride_[g], rows + 6, x + 6);
   }
-  for (std::size_t i = 6 * to; i-- > 6 * from;) x[i] = inverse_[i] * (x[i] - dot(6 * (last_[i / 6] + 1) - i - 1, row(i) + 1, x + i + 1));
+  for (std::size_t g = to; g-- > from;) {
+    const float *const rows = tile_row(g), *const inverse = &inverse_[6 * g];
+    float* const x = &own[6 * (g - from)];
+    float sums[6];
+    dot_rows(length(g) - 6, stride_[g], rows + 6, x + 6, sums);
+    for (std::size_t i = 6; i-- > 0;) {
+      for (std::size_t k = i + 1; k < 6; ++k) sums[i] += rows[i * stride_[g] + k] * x[k];
+      x[i] = inverse[i] * (x[i] - sums[i]);
+    }
+  }
+  std::copy(own.begin(), own.end() - band_room, all + 6 * from);
 }
 
 }  // namespace geo

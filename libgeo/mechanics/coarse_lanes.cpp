@@ -78,62 +78,18 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
   }
 }
 
-using Wide = hn::CappedTag<float, 16>;
-constexpr std::size_t wide = hn::MaxLanes(Wide());
-
-void Subtract(std::size_t n, float a, const float* y, float* x) {
-  const Wide d;
-  const auto by = hn::Set(d, a);
-  std::size_t i = 0;
-  for (; i + wide <= n; i += wide) hn::StoreU(hn::Sub(hn::LoadU(d, x + i), hn::Mul(by, hn::LoadU(d, y + i))), d, x + i);
-  for (; i < n; ++i) x[i] -= a * y[i];
-}
-
-void SubtractSix(std::size_t n, const float* a, const float* const* y, float* x) {
-  const Wide d;
-  std::size_t i = 0;
-  for (; i + wide <= n; i += wide) {
-    auto sum = hn::LoadU(d, x + i);
-    for (std::size_t k = 0; k < 6; ++k) sum = hn::Sub(sum, hn::Mul(hn::Set(d, a[k]), hn::LoadU(d, y[k] + i)));
-    hn::StoreU(sum, d, x + i);
-  }
-  for (; i < n; ++i)
-    for (std::size_t k = 0; k < 6; ++k) x[i] -= a[k] * y[k][i];
-}
-
-float Dot(std::size_t n, const float* x, const float* y) {
-  const Wide d;
-  HWY_ALIGN float sums[16] = {};
-  std::size_t i = 0;
-  for (std::size_t at = 0; at < 16; at += wide) {
-    auto sum = hn::Zero(d);
-    for (i = 0; i + 16 <= n; i += 16) sum = hn::Add(sum, hn::Mul(hn::LoadU(d, x + i + at), hn::LoadU(d, y + i + at)));
-    hn::StoreU(sum, d, sums + at);
-  }
-  for (i = n / 16 * 16; i < n; ++i) sums[i % 16] += x[i] * y[i];
-  for (std::size_t half = 8; half > 0; half /= 2)
-    for (std::size_t k = 0; k < half; ++k) sums[k] += sums[k + half];
-  return sums[0];
-}
-
 }  // namespace geo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(RigidStiffness);
-HWY_EXPORT(Subtract);
-HWY_EXPORT(SubtractSix);
-HWY_EXPORT(Dot);
 
 void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, float shear, float bulk, std::size_t stride,
                      std::span<const std::uint16_t> slot, const float* arm, float* out) {
   const std::size_t slots = slot.empty() ? 0 : std::size_t(*std::max_element(slot.begin(), slot.end())) + 1;
   HWY_DYNAMIC_DISPATCH(RigidStiffness)(block, modes, weight.data(), shear, bulk, stride, slot.data(), slots, arm, out);
 }
-void subtract(std::size_t n, float a, const float* y, float* x) { HWY_DYNAMIC_DISPATCH(Subtract)(n, a, y, x); }
-void subtract_six(std::size_t n, const float* a, const float* const* y, float* x) { HWY_DYNAMIC_DISPATCH(SubtractSix)(n, a, y, x); }
-float dot(std::size_t n, const float* x, const float* y) { return HWY_DYNAMIC_DISPATCH(Dot)(n, x, y); }
 
 }  // namespace geo
 #endif

@@ -1,4 +1,4 @@
-// The inner loops of the preconditioner's second level, in vectors.
+// What points have for the preconditioner's second level, in vectors.
 #pragma once
 
 #include <cstddef>
@@ -19,12 +19,5 @@ constexpr std::size_t tile = 48;
 /// block, from the middle of its slot's nodes, and 1, or all zero for a node that is held.
 void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, float shear, float bulk, std::size_t stride,
                      std::span<const std::uint16_t> slot, const float* arm, float* out);
-
-/// x −= a · y
-void subtract(std::size_t n, float a, const float* y, float* x);
-/// x −= Σ a[k] y[k] of six
-void subtract_six(std::size_t n, const float* a, const float* const* y, float* x);
-/// Σ x y, in an order that does not depend on the vectors' width.
-float dot(std::size_t n, const float* x, const float* y);
 
 }  // namespace geo

@@ -43,20 +43,24 @@ void ImplicitStep::precondition() {
   std::vector<Mat3> blocks = local_;
   rows_.read();
   rows_.add_blocks(blocks);
-  if (!coarse_) {
+  const auto make_coarse = [&] {
+    if (coarse_) return;
     std::vector<Vec3> at(n_);
     for (std::size_t i = 0; i < n_; ++i) at[i] = s_.position_[i] + u_[i];
     coarse_.emplace(s_.groups_, at, env_.fixed);
     coarse_->factor(s_.points_, modes_, weight_, shear, bulk, s_.point_stride(), blocks);
-  }
+  };
   if (s_.penalty_) {
+    make_coarse();  // which knows nothing of it
     std::vector<double> penalty(n_, 0);
     s_.penalty_->add_diagonal(s_.rows_, penalty);
     for (std::size_t i = 0; i < n_; ++i) blocks[i] += penalty[i] * Mat3::Identity();
   }
-  if (!patches_) {
-    patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
-  } else {
+  at_once(make_coarse, [&] {
+    if (!patches_) {
+      patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
+      return;
+    }
     std::vector<std::uint32_t> changed;
     for (std::size_t i = 0; i < n_; ++i)
       if (blocks[i] != blocks_[i])
@@ -64,7 +68,7 @@ void ImplicitStep::precondition() {
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     patches_->renew(changed, shear, bulk, blocks, env_.fixed);
-  }
+  });
   blocks_ = std::move(blocks);
 }
 
@@ -114,8 +118,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
   std::vector<Vec3> r(n_), z(n_), p(n_, Vec3::Zero()), hp(n_);
   std::vector<double> rz, next, curvature, along(parts_.count()), begun, far(parts_.count(), 0);
   const auto improve = [&](std::vector<double>& product) {
-    patches_->solve(r, parts_.patches());
-    coarse_->solve(r, parts_);
+    at_once([&] { coarse_->solve(r, parts_); }, [&] { patches_->solve(r, parts_.patches()); });
     parts_.sums(product, 0.0, [&](std::size_t i) { return r[i].dot(z[i] = patches_->at(i) + coarse_->at(i)); });
     most(z, left);
   };

@@ -151,7 +151,7 @@ std::vector<char> ImplicitStep::better_at_start(const std::vector<Vec3>& force, 
 bool ImplicitStep::run(StepReport& report) {
   const std::size_t parts = parts_.count();
   std::vector<Vec3> force(n_), elastic(n_), direction(n_), next(n_), trial;
-  std::vector<double> value, tried, moved(parts, 1e300), longest(parts, 0), left(parts, 0), step, more;
+  std::vector<double> value, tried, moved(parts, 1e300), longest(parts, 0), left(parts, 0), step, more, along;
   std::vector<char> active(parts, 1), wanted;
   const auto any = [](const std::vector<char>& of) { return std::find(of.begin(), of.end(), 1) != of.end(); };
   evaluate(u_, value, &force);
@@ -192,6 +192,7 @@ bool ImplicitStep::run(StepReport& report) {
     parts_.each_node([&](std::size_t i) { trial[i] = u_[i] + direction[i]; });
     for (int halvings = 0; any(wanted); ++halvings) {
       parts_.choose(wanted);
+      if (halvings == 0) parts_.sums(along, 0.0, [&](std::size_t i) { return force[i].dot(direction[i]); });
       if (halvings > 0) parts_.each_node([&](std::size_t i) { trial[i] = u_[i] + step[parts_.of(i)] * direction[i]; });
       evaluate(trial, tried, &next);
       for (std::size_t p = 0; p < parts; ++p) {
@@ -202,7 +203,9 @@ bool ImplicitStep::run(StepReport& report) {
           if (!(longest[p] * step[p] < accuracy_)) return false;
           active[p] = wanted[p] = 0;
         } else {
-          step[p] *= 0.5;
+          // Where a parabola through what is known of the way has its least; contact makes it steep.
+          const double rise = tried[p] - value[p] + step[p] * along[p], least = 0.5 * step[p] * along[p] / rise;
+          step[p] *= std::isfinite(least) ? std::clamp(least, 0.2, 0.5) : 0.5;
         }
       }
     }

@@ -33,6 +33,13 @@ std::span<std::uint16_t> RowStore::bits(std::size_t i) {
   return {reinterpret_cast<std::uint16_t*>(reinterpret_cast<std::uint32_t*>(at(place.offset)) + place.count), place.count};
 }
 
+void RowStore::set_bound(std::size_t i, std::size_t entry, std::uint16_t bound) {
+  auto& entry_bits = bits(i)[entry];
+  entry_bits = static_cast<std::uint16_t>((entry_bits & 0xc000) | bound);
+  auto& least = places_[i].least;
+  least = static_cast<std::uint16_t>((least & 0x8000) | std::min<std::uint16_t>(least & 0x7fff, bound));
+}
+
 std::uint32_t RowStore::words_for(std::size_t i, const RowView& row) {
   const std::size_t n = row.to.size();
   if (n > most_entries)

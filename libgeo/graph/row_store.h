@@ -62,6 +62,8 @@ class RowStore {
   }
   /// Only the lower bits and the edge bit may be changed: no entry may gain or lose its float.
   std::span<std::uint16_t> bits(std::size_t i);
+  /// Changes the lower 14 bits of an entry.
+  void set_bound(std::size_t i, std::size_t entry, std::uint16_t bound);
   /// Replaces a row; `row` must not lie in this store. Throws InputError when it has too many entries.
   void set(std::size_t i, const RowView& row);
   /// Rows lie in blocks, numbered from 0: of a row that is not empty.

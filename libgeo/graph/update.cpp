@@ -130,7 +130,8 @@ class RowBatch {
 
 GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved, std::span<const Corners> new_faces,
                          const ObstacleNear& obstacle_near, int k, const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides, const Progress& progress) {
+                         std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides, const Progress& progress,
+                         std::span<const NodeId> resized) {
   GraphUpdate result;
   RowSearch& search = own_search();
   const auto& x = nodes.position;
@@ -175,6 +176,11 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
       lost.push_back({m, NodeId(row.to[e])});
     }
   }
+  // A path along an edge of another length comes through a node that was resized, from one of its neighbours.
+  for (const NodeId r : resized) {
+    update.add(r.value);
+    for (const auto& n : graph.neighbors(nodes, r)) update.add(n.to.value);
+  }
   std::vector<std::uint32_t> ends;
   for (const auto& row : severed.rows) {
     fetch(&row);
@@ -189,6 +195,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   for (const auto& [i, j] : lost)
     if (graph.remove(i, j) && !VisibilityGraph::is_guide(i.value) && !VisibilityGraph::is_guide(j.value)) result.cut_edges.push_back(std::minmax(i, j));
   if (!lost.empty()) std::sort(result.cut_edges.begin(), result.cut_edges.end());
+
+  for (const NodeId r : resized) graph.resize_node(nodes, r);
 
   // E_new: each new node's k nearest visible nodes. The nearest are asked in growing numbers, since many may be hidden.
   const auto old_guides = VisibilityGraph::first_guide + graph.guides().size();
@@ -226,6 +234,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   join_guides(nodes, seen, graph);
   std::sort(fresh.begin(), fresh.end());
   std::vector<std::uint32_t> beginnings = fresh;
+  for (const NodeId r : resized) beginnings.push_back(r.value);  // with its edges shorter, it may be a short cut
   for (const auto& [a, b] : joins) {
     join(a, b);
     beginnings.insert(beginnings.end(), {a.value, b.value});  // an old node that gains an edge is a new beginning, too

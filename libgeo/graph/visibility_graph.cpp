@@ -82,6 +82,22 @@ void VisibilityGraph::append_guide_edges(const NodeSet& nodes, std::span<const s
   }
 }
 
+void VisibilityGraph::resize_node(const NodeSet& nodes, NodeId i) {
+  const auto row = entries(i.value);
+  for (std::size_t e = 0; e < row.to.size(); ++e) {
+    if (!is_edge(row.bits[e])) continue;
+    const auto j = row.to[e];
+    const auto bound = bits_of_bound(warped(nodes, i.value, j));
+    if (bound < (row.bits[e] & bound_bits)) rows_.set_bound(i.index(), e, bound);
+    const auto other = entries(j);
+    const auto at = place_of(other, i);
+    // Rows of guides are lengths of edges; those of nodes, paths, which may be shorter.
+    if (is_guide(j) || bound < (other.bits[at] & bound_bits)) store(j).set_bound(place(j), at, bound);
+  }
+  support_ = std::max(support_, nodes.radius[i.index()]);
+  reach_ = std::max(reach_, support_);
+}
+
 bool VisibilityGraph::remove(NodeId i, NodeId j) {
   if (!has(i, j)) return false;
   drop(i.value, {&j.value, 1}), drop(j.value, {&i.value, 1});

@@ -48,6 +48,9 @@ class VisibilityGraph {
   /// Neighbours stay what they are.
   bool add(const NodeSet& nodes, NodeId i, NodeId j);
   bool remove(NodeId i, NodeId j);
+  /// To be told when a node's radius has changed. Its edges stay; where they are shorter now, rows no longer bound them by more.
+  /// Neighbours stay what they are: see update_graph().
+  void resize_node(const NodeSet& nodes, NodeId i);
   /// Removes edges of a node or guide that it has, to some others (ascending), at its end only: that they are removed at the
   /// other ends, too, is up to the caller.
   void drop(std::uint32_t id, std::span<const std::uint32_t> others);

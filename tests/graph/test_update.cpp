@@ -34,15 +34,37 @@ struct Cut {
     return NodeId(nodes.size() - 1);
   }
   GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh, const std::vector<std::pair<NodeId, NodeId>>& joins = {},
-                   const GuideChange& guides = {}) {
+                   const GuideChange& guides = {}, const std::vector<NodeId>& resized = {}) {
     all.insert(all.end(), fresh.begin(), fresh.end());
     const auto near = [&](const Box3& box, Soup& out) {
       for (const auto& t : all)
         if (box_of(t[0], t[1], t[2]).meets(box)) out.push_back(t);
     };
-    return update_graph(nodes, first, moved, fresh, near, k, grid, graph, joins, guides);
+    return update_graph(nodes, first, moved, fresh, near, k, grid, graph, joins, guides, {}, resized);
   }
 };
+
+// The same edges, of which nothing else is known yet.
+VisibilityGraph edges_alone(const NodeSet& nodes, const VisibilityGraph& graph) {
+  VisibilityGraph bare;
+  bare.resize(nodes.size());
+  bare.set_plain_unit(graph.plain_unit());
+  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    for (const NodeId j : graph.edges(NodeId(i)))
+      if (i < j.value) bare.add(nodes, NodeId(i), j);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_guides;
+  for (std::uint32_t g = 0; g < graph.guides().size(); ++g) {
+    const auto id = bare.add_guide({graph.guides().position(g), graph.guides().radius(g)});
+    if (graph.guides().retired(g)) bare.retire_guide(id);
+    for (const auto other : graph.entries(id).to) {
+      of_guides.push_back({id, other});
+      if (!VisibilityGraph::is_guide(other)) of_guides.push_back({other, id});
+    }
+  }
+  std::sort(of_guides.begin(), of_guides.end());
+  bare.append_guide_edges(nodes, of_guides);
+  return bare;
+}
 
 // Edges that are right, and rows that a build along them finds.
 void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const VisibilityGraph& before, std::size_t& rows_compared) {
@@ -74,8 +96,12 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
     }
   }
   REQUIRE(cut.graph.edge_count() == before.edge_count() - update.cut_edges.size() + update.added_edges.size());
-  VisibilityGraph scratch = cut.graph;
+  VisibilityGraph scratch = edges_alone(cut.nodes, cut.graph);
   build_neighborhoods(cut.nodes, scratch, tree);
+  for (std::uint32_t g = 0; g < cut.graph.guides().size(); ++g) {
+    CAPTURE(g);
+    REQUIRE(cut.graph.entries(VisibilityGraph::first_guide + g) == scratch.entries(VisibilityGraph::first_guide + g));
+  }
   for (std::size_t i = 0; i < cut.nodes.size(); ++i, ++rows_compared) {
     CAPTURE(i);
     REQUIRE(cut.graph.rows().row(i) == scratch.rows().row(i));
@@ -140,8 +166,8 @@ TEST_CASE("updates are the same for any number of threads") {
   }
 }
 
-TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
-  std::size_t rows_compared = 0, cut_edges = 0, added_edges = 0;
+TEST_CASE("updates with any faces, and nodes inserted, moved, resized and joined") {
+  std::size_t rows_compared = 0, cut_edges = 0, added_edges = 0, resized_nodes = 0;
   for (int seed = 1; seed <= cases(10); ++seed) {
     CAPTURE(seed);
     Random random(static_cast<std::uint64_t>(seed));
@@ -179,14 +205,29 @@ TEST_CASE("updates with any faces, and nodes inserted, moved and joined") {
         const auto g = VisibilityGraph::first_guide + random.below(cut.graph.guides().size());
         if (std::find(guides.retired.begin(), guides.retired.end(), g) == guides.retired.end()) guides.retired.push_back(g);
       }
-      const auto update = cut.step(first, moved, fresh, joins, guides);
+      // Radii alone: of a few anywhere, or of all in a ball.
+      std::vector<NodeId> resized;
+      if (random.below(2)) {
+        const Vec3 middle(random.uniform(), random.uniform(), random.uniform());
+        const double around = random.uniform(0, 0.4), by = random.uniform(0.3, 2.5);
+        const bool alike = random.below(2);
+        for (std::uint32_t i = 0; i < first.value; ++i) {
+          if (std::binary_search(moved.begin(), moved.end(), NodeId(i))) continue;
+          if (alike ? (cut.nodes.position[i] - middle).norm() > around : random.below(first.value) > 3) continue;
+          cut.nodes.radius[i] = std::clamp(cut.nodes.radius[i] * (alike ? by : random.uniform(0.3, 2.5)), 0.02, 0.6);
+          resized.push_back(NodeId(i));
+        }
+      }
+      const auto update = cut.step(first, moved, fresh, joins, guides, resized);
       require_as_from_scratch(cut, update, before, rows_compared);
+      resized_nodes += resized.size();
       cut_edges += update.cut_edges.size(), added_edges += update.added_edges.size();
     }
   }
   CHECK(rows_compared > 15000);
   CHECK(cut_edges > 2000);
   CHECK(added_edges > 1000);
+  CHECK(resized_nodes > 300);
 }
 
 TEST_CASE("updates where a face cuts hardly more than one edge of a guide") {

@@ -25,7 +25,7 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
 NodeId stray_node_of(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept);
 
 /// Brings body.binding up to date after a step, equal to build_binding() bit for bit, at a cost that follows what has
-/// changed. `moved`: old nodes that stand elsewhere now. Returns the surface vertices that another node carries now, ascending.
+/// changed. `moved`: old nodes that stand elsewhere now, or have another radius. Returns the surface vertices that another node carries now, ascending.
 std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved);
 
 }  // namespace geo

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/progress.h"
@@ -88,7 +90,8 @@ struct BodyDelta {
   NodeId first_new_node;                 ///< nodes from here on are new
   std::vector<NodeId> donors;            ///< per new node: the node that gave it half of its volume
   std::vector<NodeId> moved_nodes;       ///< old nodes moved off a crack face, ascending
-  std::vector<NodeId> updated_nodes;     ///< rows changed (new and moved ones included), ascending
+  std::vector<std::pair<NodeId, double>> resized_nodes;  ///< old nodes that stayed, but have another support radius; with the one they had, ascending
+  std::vector<NodeId> updated_nodes;     ///< rows changed (new, moved and resized ones included), ascending
   std::vector<SurfaceVertexId> rebound;  ///< surface vertices that another node carries now, ascending
   std::vector<std::vector<NodeId>> parted;  ///< of each piece that came off, the nodes, ascending; the largest part is not among them
 };
@@ -101,6 +104,10 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
 /// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own. Where `progress`
 /// stops the work, body is of no more use.
 BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr, const Progress& progress = {});
+
+/// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest: graph, neighbours and binding follow, and equal those from
+/// scratch with the same edges, bit for bit. The cost follows what changes.
+BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
 /// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its master's node, the node
 /// itself included, that are within their support radius.

@@ -112,6 +112,7 @@ void add_about(Arrays& a) {
   const Body& body = a.body;
   nlohmann::ordered_json about = {{"k", body.k}, {"updates", body.updates}, {"resample_limit", body.resample_limit}, {"sampled", body.sampled}, {"cell", body.grid.cell()}, {"crack_count", body.surface.crack_count()}};
   if (body.guides > 0) about["guides"] = body.guides;
+  if (const auto first = body.nodes.radius.begin(); body.widest != *std::max_element(first, first + body.sampled)) about["widest"] = body.widest;
   about["history"] = nlohmann::ordered_json::array();
   for (const auto& p : body.history) about["history"].push_back({{"tool", p.tool}, {"version", p.version}, {"arguments", p.arguments}, {"inputs", p.inputs}});
   const std::string text = about.dump();
@@ -273,11 +274,11 @@ void read_binding(const KerfFile& in, Body& body) {
 
 void read_about(const KerfFile& in, Body& body) {
   const auto about = nlohmann::json::parse(in.text("about"), nullptr, false);
-  double cell = 0;
+  double cell = 0, widest = 0;  // 0: that of the nodes as they are
   try {
     body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
-    body.guides = about.value("guides", 0.0);
+    body.guides = about.value("guides", 0.0), widest = about.value("widest", 0.0);
     body.sampled = about.contains("sampled") ? whole<std::uint32_t>(about.at("sampled")) : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
       body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(), p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
@@ -287,9 +288,10 @@ void read_about(const KerfFile& in, Body& body) {
     in.fail("section 'about' holds an impossible value");
   }
   if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) || body.sampled < 1 || body.sampled > body.nodes.size() ||
-      (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
+      !(widest >= 0 && widest <= largest_coordinate) || (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
     in.fail("section 'about' holds an impossible value");
   set_sampled(body, body.sampled);
+  body.widest = widest > 0 ? widest : body.widest;
   body.grid = NodeGrid(cell, body.nodes.position);
 }
 

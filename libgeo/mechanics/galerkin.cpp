@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t cells_a_block = 256;
 constexpr std::size_t none = ~std::size_t(0);
 
-// Faces that came or went, and supports of nodes that came, went or moved.
+// Faces that came or went, and supports of nodes that came, went, moved or changed their radius.
 class Changes {
  public:
   Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports) : faces_(faces), supports_(supports) {
@@ -163,6 +163,7 @@ void Galerkin::note(const Body& body, const BodyDelta& delta, std::span<const Ve
     const std::size_t i = delta.moved_nodes[k].index();
     supports_.push_back({old_position[k], nodes.radius[i]}), supports_.push_back({nodes.position[i], nodes.radius[i]});
   }
+  for (const auto& [i, before] : delta.resized_nodes) supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])});
 }
 
 std::optional<PointChanges> Galerkin::settle(const Body& body, MaterialPoints& points) {

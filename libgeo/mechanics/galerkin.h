@@ -25,7 +25,7 @@ class Galerkin {
   QuadratureCells cells_;
   std::vector<std::size_t> groups_;
   std::vector<std::array<Vec3, 3>> faces_;           // changed since the last settle()
-  std::vector<std::pair<Vec3, double>> supports_;    // of nodes that came, went or moved since
+  std::vector<std::pair<Vec3, double>> supports_;    // of nodes that came, went, moved or changed their radius since
 };
 
 }  // namespace geo

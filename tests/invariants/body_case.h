@@ -1,12 +1,14 @@
 // One case of cracks through a body, as data: a model, how it is sampled, and cracks that cut it one after another.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <list>
 #include <map>
 #include <sstream>
 #include <string>
 
+#include "base/random.h"
 #include "body/body.h"
 #include "crack/decimate.h"
 #include "crack/grid_case.h"
@@ -20,6 +22,7 @@ struct BodyCase {
   int nodes = 900;
   double jitter = 0.15;
   double guides = 0;  ///< how far apart, in spacings; 0: none
+  int resize = 0;     ///< seed of other radii for some nodes, after each step that cuts; 0: none
   std::vector<GridCrack> cracks;
 
   std::string recipe() const {
@@ -87,7 +90,9 @@ inline const Body& body_of(const BodyCase& c) {
 
 /// A front file whose comments say what the fronts cut.
 inline void write_body_case(std::ostream& out, const BodyCase& c, const std::string& comment) {
-  out << "# " << comment << "\n# body: " << c.recipe() << '\n';
+  out << "# " << comment << "\n# body: " << c.recipe();
+  if (c.resize) out << " resize=" << c.resize;
+  out << '\n';
   std::vector<Front> fronts;
   for (const auto& crack : c.cracks) fronts.push_back({"crack" + std::to_string(fronts.size() + 1), crack.closed, crack.rows});
   write_fronts(out, fronts);
@@ -106,11 +111,27 @@ inline BodyCase read_body_case(const std::string& text, const std::string& name)
     else if (key == "faces") c.faces = std::stoi(value);
     else if (key == "nodes") c.nodes = std::stoi(value);
     else if (key == "jitter") c.jitter = std::stod(value);
+    else if (key == "resize") c.resize = std::stoi(value);
     else if (key == "guides") c.guides = std::stod(value);
     else throw InputError(name + ": " + key + " is not known of a body");
   }
   for (const auto& f : parse_fronts(text, name)) c.cracks.push_back({f.closed, f.steps});
   return c;
+}
+
+/// Other radii for nodes in a ball, all by one factor or each by its own: what resampling may ask for, and more.
+inline std::vector<std::pair<NodeId, double>> other_radii(const Body& body, std::uint64_t seed) {
+  Random random(seed);
+  const NodeSet& nodes = body.nodes;
+  const Vec3 middle = nodes.position[random.below(static_cast<std::uint32_t>(nodes.size()))];
+  const double around = body.grid.cell() * random.uniform(0.1, 4), by = random.uniform(0.4, 1.6);
+  const bool alike = random.below(2);
+  std::vector<std::uint32_t> near;
+  body.grid.within(nodes.position, middle, around, near);
+  std::vector<std::pair<NodeId, double>> radii;
+  for (const auto i : near)
+    radii.push_back({NodeId(i), std::clamp(nodes.radius[i] * (alike ? by : random.uniform(0.4, 1.6)), nodes.spacing[i], 1.2 * body.widest)});
+  return radii;
 }
 
 /// The smallest such case: see shrink(). Also by coarser models and nodes, and by shorter numbers.
@@ -124,6 +145,7 @@ inline BodyCase shrink(BodyCase given, const std::function<bool(const BodyCase&)
       any |= worked;
       return worked;
     };
+    if (c.resize) attempt_with([](BodyCase& s) { s.resize = 0; });
     if (c.guides > 0) attempt_with([](BodyCase& s) { s.guides = 0; });
     if (c.model == "block") {
       if (c.faces > 1) attempt_with([](BodyCase& s) { s.faces = 1; });

@@ -22,7 +22,7 @@ namespace {
 struct Outcome {
   std::string fault;                ///< empty: every invariant held after every step
   std::size_t crack = 0, step = 0;  ///< where it did not
-  std::size_t steps = 0, cutting = 0, refused = 0, parted = 0;
+  std::size_t steps = 0, cutting = 0, refused = 0, parted = 0, resized = 0;
   Body body;
 };
 
@@ -48,6 +48,13 @@ Outcome cut(const BodyCase& c, bool check) {
         if (delta.crack.empty()) continue;
         ++result.cutting;
         if (check) result.fault = body_faults::fault_of(before, result.body, delta, work.nodes_mended, volume);
+        if (c.resize && result.fault.empty()) {
+          const Body uncut = check ? result.body : Body();
+          const BodyDelta other = resize_nodes(result.body, body_cases::other_radii(result.body, static_cast<std::uint64_t>(c.resize) * 1000 + result.steps));
+          result.resized += other.resized_nodes.size();
+          if (check) result.fault = body_faults::fault_of(uncut, result.body, other, 0, volume);
+          if (!result.fault.empty()) result.fault = "other radii: " + result.fault;
+        }
       } catch (const GeometryError&) {
         ++result.refused;
         if (!check || (result.body.nodes.position == before.nodes.position && result.body.graph == before.graph &&
@@ -67,7 +74,7 @@ bool same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 bool same(const Body& a, const Body& b) {
-  return same(a.nodes.position, b.nodes.position) && a.nodes.volume == b.nodes.volume && a.graph == b.graph && a.binding == b.binding && a.debris == b.debris;
+  return same(a.nodes.position, b.nodes.position) && a.nodes.volume == b.nodes.volume && a.nodes.radius == b.nodes.radius && a.graph == b.graph && a.binding == b.binding && a.debris == b.debris;
 }
 
 class Campaign {
@@ -75,7 +82,7 @@ class Campaign {
   ~Campaign() {
     if (std::getenv("KERF_CASES"))
       WARN(cases_ << " sequences, " << steps_ << " steps, " << cutting_ << " of them cut something, " << refused_ << " refused, " << parted_ << " pieces came off, "
-                  << guided_ << " sequences with guides, " << varied_ << " runs with other threads and vectors");
+                  << resized_ << " other radii, " << guided_ << " sequences with guides, " << varied_ << " runs with other threads and vectors");
   }
 
   /// Cuts with two threads, and with one and four and other vectors again.
@@ -84,7 +91,7 @@ class Campaign {
     INFO("KERF_CASE=" << seed << ", " << c.recipe());
     if (made_.insert(c.recipe()).second) require_good_model(c);
     const Outcome two = cut(c, true);
-    ++cases_, steps_ += two.steps, cutting_ += two.cutting, refused_ += two.refused, parted_ += two.parted, guided_ += c.guides > 0;
+    ++cases_, steps_ += two.steps, cutting_ += two.cutting, refused_ += two.refused, parted_ += two.parted, guided_ += c.guides > 0, resized_ += two.resized;
     if (!two.fault.empty()) keep(c, seed, two);
     if (two.fault.empty()) vary([&] { CHECK(same(two.body, cut(c, false).body)); });
     set_threads(0);
@@ -134,7 +141,7 @@ class Campaign {
     }
   }
 
-  std::size_t cases_ = 0, steps_ = 0, cutting_ = 0, refused_ = 0, parted_ = 0, guided_ = 0, varied_ = 0;
+  std::size_t cases_ = 0, steps_ = 0, cutting_ = 0, refused_ = 0, parted_ = 0, guided_ = 0, varied_ = 0, resized_ = 0;
   std::set<std::string> made_;
   std::map<std::string, int> kinds_;
 };
@@ -196,6 +203,9 @@ std::vector<GridCrack> random_slits(const Complex& surface, Random& random) {
 // Every third body has guides along its concave edges and the fronts of its cracks.
 double guides_for(std::uint64_t seed) { return seed / model_names.size() % 3 == 0 ? 0.7 : 0.0; }
 
+// In every other sequence some nodes get other radii after each step.
+int resize_for(std::uint64_t seed) { return seed / model_names.size() % 2 == 0 ? static_cast<int>(seed % 1000000) : 0; }
+
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int share = 1;  // each costs several times as much here
 #else
@@ -211,7 +221,7 @@ TEST_CASE("Cut bodies are as from scratch after every step: real models", "[bodi
     for (int i = 0; i < which.count; ++i) {
       const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
       if (seed % model_names.size() != m) continue;
-      BodyCase c{.model = model_names[m], .guides = guides_for(seed), .cracks = {}};
+      BodyCase c{.model = model_names[m], .guides = guides_for(seed), .resize = resize_for(seed), .cracks = {}};
       if (seed / model_names.size() % 4 != 0) c.faces = 800, c.nodes = 500;
       Random random(seed * 104729);
       c.cracks = random_cracks(body_cases::body_of(c).surface, random);
@@ -224,7 +234,7 @@ TEST_CASE("Cut bodies are as from scratch after every step: slits beside each ot
   Campaign campaign;
   for (int i = 0; i < which.count; ++i) {
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
-    BodyCase c{.model = "pumpkin", .faces = 800, .nodes = 700, .jitter = 0.3, .guides = guides_for(seed), .cracks = {}};
+    BodyCase c{.model = "pumpkin", .faces = 800, .nodes = 700, .jitter = 0.3, .guides = guides_for(seed), .resize = resize_for(seed), .cracks = {}};
     Random random(seed * 15485863);
     c.cracks = random_slits(body_cases::body_of(c).surface, random);
     campaign.run(c, seed);
@@ -237,7 +247,7 @@ TEST_CASE("Cut bodies are as from scratch after every step: cracks through nodes
   for (int i = 0; i < which.count; ++i) {
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
     const GridCase grid = random_case(seed);
-    campaign.run({.faces = grid.divisions, .nodes = 343, .guides = guides_for(seed), .cracks = grid.cracks}, seed);
+    campaign.run({.faces = grid.divisions, .nodes = 343, .guides = guides_for(seed), .resize = resize_for(seed), .cracks = grid.cracks}, seed);
   }
 }
 

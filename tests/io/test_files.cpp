@@ -210,6 +210,33 @@ TEST_CASE("a body is updated in its own file") {
   std::filesystem::remove(path);
 }
 
+TEST_CASE("other radii are appended to a body's file, and a body that is read goes on as the one that was written") {
+  Body body = small_body(GENERATE(0.0, 1.0));
+  const double widest = body.widest;
+  const auto path = (std::filesystem::temp_directory_path() / ("kerf-radii-" + std::to_string(std::random_device{}()) + ".kerf")).string();
+  write_all(path, [&](std::ostream& out) { write_body(out, body); });
+  std::vector<std::pair<NodeId, double>> radii;  // none is as wide any more
+  for (std::uint32_t i = 0; i < body.nodes.size(); ++i) radii.push_back({NodeId(i), 0.9 * body.nodes.radius[i]});
+  CHECK(resize_nodes(body, radii).resized_nodes.size() == body.nodes.size());
+  const auto all = write_body(*std::make_unique<KerfUpdate>(path), body);
+  radii = {{NodeId(0u), 0.8 * widest}, {NodeId(3u), body.nodes.radius[3]}};
+  CHECK(resize_nodes(body, radii).resized_nodes.size() == 1);
+  CHECK(2 * write_body(*std::make_unique<KerfUpdate>(path), body) < all);
+  Body again = read_body(path);
+  CHECK(KerfFile(Input(path)).updates() == 2);
+  std::filesystem::remove(path);
+  CHECK(again.widest == widest);
+  CHECK(again.nodes.radius == body.nodes.radius);
+  CHECK(again.graph == body.graph);
+  const auto bytes = [&](const Body& b) { return bytes_of([&](auto& out) { write_body(out, b); }); };
+  CHECK(bytes(again) == bytes(body));
+  for (Body* b : {&again, &body}) {
+    FrontState front = begin_front(std::vector<Vec3>{{0.512, -0.5, -0.5}, {0.52, 1.5, -0.5}}, false, 2);
+    split(*b, front, {{0.512, -0.5, 0.4}, {0.52, 1.5, 0.4}});
+  }
+  CHECK(bytes(again) == bytes(body));
+}
+
 TEST_CASE("a newer version, a text transfer and another kind of file are told apart") {
   std::string kerf = bytes_of([&](auto& out) { write_body(out, small_body()); });
   std::string newer = kerf;

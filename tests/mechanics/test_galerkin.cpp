@@ -108,7 +108,14 @@ TEST_CASE("a solid that follows cuts equals one built anew, bit for bit") {
   CHECK(solid.rungs().points[2] == 0);
 }
 
-TEST_CASE("a solid that follows random cuts, several at once, equals one built anew, bit for bit") {
+// Of some nodes, a little less or more.
+std::vector<std::pair<NodeId, double>> other_radii(const Body& body, Random& random) {
+  std::vector<std::pair<NodeId, double>> radii;
+  for (std::uint32_t i = random.below(5); i < body.nodes.size(); i += 1 + random.below(40)) radii.push_back({NodeId(i), body.nodes.radius[i] * random.uniform(0.8, 1.2)});
+  return radii;
+}
+
+TEST_CASE("a solid that follows random cuts and other radii, several at once, equals one built anew, bit for bit") {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     CAPTURE(seed);
     Random random(seed);
@@ -123,6 +130,7 @@ TEST_CASE("a solid that follows random cuts, several at once, equals one built a
       auto front = begin_front(blade_at(a, b, step, 0, 3), false, cut);
       for (int k = 1; k <= 5; ++k) {
         solid.follow(body, split(body, front, blade_at(a, b, step, k, 3)), state);
+        if (seed % 2 == 0 && random.uniform() < 0.5) solid.follow(body, resize_nodes(body, other_radii(body, random)), state);
         if (random.uniform() < 0.4) continue;
         solid.settle(body, state);
         CHECK(same(solid, Solid(body, soft())));

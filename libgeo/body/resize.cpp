@@ -1,0 +1,33 @@
+#include <algorithm>
+
+#include "body/binding.h"
+#include "body/locate.h"
+#include "body/nodes.h"
+#include "body/upkeep.h"
+
+namespace geo {
+
+BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii) {
+  begin_upkeep(body);
+  BodyDelta delta;
+  delta.first_new_node = NodeId(body.nodes.size());
+  body.donors.clear();
+  std::vector<NodeId> resized;
+  for (const auto& [i, wanted] : radii) {
+    double& now = body.nodes.radius[i.index()];
+    const double radius = std::min(wanted, body.widest);
+    if (now == radius) continue;
+    delta.resized_nodes.push_back({i, double(now)});
+    resized.push_back(i);
+    now = radius;
+  }
+  if (resized.empty()) return delta;
+  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) { triangles_near(body.surface, box, out); };
+  delta.updated_nodes = update_graph(body.nodes, delta.first_new_node, {}, {}, near, body.k, body.grid, body.graph, {}, {}, {}, resized).updated_nodes;
+  mark_debris(body, delta.updated_nodes);
+  // How far a node looks for its closest vertex is its radius.
+  delta.rebound = rebind(body, {}, delta.first_new_node, resized);
+  return delta;
+}
+
+}  // namespace geo

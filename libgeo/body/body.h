@@ -106,7 +106,7 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
 BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr, const Progress& progress = {});
 
 /// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest: graph, neighbours and binding follow, and equal those from
-/// scratch with the same edges, bit for bit. The cost follows what changes.
+/// scratch with the same edges, bit for bit. The cost follows what changes. Throws InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
 /// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its master's node, the node

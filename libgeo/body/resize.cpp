@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <string>
 
+#include "base/error.h"
 #include "body/binding.h"
 #include "body/locate.h"
 #include "body/nodes.h"
@@ -8,6 +10,8 @@
 namespace geo {
 
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii) {
+  for (const auto& [i, radius] : radii)
+    if (!(radius > 0)) throw InputError("node " + std::to_string(i.index()) + " cannot have a support radius of " + std::to_string(radius));
   begin_upkeep(body);
   BodyDelta delta;
   delta.first_new_node = NodeId(body.nodes.size());

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -219,6 +220,7 @@ TEST_CASE("other radii are appended to a body's file, and a body that is read go
   for (std::uint32_t i = 0; i < body.nodes.size(); ++i) radii.push_back({NodeId(i), 0.9 * body.nodes.radius[i]});
   CHECK(resize_nodes(body, radii).resized_nodes.size() == body.nodes.size());
   const auto all = write_body(*std::make_unique<KerfUpdate>(path), body);
+  for (const double none : {0.0, -1.0, std::nan("")}) CHECK_THROWS_AS(resize_nodes(body, std::vector{std::pair(NodeId(0u), none)}), InputError);
   radii = {{NodeId(0u), 0.8 * widest}, {NodeId(3u), body.nodes.radius[3]}};
   CHECK(resize_nodes(body, radii).resized_nodes.size() == 1);
   CHECK(2 * write_body(*std::make_unique<KerfUpdate>(path), body) < all);

@@ -6,6 +6,7 @@
 
 #include <hwy/highway.h>
 
+#include "contact/keep_lanes.h"
 #include "contact/triangle_planes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -68,25 +69,12 @@ HWY_INLINE bool parted_across(const Plane& p, const Plane& o, double first, doub
 
 bool planes_part(const Plane& p, const Plane& o, double first, double last) { return parts(p, o, first, last) | parts(o, p, first, last); }
 
-// Those kept come first; returns how many.
 std::size_t not_parted(const Plane* planes, Pair* pairs, std::size_t count, double first, double last) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Pair pair = pairs[i];
-    pairs[kept] = pair;
-    kept += !(parts(planes[pair.first], planes[pair.second], first, last) | parts(planes[pair.second], planes[pair.first], first, last));
-  }
-  return kept;
+  return keep_pairs(pairs, count, [=](const Pair& pair) HWY_ATTR { return !planes_part(planes[pair.first], planes[pair.second], first, last); });
 }
 
 std::size_t not_parted_across(const Plane* planes, Pair* pairs, std::size_t count, double first, double last) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Pair pair = pairs[i];
-    pairs[kept] = pair;
-    kept += !parted_across(planes[pair.first], planes[pair.second], first, last);
-  }
-  return kept;
+  return keep_pairs(pairs, count, [=](const Pair& pair) HWY_ATTR { return !parted_across(planes[pair.first], planes[pair.second], first, last); });
 }
 
 void ways_left(const Plane* planes, const Pair* pairs, std::size_t count, double* left) {

@@ -6,6 +6,7 @@
 
 #include <hwy/highway.h>
 
+#include "contact/keep_lanes.h"
 #include "contact/triangle_sides.h"
 #include "geometry/predicates.h"
 
@@ -43,16 +44,11 @@ HWY_INLINE bool on_one_side(const Corners& p, const Corners& o) {
 
 }  // namespace
 
-// Those kept come first; returns how many.
 std::size_t not_clear(const Corners* triangles, TriangleSides::Pair* pairs, std::size_t count) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const TriangleSides::Pair pair = pairs[i];
+  return keep_pairs(pairs, count, [=](const TriangleSides::Pair& pair) HWY_ATTR {
     const Corners &s = triangles[pair.first], &t = triangles[pair.second];
-    pairs[kept] = pair;
-    kept += !(on_one_side(s, t) || on_one_side(t, s));
-  }
-  return kept;
+    return !(on_one_side(s, t) || on_one_side(t, s));
+  });
 }
 
 }  // namespace HWY_NAMESPACE

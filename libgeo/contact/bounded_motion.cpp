@@ -37,7 +37,7 @@ class Mover {
 
  private:
   static constexpr double spare = 0.05;  // of an edge: so that what is carried further stays in its box
-  static constexpr int most_rounds = 8, most_mendings = 60, growths_apart = 10, most_growths = 20;
+  static constexpr int most_rounds = 8, most_mendings = 60, patience = 8, growths_apart = 10, most_growths = 20;
 
   bool wanting() const {
     return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });
@@ -59,9 +59,10 @@ class Mover {
     cover(start, next);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
     std::optional<Carried> carried;
+    const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) { return carried && carried->keep_apart(s, t, distance); };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int growth = 0;; ++growth) {
-      const auto failing = check.among(near_.pairs(), changed, carried ? &*carried : nullptr);
+      const auto failing = check.among(near_.pairs(), changed, keep_apart);
       if (failing.empty()) break;
       if (!carried) carried.emplace(surface_.triangles, surface_.rows, start, m_.to, edge_);
       bool grown = carried->add(failing);
@@ -90,19 +91,30 @@ class Mover {
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     GiveWay couples(surface_.triangles, start, m_.gap);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
+    const FailingPairs::KeptApart bound = [&](std::uint32_t s, std::uint32_t t, double) { return couples.bound(s, t); };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
+    std::size_t fewest = surface_.triangles.size();
+    int since = 0;  // the round in which fewer failed than ever before
+    bool free = false;
     for (int round = 0; round < most_mendings; ++round) {
-      const auto failing = check.among(near_.pairs(), changed, nullptr);
-      if (failing.empty()) return true;
+      const auto failing = check.among(near_.pairs(), changed, bound);
+      free = failing.empty();
+      if (free) break;
+      if (failing.size() < fewest) fewest = failing.size(), since = round;
       const std::vector<Vec3> before = next;
-      couples.add(failing, next);
+      if (round - since < patience) couples.add(failing, next);
+      else couples.bind(failing), since = round;
       couples.push(next);
-      if (next == before) return false;
+      if (next == before) {
+        if (!couples.bind(failing)) break;
+        couples.push(next);
+      }
       mark(before, next, changed);
       for (const auto& [s, t] : failing) changed[s] = changed[t] = 1;  // they may not have been moved
       cover(start, next, &changed);
     }
-    return false;
+    report_.in_zones = std::max(report_.in_zones, couples.in_zones());
+    return free;
   }
 
   // Triangles of which a corner has another place.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/vec.h"
+#include "contact/rigid_zones.h"
 
 namespace geo {
 
@@ -28,20 +28,17 @@ class Carried {
   bool keep_apart(std::uint32_t s, std::uint32_t t, double distance) const;
   /// How far the field carries, of what all want.
   double share() const { return share_; }
-  std::size_t in_zones() const;
+  std::size_t in_zones() const { return zones_.size(); }
 
  private:
-  std::uint32_t zone(std::uint32_t v) const;
-  bool join(std::uint32_t v, std::uint32_t w);
-
   const std::vector<Triangle>& triangles_;
   std::span<const std::uint32_t> rows_;
   const std::vector<Vec3>& start_;
   double share_ = 1;
   std::vector<Vec3> field_;        // where it carries each row
   std::vector<double> deviation_;  // per triangle, of its inside
-  std::vector<std::uint8_t> carried_, in_zone_;
-  std::vector<std::uint32_t> parent_;  // of zones
+  std::vector<std::uint8_t> carried_;
+  RigidZones zones_;
 };
 
 }  // namespace geo

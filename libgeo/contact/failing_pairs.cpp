@@ -14,7 +14,7 @@ FailingPairs::FailingPairs(const StandingRows& surface, const VertexFans& fans, 
     : surface_(surface), triangles_(surface.triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(surface.triangles, start, next),
       opens_out_(start.size(), 0) {}
 
-std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const Carried* carried) {
+std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const KeptApart& kept_apart) {
   renew(changed);
   constexpr std::size_t stretch = 1024, vertices = 64;
   const std::size_t stretches = (pairs.size() + stretch - 1) / stretch, groups = (shut_.size() + vertices - 1) / vertices;
@@ -55,7 +55,7 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
         for (int k = 0; k < Partings::count; ++k)
           if (apart(p.first[k][lane], p.last[k][lane])) return;
         if (some_tilted(couple(some[i]), p, lane, start_, next_, [&](const Vec3&, double first, double last) { return apart(first, last); })) return;
-        if (carried && carried->keep_apart(some[i].first, some[i].second, p.first[Partings::closest][lane])) test(some[i]);
+        if (kept_apart && kept_apart(some[i].first, some[i].second, p.first[Partings::closest][lane])) test(some[i]);
         else found[f].push_back(some[i]);
       };
       CouplesInLanes<decltype(judge)> couples(start_, next_, true, judge);

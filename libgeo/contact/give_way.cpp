@@ -4,12 +4,13 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "contact/affine_motion.h"
 #include "contact/dividers.h"
 #include "contact/tilted.h"
 
 namespace geo {
 
-void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const std::vector<Vec3>& next) {
+void GiveWay::add(std::span<const Pair> pairs, const std::vector<Vec3>& next) {
   const auto choose = [&](std::size_t i, const Partings& p, std::size_t lane) {
     Kept& c = couples_[i];
     const bool neighbours = c.a.size < 3 || c.b.size < 3;
@@ -32,7 +33,7 @@ void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
     for (std::size_t k = 0; k < count; ++k) {
       for (Simplex* one : {&parts[k].first, &parts[k].second})
         for (int i = one->size; i < 3; ++i) one->v[i] = one->v[0];
-      couples_[at + k] = {parts[k].first, parts[k].second, Vec3::Zero(), 0};
+      couples_[at + k] = {parts[k].first, parts[k].second, Vec3::Zero(), 0, pair.first, pair.second};
       chosen.push_back(at + k);
     }
   }
@@ -41,6 +42,14 @@ void GiveWay::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
     for (std::size_t i = begin; i < end; ++i) in_lanes.add({couples_[chosen[i]].a, couples_[chosen[i]].b}, chosen[i]);
     in_lanes.finish();
   });
+  for (const auto i : chosen)
+    if (couples_[i].normal.isZero(0)) bind({{{couples_[i].s, couples_[i].t}}});
+}
+
+bool GiveWay::bind(std::span<const Pair> pairs) {
+  bool is_new = false;
+  for (const auto& [s, t] : pairs) is_new |= zones_.join(triangles_[s], triangles_[t]);
+  return is_new;
 }
 
 void GiveWay::push(std::vector<Vec3>& at) const {
@@ -55,6 +64,7 @@ void GiveWay::push(std::vector<Vec3>& at) const {
   for (std::size_t v = 0; v < at.size(); ++v) first[v + 1] += first[v];
   std::vector<std::uint32_t> of(first.back()), end(first.begin(), first.end() - 1);
   for (std::uint32_t i = 0; i < couples_.size(); ++i) each_corner(couples_[i], [&](std::uint32_t v) { of[end[v]++] = i; });
+  const auto zones = zones_.members();
   // Only couples are looked at again of which something has moved.
   std::vector<std::uint32_t> asked(couples_.size()), moved;
   std::iota(asked.begin(), asked.end(), 0u);
@@ -62,6 +72,7 @@ void GiveWay::push(std::vector<Vec3>& at) const {
   for (int sweep = 0; sweep < most_sweeps && !asked.empty(); ++sweep) {
     for (const auto i : asked) {
       const Kept& c = couples_[i];
+      if (!zones.empty() && bound(c.s, c.t)) continue;
       double of_a[3], of_b[3];
       for (int k = 0; k < 3; ++k) of_a[k] = c.normal.dot(at[c.a.v[k]]), of_b[k] = c.normal.dot(at[c.b.v[k]]);
       const double least = std::min({of_a[0], of_a[1], of_a[2]}), most = std::max({of_b[0], of_b[1], of_b[2]});
@@ -74,6 +85,13 @@ void GiveWay::push(std::vector<Vec3>& at) const {
       };
       for (int k = 0; k < c.a.size; ++k) move(c.a.v[k], plane + half - of_a[k], 1);
       for (int k = 0; k < c.b.size; ++k) move(c.b.v[k], of_b[k] - plane + half, -1);
+    }
+    for (const auto& zone : zones) {
+      const auto went = [&](std::uint32_t v) { return sweep == 0 || has_moved[v]; };
+      if (std::none_of(zone.begin(), zone.end(), went)) continue;
+      move_rigidly(zone, start_, at, at);
+      for (const auto v : zone)
+        if (!has_moved[v]) has_moved[v] = 1, moved.push_back(v);
     }
     for (const auto v : moved) {
       has_moved[v] = 0;

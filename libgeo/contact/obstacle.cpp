@@ -28,7 +28,7 @@ Eigen::Isometry3d Obstacle::pose(double share) const {
   return p;
 }
 
-void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow) {
+void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness) {
   const Complex& k = body.surface;
   slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
   rows_.clear();
@@ -38,8 +38,11 @@ void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const std:
     for (std::size_t v = begin; v < end; ++v)
       if (const SurfaceVertexId id(v); k.alive(id) && !weights.row(v).empty()) near[v] = shape_->near(back * (k.point(k.site(id)) + weights.at(v, u)), reach);
   });
-  for (std::size_t v = 0; v < near.size(); ++v)
-    if (near[v]) rows_.push_back({weights.row(v), k.point(k.site(SurfaceVertexId(v))), options_.pressure * area_about(k, SurfaceVertexId(v))});
+  for (std::size_t v = 0; v < near.size(); ++v) {
+    if (!near[v]) continue;
+    const double pressure = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]);
+    rows_.push_back({weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v))});
+  }
 }
 
 void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {

@@ -23,8 +23,9 @@ class Obstacle : public Potential {
   Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
   /// For a step that begins at displacements u: which vertices may reach the obstacle (those nearer than `reach`), their weights,
-  /// which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth.
-  void watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow);
+  /// which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth. `firmness`: per node, of what its
+  /// surface is pressed with, times the pressure; empty: 1.
+  void watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness = {});
 
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 

@@ -92,7 +92,17 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
   touch_.restart({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
-  const double stiffness = firmness * solid.material().young / (solid.material().density * spacing * spacing) + 1 / (dt * dt);  // 1/s²
+  std::vector<double> stiffness;  // per material, 1/s²
+  for (const Material& m : solid.materials().all()) stiffness.push_back(firmness * m.young / (m.density * spacing * spacing) + 1 / (dt * dt));
+  const auto stiffness_at = [&](const SurfacePlace& p) {
+    const auto node = weights_.heaviest()[p.vertex[0]];
+    return stiffness[node == ~0u ? 0 : solid.materials().number(node)];
+  };
+  // Of two places: as of springs one behind the other.
+  const auto firm = [&](const TouchingPlaces& t, const RelativeRow& row) {
+    const double a = stiffness_at(t.a), b = stiffness_at(t.b);
+    return a == b ? a / (row.of_a + row.of_b) : 1 / (row.of_a / a + row.of_b / b);
+  };
   // How far along their normal places were made apart: what is less than they should keep stays so.
   const auto made_apart = [&](const TouchingPlaces& t) {
     const auto at_rest = [&](const SurfacePlace& p) {
@@ -116,7 +126,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
     touch_.reserve(rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double alone = rows[i].of_a + rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
-      if (alone > 0) touch_.add(rows[i], touching[i].normal, depth[i], stiffness / alone, start[i]);
+      if (alone > 0) touch_.add(rows[i], touching[i].normal, depth[i], firm(touching[i], rows[i]), start[i]);
     }
   };
   add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);

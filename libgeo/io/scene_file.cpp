@@ -24,16 +24,18 @@ struct Files {
   }
 };
 
-void read_material(TomlTable& t, Material& m) {
+// Of the scene, or, where `own`, of one body: what the scene's has goes for what is left out.
+void read_material(TomlTable& t, Material& m, bool own = false) {
   std::string model = m.model == ElasticModel::saint_venant_kirchhoff ? "stvk" : "neo-hookean";
   t.get("model", model);
-  if (model != "stvk" && model != "neo-hookean") t.fail(*t.find("model"), "'material.model' must be \"neo-hookean\" or \"stvk\"");
+  if (model != "stvk" && model != "neo-hookean") t.fail(*t.find("model"), "'" + t.path() + "model' must be \"neo-hookean\" or \"stvk\"");
   m.model = model == "stvk" ? ElasticModel::saint_venant_kirchhoff : ElasticModel::neo_hookean;
   t.get("young", m.young, 1e-6, 1e15);
   t.get("poisson", m.poisson, -0.99, 0.4999);
   t.get("density", m.density, 1e-9, 1e9);
   t.get("volume_term", m.volume_term, 0, 1e15);
   t.get("damping", m.damping, 0, 1e6);
+  if (const auto* node = t.find("discretisation"); node && own) t.fail(*node, "'" + t.path() + "discretisation' is the same for all bodies: write it in the scene's [material]");
   std::string discretisation = m.discretisation == Discretisation::galerkin ? "galerkin" : "mueller04";
   t.get("discretisation", discretisation);
   if (discretisation != "galerkin" && discretisation != "mueller04") t.fail(*t.find("discretisation"), "'material.discretisation' must be \"galerkin\" or \"mueller04\"");
@@ -76,6 +78,7 @@ void read_body_table(TomlTable& t, Scene& s) {
   read_rotation(t, body.place, "body.rotation");
   t.get("velocity", body.velocity);
   t.get("spin", body.spin);
+  t.section("material", [&](TomlTable& own) { read_material(own, body.material.emplace(s.material), true); });
   for (const auto& v : t.rows("fixed", 6)) s.grips.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {}, false});
   s.bodies.push_back(std::move(body));
 }

@@ -30,6 +30,8 @@ class TomlTable {
       if (const auto meant = did_you_mean(other.str(), {key}); !meant.empty()) fail(node, "unknown key '" + path_ + shown(other.str()) + "'" + meant);
     fail("'" + path_ + key + "' is missing: " + what);
   }
+  /// What stands before its keys in messages.
+  const std::string& path() const { return path_; }
   const toml::node* find(const std::string& key) {
     known_.insert(key);
     return table_.get(key);

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const float* weight, float shear, float bulk, std::size_t stride, const std::uint16_t* slot,
+void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const float* weight, const Moduli* moduli, std::size_t stride, const std::uint16_t* slot,
                     std::size_t slots, const float* arm, float* out) {
   using Four = hn::CappedTag<float, 4>;
   using Eight = hn::CappedTag<float, 8>;
@@ -26,6 +26,7 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
   for (std::size_t i = 0; i < block.points.size(); i += stride) {
     const float w = static_cast<float>(stride) * weight[i];
     if (!(w > 0)) continue;
+    const auto [shear, bulk] = moduli[block.points[i].material];
     here.clear(), moment.clear();
     for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
       const std::uint32_t s = slot[block.to[q]];
@@ -85,10 +86,10 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(RigidStiffness);
 
-void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, float shear, float bulk, std::size_t stride,
+void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, std::span<const Moduli> moduli, std::size_t stride,
                      std::span<const std::uint16_t> slot, const float* arm, float* out) {
   const std::size_t slots = slot.empty() ? 0 : std::size_t(*std::max_element(slot.begin(), slot.end())) + 1;
-  HWY_DYNAMIC_DISPATCH(RigidStiffness)(block, modes, weight.data(), shear, bulk, stride, slot.data(), slots, arm, out);
+  HWY_DYNAMIC_DISPATCH(RigidStiffness)(block, modes, weight.data(), moduli.data(), stride, slot.data(), slots, arm, out);
 }
 
 }  // namespace geo

@@ -39,8 +39,8 @@ CoarseMotion::CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at
     if (free_[i]) member_[next[groups.of[i]]++] = i, arm_[i] = at[i] - middle[groups.of[i]];
 }
 
-void CoarseMotion::factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight, float shear, float bulk,
-                          std::size_t stride, const std::vector<Mat3>& blocks) {
+void CoarseMotion::factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight,
+                          std::span<const Moduli> moduli, std::size_t stride, const std::vector<Mat3>& blocks) {
   std::vector<BlockTiles> parts(points.blocks.size());
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -57,7 +57,7 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
         arm.push_back(free_[j]);
       }
       part.tiles.assign(tile * part.groups.size() * (part.groups.size() + 1) / 2, 0);
-      rigid_stiffness(block, modes[b], weight[b], shear, bulk, stride, slot, arm.data(), part.tiles.data());
+      rigid_stiffness(block, modes[b], weight[b], moduli, stride, slot, arm.data(), part.tiles.data());
     }
   });
   const auto each_tile = [&](const auto& work) {

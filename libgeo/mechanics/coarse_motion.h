@@ -18,9 +18,9 @@ class CoarseMotion {
   /// `at`: where nodes are; `fixed`: as in Environment.
   CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at, const std::vector<std::uint8_t>& fixed);
   /// The stiffness of points, isotropic and corotated (Σ w (shear |g|² 1 + shear g gᵀ + bulk g gᵀ), g turned by UVᵀ), of every `stride`-th as many times, and 3×3
-  /// blocks of nodes, for the groups' six motions each; factored.
-  void factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight, float shear, float bulk,
-              std::size_t stride, const std::vector<Mat3>& blocks);
+  /// blocks of nodes, for the groups' six motions each; factored. `moduli`: per material.
+  void factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight,
+              std::span<const Moduli> moduli, std::size_t stride, const std::vector<Mat3>& blocks);
   /// (Pᵀ K P)⁻¹ Pᵀ r of parts at work; then, at a node, 0.4 P of it: its share beside that of patches.
   void solve(const std::vector<Vec3>& r, const StepParts& parts);
   Vec3 at(std::size_t node) const {

@@ -6,19 +6,25 @@
 
 namespace geo {
 
-/// For block after block: what one leaves is room for the next.
+/// For block after block: what one leaves is room for the next. A point's material decides which of the history it has.
 class ElasticBlock {
  public:
-  explicit ElasticBlock(const ElasticConstants& constants) : constants_(constants) {}
+  explicit ElasticBlock(const Materials& materials, double dt = 1);
   /// At nodal displacements u. `deformed`, where given: F of its points, less 1; `pull`, where given: Σ stress · shape gradient, four numbers a node of
   /// the block. Returns each point's energy, J; what follows the last one's is zero.
   const std::vector<double>& evaluate(const MaterialPoints& points, std::size_t block, const std::vector<Vec3>& u, const PointHistory& history, Columns<float>* deformed,
                                       double* pull);
 
  private:
-  ElasticConstants constants_;
+  void evaluate_run(const PointBlock& block, const MaterialRun& run, const PointHistory& history, Columns<float>* deformed);
+  std::vector<ElasticConstants> constants_;  // per material
   Columns<double> gradient_;
   std::vector<double> values_, volume_, energy_;
+  struct {
+    Columns<double> gradient;
+    std::vector<double> energy;
+    Columns<float> deformed;
+  } aside_;
 };
 
 }  // namespace geo

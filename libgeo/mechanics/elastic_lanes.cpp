@@ -117,10 +117,10 @@ HWY_INLINE Vector viscous(const ElasticConstants& m, const Matrix<double>& g, co
   return hn::Mul(number(0.5 * m.dt * m.viscosity), square_norm(rate));
 }
 
-void Elastic(const ElasticConstants& m, const double* volume, std::size_t count, const double* const* relaxed, const double* const* before, double* const* gradient,
-             double* energy, float* const* deformed) {
+void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* volume, const double* const* relaxed, const double* const* before,
+             double* const* gradient, double* energy, float* const* deformed) {
   const hn::Rebind<float, Tag> d32;
-  for (std::size_t i = 0; i < count; i += width<double>) {
+  for (std::size_t i = begin; i < end; i += width<double>) {
     const Matrix<double> g = load<double>(gradient, i);
     Matrix<double> h = g, stress;
     if (relaxed) {
@@ -153,20 +153,19 @@ HWY_EXPORT(Elastic);
 
 ElasticConstants elastic_constants(const Material& m, double dt) {
   // What the stable neo-Hookean energy has of its own, so that small strains see Lamé's constants (elasticity.cpp).
-  if (m.model == ElasticModel::neo_hookean) return {true, 4.0 / 3.0 * m.mu(), m.lambda() + 5.0 / 6.0 * m.mu(), m.volume_term, m.viscosity, dt};
-  return {false, m.mu(), m.lambda(), m.volume_term, m.viscosity, dt};
+  if (m.model == ElasticModel::neo_hookean) return {true, 4.0 / 3.0 * m.mu(), m.lambda() + 5.0 / 6.0 * m.mu(), m.volume_term, m.viscosity, dt, m.yield > 0};
+  return {false, m.mu(), m.lambda(), m.volume_term, m.viscosity, dt, m.yield > 0};
 }
 
-void elastic_points(const ElasticConstants& constants, const std::vector<double>& volume, const PointHistory& history, Columns<double>& gradient,
-                    std::vector<double>& energy, Columns<float>* deformed) {
+void elastic_points(const ElasticConstants& constants, std::size_t begin, std::size_t end, const std::vector<double>& volume, const PointHistory& history,
+                    Columns<double>& gradient, std::vector<double>& energy, Columns<float>* deformed) {
   const auto columns = [](const Columns<double>* c) {
     return c ? std::array{c->column[0].data(), c->column[1].data(), c->column[2].data()} : std::array<const double*, 3>{};
   };
   const auto relaxed = columns(history.relaxed), before = columns(history.before);
   double* const to[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
   float* const kept[3] = {deformed ? deformed->column[0].data() : nullptr, deformed ? deformed->column[1].data() : nullptr, deformed ? deformed->column[2].data() : nullptr};
-  energy.resize(volume.size());
-  HWY_DYNAMIC_DISPATCH(Elastic)(constants, volume.data(), volume.size(), history.relaxed ? relaxed.data() : nullptr, history.before ? before.data() : nullptr, to,
+  HWY_DYNAMIC_DISPATCH(Elastic)(constants, begin, end, volume.data(), history.relaxed ? relaxed.data() : nullptr, history.before ? before.data() : nullptr, to,
                                 energy.data(), deformed ? kept : nullptr);
 }
 

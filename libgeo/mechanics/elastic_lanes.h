@@ -11,6 +11,7 @@ struct ElasticConstants {
   bool neo_hookean = true;
   double mu = 0, lambda = 0, volume = 0;  ///< of a neo-Hookean material, those of its own formula
   double viscosity = 0, dt = 1;
+  bool flows = false;  ///< its points may have plastic strain
 };
 ElasticConstants elastic_constants(const Material& material, double dt = 1);
 
@@ -20,9 +21,9 @@ struct PointHistory {
   const Columns<double>* before = nullptr;   ///< ∇u one time step ago, for viscosity
 };
 
-/// ∇u of points becomes their first Piola–Kirchhoff stress times `volume`; `energy`: the density times it. `volume` and `energy`: one a point, a multiple of
-/// eight of them; where the volume is zero, so is all else. `deformed`, where given: F (relaxed) less 1.
-void elastic_points(const ElasticConstants& constants, const std::vector<double>& volume, const PointHistory& history, Columns<double>& gradient,
-                    std::vector<double>& energy, Columns<float>* deformed);
+/// From point `begin` to `end`, both multiples of eight: ∇u becomes the first Piola–Kirchhoff stress times `volume`; `energy`: the density times it. `volume` and
+/// `energy`: one a point, a multiple of eight of them; where the volume is zero, so is all else. `deformed`, where given: F (relaxed) less 1.
+void elastic_points(const ElasticConstants& constants, std::size_t begin, std::size_t end, const std::vector<double>& volume, const PointHistory& history,
+                    Columns<double>& gradient, std::vector<double>& energy, Columns<float>* deformed);
 
 }  // namespace geo

@@ -26,6 +26,7 @@ struct Material {
   double most_plastic = 1; ///< norm that the plastic strain cannot pass
   double lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
   double mu() const { return young / (2 * (1 + poisson)); }
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// Throws InputError unless E > 0, −1 < ν < 0.5, ρ > 0 and the rest is not negative.

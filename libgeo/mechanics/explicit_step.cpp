@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mechanics/ground.h"
 #include "mechanics/solid.h"
@@ -25,18 +26,23 @@ double touch(const Environment& env, State& s, double h, double from, double to,
 }  // namespace
 
 StepReport Solid::step_explicit(State& state, double dt, const Environment& env) const {
-  // No wave crosses a third of the smallest neighbourhood in one substep.
-  const double speed = std::sqrt((material_.lambda() + 2 * material_.mu() + material_.volume_term) / material_.density);
-  const double finest = *std::min_element(spacing_.begin(), spacing_.end());
-  double limit = 0.3 * finest / speed;
-  if (material_.viscosity > 0) limit = std::min(limit, 0.1 * finest * finest * material_.density / material_.viscosity);
+  // No wave crosses a third of the smallest neighbourhood of its material in one substep.
+  std::vector<double> finest(materials_.count(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < size(); ++i) finest[materials_.number(i)] = std::min(finest[materials_.number(i)], spacing_[i]);
+  double limit = std::numeric_limits<double>::infinity(), stiffest = 0;
+  for (std::size_t k = 0; k < finest.size(); ++k) {
+    const Material& m = materials_[k];
+    const double speed = std::sqrt((m.lambda() + 2 * m.mu() + m.volume_term) / m.density);
+    limit = std::min(limit, 0.3 * finest[k] / speed), stiffest = std::max(stiffest, m.young);
+    if (m.viscosity > 0) limit = std::min(limit, 0.1 * finest[k] * finest[k] * m.density / m.viscosity);
+  }
   if (env.ground) limit = std::min(limit, 0.3 / std::sqrt(env.ground_stiffness));
   std::vector<double> inverse_mass(size(), 0);
   for (std::size_t i = 0; i < size(); ++i)
     if (!is_fixed(env, i)) inverse_mass[i] = 1 / mass_[i];
   for (Potential* p : env.contact) {
     p->begin(state.displacement, 0, 1);
-    if (const double stiffest = p->stiffest(inverse_mass); stiffest > 0) limit = std::min(limit, 0.3 / std::sqrt(stiffest));
+    if (const double firmest = p->stiffest(inverse_mass); firmest > 0) limit = std::min(limit, 0.3 / std::sqrt(firmest));
   }
   StepReport report;
   report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
@@ -61,7 +67,7 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
         Vec3& v = s.velocity[i];
         Vec3 outside = mass_[i] * env.gravity;
         if (!env.load.empty()) outside += env.load[i];
-        v += h * ((force[i] + outside) / mass_[i] - material_.damping * v);
+        v += h * ((force[i] + outside) / mass_[i] - materials_.of(i).damping * v);
         if (env.ground) {
           const double d = depth(env, i, position_[i] + s.displacement[i]);
           if (d > 0) {
@@ -77,7 +83,7 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
       for (std::size_t i = 0; i < size(); ++i) s.displacement[i] += h * s.velocity[i];
     }
     report.energy = elastic_force(s.displacement, nullptr, rest);
-    rose = !(total() <= 1.05 * (begun + brought) + 1e-12 * material_.young * volume_[0]);
+    rose = !(total() <= 1.05 * (begun + brought) + 1e-12 * stiffest * volume_[0]);
     if (rose && attempt < 8) continue;
     update_plasticity(s, dt);
     state = std::move(s);

@@ -11,18 +11,27 @@ namespace geo {
 
 // The stiffness of points of parts at work, at u_, after evaluate(u_).
 void ImplicitStep::linearise() {
-  StiffnessConstants constants = stiffness_constants(s_.material_);
-  constants.viscous = float(s_.material_.viscosity / dt_);
+  std::vector<StiffnessConstants> constants;
+  for (const Material& m : s_.materials_.all()) constants.push_back(stiffness_constants(m)), constants.back().viscous = float(m.viscosity / dt_);
   const auto blocks = parts_.blocks();
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     Columns<float> relaxed;
+    StiffnessModes aside;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t b = blocks[k];
       if (!relaxed_.empty()) {
         relaxed.resize(s_.points_.blocks[b].points.size());
         for (int c = 0; c < 3; ++c) std::copy(relaxed_[b].column[c].begin(), relaxed_[b].column[c].end(), relaxed.column[c].begin());
       }
-      stiffness_modes(constants, gradient_[b], relaxed_.empty() ? nullptr : &relaxed, weight_[b], modes_[b]);
+      modes_[b].resize(weight_[b].size());
+      for (const MaterialRun& run : s_.points_.blocks[b].runs) {
+        const Columns<float>* const own = relaxed_.empty() || !(s_.materials_[run.material].yield > 0) ? nullptr : &relaxed;
+        StiffnessModes& to = run.alone ? modes_[b] : aside;
+        to.resize(weight_[b].size());
+        stiffness_modes(constants[run.material], run.begin, run.end, gradient_[b], own, weight_[b], to);
+        for (std::size_t i = run.begin; i < run.end && !run.alone; ++i)
+          if (s_.points_.blocks[b].is_of(run, i)) modes_[b].take(aside, i);
+      }
     }
   });
 }
@@ -38,8 +47,6 @@ void ImplicitStep::precondition() {
     }
   });
   if (coarse_ && env_.contact.empty()) return;  // not much has turned since
-  const Material& m = s_.material_;
-  const float shear = float(m.mu() + m.viscosity / dt_ / 2), bulk = float(m.lambda() + m.volume_term);
   std::vector<Mat3> blocks = local_;
   rows_.read();
   rows_.add_blocks(blocks);
@@ -48,7 +55,7 @@ void ImplicitStep::precondition() {
     std::vector<Vec3> at(n_);
     for (std::size_t i = 0; i < n_; ++i) at[i] = s_.position_[i] + u_[i];
     coarse_.emplace(s_.groups_, at, env_.fixed);
-    coarse_->factor(s_.points_, modes_, weight_, shear, bulk, s_.point_stride(), blocks);
+    coarse_->factor(s_.points_, modes_, weight_, moduli_, s_.point_stride(), blocks);
   };
   if (s_.penalty_) {
     make_coarse();  // which knows nothing of it
@@ -58,7 +65,7 @@ void ImplicitStep::precondition() {
   }
   at_once(make_coarse, [&] {
     if (!patches_) {
-      patches_.emplace(s_.patches_, modes_, shear, bulk, blocks, env_.fixed);
+      patches_.emplace(s_.patches_, s_.materials_, moduli_, modes_, blocks, env_.fixed);
       return;
     }
     std::vector<std::uint32_t> changed;
@@ -67,7 +74,7 @@ void ImplicitStep::precondition() {
         for (const auto& place : s_.patches_.patches_of(i)) changed.push_back(place.patch);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    patches_->renew(changed, shear, bulk, blocks, env_.fixed);
+    patches_->renew(changed, blocks, env_.fixed);
   });
   blocks_ = std::move(blocks);
 }

@@ -23,12 +23,16 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), rows_(env.contact, n_),
       parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
       relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
-  const double keep = 1 / (1 + s_.material_.damping * dt);
+  std::vector<double> keep;  // per material
+  for (const Material& m : s_.materials_.all()) {
+    keep.push_back(1 / (1 + m.damping * dt));
+    moduli_.push_back({float(m.mu() + m.viscosity / dt / 2), float(m.lambda() + m.volume_term)});
+  }
   for (std::size_t i = 0; i < n_; ++i) {
     target_[i] = state.displacement[i];
     load_[i] = s_.mass_[i] * env.gravity;
     if (!env.load.empty()) load_[i] += env.load[i];
-    if (!is_fixed(env, i)) target_[i] += dt * keep * state.velocity[i];
+    if (!is_fixed(env, i)) target_[i] += dt * keep[s_.materials_.number(i)] * state.velocity[i];
   }
   // Where nodes come to if they accelerate as in the step before, or, where that is unknown, fly on their own, unless that is too far from
   // anything.
@@ -43,11 +47,12 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     for (std::size_t i = 0; i < n_; ++i)
       if (depth(env, i, s_.position_[i] + state.displacement[i]) > 0) drag_[i] = s_.mass_[i] * env.friction / (0.01 * dt);
   std::vector<double> values;
+  const bool viscous = s_.materials_.any([](const Material& m) { return m.viscosity > 0; });
   for (std::size_t b = 0; b < weight_.size(); ++b) {
     const auto& points = s_.points_.blocks[b].points;
     weight_[b].assign((points.size() + 7) / 8 * 8, 0);
     for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
-    if (s_.material_.viscosity > 0) {
+    if (viscous) {
       s_.points_.values(b, state.displacement, values);
       point_gradients(s_.points_.blocks[b], values.data(), before_.emplace_back());
     }
@@ -61,7 +66,7 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()), elastic_.resize(parts_.count());
   std::vector<double> elastic(parts_.count(), 0), contact(parts_.count(), 0);
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    ElasticBlock work(elastic_constants(s_.material_, dt_));
+    ElasticBlock work(s_.materials_, dt_);
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t b = blocks[at];
       const PointHistory history{relaxed_.empty() ? nullptr : &relaxed_[b], before_.empty() ? nullptr : &before_[b]};
@@ -229,7 +234,7 @@ std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std
 
 std::vector<Columns<double>> Solid::relaxed(const State& state) const {
   if (!state.plastic.empty() && state.plastic.size() != points_.size()) throw InputError("the plastic strains are not those of this solid");
-  std::vector<Columns<double>> all(material_.yield > 0 && !state.plastic.empty() ? points_.blocks.size() : 0);
+  std::vector<Columns<double>> all(flows() && !state.plastic.empty() ? points_.blocks.size() : 0);
   parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       all[b].resize(points_.blocks[b].points.size());
@@ -243,14 +248,15 @@ std::vector<Columns<double>> Solid::relaxed(const State& state) const {
 }
 
 void Solid::update_plasticity(State& state, double dt) const {
-  if (material_.yield == 0) return;
+  if (!flows()) return;
   state.plastic.resize(points_.size(), Mat3::Zero());
   parallel_for(points_.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const auto gradient = points_.gradients(b, state.displacement);
       for (std::size_t i = 0; i < gradient.size(); ++i) {
         Mat3& plastic = state.plastic[points_.first(b) + i];
-        if (points_.blocks[b].points[i].rung != Rung::rigid) plastic = flow(material_, plastic, Mat3::Identity() + gradient[i], dt);
+        const Material& of = materials_[points_.blocks[b].points[i].material];
+        if (of.yield > 0 && points_.blocks[b].points[i].rung != Rung::rigid) plastic = flow(of, plastic, Mat3::Identity() + gradient[i], dt);
       }
     }
   });
@@ -278,7 +284,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env,
     update_plasticity(state, h);
   };
   advance(advance, 0, dt);
-  if (material_.yield > 0) report.energy = elastic_force(state.displacement, nullptr, relaxed(state));
+  if (flows()) report.energy = elastic_force(state.displacement, nullptr, relaxed(state));
   return report;
 }
 

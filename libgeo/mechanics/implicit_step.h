@@ -54,6 +54,7 @@ class ImplicitStep {
   StepParts parts_;
   std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;
+  std::vector<Moduli> moduli_;  // per material, of the preconditioner
   std::vector<Columns<double>> relaxed_;        // per block: of plastic strain, where there is any
   std::vector<Columns<double>> before_;         // per block: ∇u at the start, where there is viscosity
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)

@@ -140,9 +140,33 @@ ShapeRow PointBlock::row(std::size_t point) const {
   return row;
 }
 
+void PointBlock::set_materials(const Materials& materials) {
+  const auto padded = static_cast<std::uint32_t>(unit.size());
+  runs.assign(1, {0, padded});
+  if (materials.count() == 1) return;
+  runs.clear();
+  std::vector<std::uint16_t> here;
+  for (std::uint32_t begin = 0; begin < padded; begin += 8) {
+    here.clear();
+    for (std::size_t i = begin; i < std::min<std::size_t>(begin + 8, points.size()); ++i) {
+      const bool sees = first[i] < first[i + 1];
+      points[i].material = sees ? materials.number(nodes[to[first[i]]]) : std::uint16_t(0);
+      if (sees) here.push_back(points[i].material);
+    }
+    std::sort(here.begin(), here.end());
+    here.erase(std::unique(here.begin(), here.end()), here.end());
+    const bool goes_on = !runs.empty() && runs.back().alone;
+    if (here.empty()) here.push_back(goes_on ? runs.back().material : std::uint16_t(0));
+    if (here.size() == 1 && goes_on && runs.back().material == here[0])
+      runs.back().end = begin + 8;
+    else
+      for (const auto material : here) runs.push_back({begin, begin + 8, material, here.size() == 1});
+  }
+}
+
 bool operator==(const PointBlock& a, const PointBlock& b) {
   const auto same = [](const MaterialPoint& p, const MaterialPoint& q) {
-    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.reach == q.reach && p.measured == q.measured;
+    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.material == q.material && p.reach == q.reach && p.measured == q.measured;
   };
   return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && a.four_first == b.four_first && a.four_to == b.four_to && a.packed == b.packed && a.unit == b.unit && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }
@@ -158,6 +182,12 @@ void MaterialPoints::connect(std::size_t nodes) {
   std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (std::size_t k = 0; k < blocks[b].nodes.size(); ++k) incoming_[at[blocks[b].nodes[k]]++] = static_cast<std::uint32_t>(part_[b] + k);
+}
+
+void MaterialPoints::set_materials(const Materials& materials) {
+  parallel_for(blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) blocks[b].set_materials(materials);
+  });
 }
 
 void MaterialPoints::values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "mechanics/materials.h"
 #include "mechanics/shape_functions.h"
 
 namespace geo {
@@ -19,8 +20,16 @@ struct MaterialPoint {
   Rung rung = Rung::rigid;
   std::uint8_t growth = 0;  ///< how often its support was widened by a fifth
   bool blinded = false;     ///< a face hides a node within its support
+  std::uint16_t material = 0;  ///< that of the nodes that it sees
   double reach = 0;         ///< no node within its support is farther away, nor is any part of a way to one
   double measured = 0;      ///< its volume before all were scaled to sum to that of the nodes
+};
+
+/// Points of a block with the same material, from a multiple of eight to the next or a later one. `alone`: no points of others stand among them.
+struct MaterialRun {
+  std::uint32_t begin = 0, end = 0;
+  std::uint16_t material = 0;
+  bool alone = true;
 };
 
 /// Points near each other and the rows of their shape functions.
@@ -39,6 +48,7 @@ struct PointBlock {
   std::vector<std::int16_t> packed;
   std::vector<float> unit;  ///< per point, a multiple of eight of them
   Box3 box;                          ///< of the points
+  std::vector<MaterialRun> runs;     ///< in order; where eight points have several materials, one run for each of these
 
   /// Where a point's row comes from: its own, or that of a point of another block.
   struct Source {
@@ -52,6 +62,12 @@ struct PointBlock {
   PointBlock(std::vector<MaterialPoint> points, std::span<const ShapeRow> rows);
   /// A row that it was made of.
   ShapeRow row(std::size_t point) const;
+  /// Gives points the materials of nodes.
+  void set_materials(const Materials& materials);
+  /// False where a point has another material than the run that it stands in. What is no point, or sees nothing, is of any run.
+  bool is_of(const MaterialRun& run, std::size_t point) const {
+    return point >= points.size() || points[point].material == run.material || first[point] == first[point + 1];
+  }
   friend bool operator==(const PointBlock& a, const PointBlock& b);
 
  private:
@@ -72,6 +88,8 @@ class MaterialPoints {
 
   /// After blocks have changed.
   void connect(std::size_t nodes);
+  /// After connect().
+  void set_materials(const Materials& materials);
   std::size_t size() const { return first_.empty() ? 0 : first_.back(); }
   /// Number of a block's first point.
   std::size_t first(std::size_t block) const { return first_[block]; }

@@ -24,10 +24,10 @@ std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes
 }
 
 std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, const State& state) {
-  const auto sums = node_sums(solid, nodes, state, [&](const Mat3&, const Mat3& elastic, std::array<double, 6>& out) {
+  const auto sums = node_sums(solid, nodes, state, [](const Material& material, const Mat3&, const Mat3& elastic, std::array<double, 6>& out) {
     const double j = elastic.determinant();
     if (!(j > 0)) return false;
-    const Mat3 s = stress(solid.material(), elastic) * elastic.transpose() / j;
+    const Mat3 s = stress(material, elastic) * elastic.transpose() / j;
     out = {s(0, 0), s(1, 1), s(2, 2), 0.5 * (s(0, 1) + s(1, 0)), 0.5 * (s(1, 2) + s(2, 1)), 0.5 * (s(2, 0) + s(0, 2))};
     return true;
   });

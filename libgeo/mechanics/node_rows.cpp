@@ -77,11 +77,9 @@ ShapeRow NodeRows::row(std::size_t i) const {
   return row;
 }
 
-ModePenalty::ModePenalty(const NodeRows& rows, const std::vector<double>& volume, double stiffness) : incoming_(rows.size()) {
-  for (std::uint32_t i = 0; i < rows.size(); ++i) {
-    weight_.push_back(stiffness * volume[i]);
+ModePenalty::ModePenalty(const NodeRows& rows, std::vector<double> weight) : weight_(std::move(weight)), incoming_(rows.size()) {
+  for (std::uint32_t i = 0; i < rows.size(); ++i)
     for (std::uint32_t q = 0; q < rows[i].to.size(); ++q) incoming_[rows[i].to[q]].push_back({i, q});
-  }
 }
 
 double ModePenalty::add(const NodeRows& rows, const std::vector<Vec3>& u, std::vector<Vec3>* out) const {

@@ -60,8 +60,8 @@ class NodeGradients {
 class ModePenalty {
  public:
   ModePenalty() = default;
-  /// Refers to rows, and volumes one a node; `stiffness`: α E. Call connect() when they have changed.
-  ModePenalty(const NodeRows& rows, const std::vector<double>& volume, double stiffness);
+  /// `weight`: per node, α E V.
+  ModePenalty(const NodeRows& rows, std::vector<double> weight);
   /// The energy; adds its gradient to `out`, where given.
   double add(const NodeRows& rows, const std::vector<Vec3>& u, std::vector<Vec3>* out) const;
   /// Adds the diagonal, the same for all three coordinates.

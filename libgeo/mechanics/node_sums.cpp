@@ -21,7 +21,7 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
         const MaterialPoint& p = block.points[i];
         const Mat3 all = Mat3::Identity() + gradient[i];
         const Mat3 elastic = state.plastic.empty() ? all : Mat3(all * relaxation(state.plastic[points.first(b) + i]));
-        if (p.rung == Rung::rigid || !stress(all, elastic, own)) continue;
+        if (p.rung == Rung::rigid || !stress(solid.materials()[p.material], all, elastic, own)) continue;
         for (auto e = block.first[i]; e < block.first[i + 1]; ++e) {
           const std::uint32_t node = block.nodes[block.to[e]];
           const double left = 1 - (p.position - nodes.position[node]).squaredNorm() * inverse[node];  // the kernel, but for its scale

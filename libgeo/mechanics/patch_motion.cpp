@@ -16,9 +16,9 @@ std::uint16_t half(float x) { return static_cast<std::uint16_t>((std::bit_cast<s
 
 }  // namespace
 
-PatchMotion::PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
-                         const std::vector<std::uint8_t>& fixed)
-    : patches_(patches), rotation_(patches.count(), Mat3f::Identity()), first_(1, 0), parts_(4 * patches.first(patches.count())) {
+PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli, const std::vector<StiffnessModes>& modes,
+                         const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed)
+    : patches_(patches), materials_(materials), moduli_(moduli), rotation_(patches.count(), Mat3f::Identity()), first_(1, 0), parts_(4 * patches.first(patches.count())) {
   for (std::size_t p = 0; p < patches.count(); ++p) {
     const std::size_t size = 3 * patches.nodes(p).size();
     first_.push_back(first_.back() + size * padded(size));
@@ -27,23 +27,24 @@ PatchMotion::PatchMotion(const NodePatches& patches, const std::vector<Stiffness
   parallel_for(patches.count(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = modes[block].rotation(point);
-      invert(p, shear, bulk, blocks, fixed);
+      invert(p, blocks, fixed);
     }
   });
 }
 
-void PatchMotion::renew(std::span<const std::uint32_t> which, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
+void PatchMotion::renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
   parallel_for(which.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) invert(which[k], shear, bulk, blocks, fixed);
+    for (std::size_t k = begin; k < end; ++k) invert(which[k], blocks, fixed);
   });
 }
 
-void PatchMotion::invert(std::size_t patch, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
+void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
   const auto nodes = patches_.nodes(patch);
   const std::size_t size = 3 * nodes.size(), row = padded(size);
   std::vector<float> matrix(size * row, 0.0f), share(nodes.size());
   const float* tile = patches_.outer(patch);
   const Mat3f& turn = rotation_[patch];
+  const auto [shear, bulk] = moduli_[materials_.number(nodes[0])];
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const bool held = !fixed.empty() && fixed[nodes[a]];
     share[a] = held ? 0 : 1 / std::sqrt(static_cast<float>(patches_.patches_of(nodes[a]).size()));

@@ -13,12 +13,12 @@ namespace geo {
 
 class PatchMotion {
  public:
-  /// `modes`: rotations of points now; `shear`, `bulk` of an isotropic stiffness; `blocks`: what nodes have besides;
-  /// `fixed`: as in Environment.
-  PatchMotion(const NodePatches& patches, const std::vector<StiffnessModes>& modes, float shear, float bulk, const std::vector<Mat3>& blocks,
-              const std::vector<std::uint8_t>& fixed);
+  /// `modes`: rotations of points now; `moduli`: of an isotropic stiffness, per material; `blocks`: what nodes have besides;
+  /// `fixed`: as in Environment. Keeps `materials` and `moduli`.
+  PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli, const std::vector<StiffnessModes>& modes,
+              const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   /// Patches that have another block than before, with the rotations that they have.
-  void renew(std::span<const std::uint32_t> which, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
+  void renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   /// Inverses of the patches times r, each on its own; then their sum at a node.
   void solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches);
   Vec3 at(std::size_t node) const {
@@ -28,8 +28,10 @@ class PatchMotion {
   }
 
  private:
-  void invert(std::size_t patch, float shear, float bulk, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
+  void invert(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   const NodePatches& patches_;
+  const Materials& materials_;
+  std::span<const Moduli> moduli_;
   std::vector<Eigen::Matrix3f> rotation_;   // per patch
   std::vector<std::size_t> first_;          // per patch and one more
   std::vector<std::uint16_t> inverse_;      // upper halves of numbers

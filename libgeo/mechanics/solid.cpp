@@ -23,19 +23,22 @@ std::vector<NodeId> all_nodes(std::size_t count) {
 
 }  // namespace
 
-Solid::Solid(const Body& body, const Material& material) : material_(material) {
-  require_material(material);
+Solid::Solid(const Body& body, Materials materials) : materials_(std::move(materials)) {
+  if (materials_.unfit(body.nodes.size())) throw InputError("a solid of several materials needs one for each node");
   State none;
   follow_nodes(body.nodes, body.graph, NodeId(body.nodes.size()), {}, all_nodes(body.nodes.size()), none);
-  if (material.discretisation == Discretisation::galerkin)
-    galerkin_.emplace(body, points_), group_nodes();
-  else
+  if (materials_.discretisation() == Discretisation::galerkin) {
+    galerkin_.emplace(body, points_);
+    points_.set_materials(materials_);
+    group_nodes();
+  } else {
     nodal_points(all_nodes(body.nodes.size()));
+  }
 }
 
-Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, const Material& material) : material_(material) {
-  require_material(material);
-  material_.discretisation = Discretisation::mueller04;
+Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials) : materials_(std::move(materials)) {
+  if (materials_.unfit(nodes.size())) throw InputError("a solid of several materials needs one for each node");
+  materials_.set(Discretisation::mueller04);
   State none;
   update(nodes, graph, NodeId(nodes.size()), {}, all_nodes(nodes.size()), none);
 }
@@ -58,6 +61,7 @@ void Solid::settle(const Body& body, State& state) {
   if (!galerkin_) return;
   const auto changes = galerkin_->settle(body, points_);
   if (!changes) return;
+  points_.set_materials(materials_);
   groups_ = NodeGroups(position_, rows_, part_, parts_);
   patches_.follow(position_, rows_, spacing_, points_, *changes);
   const auto& kept = changes->kept;
@@ -78,7 +82,7 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
       std::vector<MaterialPoint> points;
       std::vector<ShapeRow> rows;
       for (std::size_t i = b * nodes_a_block; i < std::min(n, (b + 1) * nodes_a_block); ++i) {
-        points.push_back({position_[i], volume_[i], rows_.rung(i), 0, false, 0, volume_[i]});
+        points.push_back({position_[i], volume_[i], rows_.rung(i), 0, false, 0, 0, volume_[i]});
         if (stale[b] || b >= before) rows.push_back(rows_.rung(i) == Rung::rigid ? ShapeRow{} : rows_.row(i));
       }
       if (stale[b] || b >= before)
@@ -88,8 +92,11 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
     }
   });
   points_.connect(n);
+  points_.set_materials(materials_);
   group_nodes();
-  penalty_.emplace(rows_, volume_, material_.mode_penalty * material_.young);
+  std::vector<double> penalty;
+  for (std::size_t i = 0; i < n; ++i) penalty.push_back(materials_.of(i).mode_penalty * materials_.of(i).young * volume_[i]);
+  penalty_.emplace(rows_, std::move(penalty));
 }
 
 void Solid::group_nodes() {
@@ -114,7 +121,7 @@ void Solid::gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) co
 double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Columns<double>>& relaxed) const {
   std::vector<double> energy(points_.blocks.size(), 0), pull(force ? 4 * points_.parts() : 0);
   parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
-    ElasticBlock work(elastic_constants(material_));
+    ElasticBlock work(materials_);
     for (std::size_t b = begin; b < end; ++b) {
       const auto& of_point = work.evaluate(points_, b, u, {relaxed.empty() ? nullptr : &relaxed[b], nullptr}, nullptr, force ? &pull[4 * points_.part(b)] : nullptr);
       energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
@@ -160,7 +167,7 @@ Mat3 Solid::stress_at(const State& state, const Vec3& x, double radius, const st
       if (!state.plastic.empty()) f = f * relaxation(state.plastic[points_.first(b) + i]);
       const double j = f.determinant();
       if (!(j > 0)) continue;  // turned inside out: it has no Cauchy stress
-      const Mat3 cauchy = stress(material_, f) * f.transpose() / j;
+      const Mat3 cauchy = stress(materials_[p.material], f) * f.transpose() / j;
       sum += 0.5 * w * (cauchy + cauchy.transpose()), total += w;
     }
   }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "graph/visibility_graph.h"
-#include "mechanics/elasticity.h"
 #include "mechanics/galerkin.h"
+#include "mechanics/materials.h"
 #include "mechanics/node_groups.h"
 #include "mechanics/node_patches.h"
 #include "mechanics/node_rows.h"
@@ -53,13 +53,13 @@ struct RungCounts {
 
 class Solid {
  public:
-  /// From scratch; the discretisation is the material's. Throws InputError for an impossible material.
-  Solid(const Body& body, const Material& material);
-  /// Of nodes and graph alone, by mueller04 whatever the material says: there is no surface to clip cells to.
-  Solid(const NodeSet& nodes, const VisibilityGraph& graph, const Material& material);
+  /// From scratch; the discretisation is the materials'. Throws InputError where these are not for so many nodes.
+  Solid(const Body& body, Materials materials);
+  /// Of nodes and graph alone, by mueller04 whatever the materials say: there is no surface to clip cells to.
+  Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials);
 
   /// After a split: what the cut has changed is recomputed; equal to a build from scratch, bit for bit. New nodes move with
-  /// their donors' affine map and velocity; then each connected part gets the rigid motion that gives it back its linear
+  /// their donors' affine map and velocity, and are of their material; then each connected part gets the rigid motion that gives it back its linear
   /// momentum, and its angular momentum about its centre of mass. Plastic strain stays with its point.
   void update(const Body& body, const BodyDelta& delta, State& state) { follow(body, delta, state), settle(body, state); }
   /// The two halves of update(): nodes with their motion and gradients, after each split; material points, once after several
@@ -73,7 +73,7 @@ class Solid {
   double mass(NodeId i) const { return mass_[i.index()]; }
   Rung rung(NodeId i) const { return rows_.rung(i.index()); }
   RungCounts rungs() const;
-  const Material& material() const { return material_; }
+  const Materials& materials() const { return materials_; }
   const MaterialPoints& points() const { return points_; }
   const NodePatches& patches() const { return patches_; }
 
@@ -109,12 +109,13 @@ class Solid {
                     std::span<const NodeId> updated, State& state);
   void group_nodes();
   std::size_t point_stride() const { return galerkin_ ? 2 : 1; }  // two of a cell's four points will do for the preconditioner
+  bool flows() const { return materials_.any([](const Material& m) { return m.yield > 0; }); }
   void nodal_points(std::span<const NodeId> updated);
   void update_plasticity(State& state, double dt) const;
   std::vector<Columns<double>> relaxed(const State& state) const;
   double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Columns<double>>& relaxed = {}) const;
 
-  Material material_;
+  Materials materials_;
   std::vector<double> mass_, volume_, spacing_;
   std::vector<Vec3> position_;          // material
   std::vector<std::uint32_t> part_;     // per node: its connected part

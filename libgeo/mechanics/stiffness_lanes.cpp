@@ -131,14 +131,14 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]
   return p;
 }
 
-void Modes(const StiffnessConstants& material, const Columns<float>& gradient, const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
+void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
   const Lanes<float> d;
   const hn::Rebind<std::int32_t, Lanes<float>> d32;
   const hn::Rebind<std::int16_t, Lanes<float>> d16;
   const auto columns_of = [](const Columns<float>& c) { return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()}; };
   const auto columns = columns_of(gradient);
   const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full);
-  for (std::size_t i = 0; i < out.points; i += width<float>) {
+  for (std::size_t i = begin; i < end; i += width<float>) {
     Matrix<float> f = load(columns.data(), i), u, v;
     for (int c = 0; c < 3; ++c) f.at[c][c] = hn::Add(f.at[c][c], one);
     Vector sigma[3];
@@ -186,11 +186,14 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Modes);
 
-void stiffness_modes(const StiffnessConstants& constants, const Columns<float>& gradient, const Columns<float>* relaxed, const std::vector<float>& weight,
-                     StiffnessModes& out) {
-  out.points = weight.size();
-  out.frame.resize(18 * out.points), out.stiffness.resize(12 * out.points);
-  HWY_DYNAMIC_DISPATCH(Modes)(constants, gradient, relaxed, weight.data(), out);
+void stiffness_modes(const StiffnessConstants& constants, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed,
+                     const std::vector<float>& weight, StiffnessModes& out) {
+  HWY_DYNAMIC_DISPATCH(Modes)(constants, begin, end, gradient, relaxed, weight.data(), out);
+}
+
+void StiffnessModes::take(const StiffnessModes& from, std::size_t point) {
+  for (std::size_t k = 0; k < 18; ++k) frame[number(point, 18) + 8 * k] = from.frame[number(point, 18) + 8 * k];
+  for (std::size_t k = 0; k < 12; ++k) stiffness[number(point, 12) + 8 * k] = from.stiffness[number(point, 12) + 8 * k];
 }
 
 Eigen::Matrix3f StiffnessModes::rotation(std::size_t point) const {

@@ -68,7 +68,8 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
   }
   volume_ = nodes.volume, spacing_ = nodes.spacing, position_ = nodes.position;
   mass_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) mass_[i] = material_.density * volume_[i];
+  for (std::size_t i = old; i < n; ++i) materials_.add(donors[i - old].index());
+  for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
   rows_.update(nodes, graph, updated);
   parts_ = graph.components(part_);
   if (changed.empty()) return;

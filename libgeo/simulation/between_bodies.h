@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "contact/mutual_contact.h"
@@ -13,6 +14,7 @@ struct BetweenBodies {
   double friction = 0.3;  ///< Coulomb's coefficient
   double reach = 0;       ///< vertices so near, or so deep, are looked at: no less than what bodies approach each other in a step, and a cell
   double slow = 0;        ///< a way below which friction is smooth
+  std::span<const double> firmness = {};  ///< per node: the pressure is times the larger one of the two bodies'; empty: 1
 };
 
 /// For a step that begins at displacements u: the surface vertices that are in another body, or may come to be. Which body a node

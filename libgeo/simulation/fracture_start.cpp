@@ -31,11 +31,11 @@ class Cracks {
 }  // namespace
 
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
-  const auto sums = node_sums(solid, body.nodes, motion, [&](const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
+  const auto sums = node_sums(solid, body.nodes, motion, [](const Material& material, const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
     if (!(all.determinant() > 0.01)) return false;
     const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-    const Mat3 s = rotation.transpose() * stress(solid.material(), elastic) * elastic.transpose() * rotation / elastic.determinant();
+    const Mat3 s = rotation.transpose() * stress(material, elastic) * elastic.transpose() * rotation / elastic.determinant();
     out = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
     return true;
   });

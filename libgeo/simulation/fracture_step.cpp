@@ -18,6 +18,7 @@ struct Drive {
   std::vector<Vec3> direction;  // unit, across the front
   std::vector<double> excess;   // stress over what the toughness asks for; ≤ 1: none
   std::vector<std::uint8_t> told;  // whether enough nodes see the point for that to be known
+  std::uint32_t node = 0;          // of the body that it is in, where any is told
 };
 
 double spacing_at(const Body& body, const Vec3& p) {
@@ -35,12 +36,13 @@ Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, cons
   std::vector<Mat3> separation(n, Mat3::Zero());
   std::vector<TipFrame> frame(n);
   std::vector<std::uint8_t> told(n, 0);
+  std::vector<std::uint32_t> node(n, 0);
   parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       frame[i] = g.frame(i);
       if (!g.live(i) || !may_break(fracture, frame[i].at)) continue;
-      const TipField field = tip_field(body, motion.displacement, solid.material(), frame[i]);
-      told[i] = field.nodes >= 4;
+      const TipField field = tip_field(body, motion.displacement, solid.materials(), frame[i]);
+      told[i] = field.nodes >= 4, node[i] = field.node;
       if (!told[i]) continue;
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
@@ -64,6 +66,7 @@ Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, cons
     }
   }
   Drive d{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0), std::move(told)};
+  if (const auto any = std::find(d.told.begin(), d.told.end(), 1); any != d.told.end()) d.node = node[static_cast<std::size_t>(any - d.told.begin())];
   for (std::size_t i = 0; i < n; ++i) {
     d.direction[i] = frame[i].ahead;
     if (!g.live(i) || separation[i].isZero() || !may_break(fracture, frame[i].at)) continue;
@@ -107,7 +110,6 @@ void turn(Drive& d, const GrowingFront& g, double angle) {
 void step_fracture(const Fracture& fracture, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
                    const SplitStep& split, FractureWork* work) {
   FractureWork done;
-  const double fastest = fracture.speed * rayleigh_speed(solid.material());
   std::vector<GrowingFront> fronts;
   fronts.swap(state.fronts);
   const auto keep = [&](std::vector<GrowingFront> parts) { state.fronts.insert(state.fronts.end(), parts.begin(), parts.end()); };
@@ -129,6 +131,7 @@ void step_fracture(const Fracture& fracture, const Body& body, const Solid& soli
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     GrowingFront& g = fronts[f];
     Drive d = drive(fracture, body, solid, motion, g);
+    const double fastest = fracture.speed * rayleigh_speed(solid.materials().of(d.node));
     std::vector<double> step(g.size(), 0);
     double spacing = std::numeric_limits<double>::infinity(), most = 0;
     bool air = true;  // only parts between points in air are left

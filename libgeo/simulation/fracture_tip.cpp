@@ -115,12 +115,14 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
 
 }  // namespace
 
-TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Material& material, const TipFrame& tip) {
+TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip) {
   const Nearby near = nodes_about(body, tip);
   TipField field;
   field.nodes = near.nodes.size();
   field.support = near.support;
   if (field.nodes < 4) return field;
+  field.node = near.nodes[0];
+  const Material& material = materials.of(field.node);
   const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
   std::vector<Vec3> v;
   for (const auto i : near.nodes) v.push_back(u[i]);

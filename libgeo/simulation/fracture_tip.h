@@ -2,7 +2,7 @@
 #pragma once
 
 #include "body/body.h"
-#include "mechanics/elasticity.h"
+#include "mechanics/materials.h"
 
 namespace geo {
 
@@ -21,6 +21,7 @@ struct TipField {
   Vec3 k = Vec3::Zero();        ///< K_I, K_II, K_III; Pa √m
   double support = 0;           ///< support radius h here, model units
   std::size_t nodes = 0;        ///< how many nodes tell it; fewer than four: the field is zero
+  std::uint32_t node = 0;       ///< one of these: the tip is in its body
 
   /// Stress across the half-plane at `angle` from straight ahead, at the distance where K / √(2πr) is its own average over
   /// 0 < r < h, h/4: the uniform part's share, and the modes'. Pa.
@@ -37,7 +38,7 @@ struct TipField {
 /// Chu, Moran and Belytschko 1997). `u`: per node. Where the nodes move as linear elasticity says, the answer is exact.
 /// A crack that nodes see carries no traction: as far as there is crack straight behind the tip, the uniform stress keeps only
 /// what does not pull at its faces (Williams' second term).
-TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Material& material, const TipFrame& tip);
+TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip);
 
 /// Displacement that a stress intensity of 1 in each mode gives a point at (r, angle) from the tip, plane strain, in the
 /// tip's frame: one column a mode.

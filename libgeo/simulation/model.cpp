@@ -1,5 +1,6 @@
 #include "simulation/model.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include "base/error.h"
@@ -76,6 +77,23 @@ Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32
   for (const NodeId d : body.donors) part.push_back(std::uint32_t(part[d.index()]));
   part.resize(body.nodes.size(), 0);
   return body;
+}
+
+Materials materials_of(const Scene& scene, const std::vector<std::uint32_t>& part) {
+  std::vector<Material> table;
+  std::vector<std::uint16_t> of_body, of_node;
+  for (const SceneBody& body : scene.bodies) {
+    const Material& own = body.material ? *body.material : scene.material;
+    const auto at = std::find(table.begin(), table.end(), own);
+    of_body.push_back(static_cast<std::uint16_t>(at - table.begin()));
+    if (at == table.end()) table.push_back(own);
+  }
+  if (table.size() < 2) return table.empty() ? scene.material : table[0];
+  for (const auto p : part) {
+    if (p >= of_body.size()) throw InputError("the checkpoint has a body that is not in this scene");
+    of_node.push_back(of_body[p]);
+  }
+  return {std::move(table), std::move(of_node)};
 }
 
 }  // namespace geo

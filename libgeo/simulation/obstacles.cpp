@@ -58,15 +58,23 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
   if (shapes_.empty() && !mutual) return;
   // As stiff as the same penalty on each node of the lowest layer: acceleration times mass over area; by the nodes there are now,
   // so that a run taken up does the same.
-  double layer = 0, spacing = 0, fastest = 0;
-  for (std::size_t i = 0; i < solid.size(); ++i) layer += solid.mass(NodeId(i)) / (body.nodes.spacing[i] * body.nodes.spacing[i]), spacing += body.nodes.spacing[i];
-  layer /= double(solid.size()), spacing /= double(solid.size());
+  const Materials& materials = solid.materials();
+  std::vector<double> layer(materials.count(), 0), count(layer), firmness;  // per material; per node, where there are several
+  double spacing = 0, fastest = 0;
+  for (std::size_t i = 0; i < solid.size(); ++i) {
+    const auto m = materials.number(i);
+    layer[m] += solid.mass(NodeId(i)) / (body.nodes.spacing[i] * body.nodes.spacing[i]), ++count[m], spacing += body.nodes.spacing[i];
+  }
+  for (std::size_t m = 0; m < layer.size(); ++m) layer[m] /= count[m];
+  spacing /= double(solid.size());
+  const double each = layer.size() == 1 ? layer[0] : 1;
+  for (std::size_t i = 0; i < solid.size() && layer.size() > 1; ++i) firmness.push_back(layer[materials.number(i)]);
   for (const Vec3& v : motion.velocity) fastest = std::max(fastest, v.norm());
   const double fall = dt * environment.gravity.norm();
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
     ObstacleOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness, ground ? scene.friction : scene.obstacles[k].friction};
-    options.pressure *= layer;
+    options.pressure *= each;
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
     if (ground) from.translation() = to.translation() = scene.ground_point;
     else from = isometry(scene.obstacles[k].pose(time)), to = isometry(scene.obstacles[k].pose(time + dt));
@@ -74,14 +82,14 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
     const double reach = 2 * dt * (fastest + fall) + moved + spacing;
     acting_.emplace_back(shapes_[k], options, from, to);
     if (any_near(*shapes_[k], from.inverse(), body.nodes, motion.displacement, reach))
-      acting_.back().watch(body, weights_of(weights, body, solid), motion.displacement, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing);
+      acting_.back().watch(body, weights_of(weights, body, solid), motion.displacement, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
   }
   if (scene.ground && scene.self_contact) environment.ground = false;
   for (Obstacle& o : acting_)
     if (!o.empty()) environment.contact.push_back(&o);
   if (!mutual || !parts_meet(body.nodes, part, motion, dt, fall)) return;
   mutual_ = between_bodies(body, solid, weights_of(weights, body, solid), part, motion.displacement,
-                           {scene.contact_stiffness * layer, scene.contact.friction, 4 * dt * (fastest + fall) + spacing, 1e-2 * dt * fall + 1e-6 * spacing});
+                           {scene.contact_stiffness * each, scene.contact.friction, 4 * dt * (fastest + fall) + spacing, 1e-2 * dt * fall + 1e-6 * spacing, firmness});
   if (!mutual_->empty()) environment.contact.push_back(&*mutual_);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct SceneBody {
   Pose place;
   Vec3 velocity = Vec3::Zero();  ///< at the start
   Vec3 spin = Vec3::Zero();      ///< angular velocity at the start about the middle of its box, rad/s
+  std::optional<Material> material;  ///< its own; none: the scene's
 };
 
 /// Nodes in a box that are held, and moved.
@@ -70,7 +72,7 @@ struct SceneObstacle {
 struct Scene {
   std::vector<SceneBody> bodies;  ///< one at least
   int k = 26;
-  Material material;  ///< of all bodies
+  Material material;  ///< of bodies that have none of their own
   std::vector<Front> scores;  ///< cracks made before time 0, in material coordinates
   std::vector<Grip> grips;
   bool ground = false;

@@ -15,7 +15,7 @@ namespace geo {
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress) : Simulation(scene, Model{solid, {solid}}, progress) {}
 
 Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
-    : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_, scene.material), obstacles_(scene) {
+    : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
   state_.fronts.resize(scene.blades.size());
   score(progress);
   begin_motion();
@@ -24,7 +24,7 @@ Simulation::Simulation(const Scene& scene, const Model& model, const Progress& p
 }
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_, scene.material), obstacles_(scene) {
+    : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
   const std::size_t n = body_.nodes.size();
   if (state_.part.empty()) state_.part.assign(n, 0);
   if (state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene.blades.size())

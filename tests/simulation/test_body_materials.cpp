@@ -1,0 +1,144 @@
+// Bodies of a scene with materials of their own.
+#include <catch2/catch.hpp>
+
+#include "base/error.h"
+#include "io/scene_file.h"
+#include "simulation/kept_run.h"
+#include "surface/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+// A pit of hard stuff beside something soft that flows, both cut by a blade.
+const char* two = R"(
+gravity = [0, 0, -2]
+[material]
+young = 2e4
+damping = 3
+viscosity = 20
+[ground]
+[[body]]
+mesh = "a"
+spacing = 0.25
+position = [0, 0, 0.02]
+[[body]]
+mesh = "b"
+spacing = 0.25
+position = [1.1, 0, 0.02]
+[body.material]
+young = 4e5
+density = 3000
+yield = 0.01
+creep = 5
+[time]
+frames = 6
+frame_rate = 20
+step = 0.025
+[[blade]]
+points = [[-0.4, 0, 0], [2.5, 0, 0]]
+divide = 10
+keys = [[0.0, 0.013, 0.507, 1.3, 0, 0, 1, 2], [0.2, 0.013, 0.511, -0.7, 0, 0, 1, 3]]
+)";
+
+Model cubes(const Scene& scene) { return place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)}); }
+
+}  // namespace
+
+TEST_CASE("a body's material has the scene's where it says nothing") {
+  const Scene s = parse_scene(two, "s.toml");
+  REQUIRE(s.bodies.size() == 2);
+  CHECK_FALSE(s.bodies[0].material);
+  REQUIRE(s.bodies[1].material);
+  CHECK(s.bodies[1].material->young == 4e5);
+  CHECK(s.bodies[1].material->damping == 3);
+  CHECK(s.bodies[1].material->poisson == Material().poisson);
+  // In a table of its own, in braces, on the command line; before and after the scene's.
+  const Scene one = parse_scene("[body]\nmesh = 'a'\nmaterial = { poisson = 0.1 }\n[material]\nyoung = 7\n", "s.toml");
+  CHECK(one.bodies[0].material->poisson == 0.1);
+  CHECK(one.bodies[0].material->young == 7);
+  CHECK(parse_scene("[body]\nmesh = 'a'\n[body.material]\nmodel = 'stvk'\n", "s.toml").bodies[0].material->model == ElasticModel::saint_venant_kirchhoff);
+  const Scene set = parse_scene(two, "s.toml", {{"body.0.material.young", "9"}, {"body.1.material.young", "8"}, {"material.viscosity", "0"}});
+  CHECK(set.bodies[0].material->young == 9);
+  CHECK(set.bodies[0].material->damping == 3);
+  CHECK(set.bodies[1].material->young == 8);
+  CHECK(set.bodies[1].material->yield == 0.01);
+  CHECK(set.bodies[1].material->viscosity == 0);
+  CHECK(set.fingerprint != s.fingerprint);
+}
+
+TEST_CASE("what a body's material cannot have is refused with its line") {
+  const auto parse = [](const std::string& keys) { return parse_scene("[body]\nmesh = 'a'\n[body.material]\n" + keys, "s.toml"); };
+  CHECK_THROWS_WITH(parse("yuong = 3\n"), "s.toml:4:9: unknown key 'body.material.yuong'; did you mean 'young'?");
+  CHECK_THROWS_WITH(parse("poisson = 0.5\n"), Catch::Contains("s.toml:4:") && Catch::Contains("'body.material.poisson' is out of range"));
+  CHECK_THROWS_WITH(parse("model = 'jelly'\n"), Catch::Contains("s.toml:4:") && Catch::Contains("'body.material.model' must be"));
+  CHECK_THROWS_WITH(parse("discretisation = 'galerkin'\n"), Catch::Contains("s.toml:4:") && Catch::Contains("same for all bodies"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = 'a'\nmaterial = 3\n", "s.toml"), Catch::Contains("'body.material' must be a table"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = 'a'\nmaterail = { young = 3 }\n", "s.toml"), Catch::Contains("did you mean 'material'?"));
+  CHECK_THROWS_WITH(parse_scene(two, "s.toml", {{"body.2.material.young", "1"}}), Catch::Contains("body.2"));
+}
+
+TEST_CASE("cut bodies of two materials keep theirs, and a run taken up goes on with the same bytes") {
+  const Scene scene = parse_scene(two, "s.toml");
+  Simulation sim(scene, cubes(scene));
+  std::string kept;
+  for (int frame = 0; frame < scene.frames; ++frame) {
+    if (frame == 3) kept = bytes(sim);
+    CHECK(sim.advance_frame().refused == 0);
+  }
+  Simulation again = read_back(scene, kept);
+  for (int frame = 3; frame < scene.frames; ++frame) again.advance_frame();
+  CHECK(bytes(again) == bytes(sim));
+  double mass[2] = {0, 0}, deepest[2] = {0, 0};
+  const auto& state = sim.state();
+  for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
+    CHECK(sim.solid().materials().of(i).density == (state.part[i] == 0 ? 1000 : 3000));
+    mass[state.part[i]] += sim.solid().mass(NodeId(i));
+    deepest[state.part[i]] = std::min(deepest[state.part[i]], state.motion.displacement[i].z());
+  }
+  CHECK(mass[0] == Approx(1000).epsilon(1e-12));
+  CHECK(mass[1] == Approx(3000).epsilon(1e-12));
+  CHECK(deepest[0] < 2 * deepest[1]);  // the soft one gives way
+  // A checkpoint of more bodies than the scene has.
+  Scene fewer = scene;
+  RunState state_of_both = sim.state();
+  fewer.bodies[0].material = fewer.bodies[1].material;
+  state_of_both.part.assign(state_of_both.part.size(), 7);
+  fewer.bodies[0].material->young = 1;
+  CHECK_THROWS_AS(Simulation(fewer, sim.body(), state_of_both), InputError);
+}
+
+TEST_CASE("a heavy body among light ones does not sink into an obstacle") {
+  for (const std::string integrator : {"implicit", "leapfrog"}) {
+    const Scene scene = parse_scene("[material]\nyoung = 1e6\ndamping = 8\ndensity = 10\n[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = 'b'\nspacing = 0.25\nposition = [2, 0, 0]\n"
+                                    "[body.material]\nyoung = 1e8\ndensity = 8000\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 1e4\n[time]\nframe_rate = 10\nstep = 0.02\nintegrator = '" + integrator + "'\n", "s.toml");
+    Simulation sim(scene, cubes(scene));
+    for (int frame = 0; frame < 6; ++frame) sim.advance_frame();
+    double deepest[2] = {0, 0};
+    for (const Vec3& x : sim.surface().vertices) deepest[x.x() > 1.5] = std::min(deepest[x.x() > 1.5], x.z());
+    INFO(integrator << ": " << deepest[0] << ", " << deepest[1]);
+    // A column of four layers stands on the lowest one's penalty.
+    for (const double z : deepest) CHECK(-z < 3 * 4 * 9.81 / 1e4);
+    CHECK(deepest[1] < 0);
+  }
+}
+
+TEST_CASE("surfaces of a hard and a soft body that meet do not cross, nor do they with a penalty between bodies go far") {
+  for (const bool self : {true, false}) {
+    const Scene scene = parse_scene(std::string("[material]\nyoung = 2e4\ndamping = 4\n[[body]]\nmesh = 'a'\nspacing = 0.25\nfixed = [[-1, -1, -1, 3, 3, 0.2]]\n[[body]]\nmesh = 'b'\nspacing = 0.25\n"
+                                                "scale = 0.5\nposition = [0.23, 0.27, 1.02]\n[body.material]\nyoung = 1e7\ndensity = 600\n[contact]\nself = ") + (self ? "true" : "false") + "\n[time]\nframe_rate = 20\nstep = 0.025\n", "s.toml");
+    Simulation sim(scene, cubes(scene));
+    FrameWork work;
+    for (int frame = 0; frame < 8; ++frame) work += sim.advance_frame();
+    // It stands on the other one, dents it, and keeps its own shape.
+    double low = 0, high = 0, middle = 0, count = 0;
+    for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
+      const Vec3& u = sim.state().motion.displacement[i];
+      if (sim.state().part[i] == 0) continue;
+      low = std::min(low, u.z()), high = std::max(high, u.z()), middle += u.z(), ++count;
+    }
+    INFO("self " << self << ": " << middle / count);
+    CHECK(middle / count < -0.02);
+    CHECK(middle / count > -0.3);
+  }
+}

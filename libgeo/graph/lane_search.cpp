@@ -6,6 +6,7 @@
 // After foreach_target.h:
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "graph/lane_search.h"
 #include "hwy/highway.h"
@@ -102,40 +103,94 @@ void Search(const LocalGraph& graph, LaneSearch::Work& w) {
   }
 }
 
+#if HWY_TARGET <= HWY_AVX3
+// Rows become columns: of sixteen vectors of sixteen.
+template <class D, class V>
+void Transpose(D d, V* v) {
+  const hn::Repartition<std::uint64_t, D> dw;
+  V pairs[16];
+  for (int k = 0; k < 16; k += 2) pairs[k] = hn::InterleaveLower(d, v[k], v[k + 1]), pairs[k + 1] = hn::InterleaveUpper(d, v[k], v[k + 1]);
+  const auto low = [&](V a, V b) { return hn::BitCast(d, hn::InterleaveLower(dw, hn::BitCast(dw, a), hn::BitCast(dw, b))); };
+  const auto high = [&](V a, V b) { return hn::BitCast(d, hn::InterleaveUpper(dw, hn::BitCast(dw, a), hn::BitCast(dw, b))); };
+  for (int k = 0; k < 16; k += 4) {
+    v[k] = low(pairs[k], pairs[k + 2]), v[k + 1] = high(pairs[k], pairs[k + 2]);
+    v[k + 2] = low(pairs[k + 1], pairs[k + 3]), v[k + 3] = high(pairs[k + 1], pairs[k + 3]);
+  }
+  // Now the k-th block of v[4 r + c] is column 4 k + c of rows 4 r to 4 r + 3.
+  for (int c = 0; c < 4; ++c) {
+    const V front[2] = {hn::ConcatLowerLower(d, v[8 + c], v[c]), hn::ConcatLowerLower(d, v[12 + c], v[4 + c])};
+    const V back[2] = {hn::ConcatUpperUpper(d, v[8 + c], v[c]), hn::ConcatUpperUpper(d, v[12 + c], v[4 + c])};
+    v[c] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(front[1]), front[0]);
+    v[4 + c] = hn::OddEvenBlocks(front[1], hn::SwapAdjacentBlocks(front[0]));
+    v[8 + c] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(back[1]), back[0]);
+    v[12 + c] = hn::OddEvenBlocks(back[1], hn::SwapAdjacentBlocks(back[0]));
+  }
+}
+#endif
+
 // Appends each touched node to the rows of the lanes that reach it, and forgets its distances.
-void Collect(LaneSearch::Work& w, LaneSearch::Found* const* rows, std::uint32_t* counts) {
-  using Tag = hn::CappedTag<std::int32_t, LaneSearch::lanes>;
-  const Tag d;
-  constexpr std::size_t step = hn::MaxLanes(Tag());
-  const auto zero = hn::Zero(d), far = hn::Set(d, std::int32_t(LaneSearch::far)), radius = hn::Set(d, std::int32_t(unit_radius));
-  LaneSearch::Lanes* const distances = w.distances.data();
-  const std::size_t size = w.touched.size();
+void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
+  constexpr std::size_t all = LaneSearch::lanes;
+  std::uint32_t *node_end[all], *id_end[all], *distance_end[all];
+  for (std::size_t k = 0; k < all; ++k) node_end[k] = w.rows[k].node.data(), id_end[k] = w.rows[k].id.data(), distance_end[k] = w.rows[k].distance.data();
+  // The queue is empty, so that there is room for a list.
+  std::uint32_t* const nodes = w.queue.data();
+  std::size_t count = 0;
   std::uint8_t* const touched = w.touched.data();
-  LaneSearch::Found* ends[LaneSearch::lanes];
-  std::copy(rows, rows + LaneSearch::lanes, ends);
-  for (std::size_t first = 0; first < size; first += 8) {
-    std::uint64_t rest;
-    std::memcpy(&rest, touched + first, 8);
-    for (std::memset(touched + first, 0, 8); rest != 0; rest &= rest - 1) {
-      const auto node = static_cast<std::uint32_t>(first + hwy::Num0BitsBelowLS1Bit_Nonzero64(rest) / 8);
-      auto* const distance = reinterpret_cast<std::int32_t*>(distances[node].distance);
-      std::uint32_t reached = 0;
-      alignas(64) std::int32_t found[LaneSearch::lanes];
-      for (std::size_t p = 0; p < LaneSearch::lanes; p += step) {
-        const auto known = hn::Load(d, distance + p);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::And(hn::Lt(known, radius), hn::Gt(known, zero)), bits);
-        reached |= std::uint32_t(bits[0] | bits[1] << 8) << p;
-        hn::Store(known, d, found + p);
-        hn::Store(far, d, distance + p);
-      }
-      for (; reached != 0; reached &= reached - 1) {
-        const auto lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(reached);
-        *ends[lane]++ = {node, std::uint32_t(found[lane])};
-      }
+  const hn::CappedTag<std::uint8_t, 64> bytes;
+  for (std::size_t first = 0; first < w.touched.size(); first += 64) {
+    bool any = false;
+    for (std::size_t k = 0; k < 64; k += hn::Lanes(bytes)) any |= !hn::AllTrue(bytes, hn::Eq(hn::LoadU(bytes, touched + first + k), hn::Zero(bytes)));
+    if (!any) continue;
+    for (std::size_t word = first; word < first + 64; word += 8) {
+      std::uint64_t rest;
+      std::memcpy(&rest, touched + word, 8);
+      for (; rest != 0; rest &= rest - 1) nodes[count++] = static_cast<std::uint32_t>(word + hwy::Num0BitsBelowLS1Bit_Nonzero64(rest) / 8);
+    }
+    std::memset(touched + first, 0, 64);
+  }
+  const auto distances_of = [&](std::uint32_t node) { return w.distances[node].distance; };
+#if HWY_TARGET <= HWY_AVX3
+  const hn::FixedTag<std::uint32_t, all> d;
+  const auto zero = hn::Zero(d), far = hn::Set(d, LaneSearch::far), radius = hn::Set(d, unit_radius);
+  for (std::size_t first = 0; first < count; first += all) {
+    alignas(64) std::uint32_t ids[all] = {}, joined[all] = {};
+    hn::Vec<decltype(d)> distance[all];
+    const std::size_t here = std::min(all, count - first);
+    for (std::size_t n = 0; n < here; ++n) {
+      const auto node = nodes[first + n];
+      ids[n] = graph.id(node), joined[n] = w.joined[node];
+      w.joined[node] = 0;
+      distance[n] = hn::Load(d, distances_of(node));
+      hn::Store(far, d, distances_of(node));
+    }
+    for (std::size_t n = here; n < all; ++n) distance[n] = far;
+    Transpose(d, distance);
+    const auto node = hn::LoadU(d, nodes + first), id = hn::Load(d, ids), joins = hn::Load(d, joined);
+    for (std::size_t k = 0; k < all; ++k) {
+      const auto reached = hn::And(hn::Lt(distance[k], radius), hn::Gt(distance[k], zero));
+      const auto edge = hn::And(hn::ShiftLeftSame(joins, static_cast<int>(31 - k)), hn::Set(d, LaneSearch::edge_bit));
+      hn::StoreU(hn::Compress(node, reached), d, node_end[k]);
+      hn::StoreU(hn::Compress(id, reached), d, id_end[k]);
+      hn::StoreU(hn::Compress(hn::Or(distance[k], edge), reached), d, distance_end[k]);
+      const auto found = hn::CountTrue(d, reached);
+      node_end[k] += found, id_end[k] += found, distance_end[k] += found;
     }
   }
-  for (std::size_t lane = 0; lane < LaneSearch::lanes; ++lane) counts[lane] = static_cast<std::uint32_t>(ends[lane] - rows[lane]);
+#else
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto node = nodes[n], id = graph.id(node);
+    const std::uint32_t joined = std::exchange(w.joined[node], std::uint16_t(0));
+    auto* const distance = distances_of(node);
+    for (std::size_t k = 0; k < all; ++k) {
+      const auto known = std::exchange(distance[k], LaneSearch::far);
+      *node_end[k] = node, *id_end[k] = id, *distance_end[k] = known | (joined >> k & 1) << 31;
+      const bool reached = (known < unit_radius) & (known > 0);
+      node_end[k] += reached, id_end[k] += reached, distance_end[k] += reached;
+    }
+  }
+#endif
+  for (std::size_t k = 0; k < all; ++k) w.counts[k] = static_cast<std::uint32_t>(node_end[k] - w.rows[k].node.data());
 }
 
 }  // namespace geo::HWY_NAMESPACE
@@ -168,13 +223,15 @@ void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sou
     std::fill(std::begin(nothing.distance), std::end(nothing.distance), far);
     work_.distances.resize(n, nothing);
     work_.queued.resize(n, 0);
-    work_.queue.resize(std::bit_ceil(n + 1));
-    for (auto& row : rows_) row.resize(n);
+    work_.queue.resize(std::bit_ceil(n + lanes));
+    work_.joined.resize(n, 0);
+    for (auto& row : work_.rows) row.node.resize(n + lanes), row.id.resize(n + lanes), row.distance.resize(n + lanes);
   }
-  work_.touched.resize((n + 7) / 8 * 8, 0);
+  work_.touched.resize((n + 63) / 64 * 64, 0);
   Lanes* const distances = work_.distances.data();
   std::uint8_t* const touched = work_.touched.data();
   std::uint8_t* const queued = work_.queued.data();
+  std::uint16_t* const joined = work_.joined.data();
   std::uint32_t* const queue = work_.queue.data();
   const std::uint32_t* const limits = graph.limits().data();
   std::uint32_t tail = 0;
@@ -184,6 +241,7 @@ void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sou
     for (const auto edge : graph.edges(sources[k])) {
       distances[edge.to].distance[k] = edge.length;
       touched[edge.to] = 1;
+      joined[edge.to] |= static_cast<std::uint16_t>(1u << k);
       const std::uint8_t enters = edge.length < limits[edge.to] && !queued[edge.to];
       queued[edge.to] |= enters;
       queue[tail] = edge.to;
@@ -192,9 +250,7 @@ void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sou
   }
   work_.tail = tail;
   HWY_DYNAMIC_DISPATCH(Search)(graph, work_);
-  Found* rows[lanes];
-  for (std::size_t k = 0; k < lanes; ++k) rows[k] = rows_[k].data();
-  HWY_DYNAMIC_DISPATCH(Collect)(work_, rows, counts_);
+  HWY_DYNAMIC_DISPATCH(Collect)(graph, work_);
 }
 
 std::vector<std::string> vector_targets() {

@@ -1,12 +1,13 @@
 #include "graph/local_graph.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "graph/lane_search.h"
 
 namespace geo {
 inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
-  const auto number = map_.add(id) + run_;
+  const auto number = numbers_.add(id);
   if (number == discovered_) {
     if (discovered_ == discoveries_.size()) discoveries_.resize(2 * discovered_ + 64), queued_.resize(discoveries_.size(), 0);
     discoveries_[discovered_++] = {id, unit_radius, 0, 0};
@@ -16,14 +17,10 @@ inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
 
 // Which nodes and edges: a search from all sources at once, with bounds from below in place of lengths.
 void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint32_t> sources) {
-  // Sources that are a run of ids are found without the table.
-  const std::uint32_t base = sources.empty() ? 0 : sources.front(), count = static_cast<std::uint32_t>(sources.size());
-  const bool is_run = !sources.empty() && sources.back() - base + 1 == count;
-  const auto expected = std::max<std::size_t>(4 * count, map_.ids().size());
-  map_.clear(expected);
-  run_ = 0, discovered_ = 0;
+  const auto count = static_cast<std::uint32_t>(sources.size());
+  numbers_.clear();
+  discovered_ = 0;
   for (const auto id : sources) discover(id);
-  if (is_run) map_.clear(expected), run_ = count;
   std::size_t used = 0, tail = 0;
   if (queue_.size() < count) queue_.resize(2 * count);
   for (std::uint32_t number = 0; number < count; ++number) queue_[tail++] = number, discoveries_[number].reach = 0, queued_[number] = 1;
@@ -50,11 +47,6 @@ void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint
     auto* const targets = targets_.data() + used;
     const std::size_t edges = edges_that_lead_on(row, reach, targets, next_.data());
     for (std::size_t k = 0; k < edges; ++k) {
-      const auto in_run = targets[k] - base;
-      if (in_run < run_) {  // a source: nothing is nearer
-        targets[k] = in_run;
-        continue;
-      }
       const auto to = targets[k] = discover(targets[k]);
       auto& known = discoveries_[to].reach;
       const std::uint8_t enters = (next_[k] < known) & (queued_[to] ^ 1);
@@ -72,66 +64,53 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   const Discovery& from = discoveries_[number];
   const std::size_t count = from.end - from.begin;
   const auto* targets = targets_.data() + from.begin;
-  if (length_.size() < count + 16) squared_.resize(2 * count + 16, 1), radius_.resize(2 * count + 16, 1), length_.resize(2 * count + 16);
+  if (length_.size() < count + 16) {
+    squared_.resize(2 * count + 16, 1), radius_.resize(2 * count + 16, 1), length_.resize(2 * count + 16);
+    to_.resize(length_.size()), class_.resize(length_.size());
+  }
   const Place& p = places_[place_[number]];
   for (std::size_t k = 0; k < count; ++k) {
-    const Place& q = places_[place_[targets[k]]];
+    to_[k] = place_[targets[k]];
+    const Place& q = places_[to_[k]];
     const double x = p.x - q.x, y = p.y - q.y, z = p.z - q.z;  // as squared_distance()
     squared_[k] = (x * x + y * y) + z * z;
     radius_[k] = std::max(p.radius, q.radius);
   }
   warped_lengths(squared_.data(), radius_.data(), count, length_.data());
-  // A counting sort into classes, without the edges that lead nowhere.
-  constexpr std::size_t classes = unit_radius >> class_shift;
-  std::array<std::uint32_t, classes + 1> begin{};
+  // A counting sort into classes; the last is of edges that lead nowhere, which go.
+  constexpr std::uint32_t classes = unit_radius >> class_shift;
   const auto most = unit_radius - from.reach;
-  std::uint32_t shortest = unit_radius;
-  bool bare = false;
+  std::uint32_t shortest = unit_radius, longest = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    shortest = std::min(shortest, length_[k]);
-    bare |= length_[k] >= unit_radius || place_[targets[k]] >= nodes_;
-    begin[length_[k] < most ? length_[k] >> class_shift : classes] += 1;
+    shortest = std::min(shortest, length_[k]), longest = std::max(longest, length_[k]);
+    class_[k] = length_[k] < most ? length_[k] >> class_shift : classes;
   }
-  std::uint32_t sum = static_cast<std::uint32_t>(edges_.size());
-  for (std::size_t c = 0; c < classes; ++c) {
-    const auto size = begin[c];
-    begin[c] = sum;
-    sum += size;
-  }
-  edges_.resize(sum);
-  for (std::size_t k = 0; k < count; ++k)
-    if (length_[k] < most) edges_[begin[length_[k] >> class_shift]++] = {place_[targets[k]], length_[k]};
-  limit_.push_back(unit_radius - std::min(shortest, unit_radius));
-  if (source) bare_edges_[number] = bare;
+  std::array<std::uint32_t, classes + 1> begin{};
+  for (std::size_t k = 0; k < count; ++k) ++begin[class_[k]];
+  std::uint32_t sum = first_.back();
+  for (auto& c : begin) sum += std::exchange(c, sum);
+  if (edges_.size() < sum) edges_.resize(2 * sum);
+  for (std::size_t k = 0; k < count; ++k) edges_[begin[class_[k]]++] = {to_[k], length_[k]};
+  first_.push_back(begin[classes - 1]);
+  limit_.push_back(unit_radius - shortest);
+  if (source) bare_edges_[number] = longest >= unit_radius || std::any_of(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(count), [&](auto to) { return to >= nodes_; });
 }
 
 void LocalGraph::gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources) {
   explore(graph, sources);
-  order_.resize(discovered_);
-  for (std::uint32_t number = 0; number < discovered_; ++number) order_[number] = std::uint64_t(discoveries_[number].id) << 32 | number;
-  // Sources are in order already; the others are put between them.
-  const auto others = order_.begin() + static_cast<std::ptrdiff_t>(sources.size());
-  std::sort(others, order_.end());
-  merged_.resize(order_.size());
-  std::merge(order_.begin(), others, others, order_.end(), merged_.begin());
-  order_.swap(merged_);
   nodes_ = 0;
-  id_.resize(discovered_), place_.resize(discovered_), places_.resize(discovered_);
-  for (std::uint32_t local = 0; local < discovered_; ++local) {
-    const auto id = static_cast<std::uint32_t>(order_[local] >> 32);
-    id_[local] = id, place_[static_cast<std::uint32_t>(order_[local])] = local;
+  id_.resize(discovered_), place_.resize(discovered_), places_.resize(discovered_), number_.resize(discovered_);
+  std::uint32_t local = 0;
+  numbers_.each([&](std::uint32_t id, std::uint32_t number) {
+    id_[local] = id, number_[local] = number, place_[number] = local;
     const Vec3& p = graph.position(nodes, id);
     places_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
     nodes_ += !VisibilityGraph::is_guide(id);
-  }
-  first_.clear(), limit_.clear(), edges_.clear();
+    ++local;
+  });
+  first_.assign(1, 0), limit_.clear();
   bare_edges_.assign(sources.size(), 0);
-  for (const auto entry : order_) {
-    first_.push_back(static_cast<std::uint32_t>(edges_.size()));
-    const auto number = static_cast<std::uint32_t>(entry);
-    measure(number, number < sources.size());
-  }
-  first_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  for (const auto number : number_) measure(number, number < sources.size());
 }
 
 }  // namespace geo

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "graph/id_map.h"
+#include "graph/id_pages.h"
 #include "graph/visibility_graph.h"
 
 namespace geo {
@@ -52,20 +52,19 @@ class LocalGraph {
   void measure(std::uint32_t number, bool source);
 
   // By number, in the order of discovery; sources come first.
-  IdMap map_;  // of those that are not in the run of sources
-  std::uint32_t run_ = 0, discovered_ = 0;
+  IdPages numbers_;
+  std::uint32_t discovered_ = 0;
   std::vector<Discovery> discoveries_;
   std::vector<std::uint8_t> queued_, bare_edges_;
   std::vector<std::uint32_t> queue_, targets_, next_, place_;
   std::uint32_t nodes_ = 0;
   // By local node.
-  std::vector<std::uint32_t> id_, first_, limit_;
+  std::vector<std::uint32_t> id_, number_, first_, limit_;
   std::vector<Place> places_;
-  std::vector<Edge> edges_;
+  std::vector<Edge> edges_;  // and room for more
   // Of one node's edges.
   std::vector<double> squared_, radius_;
-  std::vector<std::uint32_t> length_;
-  std::vector<std::uint64_t> order_, merged_;
+  std::vector<std::uint32_t> length_, to_, class_;
 };
 
 }  // namespace geo

@@ -67,9 +67,13 @@ class Search {
 
  private:
   struct Cube {
+    std::size_t begin, end;  // of the faces that reach into it
+    std::size_t region;
+  };
+  // A cube, or a larger one about it and others, which share a slab.
+  struct Region {
     Vec3 middle;
     double half;
-    std::size_t begin, end;    // of the faces that reach into it
     std::uint32_t slab = ~0u;  // none yet
   };
   struct Suspect {
@@ -82,11 +86,10 @@ class Search {
     faces_at_.resize(std::max<std::size_t>(faces_at_.size(), 1));
     faces_at_[0].resize(faces_.size());
     std::iota(faces_at_[0].begin(), faces_at_[0].end(), 0u);
-    Vec3 cube = Vec3::Zero();  // the one that was looked at last
-    double cube_half = 0;
-    std::size_t depth_of_cube = 0;
+    std::size_t depth_of_cube = 0;  // of the one that was looked at last
     bool is_new = false;
-    int whole = none;  // depth of a cube so small that all in it is taken
+    int whole = none;       // depth of a cube so small that all in it is taken
+    int depth_of_region = none;
     const auto into = [&](int depth, const Vec3& middle, double half) {
       if (depth > whole) return true;
       const auto at = static_cast<std::size_t>(depth) + 1;
@@ -96,15 +99,20 @@ class Search {
         if (around_[f].reaches(middle, half * (1 + 1e-12))) faces_at_[at].push_back(f);
       const bool enters = !faces_at_[at].empty();
       whole = enters && 2 * half <= support_ ? depth : none;
-      if (enters) cube = middle, cube_half = half, depth_of_cube = at, is_new = true;
-      return enters;
+      if (!enters) return false;
+      depth_of_cube = at, is_new = true;
+      if (depth <= depth_of_region) {
+        regions_.push_back({middle, half});
+        depth_of_region = half <= region_size * support_ ? depth : none;
+      }
+      return true;
     };
     grid.walk(into, [&](int, std::uint32_t row) {
       if (row >= end) return;
       if (is_new) {
         if (suspects_.size() >= batch) settle();
         const auto& here = faces_at_[depth_of_cube];
-        cubes_.push_back({cube, cube_half, cube_faces_.size(), cube_faces_.size() + here.size()});
+        cubes_.push_back({cube_faces_.size(), cube_faces_.size() + here.size(), regions_.size() - 1});
         cube_faces_.insert(cube_faces_.end(), here.begin(), here.end());
         is_new = false;
       }
@@ -120,8 +128,8 @@ class Search {
     std::size_t count = 0;
     for (const auto& suspect : suspects_) {
       const Vec3& x = graph_.position(nodes_, suspect.id);
-      Cube& cube = cubes_[suspect.cube];
-      const Slab& slab = slab_of(cube);
+      const Cube& cube = cubes_[suspect.cube];
+      const Slab& slab = slab_of(regions_[cube.region]);
       if (!slab.within(slab.height(x), 0.5 * reach_)) continue;
       const auto within = [&](double length) {
         for (auto f = cube.begin; f < cube.end; ++f)
@@ -138,22 +146,23 @@ class Search {
     for (std::size_t k = 0; k < count; ++k) {
       const auto id = suspects_[k].id;
       if (in_doubt_[k] && !graph_.store(id).has_bare_edges(VisibilityGraph::place(id))) continue;
-      near_.ids.push_back(id), near_.slabs.push_back(cubes_[suspects_[k].cube].slab);
+      near_.ids.push_back(id), near_.slabs.push_back(regions_[cubes_[suspects_[k].cube].region].slab);
     }
     suspects_.clear(), cubes_.clear(), cube_faces_.clear();
   }
 
-  const Slab& slab_of(Cube& cube) {
-    if (cube.slab == ~0u) {
+  const Slab& slab_of(Region& region) {
+    if (region.slab == ~0u) {
       rows_.clear();
-      const Vec3 way = Vec3::Constant(cube.half + reach_);
-      tree_.near({cube.middle - way, cube.middle + way}, rows_);
-      cube.slab = static_cast<std::uint32_t>(near_.slab.size());
-      near_.slab.emplace_back(faces_, rows_, cube.middle, 2 * way.x());
+      const Vec3 way = Vec3::Constant(region.half + reach_);
+      tree_.near({region.middle - way, region.middle + way}, rows_);
+      region.slab = static_cast<std::uint32_t>(near_.slab.size());
+      near_.slab.emplace_back(faces_, rows_, region.middle, 2 * way.x());
     }
-    return near_.slab[cube.slab];
+    return near_.slab[region.slab];
   }
 
+  static constexpr double region_size = 1;   // half its edge at most, in supports
   static constexpr std::size_t batch = 256;  // suspects: enough for what is known of them to be fetched meanwhile
   const NodeSet& nodes_;
   const VisibilityGraph& graph_;
@@ -163,6 +172,7 @@ class Search {
   std::vector<Surroundings> around_;
   std::vector<std::vector<std::uint32_t>> faces_at_;  // by depth, from 1: those that reach into the cube
   std::vector<Cube> cubes_;
+  std::vector<Region> regions_;
   std::vector<std::uint32_t> cube_faces_, rows_;
   std::vector<Suspect> suspects_;
   std::vector<std::uint8_t> in_doubt_;

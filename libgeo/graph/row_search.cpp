@@ -16,39 +16,58 @@ constexpr std::size_t block = 4096;
 struct RowSearch::Work {
   LocalGraph local;
   LaneSearch search;
-  std::vector<std::uint16_t> mark;   // by local node: edge_bit for the other ends of a source's edges
-  std::vector<std::uint32_t> to;
+  std::vector<std::uint32_t> to;     // where a row has edges that join no neighbours
   std::vector<std::uint16_t> bits;
   std::vector<float> paths;
-  std::vector<std::uint32_t> distance;  // by local node, of one source; 0 elsewhere
-  std::vector<std::uint64_t> plain;     // where distance is known
-  std::vector<std::uint64_t> order;     // nodes, their distances in the upper half
+  // By local node, of one source: distances, 0 elsewhere; where they are known, plain lengths or `open`, and the last of its Steps.
+  std::vector<std::uint32_t> distance, last;
+  std::vector<std::uint64_t> plain;
+  struct Step {
+    std::uint32_t from, before;  // another way there
+  };
+  std::vector<Step> steps;  // the last of some shortest path; the first is none
+  static constexpr std::uint64_t open = ~std::uint64_t(0);
 
-  void plain_lengths(double unit, std::uint32_t source, std::span<const LaneSearch::Found> found);
+  void find_steps(std::uint32_t source, const LaneSearch::Row& found);
+  std::uint64_t plain_length_to(std::uint32_t node, double unit);
+  void forget_steps(const LaneSearch::Row& found) {
+    for (const auto node : found.node) distance[node] = 0;
+  }
 };
 
-// Of all paths with the least warped length, the plainly shortest: nearer nodes first.
-void RowSearch::Work::plain_lengths(double unit, std::uint32_t source, std::span<const LaneSearch::Found> found) {
+// With which edges shortest paths from a source end.
+void RowSearch::Work::find_steps(std::uint32_t source, const LaneSearch::Row& found) {
   distance.resize(std::max<std::size_t>(distance.size(), local.size()), 0);
-  plain.resize(distance.size());
-  order.clear();
-  for (const auto& f : found) {
-    distance[f.node] = f.distance, plain[f.node] = ~std::uint64_t(0);
-    order.push_back(std::uint64_t(f.distance) << 32 | f.node);
+  plain.resize(distance.size()), last.resize(distance.size());
+  steps.assign(1, {});
+  for (std::size_t e = 0; e < found.node.size(); ++e) {
+    const auto node = found.node[e];
+    distance[node] = found.distance[e] & ~LaneSearch::edge_bit, plain[node] = open, last[node] = 0;
   }
-  std::sort(order.begin(), order.end());
   plain[source] = 0;
-  order.insert(order.begin(), source);
-  for (const auto entry : order) {
-    const auto node = static_cast<std::uint32_t>(entry), here = static_cast<std::uint32_t>(entry >> 32);
-    const Vec3 from = local.position(node);
+  const auto from = [&](std::uint32_t node, std::uint32_t here) {
     const auto end = LocalGraph::end_of_classes(here);
     for (const auto edge : local.edges(node)) {
       if (edge.length >= end) break;
-      if (here + edge.length == distance[edge.to]) plain[edge.to] = std::min(plain[edge.to], plain[node] + plain_length(from, local.position(edge.to), unit));
+      if (here + edge.length != distance[edge.to]) continue;
+      steps.push_back({node, last[edge.to]});
+      last[edge.to] = static_cast<std::uint32_t>(steps.size() - 1);
     }
+  };
+  from(source, 0);
+  for (const auto node : found.node) from(node, distance[node]);
+}
+
+// Of all paths with the least warped length, the plainly shortest.
+std::uint64_t RowSearch::Work::plain_length_to(std::uint32_t node, double unit) {
+  if (plain[node] != open) return plain[node];
+  std::uint64_t least = open;
+  const Vec3 to = local.position(node);
+  for (auto s = last[node]; s != 0; s = steps[s].before) {
+    const auto from = steps[s].from;
+    least = std::min(least, plain_length_to(from, unit) + plain_length(local.position(from), to, unit));
   }
-  for (const auto& f : found) distance[f.node] = 0;
+  return plain[node] = least;
 }
 
 RowSearch::RowSearch() : work_(std::make_unique<Work>()) {}
@@ -79,7 +98,6 @@ void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::spa
   for (std::size_t first = 0; first < sources.size(); first += block) {
     const std::size_t count = std::min(block, sources.size() - first);
     w.local.gather(nodes, graph, sources.subspan(first, count));
-    w.mark.resize(std::max<std::size_t>(w.mark.size(), w.local.size()), 0);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t lane = k % LaneSearch::lanes;
       if (lane == 0) {
@@ -88,30 +106,32 @@ void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::spa
         w.search.run(w.local, lanes);
       }
       const auto i = sources[first + k], source = lanes[lane];
-      const auto all = w.search.row(lane);
-      const auto found = all.first(static_cast<std::size_t>(
-          std::partition_point(all.begin(), all.end(), [&](const auto& f) { return f.node < w.local.node_count(); }) - all.begin()));
-      const auto edges = w.local.edges(source);
-      for (const auto edge : edges) w.mark[edge.to] = VisibilityGraph::edge_bit;
-      w.to.resize(found.size()), w.bits.resize(found.size()), w.paths.clear();
-      for (std::size_t e = 0; e < found.size(); ++e) {
-        w.to[e] = w.local.id(found[e].node);
-        w.bits[e] = static_cast<std::uint16_t>(w.mark[found[e].node] | found[e].distance >> 10);
+      const auto found = w.search.row(lane);
+      const auto size = static_cast<std::size_t>(std::lower_bound(found.node.begin(), found.node.end(), w.local.node_count()) - found.node.begin());
+      std::span<const std::uint32_t> to = found.id.first(size);
+      w.bits.resize(size), w.paths.clear();
+      for (std::size_t e = 0; e < size; ++e) {
+        const auto d = found.distance[e];
+        w.bits[e] = static_cast<std::uint16_t>((d & LaneSearch::edge_bit) >> 16 | (d & ~LaneSearch::edge_bit) >> 10);
       }
-      for (const auto edge : edges) w.mark[edge.to] = 0;
-      if (w.local.has_bare_edges(k)) insert_bare_edges(nodes, graph, i, w.to, w.bits);
+      if (w.local.has_bare_edges(k)) {
+        w.to.assign(to.begin(), to.end());
+        insert_bare_edges(nodes, graph, i, w.to, w.bits);
+        to = w.to;
+      }
       if (sight) {
-        sight(i, w.to, w.bits);
+        sight(i, to, w.bits);
         if (std::any_of(w.bits.begin(), w.bits.end(), RowStore::has_path)) {
-          w.plain_lengths(graph.plain_unit(), source, all);
-          for (std::size_t e = 0, f = 0; e < w.to.size(); ++e) {
+          w.find_steps(source, found);
+          for (std::size_t e = 0, f = 0; e < to.size(); ++e) {
             if (!VisibilityGraph::is_neighbor(w.bits[e])) continue;
-            if (RowStore::has_path(w.bits[e])) w.paths.push_back(static_cast<float>(double(w.plain[found[f].node]) * graph.plain_unit()));
+            if (RowStore::has_path(w.bits[e])) w.paths.push_back(static_cast<float>(double(w.plain_length_to(found.node[f], graph.plain_unit())) * graph.plain_unit()));
             ++f;
           }
+          w.forget_steps(found);
         }
       }
-      put(i, {w.to, w.bits, w.paths});
+      put(i, {to, w.bits, w.paths});
     }
   }
 }

@@ -1,6 +1,8 @@
 #include "io/scene_file.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <sstream>
 
 #include "io/front_file.h"
@@ -24,6 +26,12 @@ struct Files {
   }
 };
 
+// What one body cannot have of its own.
+void refuse_shared(TomlTable& t, const std::string& table, std::initializer_list<const char*> keys) {
+  for (const std::string key : keys)
+    if (const auto* node = t.find(key)) t.fail(*node, "'" + t.path() + key + "' is the same for all bodies: write it in the scene's [" + table + "]");
+}
+
 // Of the scene, or, where `own`, of one body: what the scene's has goes for what is left out.
 void read_material(TomlTable& t, Material& m, bool own = false) {
   std::string model = m.model == ElasticModel::saint_venant_kirchhoff ? "stvk" : "neo-hookean";
@@ -35,7 +43,7 @@ void read_material(TomlTable& t, Material& m, bool own = false) {
   t.get("density", m.density, 1e-9, 1e9);
   t.get("volume_term", m.volume_term, 0, 1e15);
   t.get("damping", m.damping, 0, 1e6);
-  if (const auto* node = t.find("discretisation"); node && own) t.fail(*node, "'" + t.path() + "discretisation' is the same for all bodies: write it in the scene's [material]");
+  if (own) refuse_shared(t, "material", {"discretisation"});
   std::string discretisation = m.discretisation == Discretisation::galerkin ? "galerkin" : "mueller04";
   t.get("discretisation", discretisation);
   if (discretisation != "galerkin" && discretisation != "mueller04") t.fail(*t.find("discretisation"), "'material.discretisation' must be \"galerkin\" or \"mueller04\"");
@@ -46,6 +54,13 @@ void read_material(TomlTable& t, Material& m, bool own = false) {
   t.get("creep", m.creep, 0, 1e9);
   t.get("most_plastic", m.most_plastic, 0, 1e6);
   require_material(m);
+}
+
+void read_strength(TomlTable& t, Strength& s) {
+  t.get("strength", s.strength, 1e-9, 1e15);
+  t.get("toughness", s.toughness, 0, 1e15);
+  t.get("variation", s.variation, 0, 1);
+  t.get("grain", s.grain, 0, 1e12);
 }
 
 // [ax, ay, az, degrees].
@@ -79,6 +94,12 @@ void read_body_table(TomlTable& t, Scene& s) {
   t.get("velocity", body.velocity);
   t.get("spin", body.spin);
   t.section("material", [&](TomlTable& own) { read_material(own, body.material.emplace(s.material), true); });
+  if (const auto* node = t.find("fracture"); node && !s.fracture.on) t.fail(*node, "'body.fracture' says how strong one body is; give the scene a [fracture], too, by which bodies break");
+  s.fracture.own.push_back(s.fracture);
+  t.section("fracture", [&](TomlTable& own) {
+    read_strength(own, s.fracture.own.back());
+    refuse_shared(own, "fracture", {"speed", "branching", "apart", "cracks", "cracks_per_step", "start", "off"});
+  });
   for (const auto& v : t.rows("fixed", 6)) s.grips.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {}, false});
   s.bodies.push_back(std::move(body));
 }
@@ -168,10 +189,23 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
 
 void read_top(TomlTable& top, Scene& s, Files& files) {
   top.section("material", [&](TomlTable& t) { read_material(t, s.material); });
+  top.section("fracture", [&](TomlTable& t) {
+    s.fracture.on = true;
+    read_strength(t, s.fracture);
+    t.get("speed", s.fracture.speed, 0, 1);
+    t.get("branching", s.fracture.branching, 0, 1e6);
+    t.get("apart", s.fracture.apart, 0.5, 1000);
+    t.get("cracks", s.fracture.cracks, 0, 1000000);
+    t.get("cracks_per_step", s.fracture.cracks_per_step, 0, 1000000);
+    t.get("start", s.fracture.start, 0, 1e9);
+    for (const auto& v : t.rows("off", 6)) s.fracture.off.push_back({Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])});
+  });
   const auto* body = top.find("body");
   if (!body) top.missing("body", "write [body], and in it mesh = \"MODEL\"");
   if (body->is_table()) top.section("body", [&](TomlTable& t) { read_body_table(t, s); });
   else top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
+  // Where all are as the scene says, there is nothing to look up.
+  if (std::all_of(s.fracture.own.begin(), s.fracture.own.end(), [&](const Strength& own) { return own == s.fracture; })) s.fracture.own.clear();
   top.section("ground", [&](TomlTable& t) {
     s.ground = true;
     t.get("point", s.ground_point);
@@ -200,20 +234,6 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     int seed = 1;
     t.get("seed", seed, 0, 2147483647);
     s.seed = static_cast<std::uint64_t>(seed);
-  });
-  top.section("fracture", [&](TomlTable& t) {
-    s.fracture.on = true;
-    t.get("strength", s.fracture.strength, 1e-9, 1e15);
-    t.get("toughness", s.fracture.toughness, 0, 1e15);
-    t.get("variation", s.fracture.variation, 0, 1);
-    t.get("grain", s.fracture.grain, 0, 1e12);
-    t.get("speed", s.fracture.speed, 0, 1);
-    t.get("branching", s.fracture.branching, 0, 1e6);
-    t.get("apart", s.fracture.apart, 0.5, 1000);
-    t.get("cracks", s.fracture.cracks, 0, 1000000);
-    t.get("cracks_per_step", s.fracture.cracks_per_step, 0, 1000000);
-    t.get("start", s.fracture.start, 0, 1e9);
-    for (const auto& v : t.rows("off", 6)) s.fracture.off.push_back({Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])});
   });
   s.fracture.seed = s.seed;
   top.get("gravity", s.gravity);

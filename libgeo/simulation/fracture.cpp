@@ -8,9 +8,9 @@
 
 namespace geo {
 
-double strength_factor(const Fracture& f, double diagonal, const Vec3& x) {
-  if (f.variation == 0) return 1;
-  return std::max(0.05, 1 + f.variation * noise(x / (f.grain > 0 ? f.grain : 0.1 * diagonal), f.seed));
+double strength_factor(const Strength& s, std::uint64_t seed, double diagonal, const Vec3& x) {
+  if (s.variation == 0) return 1;
+  return std::max(0.05, 1 + s.variation * noise(x / (s.grain > 0 ? s.grain : 0.1 * diagonal), seed));
 }
 
 bool may_break(const Fracture& f, const Vec3& x) {

@@ -9,12 +9,18 @@
 
 namespace geo {
 
-struct Fracture {
-  bool on = false;
+/// What it takes to break a body.
+struct Strength {
   double strength = 1e4;   ///< Pa: largest principal stress, averaged over the support radius, at which a crack begins
   double toughness = 0;    ///< Pa √m: K_Ic at which a crack goes on; 0: strength · √(π h/2), h the support radius at the tip
   double variation = 0.2;  ///< of strength and toughness: they are multiplied by 1 + variation · noise in about [−1, 1]
-  double grain = 0;        ///< size of the noise, model units; 0: a tenth of the body's diagonal
+  double grain = 0;        ///< size of the noise, model units; 0: a tenth of the diagonal of all bodies
+  friend bool operator==(const Strength&, const Strength&) = default;
+};
+
+struct Fracture : Strength {
+  bool on = false;
+  std::vector<Strength> own;  ///< per body of the scene; empty: all have the same
   double speed = 0.55;     ///< the fastest a crack gets, as a share of the Rayleigh wave's speed
   double branching = 0;    ///< a front divides where the stress ahead is this many times what it needs; 0: never
   double apart = 4;        ///< no crack begins nearer to another than this many node spacings
@@ -23,10 +29,12 @@ struct Fracture {
   double start = 0;        ///< seconds: nothing breaks before
   std::vector<std::array<Vec3, 2>> off;  ///< boxes, material coordinates, where no crack begins or goes on
   std::uint64_t seed = 1;
+  /// Of a node. `part`: per node, its body.
+  const Strength& of(const std::vector<std::uint32_t>& part, std::size_t node) const { return own.empty() ? *this : own[part[node]]; }
 };
 
-/// By how much strength and toughness at material point x differ from what the scene says; ≥ 0.05. `diagonal`: the body's.
-double strength_factor(const Fracture& fracture, double diagonal, const Vec3& x);
+/// By how much strength and toughness at material point x differ from what the scene says; ≥ 0.05. `diagonal`: of all bodies.
+double strength_factor(const Strength& strength, std::uint64_t seed, double diagonal, const Vec3& x);
 
 /// False where the scene says that nothing breaks.
 bool may_break(const Fracture& fracture, const Vec3& x);

@@ -49,12 +49,13 @@ std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const St
   return mean;
 }
 
-std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture, std::size_t most) {
+std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture, const std::vector<std::uint32_t>& part, std::size_t most) {
   const double diagonal = body.surface.extent().diagonal();
   std::vector<CrackStart> over;
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const Vec3& x = body.nodes.position[i];
-    const double strength = fracture.strength * strength_factor(fracture, diagonal, x);
+    const Strength& own = fracture.of(part, i);
+    const double strength = own.strength * strength_factor(own, fracture.seed, diagonal, x);
     // No eigenvalue is larger than the norm: most nodes need no decomposition.
     if (stress[i].norm() <= strength || !may_break(fracture, x)) continue;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(stress[i]);

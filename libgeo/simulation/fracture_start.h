@@ -19,8 +19,8 @@ struct CrackStart {
 /// material coordinates. Zero where no point takes a node, or all are inside out.
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion);
 
-/// Nodes whose averaged stress has passed the strength, where cracks may begin and none is within `fracture.apart`
+/// Nodes whose averaged stress has passed the strength of their body, where cracks may begin and none is within `fracture.apart`
 /// spacings; the most overstrained first, none within that distance of one before it; at most `most`.
-std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture, std::size_t most);
+std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture, const std::vector<std::uint32_t>& part, std::size_t most);
 
 }  // namespace geo

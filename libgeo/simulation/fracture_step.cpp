@@ -26,12 +26,12 @@ double spacing_at(const Body& body, const Vec3& p) {
   return body.nodes.spacing[nearest.at(0)];
 }
 
-double needed_stress(const Fracture& fracture, const Body& body, const Vec3& x, double h) {
-  const double stress = fracture.toughness > 0 ? stress_of_toughness(fracture.toughness, h) : fracture.strength;
-  return stress * strength_factor(fracture, body.surface.extent().diagonal(), x);
+double needed_stress(const Strength& own, std::uint64_t seed, const Body& body, const Vec3& x, double h) {
+  const double stress = own.toughness > 0 ? stress_of_toughness(own.toughness, h) : own.strength;
+  return stress * strength_factor(own, seed, body.surface.extent().diagonal(), x);
 }
 
-Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, const State& motion, const GrowingFront& g) {
+Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid, const State& motion, const GrowingFront& g) {
   const std::size_t n = g.size();
   std::vector<Mat3> separation(n, Mat3::Zero());
   std::vector<TipFrame> frame(n);
@@ -47,7 +47,7 @@ Drive drive(const Fracture& fracture, const Body& body, const Solid& solid, cons
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
       const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
-      separation[i] = stress / needed_stress(fracture, body, frame[i].at, field.support) * across * across.transpose();
+      separation[i] = stress / needed_stress(fracture.of(part, field.node), fracture.seed, body, frame[i].at, field.support) * across * across.transpose();
     }
   });
   // Twice with the weights 1, 2, 1 of neighbours on the same part of the front.
@@ -107,7 +107,7 @@ void turn(Drive& d, const GrowingFront& g, double angle) {
 
 }  // namespace
 
-void step_fracture(const Fracture& fracture, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
+void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
                    const SplitStep& split, FractureWork* work) {
   FractureWork done;
   std::vector<GrowingFront> fronts;
@@ -130,7 +130,7 @@ void step_fracture(const Fracture& fracture, const Body& body, const Solid& soli
   };
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     GrowingFront& g = fronts[f];
-    Drive d = drive(fracture, body, solid, motion, g);
+    Drive d = drive(fracture, part, body, solid, motion, g);
     const double fastest = fracture.speed * rayleigh_speed(solid.materials().of(d.node));
     std::vector<double> step(g.size(), 0);
     double spacing = std::numeric_limits<double>::infinity(), most = 0;
@@ -170,7 +170,7 @@ void step_fracture(const Fracture& fracture, const Body& body, const Solid& soli
   const int most = std::min(fracture.cracks_per_step, fracture.cracks - state.cracks);
   if (most > 0) {
     const auto stress = averaged_stress(body, solid, motion);
-    for (const CrackStart& s : find_starts(body, stress, fracture, static_cast<std::size_t>(most))) {
+    for (const CrackStart& s : find_starts(body, stress, fracture, part, static_cast<std::size_t>(most))) {
       const double spacing = body.nodes.spacing[s.node.index()];
       // Off the node, which would lie in the flaw else.
       auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal, s.normal, spacing, unused_crack(body, state.fronts, {}));

@@ -28,9 +28,9 @@ using SplitStep = std::function<bool(FrontState&, const std::vector<Vec3>& next)
 /// stress must be told anew before it goes farther. Points rest while the stress is less and start again when it rises.
 /// A front is moved once it owes a quarter of a spacing. What is ahead of a point that too few
 /// nodes see to tell its stress, thinner than half a spacing, parts, and so does a ligament that fronts have left behind at an edge of
-/// the body, thinner than a spacing (across_ligament). Then cracks begin where find_starts() says. `body` and
-/// `motion` change through `split` only. The same for any number of threads.
-void step_fracture(const Fracture& fracture, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
+/// the body, thinner than a spacing (across_ligament). Then cracks begin where find_starts() says. `part`: per node, its body of the
+/// scene. It, `body` and `motion` change through `split` only. The same for any number of threads.
+void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
                    const SplitStep& split, FractureWork* work = nullptr);
 
 }  // namespace geo

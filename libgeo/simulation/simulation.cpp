@@ -250,7 +250,7 @@ void Simulation::fracture(double dt, FrameWork& work) {
   Stopwatch watch;
   const auto others = [&] { return work.split_seconds() + work.mechanics_seconds + work.contact_seconds; };
   const double splitting = others();
-  step_fracture(scene_.fracture, body_, solid_, state_.motion, dt, state_.fracture,
+  step_fracture(scene_.fracture, state_.part, body_, solid_, state_.motion, dt, state_.fracture,
                 [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, work); }, &work.fracture);
   work.fracture_seconds += watch.lap() - (others() - splitting);
 }

@@ -142,3 +142,42 @@ TEST_CASE("surfaces of a hard and a soft body that meet do not cross, nor do the
     CHECK(middle / count > -0.3);
   }
 }
+
+TEST_CASE("bodies pulled alike break where their own strength says", "[fracture]") {
+  const auto broken = [](const std::string& all, const std::string& of_second) {
+    const Scene scene = parse_scene("gravity = [0, 0, 0]\n[material]\nyoung = 1e6\ndamping = 30\n[fracture]\ncracks = 2\nstrength = " + all + "\n[[body]]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 0.2, 9, 9]]\n"
+                                    "[[body]]\nmesh = 'b'\nspacing = 0.2\nposition = [0, 1, 0]\n[body.material]\ndensity = 1200\n[body.fracture]\n" + of_second + "\n[[grip]]\nbox = [1.8, -1, -1, 3, 9, 9]\n"
+                                    "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.1, 0.08, 0, 0, 0, 0, 1, 0]]\n[time]\nframe_rate = 20\nstep = 0.025\n", "s.toml");
+    const TriangleMesh bar = make_block({2, 0.5, 0.5}, 0.25);
+    Simulation sim(scene, place_models(scene, {bar, bar}));
+    std::string kept;
+    for (int frame = 0; frame < 4; ++frame) {
+      if (frame == 2) kept = bytes(sim);
+      sim.advance_frame();
+    }
+    Simulation again = read_back(scene, kept);
+    again.advance_frame(), again.advance_frame();
+    CHECK(bytes(again) == bytes(sim));
+    std::size_t faces[2] = {0, 0};
+    const Complex& k = sim.body().surface;
+    for (std::uint32_t f = 0; f < k.face_count(); ++f)
+      if (k.alive(FaceId(f)) && k.face(FaceId(f)).crack != 0) ++faces[k.corners(FaceId(f))[0].y() > 0.75];
+    return std::array{faces[0] > 0, faces[1] > 0};
+  };
+  CHECK(broken("1e4", "strength = 1e9") == std::array{true, false});
+  CHECK(broken("1e9", "strength = 1e4") == std::array{false, true});
+  CHECK(broken("1e9", "toughness = 10") == std::array{false, false});
+}
+
+TEST_CASE("how strong a body is has the scene's fracture to go by") {
+  const auto parse = [](const std::string& text) { return parse_scene("[body]\nmesh = 'a'\n" + text, "s.toml"); };
+  CHECK(parse("[fracture]\nstrength = 3\n").fracture.own.empty());
+  const Scene s = parse("[body.fracture]\ntoughness = 5\n[fracture]\nstrength = 3\n");
+  REQUIRE(s.fracture.own.size() == 1);
+  CHECK(s.fracture.own[0].strength == 3);
+  CHECK(s.fracture.own[0].toughness == 5);
+  CHECK(s.fracture.toughness == 0);
+  CHECK_THROWS_WITH(parse("fracture = { strength = 1 }\n"), Catch::Contains("s.toml:3:") && Catch::Contains("give the scene a [fracture]"));
+  CHECK_THROWS_WITH(parse("fracture = { speed = 1 }\n[fracture]\n"), Catch::Contains("s.toml:3:") && Catch::Contains("'body.fracture.speed' is the same for all bodies"));
+  CHECK_THROWS_WITH(parse("fracture = { strenght = 1 }\n[fracture]\n"), Catch::Contains("'body.fracture.strenght'; did you mean 'strength'?"));
+}

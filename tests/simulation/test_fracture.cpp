@@ -152,7 +152,7 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
     double weakest = 2, there = 2;
     for (const Vec3& x : sim.body().nodes.position) {
       if (!may_break(scene.fracture, x)) continue;
-      const double strength = strength_factor(scene.fracture, sim.body().surface.extent().diagonal(), x);
+      const double strength = strength_factor(scene.fracture, scene.fracture.seed, sim.body().surface.extent().diagonal(), x);
       weakest = std::min(weakest, strength);
       if (x.x() > lo - 0.1 && x.x() < hi + 0.1) there = std::min(there, strength);
     }

@@ -124,9 +124,11 @@ void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
 // Elastic forces at u_ become all that acts on nodes; `elastic` keeps them.
 void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic) {
   parts_.each_node([&](std::size_t i) { elastic[i] = force[i]; });
-  for (Potential* p : env_.contact) p->force(u_, force);
+  std::vector<Vec3> contact(env_.contact.empty() ? 0 : n_, Vec3::Zero());
+  for (Potential* p : env_.contact) p->force(u_, contact);
   parts_.each_node([&](std::size_t i) {
     Vec3& r = force[i];
+    if (!contact.empty()) r += contact[i];  // potentials act on parts that are not at work, too
     r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
     if (env_.ground) {
       const double d = depth(env_, i, s_.position_[i] + u_[i]);

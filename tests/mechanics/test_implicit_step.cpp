@@ -72,6 +72,61 @@ TEST_CASE("what one part does is nothing to another") {
   CHECK(most < 1e-4 * 0.12);
 }
 
+namespace {
+
+// Holds nodes above where they were at y = 0.1, by springs of so many N/m.
+struct Bed : Potential {
+  const std::vector<Vec3>& at;
+  std::vector<NodeWeight> on;
+  std::vector<char> deep;
+  double stiffness;
+  Bed(const std::vector<Vec3>& position, double k) : at(position), stiffness(k) {
+    for (std::uint32_t i = 0; i < at.size(); ++i)
+      if (at[i].y() < 0.1) on.push_back({i, 1});
+    deep.assign(on.size(), 0);
+  }
+  double depth(std::size_t row, const std::vector<Vec3>& u) const { return std::max(0.0, -u[on[row].node].y()); }
+  void each_row(const VisitRow& visit) const override {
+    for (std::size_t r = 0; r < on.size(); ++r) visit({&on[r], 1}, deep[r] ? Mat3(stiffness * Vec3::UnitY() * Vec3::UnitY().transpose()) : Mat3(Mat3::Zero()));
+  }
+  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override {
+    for (std::size_t r = 0; r < on.size(); ++r) sum[part[on[r].node]] += 0.5 * stiffness * depth(r, u) * depth(r, u);
+  }
+  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override {
+    for (std::size_t r = 0; r < on.size(); ++r) deep[r] = depth(r, u) > 0, out[on[r].node].y() += stiffness * depth(r, u);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what presses on one part does so once, whatever another begins anew") {
+  Body body = block_body({1, 0.6, 0.6}, 0.12);
+  Solid solid(body, rubber());
+  State state = at_rest(body);
+  auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, 0), false, 1);
+  for (int k = 1; k <= 3; ++k) solid.update(body, split(body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, k)), state);
+  Bed bed(body.nodes.position, 2e3);
+  REQUIRE(bed.on.size() > 10);
+  Environment env;
+  env.gravity = {0, -9.81, 0};
+  env.contact = {&bed};
+  // The right half stops dead: it is nowhere near where its acceleration would take it.
+  state.acceleration.assign(body.nodes.size(), Vec3::Zero());
+  State stopped = state;
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    const bool right = body.nodes.position[i].x() > 0.5;
+    state.velocity[i] = stopped.velocity[i] = right ? Vec3(Vec3::Zero()) : Vec3(0, -1, 0);
+    if (right) stopped.acceleration[i] = 50 * Vec3(std::sin(9 * body.nodes.position[i].y()), 0, 0);
+  }
+  const StepReport one = solid.step_implicit(state, 0.03, env), other = solid.step_implicit(stopped, 0.03, env);
+  CHECK(one.substeps == 1);
+  CHECK(other.newton <= one.newton + 3);
+  bool same = true;
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    if (body.nodes.position[i].x() < 0.5) same &= stopped.displacement[i] == state.displacement[i];
+  CHECK(same);
+}
+
 TEST_CASE("points side by side have the energy and the stress of one point's formulas") {
   for (const auto model : {ElasticModel::saint_venant_kirchhoff, ElasticModel::neo_hookean}) {
     Material m = rubber();

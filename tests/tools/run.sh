@@ -586,6 +586,7 @@ scene)
   drop) young=5e5 pieces=6 most=1e3 frames=10 set="--set body.mesh=$bear --set body.nodes=150 --set score.0.file=models/bear.front" && kerf-score -q $bear --pattern voronoi --pieces 6 -o models/bear.front ;;
   plate) young=2e7 pieces='[0-9]*' cracks='[1-9]' most=1e4 frames=16 set="--set body.mesh=models/plate.ply --set body.spacing=0.1" && kerf-model plate --edge 0.1 -o models/plate.ply ;;
   thrown) young=3e6 pieces='[0-9]*' cracks='[1-9]' most=1e5 frames=12 set="--set body.mesh=models/pumpkin.ply --set body.nodes=200" ;;
+  sag) young=1e6 pieces=4 most=1e3 moves=0.3 frames=16 set=$(for i in 0 1 2 3; do printf -- "--set body.$i.mesh=models/letter-$(echo KERF | cut -c $((i + 1))).ply --set body.$i.nodes=200 "; done) ;;
   letters) young=4e5 pieces=9 most=1e2 set=$(for i in 0 1 2 3; do printf -- "--set body.$i.mesh=models/letter-$(echo KERF | cut -c $((i + 1))).ply --set body.$i.nodes=200 "; done) ;;
   esac
   step=$(sed -n 's/^step = \([0-9.]*\).*/\1/p' $file) rate=$(sed -n 's/^frame_rate = //p' $file)

@@ -13,20 +13,33 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
   Box3 box;
   for (const Vec3& p : shape.points) box.add(pose * p), box.add(pose * p + back);
   box = box.grown(shape.thickness + *std::max_element(clearance.begin(), clearance.end()));
+  // In the plane of a flank: r = α along + β back + d normal.
+  struct Flank {
+    Vec3 a, along, normal;
+    double aa, ab, det;
+  };
+  const double bb = width * width;
+  std::vector<Flank> flanks;
+  for (std::size_t s = 0; s < segments; ++s) {
+    const Vec3 a = pose * shape.points[s], along = pose * shape.points[(s + 1) % n] - a;
+    const double aa = along.squaredNorm(), ab = along.dot(back);
+    flanks.push_back({a, along, along.cross(back).normalized(), aa, ab, aa * bb - ab * ab});
+  }
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 world = x[i] + u[i];
     if (!box.meets({world, world})) continue;
     // The segment behind which the node is, the nearest one of several.
     Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), mass[i] * stiffness, 0};
     double least = 0.5 * shape.thickness + clearance[i];
-    for (std::size_t s = 0; s < segments; ++s) {
-      const Vec3 a = pose * shape.points[s], along = pose * shape.points[(s + 1) % n] - a, normal = along.cross(back).normalized(), r = world - a;
-      // In the plane of the flank: r = α along + β back + d normal.
-      const double aa = along.squaredNorm(), ab = along.dot(back), bb = width * width, ra = r.dot(along), rb = r.dot(back), det = aa * bb - ab * ab;
-      const double alpha = (ra * bb - rb * ab) / det, beta = (rb * aa - ra * ab) / det, d = r.dot(normal);
-      if (!(alpha >= 0 && alpha <= 1 && beta >= 0 && beta <= 1 && std::abs(d) < least)) continue;
+    for (const Flank& f : flanks) {
+      const Vec3 r = world - f.a;
+      const double d = r.dot(f.normal);
+      if (!(std::abs(d) < least)) continue;
+      const double ra = r.dot(f.along), rb = r.dot(back);
+      const double alpha = (ra * bb - rb * f.ab) / f.det, beta = (rb * f.aa - ra * f.ab) / f.det;
+      if (!(alpha >= 0 && alpha <= 1 && beta >= 0 && beta <= 1)) continue;
       least = std::abs(d);
-      found.normal = ((d < 0 ? -1.0 : 1.0) * normal - slope * back / width).normalized();
+      found.normal = ((d < 0 ? -1.0 : 1.0) * f.normal - slope * back / width).normalized();
       found.offset = clearance[i] - found.normal.dot(r - u[i]);
     }
     if (found.normal != Vec3::Zero()) contacts_.push_back(found);

@@ -2,6 +2,10 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <sstream>
+#include <utility>
 
 #include "base/stopwatch.h"
 #include "io/checkpoint_file.h"
@@ -52,14 +56,29 @@ struct Plan {
   std::uint64_t fingerprint = 0;  ///< of scene and models
 };
 
-geo::Simulation take_up(const Plan& plan, const sim::RunFolder& folder) {
+// A run goes on from what it wrote, so that one taken up there and one never stopped are the same.
+geo::Simulation take_up(const Plan& plan, const sim::RunFolder& folder, std::optional<geo::Simulation> run = {}) {
   try {
     geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(folder.checkpoint().string())));
     if (c.scene != plan.fingerprint) throw geo::InputError("was begun with another scene, model or setting; give the same ones, or another folder");
-    return geo::Simulation(plan.scene, std::move(c.body), std::move(c.state));
+    if (!run) return geo::Simulation(plan.scene, std::move(c.body), std::move(c.state));
+    run->take_up(std::move(c.body), std::move(c.state));
+    return std::move(*run);
   } catch (const geo::InputError& e) {
     throw geo::InputError(folder.path.string() + ": " + e.what());
   }
+}
+
+// A run from what will be its first checkpoint, which is left in `bytes`.
+geo::Simulation begin(const Plan& plan, std::string& bytes, const geo::Progress& progress) {
+  std::ostringstream out;
+  {
+    const geo::Beginning fresh = geo::begin_run(plan.scene, plan.model, progress);
+    geo::write_checkpoint(out, fresh.body, fresh.state, plan.fingerprint);
+  }
+  bytes = std::move(out).str();
+  geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(bytes, "checkpoint")));
+  return geo::Simulation(plan.scene, std::move(c.body), std::move(c.state));
 }
 
 Plan read_plan(const std::string& path, const geo::SceneOverrides& overrides) {
@@ -161,15 +180,16 @@ int main(int argc, char** argv) {
     if (!begun) folder.require_space(frame_bytes);
     folder.make(!plan.scene.obstacles.empty());
     const auto progress = t.progress();
-    const auto begin = [&] {
+    std::string first;  // checkpoint of a run that begins
+    const auto fresh = [&] {
       try {
-        return geo::Simulation(plan.scene, plan.model, progress);
+        return begin(plan, first, progress);
       } catch (...) {
         folder.unmake();
         throw;
       }
     };
-    geo::Simulation run = begun ? take_up(plan, folder) : begin();
+    geo::Simulation run = begun ? take_up(plan, folder) : fresh();
     if (!begun) say_coarse(plan, run.body(), t);
     const auto& positions = run.body().nodes.position;
     for (const geo::Grip& g : plan.scene.grips)
@@ -177,15 +197,13 @@ int main(int argc, char** argv) {
         t.say("kerf-sim: no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) + "), which is to hold some; bodies are where their scale, rotation and position put them");
     const geo::TriangleMesh* carried = plan.model.parts.size() == 1 ? &plan.model.mesh : nullptr;
     sim::FrameWriter writer(folder, folder.read_log(run.state().frame), t.json);
-    const auto checkpoint = [&] {
+    const auto checkpoint = [&](const std::function<void(std::ostream&)>& write) {
       folder.write_text(folder.log(), writer.log());
-      geo::write_all(folder.checkpoint().string(), [&](std::ostream& out) { geo::write_checkpoint(out, run.body(), run.state(), plan.fingerprint); });
-      // The run goes on from what it wrote, so that one taken up here and one never stopped are the same.
-      if (run.state().frame < last) run = take_up(plan, folder);
+      geo::write_all(folder.checkpoint().string(), write);
     };
     if (!begun) {
       writer.add({{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)});
-      checkpoint();
+      checkpoint([bytes = std::exchange(first, {})](std::ostream& out) { out << bytes; });
       folder.require_space(frame_bytes + 28.0 * (last + 1) * double(run.body().nodes.size()) + 4 * double(fs::file_size(folder.checkpoint())));
     }
     Forecast forecast;
@@ -203,7 +221,10 @@ int main(int argc, char** argv) {
       done.outcome.work.write_seconds = waited + writing.lap();
       total += done.outcome.work;
       writer.add(std::move(done));
-      if (frame % plan.scene.checkpoint_every == 0 || frame == last) checkpoint();
+      if (frame % plan.scene.checkpoint_every == 0 || frame == last) {
+        checkpoint([&](std::ostream& out) { geo::write_checkpoint(out, run.body(), run.state(), plan.fingerprint); });
+        if (frame < last) run = take_up(plan, folder, std::move(run));
+      }
       waited = writing.lap();
       forecast.add(watch.lap());
     }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "crack/sheet.h"
 #include "mechanics/deformation.h"
 #include "simulation/edge_runs.h"
 
@@ -14,58 +14,30 @@ namespace geo {
 
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress) : Simulation(scene, Model{solid, {solid}}, progress) {}
 
-Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
-    : scene_(scene), body_(build_model(scene, model, state_.part, progress)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
-  state_.fronts.resize(scene.blades.size());
-  score(progress);
-  begin_motion();
-  prepare();
-  collisions_.emplace(scene_, body_, solid_, state_.surface);
-}
+Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress) : Simulation(scene, begin_run(scene, model, progress)) {}
+
+Simulation::Simulation(const Scene& scene, Beginning begun) : Simulation(scene, std::move(begun.body), std::move(begun.state)) {}
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
     : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
+  begin();
+}
+
+void Simulation::take_up(Body body, RunState state) {
+  state_ = std::move(state), body_ = std::move(body);
+  if (std::exchange(cut_, false)) solid_ = Solid(body_, materials_of(scene_, state_.part));
+  obstacles_ = Obstacles(scene_), environment_ = {}, wedge_ = {};
+  begin();
+}
+
+// With body, state and solid as they are.
+void Simulation::begin() {
   const std::size_t n = body_.nodes.size();
   if (state_.part.empty()) state_.part.assign(n, 0);
-  if (state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene.blades.size())
+  if (solid_.size() != n || state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene_.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   prepare();
   collisions_.emplace(scene_, body_, solid_, state_.surface);
-}
-
-void Simulation::begin_motion() {
-  const std::size_t n = body_.nodes.size();
-  std::vector<Box3> box(scene_.bodies.size());
-  for (std::size_t i = 0; i < n; ++i) box[state_.part[i]].add(body_.nodes.position[i]);
-  state_.motion.displacement.assign(n, Vec3::Zero());
-  for (std::size_t i = 0; i < n; ++i) {
-    const SceneBody& of = scene_.bodies[state_.part[i]];
-    state_.motion.velocity.push_back(of.velocity + of.spin.cross(body_.nodes.position[i] - box[state_.part[i]].center()));
-  }
-}
-
-// Cracks that are there before time begins: fronts step by step, sheets whole.
-void Simulation::score(const Progress& progress) {
-  FrameWork work;
-  for (std::size_t s = 0; s < scene_.scores.size(); ++s) {
-    const Front& front = scene_.scores[s];
-    if (front.is_sheet()) {
-      report(progress, "prescoring", s, scene_.scores.size());
-      TriangleMesh sheet;
-      sheet.vertices = front.steps[0], sheet.triangles = front.triangles;
-      Complex scored = body_.surface;
-      insert_sheet(scored, sheet, next_crack());
-      adopt(follow(body_, scored, &work.split), work);
-      continue;
-    }
-    FrontState state = begin_front(front.steps.at(0), front.closed, next_crack());
-    for (std::size_t k = 1; k < front.steps.size(); ++k) {
-      report(progress, "prescoring", s, scene_.scores.size());
-      if (!split_step(state, correspond(front.steps[0], front.steps[k], front.closed), work))
-        throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name + "' cannot be made");
-    }
-  }
-  solid_.settle(body_, state_.motion);
 }
 
 // What acts on nodes, as they are now.
@@ -96,6 +68,7 @@ void Simulation::prepare() {
 void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
+  cut_ = true;
   solid_.follow(body_, delta, state_.motion);
   if (scene_.fracture.on) solid_.settle(body_, state_.motion);
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));

@@ -6,37 +6,25 @@
 #include "body/body.h"
 #include "mechanics/solid.h"
 #include "simulation/collide.h"
-#include "simulation/edge_front.h"
-#include "simulation/fracture_step.h"
-#include "simulation/model.h"
 #include "simulation/obstacles.h"
+#include "simulation/run_state.h"
 #include "simulation/scene.h"
 #include "simulation/wedge.h"
 #include "simulation/work.h"
 
 namespace geo {
 
-/// What a run needs to go on besides its body.
-struct RunState {
-  State motion;
-  std::vector<std::vector<EdgeFront>> fronts;  ///< per blade: a front for each part of the edge that cuts
-  FractureState fracture;
-  std::vector<Vec3> surface;  ///< a row a living surface vertex, ascending: where it is; empty without self-contact
-  std::vector<std::uint32_t> part;                ///< per node: the body of the scene that it belongs to
-  double time = 0;
-  int frame = 0;
-  FrameWork total;  ///< counts since the run began; its seconds since the program did
-};
-
 class Simulation {
  public:
-  /// A fresh run: samples and builds the body, makes the prescored cracks. Throws InputError when bodies do not fit the
-  /// scene, GeometryError when a prescored crack cannot be made.
+  /// A fresh run; throws as begin_run() does.
   Simulation(const Scene& scene, const Model& model, const Progress& progress = {});
   /// The same for a scene of one body that stands where it was modelled.
   Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress = {});
   /// A run taken up again; without parts all nodes are of the first body. Throws InputError when the state is not of this scene.
   Simulation(const Scene& scene, Body body, RunState state);
+  /// This run from its own body and state as a file gave them back: from there on the same as a run taken up from that file. What
+  /// no cut has changed since the run began, or was taken up last, is kept.
+  void take_up(Body body, RunState state);
 
   /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when `progress`
   /// says so. A crack step that is refused is counted, and its front tried again in the next step.
@@ -50,6 +38,7 @@ class Simulation {
   const Solid& solid() const { return solid_; }
 
  private:
+  Simulation(const Scene& scene, Beginning begun);
   void step(double dt, FrameWork& work);
   void cut(double dt, FrameWork& work);
   void cut_at(std::size_t blade, double time, FrameWork& work);
@@ -64,8 +53,7 @@ class Simulation {
   void adopt(const BodyDelta& delta, FrameWork& work);
   /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
   bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work);
-  void begin_motion();
-  void score(const Progress& progress);
+  void begin();
   void prepare();
 
   Scene scene_;
@@ -77,6 +65,7 @@ class Simulation {
   Obstacles obstacles_;
   std::optional<Collisions> collisions_;
   std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
+  bool cut_ = false;  // since the solid was made
 };
 
 }  // namespace geo

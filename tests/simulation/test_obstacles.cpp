@@ -115,6 +115,16 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     Simulation again = read_back(scene, half);
     for (int i = 4; i < 8; ++i) again.advance_frame();
     CHECK(bytes(again) == bytes(sim));
+    // One that takes itself up before, while and after it is cut is as others that are taken up there.
+    Simulation kept(scene, model);
+    for (int i = 0; i < 8; ++i) {
+      Simulation other = read_back(scene, bytes(kept));
+      Checkpoint c = read_checkpoint(KerfFile(Input(bytes(kept), "checkpoint")));
+      kept.take_up(std::move(c.body), std::move(c.state));
+      other.advance_frame(), kept.advance_frame();
+      CHECK(bytes(kept) == bytes(other));
+    }
+    CHECK(kept.body().surface.crack_count() == 1);
     set_threads(0);
   }
 }

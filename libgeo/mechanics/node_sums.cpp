@@ -2,41 +2,50 @@
 
 #include <algorithm>
 
+#include "base/fresh_array.h"
 #include "base/parallel.h"
 #include "mechanics/plasticity.h"
+#include "mechanics/point_lanes.h"
 
 namespace geo {
 
 std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const PointStress& stress) {
-  constexpr std::size_t width = std::tuple_size_v<StressSums>;
+  constexpr std::size_t width = 8, used = std::tuple_size_v<StressSums>;
   const MaterialPoints& points = solid.points();
-  std::vector<double> parts(width * points.parts(), 0), inverse(nodes.size());  // of supports, squared
-  for (std::size_t i = 0; i < nodes.size(); ++i) inverse[i] = 1 / (nodes.radius[i] * nodes.radius[i]);
+  FreshArray<double> parts(width * points.parts());
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::array<double, 6> own;
+    std::vector<double> values, place, own;
+    Columns<double> gradient;
+    std::array<double, 6> numbers;
     for (std::size_t b = begin; b < end; ++b) {
       const PointBlock& block = points.blocks[b];
-      const auto gradient = points.gradients(b, state.displacement);
+      points.values(b, state.displacement, values);
+      point_gradients(block, values.data(), gradient);
+      own.assign(width * block.points.size(), 0);
       for (std::size_t i = 0; i < block.points.size(); ++i) {
-        const MaterialPoint& p = block.points[i];
-        const Mat3 all = Mat3::Identity() + gradient[i];
+        if (block.points[i].rung == Rung::rigid) continue;
+        Mat3 all = Mat3::Identity();
+        for (int c = 0; c < 3; ++c) all.col(c) += Eigen::Map<const Vec3>(&gradient.column[c][4 * i]);
         const Mat3 elastic = state.plastic.empty() ? all : Mat3(all * relaxation(state.plastic[points.first(b) + i]));
-        if (p.rung == Rung::rigid || !stress(solid.materials()[p.material], all, elastic, own)) continue;
-        for (auto e = block.first[i]; e < block.first[i + 1]; ++e) {
-          const std::uint32_t node = block.nodes[block.to[e]];
-          const double left = 1 - (p.position - nodes.position[node]).squaredNorm() * inverse[node];  // the kernel, but for its scale
-          if (!(left > 0)) continue;
-          const double w = p.volume * left * left * left;
-          double* sum = &parts[width * (points.part(b) + block.to[e])];
-          for (const double c : own) *sum++ += w * c;
-          *sum += w;
-        }
+        if (!stress(solid.materials()[block.points[i].material], all, elastic, numbers)) continue;
+        std::copy(numbers.begin(), numbers.end(), &own[width * i]), own[width * i + used - 1] = 1;
       }
+      place.clear();
+      for (const auto j : block.nodes) {
+        const Vec3& x = nodes.position[j];
+        place.insert(place.end(), {x[0], x[1], x[2], 1 / (nodes.radius[j] * nodes.radius[j])});
+      }
+      double* const sums = parts.data() + width * points.part(b);
+      std::fill_n(sums, width * block.nodes.size(), 0.0);
+      point_shares(block, place.data(), own.data(), sums);
     }
   });
-  std::vector<StressSums> sums(nodes.size(), StressSums{});
+  std::vector<StressSums> sums(nodes.size());
   parallel_for(sums.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sums[i] = points.sum<width>(parts.data(), i);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto sum = points.sum<width>(parts.data(), i);
+      std::copy_n(sum.begin(), used, sums[i].begin());
+    }
   });
   return sums;
 }

@@ -57,6 +57,26 @@ void Divergence(const PointBlock& block, const double* const* stress, double* ou
   }
 }
 
+void Shares(const PointBlock& block, const double* HWY_RESTRICT place, const double* HWY_RESTRICT own, double* HWY_RESTRICT out) {
+  using Tag = hn::CappedTag<double, 8>;
+  const Tag d;
+  constexpr std::size_t step = hn::MaxLanes(Tag());
+  for (std::size_t i = 0; i < block.points.size(); ++i) {
+    if (own[8 * i + 6] == 0) continue;
+    const Vec3& at = block.points[i].position;
+    const double volume = block.points[i].volume;
+    for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
+      const double* const node = place + 4 * block.to[q];
+      const double x = at[0] - node[0], y = at[1] - node[1], z = at[2] - node[2];
+      const double left = 1 - (x * x + y * y + z * z) * node[3];  // the kernel, but for its scale
+      if (!(left > 0)) continue;
+      const auto w = hn::Set(d, volume * left * left * left);
+      double* const sum = out + 8 * block.to[q];
+      for (std::size_t c = 0; c < 8; c += step) hn::StoreU(hn::Add(hn::LoadU(d, sum + c), hn::Mul(w, hn::LoadU(d, own + 8 * i + c))), d, sum + c);
+    }
+  }
+}
+
 }  // namespace geo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -64,6 +84,7 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Gradients);
 HWY_EXPORT(Divergence);
+HWY_EXPORT(Shares);
 
 template <class Number>
 void Columns<Number>::resize(std::size_t points) {
@@ -81,6 +102,7 @@ void point_divergence(const PointBlock& block, const Columns<double>& stress, do
   const double* const columns[3] = {stress.column[0].data(), stress.column[1].data(), stress.column[2].data()};
   HWY_DYNAMIC_DISPATCH(Divergence)(block, columns, out);
 }
+void point_shares(const PointBlock& block, const double* place, const double* own, double* out) { HWY_DYNAMIC_DISPATCH(Shares)(block, place, own, out); }
 
 }  // namespace geo
 #endif

@@ -1,8 +1,10 @@
 #include "sampling/region.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "geometry/predicates.h"
+#include "geometry/side_lanes.h"
 
 namespace geo {
 namespace {
@@ -16,6 +18,22 @@ int crossings(const Vec3& p, const Vec3& q, int sp, int sq, const std::array<Vec
   const bool plus = e0 > 0 || e1 > 0 || e2 > 0, minus = e0 < 0 || e1 < 0 || e2 < 0;
   if (plus && minus) return 0;
   return e0 == 0 || e1 == 0 || e2 == 0 ? -1 : 1;
+}
+
+// Whether the triangle has all of its plane that is in the box: seen along the axis that it faces most, the box is strictly within it.
+bool covers(const std::array<Vec3, 3>& t, const Box3& box) {
+  int axis = 0;
+  (t[1] - t[0]).cross(t[2] - t[0]).cwiseAbs().maxCoeff(&axis);
+  const int turn = orient2d_quick(t[0], t[1], t[2], axis);
+  if (turn == 2) return false;
+  for (int k = 0; k < 4; ++k) {
+    Vec3 corner = box.lo;
+    for (int side = 0; side < 2; ++side)
+      if (const int a = (axis + 1 + side) % 3; k >> side & 1) corner[a] = box.hi[a];
+    for (int e = 0; e < 3; ++e)
+      if (orient2d_quick(t[static_cast<std::size_t>(e)], t[static_cast<std::size_t>((e + 1) % 3)], corner, axis) != turn) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -95,22 +113,55 @@ bool RegionTree::inside(const Region& region, const Vec3& p) const {
 }
 
 void RegionTree::inside(const Region& region, std::span<const Vec3> points, std::span<char> answers) const {
-  // From each point to the next; a triangle with both on one side of its plane is not between them.
-  std::vector<char> known(points.size(), 1), odd(points.size(), 0);
+  // From each point to the next, the first from the probe; a triangle with both on one side of its plane is not between them. A bit a point.
+  const std::size_t count = points.size(), words = (count + 63) / 64;
+  const auto padded = 64 * words;
+  std::vector<double> coordinates(3 * padded);
+  const double* const at[3] = {&coordinates[0], &coordinates[padded], &coordinates[2 * padded]};
+  Box3 box;
+  box.add(region.probe);
+  for (std::size_t i = 0; i < padded; ++i) {
+    const Vec3& p = points[std::min(i, count - 1)];
+    for (std::size_t axis = 0; axis < 3; ++axis) coordinates[axis * padded + i] = p[static_cast<int>(axis)];
+    box.add(p);
+  }
+  std::vector<std::uint64_t> bits(5 * words, 0);
+  std::uint64_t *const above = &bits[0], *const below = &bits[words], *const odd = &bits[2 * words], *const unknown = &bits[3 * words], *const ask = &bits[4 * words];
+  const auto bit = [](const std::uint64_t* of, std::size_t i) { return int(of[i / 64] >> i % 64 & 1); };
   for (const auto row : region.rows) {
     const auto& t = corners_[row];
-    int before = orient3d(t[0], t[1], t[2], region.probe);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const int side = orient3d(t[0], t[1], t[2], points[i]);
-      if (before != side || side == 0) {
-        const int n = crossings(i ? points[i - 1] : region.probe, points[i], before, side, t);
-        n < 0 ? known[i] = 0 : odd[i] ^= n == 1;
+    const int first = orient3d(t[0], t[1], t[2], region.probe);
+    clear_sides(t, at, words, above, below);
+    bool clear = first != 0;
+    for (std::size_t w = 0; w < words; ++w)
+      for (std::uint64_t left = ~(above[w] | below[w]); left != 0; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(left));
+        const int side = 64 * w + k < count ? orient3d_exact(t[0], t[1], t[2], points[64 * w + k]) : 1;
+        (side < 0 ? below : above)[w] |= std::uint64_t(side != 0) << k, clear = clear && side != 0;
       }
-      before = side;
+    // Where a point is not on the side of the one before it, or in the plane.
+    std::uint64_t over = first > 0, under = first < 0;
+    for (std::size_t w = 0; w < words; ++w) {
+      ask[w] = (above[w] ^ (above[w] << 1 | over)) | (below[w] ^ (below[w] << 1 | under)) | ~(above[w] | below[w]);
+      over = above[w] >> 63, under = below[w] >> 63;
     }
+    if (clear && covers(t, box)) {
+      for (std::size_t w = 0; w < words; ++w) odd[w] ^= ask[w];
+      continue;
+    }
+    for (std::size_t w = 0; w < words; ++w)
+      for (std::uint64_t left = ask[w]; left != 0; left &= left - 1) {
+        const auto i = 64 * w + static_cast<std::size_t>(std::countr_zero(left));
+        const std::uint64_t here = left & -left;
+        if (i >= count) break;
+        const int before = i ? bit(above, i - 1) - bit(below, i - 1) : first;
+        const int n = crossings(i ? points[i - 1] : region.probe, points[i], before, bit(above, i) - bit(below, i), t);
+        if (n < 0) unknown[w] |= here;
+        if (n == 1) odd[w] ^= here;
+      }
   }
-  bool at = region.inside;
-  for (std::size_t i = 0; i < points.size(); ++i) answers[i] = at = known[i] ? at != bool(odd[i]) : tree_.inside(points[i]);
+  bool inside = region.inside;
+  for (std::size_t i = 0; i < count; ++i) answers[i] = inside = bit(unknown, i) ? tree_.inside(points[i]) : inside != bool(bit(odd, i));
 }
 
 }  // namespace geo

@@ -6,6 +6,7 @@
 #include "cases.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
+#include "geometry/side_lanes.h"
 #include "geometry/triangle_index.h"
 
 using namespace geo;
@@ -41,6 +42,35 @@ TEST_CASE("orient3d is exact on random, nearly coplanar and scaled points") {
     CHECK(orient3d(p[0], p[1], p[2], p[3]) == oracle(p[0], p[1], p[2], p[3]));
   }
   CHECK(orient3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}) == 1);
+}
+
+TEST_CASE("sides of many points at once are those of each, or not told") {
+  const std::uint64_t seed = GENERATE(4, 5);
+  CAPTURE(seed);
+  Random random(seed);
+  std::size_t told = 0, asked = 0, flat = 0;
+  for (int i = 0; i < cases(100); ++i) {
+    const bool grid = random.below(2);
+    const double scale = std::pow(10.0, random.uniform(-6, 6)), shift = random.below(3) ? 0 : 1e6;
+    const auto point = [&] { return grid ? grid_point(random, 5) : Vec3(scale * random.direction() + Vec3::Constant(shift)); };
+    const std::array<Vec3, 3> t{point(), point(), point()};
+    std::vector<double> x(128), y(128), z(128);
+    for (std::size_t k = 0; k < 128; ++k) {
+      const Vec3 p = random.below(3) ? point() : Vec3(t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]));
+      x[k] = p.x(), y[k] = p.y(), z[k] = p.z();
+    }
+    const double* const at[3] = {x.data(), y.data(), z.data()};
+    std::uint64_t above[2], below[2];
+    clear_sides(t, at, 2, above, below);
+    for (std::size_t k = 0; k < 128; ++k) {
+      const int side = oracle(t[0], t[1], t[2], {x[k], y[k], z[k]}), over = above[k / 64] >> k % 64 & 1, under = below[k / 64] >> k % 64 & 1;
+      CAPTURE(i, k);
+      CHECK((over + under == 0 || over - under == side));
+      ++asked, told += static_cast<std::size_t>(over + under), flat += side == 0;
+    }
+  }
+  CHECK(told > asked / 3);
+  CHECK(flat > 0);
 }
 
 TEST_CASE("a closed segment meets a closed triangle where it touches it") {

@@ -42,6 +42,65 @@ double decode(const char* bytes, char type, bool swap) {
   }
 }
 
+// Numbers that stand at equal distances, `each` of them in a place; false where one is not finite.
+template <class T>
+bool fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
+  values.resize(places * each);
+  bool finite = true;
+  for (std::size_t i = 0; i < places; ++i)
+    for (std::size_t k = 0; k < each; ++k) {
+      const double x = values[i * each + k] = decode<T>(first + i * apart + k * sizeof(T), swap);
+      finite = finite && std::isfinite(x);
+    }
+  return finite;
+}
+
+bool fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
+  switch (p.type) {
+    case 'c': return fill<std::int8_t>(p.values, first, apart, places, each, swap);
+    case 'C': return fill<std::uint8_t>(p.values, first, apart, places, each, swap);
+    case 's': return fill<std::int16_t>(p.values, first, apart, places, each, swap);
+    case 'S': return fill<std::uint16_t>(p.values, first, apart, places, each, swap);
+    case 'i': return fill<std::int32_t>(p.values, first, apart, places, each, swap);
+    case 'I': return fill<std::uint32_t>(p.values, first, apart, places, each, swap);
+    case 'f': return fill<float>(p.values, first, apart, places, each, swap);
+    default: return fill<double>(p.values, first, apart, places, each, swap);
+  }
+}
+
+// Reads a binary element whose rows are all as long as the first, as they are in most files, a property at a time. False, with nothing
+// read, where they are not or anything else is wrong.
+bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyElement& element) {
+  std::string_view rest = bytes.substr(at);
+  std::vector<std::size_t> first, each;  // of the numbers of a property in a row
+  std::size_t row = 0;
+  for (const PlyProperty& p : element.properties) {
+    double count = 1;
+    if (p.count_type != 0) {
+      if (rest.size() < row + size_of(p.count_type)) return false;
+      count = decode(rest.data() + row, p.count_type, swap), row += size_of(p.count_type);
+      if (!(count >= 0 && count <= static_cast<double>(rest.size()))) return false;
+    }
+    first.push_back(row), each.push_back(static_cast<std::size_t>(count)), row += each.back() * size_of(p.type);
+    if (row > rest.size()) return false;
+  }
+  if (row == 0 || rest.size() / row < element.count) return false;
+  for (std::size_t k = 0; k < each.size(); ++k)
+    if (const char type = element.properties[k].count_type; type != 0)
+      for (std::size_t i = 1; i < element.count; ++i)
+        if (decode(rest.data() + i * row + first[k] - size_of(type), type, swap) != static_cast<double>(each[k])) return false;
+  for (std::size_t k = 0; k < each.size(); ++k) {
+    PlyProperty& p = element.properties[k];
+    if (!fill(p, rest.data() + first[k], row, element.count, each[k], swap)) {
+      for (PlyProperty& other : element.properties) other.values.clear(), other.ends.clear();
+      return false;
+    }
+    for (std::size_t i = 1; p.count_type != 0 && i <= element.count; ++i) p.ends.push_back(static_cast<std::uint32_t>(i * each[k]));
+  }
+  at += row * element.count;
+  return true;
+}
+
 }  // namespace
 
 const PlyProperty* PlyElement::find(std::string_view property) const {
@@ -100,6 +159,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
   };
   for (auto& element : ply.elements) {
     if (element.properties.empty() && element.count > 0) throw InputError(name + ": element '" + shown(element.name) + "' has rows but no properties");
+    if (format != 0 && element.count > 0 && read_even_rows(bytes, format == 2, at, element)) continue;
     for (std::size_t row = 0; row < element.count; ++row) {
       std::size_t word = 0;
       if (format == 0 && !rows.next(words)) truncated(element.name);

@@ -84,10 +84,15 @@ class Reader {
     if (!indices_) indices_ = face_->find("vertex_index");
     if (!indices_ || !indices_->count_type) throw InputError(name_ + ": its faces have no vertex_indices");
     if ((site && site->count_type) || (patch_ && patch_->count_type)) throw InputError(name_ + ": 'site' and 'patch' must not be lists");
+    parts_.reserve(face_->count), mesh().triangles.reserve(face_->count);
     std::vector<std::uint32_t> polygon;
     for (std::uint32_t i = 0; i < face_->count; ++i) {
       polygon.clear();
       for (auto j = i ? indices_->ends[i - 1] : 0; j < indices_->ends[i]; ++j) polygon.push_back(row_of(indices_->values[j]));
+      if (polygon.size() == 3 && *std::max_element(polygon.begin(), polygon.end()) < mesh().vertices.size()) {
+        mesh().triangles.push_back({polygon[0], polygon[1], polygon[2]}), parts_.push_back({i, {0, 1, 2}});
+        continue;
+      }
       for (const auto& corner : add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": ")) parts_.push_back({i, corner});
     }
     if (patch_ && site) {

@@ -2,7 +2,11 @@
 
 #include <charconv>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <type_traits>
+
+#include "base/parallel.h"
 
 namespace geo {
 namespace {
@@ -76,20 +80,43 @@ std::string uv_of(const TriangleMesh& m) {
 
 using Frames = std::vector<std::size_t>;
 
-// A sample is what holds until the next: one that says the same is left out. `frames`: the others are like those before them.
-void add_samples(std::ostream& out, const std::string& margin, const std::string& declaration, const Frames& frames, const auto& frame, const auto& text_of) {
-  out << margin << declaration << ".timeSamples = {\n";
-  std::string last;
-  std::size_t written = 0;
-  for (const std::size_t i : frames) {
-    std::string text = text_of(frame(i));
-    if (i > 0 && text == last) continue;
-    // Points between two samples would be interpolated from where they last changed.
-    if (i > written + 1) out << margin << "    " << i - 1 << ": " << last << ",\n";
-    out << margin << "    " << i << ": " << text << ",\n";
-    last = std::move(text), written = i;
+// What is made of some frames, in their order: each(i, made). `make` is asked for a few at a time, from any threads.
+template <class Make>
+void each_in_order(const Frames& frames, const Make& make, const auto& each) {
+  const auto batch = static_cast<std::size_t>(threads());
+  for (std::size_t first = 0; first < frames.size(); first += batch) {
+    std::vector<std::optional<std::invoke_result_t<Make, std::size_t>>> made(std::min(batch, frames.size() - first));
+    parallel_for(made.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) made[k].emplace(make(frames[first + k]));
+    });
+    for (std::size_t k = 0; k < made.size(); ++k) each(frames[first + k], std::move(*made[k]));
   }
-  out << margin << "}\n";
+}
+
+// A sample is what holds until the next: one that says the same is left out. Frames that are not given are like those before them.
+class Samples {
+ public:
+  Samples(std::ostream& out, std::string margin, const std::string& declaration) : out_(out), margin_(std::move(margin)) {
+    out_ << margin_ << declaration << ".timeSamples = {\n";
+  }
+  void add(std::size_t i, std::string text) {
+    if (i > 0 && text == last_) return;
+    // Points between two samples would be interpolated from where they last changed.
+    if (i > written_ + 1) out_ << margin_ << "    " << i - 1 << ": " << last_ << ",\n";
+    out_ << margin_ << "    " << i << ": " << text << ",\n";
+    last_ = std::move(text), written_ = i;
+  }
+  ~Samples() { out_ << margin_ << "}\n"; }
+
+ private:
+  std::ostream& out_;
+  std::string margin_, last_;
+  std::size_t written_ = 0;
+};
+
+void add_samples(std::ostream& out, const std::string& margin, const std::string& declaration, const Frames& frames, const auto& frame, const auto& text_of) {
+  Samples samples(out, margin, declaration);
+  each_in_order(frames, [&](std::size_t i) { return text_of(frame(i)); }, [&](std::size_t i, std::string text) { samples.add(i, std::move(text)); });
 }
 
 Frames all_frames(const UsdRun& run) {
@@ -127,13 +154,18 @@ void write_usda(std::ostream& out, const UsdRun& run) {
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
   Frames cut;  // those with other triangles than the one before
   TriangleMesh last;
-  std::size_t next = 0;
-  add_samples(out, "        ", "point3f[] points", all_frames(run), run.surface, [&](TriangleMesh m) {
-    std::string points = points_of(m);
-    if (next == 0 || !same_rows(m, last)) cut.push_back(next), last = std::move(m);
-    ++next;
-    return points;
-  });
+  {
+    Samples points(out, "        ", "point3f[] points");
+    const auto read = [&](std::size_t i) {
+      TriangleMesh m = run.surface(i);
+      std::string text = points_of(m);
+      return std::pair(std::move(text), std::move(m));
+    };
+    each_in_order(all_frames(run), read, [&](std::size_t i, auto made) {
+      points.add(i, std::move(made.first));
+      if (i == 0 || !same_rows(made.second, last)) cut.push_back(i), last = std::move(made.second);
+    });
+  }
   const auto body = [&](const std::string& declaration, const auto& text_of) { add_samples(out, "        ", declaration, cut, run.surface, text_of); };
   body("int[] faceVertexCounts", counts_of);
   body("int[] faceVertexIndices", corners_of_triangles);

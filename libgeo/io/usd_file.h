@@ -8,7 +8,8 @@
 
 namespace geo {
 
-/// Frames of one rate. Each is asked for once, those with new triangles several times; two are in memory at a time.
+/// Frames of one rate. Each is asked for once, those with new triangles several times, from any threads; one a thread is in memory, and
+/// one more.
 struct UsdRun {
   std::size_t frames = 0;
   double frame_rate = 24;  ///< frames a second

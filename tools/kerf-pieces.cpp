@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
     const pieces::Subject subject = pieces::read_subject(w.model);
     const geo::Complex& complex = subject.complex;
     const geo::Pieces found = geo::find_pieces(complex);
-    const auto bonds = geo::find_bonds(complex, found);
+    const auto bonds = geo::find_bonds(complex, found, subject.moved);
     const auto chunks = geo::make_chunks(complex, found, subject.mesh, w.tile * complex.extent().diagonal(), subject.moved);
     geo::ChunkNotes notes{glb ? "node" : "file", {}, w.strength};
     if (!glb) {

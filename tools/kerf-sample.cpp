@@ -97,10 +97,10 @@ int main(int argc, char** argv) {
     if (!is_volume && !(grid.empty() && iso.empty() && surface.empty() && adaptivity == 0)) throw tool::UsageError("--grid, --iso, --adaptivity and --surface are for volumes (.vdb)");
     const std::string target = t.target(true);
     geo::Stopwatch clock;
-    const geo::TriangleMesh mesh = is_volume ? read_checked_volume(model, volume) : tool::read_solid(model).mesh;
+    geo::TriangleMesh mesh = is_volume ? read_checked_volume(model, volume) : tool::read_solid(model).mesh;
     const double read_seconds = clock.lap();
     if (percent > 0) options.spacing = percent / 100 * geo::bounding_box(mesh).diagonal();
-    if (mesh.two_sided()) throw geo::InputError(model + ": is cut already; sample the model before it is cut");
+    tool::require_whole(mesh, model, "sample the model before it is cut");
     geo::NodeSet nodes;
     geo::SampleReport report;
     try {

@@ -88,7 +88,7 @@ Plan read_plan(const std::string& path, const geo::SceneOverrides& overrides) {
   for (const geo::SceneBody& body : plan.scene.bodies) {
     const std::string bytes = geo::read_all(body.mesh);
     meshes.push_back(tool::parse_solid(bytes, body.mesh).mesh);
-    if (meshes.back().two_sided()) throw geo::InputError(body.mesh + ": is cut already; a scene begins with whole models");
+    tool::require_whole(meshes.back(), body.mesh, "a scene begins with whole models");
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   plan.fingerprint = geo::fingerprint(hashes);

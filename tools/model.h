@@ -1,6 +1,7 @@
 // Reading a model for a tool: a valid solid, or one clear error.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -29,6 +30,13 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
   return file;
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
+
+/// Leaves the sites of a surface that was read out, where nothing in it is cut (frames of a run have them from the first on). Throws
+/// InputError, with the file's name and what to do, where something is.
+inline void require_whole(geo::TriangleMesh& mesh, const std::string& path, const std::string& advice) {
+  if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; })) throw geo::InputError(path + ": is cut already; " + advice);
+  mesh.patch.clear(), mesh.site.clear();
+}
 
 /// The complex of a surface that was read; errors carry the file's name.
 inline geo::Complex complex_of(const geo::SurfaceFile& file, const std::string& path) {

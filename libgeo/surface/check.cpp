@@ -69,7 +69,11 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
   int shared_f[3], shared_g[3], shared = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      if (f[i] == g[j]) shared_f[shared] = i, shared_g[shared] = j, ++shared;
+      if (f[i] == g[j]) {
+        for (int k = 0; k < shared; ++k)
+          if (shared_f[k] == i || shared_g[k] == j) return true;  // it is named twice
+        shared_f[shared] = i, shared_g[shared] = j, ++shared;
+      }
   if (shared == 3) return true;
   const auto clear = [](const std::array<Vec3, 3>& plane, const Vec3& a, const Vec3& b) {
     const int side = orient3d_quick(plane[0], plane[1], plane[2], a);

@@ -32,7 +32,7 @@ SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 
 /// True when two triangles, given by vertex ids and points, meet other than in the vertices and edges they share by id.
-/// Exact.
+/// Exact. True also where one of them names a vertex twice that they share.
 bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
                  const std::array<Vec3, 3>& q);
 

@@ -13,18 +13,22 @@ struct Wall {
   Vec3 normal = Vec3::Zero(), center = Vec3::Zero();  // not yet divided by what they weigh
 };
 
-// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice.
-std::map<Pair, Wall> walls_of(const Complex& complex, const Pieces& pieces) {
+// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice. Where vertices have moved, a face is half way
+// between its sides, and weighs what it did before.
+std::map<Pair, Wall> walls_of(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {}) {
   std::map<Pair, Wall> walls;
   for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
     if (!complex.alive(FaceId(f)) || complex.face(FaceId(f)).crack == 0) continue;
     const auto behind = static_cast<std::uint32_t>(pieces.of_side[f * 2]), before = static_cast<std::uint32_t>(pieces.of_side[f * 2 + 1]);
-    const auto c = complex.corners(FaceId(f));
-    const Vec3 n = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
+    auto c = complex.corners(FaceId(f));
+    const auto normal = [&] { return Vec3(0.5 * (c[1] - c[0]).cross(c[2] - c[0])); };
+    const double area = normal().norm();
+    for (int k = 0; k < 3 && !moved.empty(); ++k)
+      c[std::size_t(k)] = 0.5 * (moved[complex.surface_vertex({FaceId(f), 0}, k).index()] + moved[complex.surface_vertex({FaceId(f), 1}, k).index()]);
     Wall& wall = walls[std::minmax(behind, before)];
-    wall.area += n.norm();
-    wall.normal += behind <= before ? n : Vec3(-n);
-    wall.center += n.norm() * (c[0] + c[1] + c[2]) / 3;
+    wall.area += area;
+    wall.normal += behind <= before ? normal() : Vec3(-normal());
+    wall.center += area * (c[0] + c[1] + c[2]) / 3;
   }
   return walls;
 }
@@ -43,9 +47,9 @@ Vec3 centroid_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces) {
+std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved) {
   std::vector<Bond> bonds;
-  for (const auto& [pair, wall] : walls_of(complex, pieces))
+  for (const auto& [pair, wall] : walls_of(complex, pieces, moved))
     if (pair.first != pair.second) bonds.push_back({pair.first, pair.second, wall.area, wall.normal.normalized(), wall.center / wall.area});
   return bonds;
 }
@@ -67,7 +71,7 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
     Chunk chunk{piece_mesh(complex, pieces, p, &rows), pieces.volume[p], Vec3::Zero()};
     TriangleMesh& mesh = chunk.mesh;
-    carry(original, mesh);
+    if (!original.triangles.empty()) carry(original, mesh);
     mesh.site.clear();
     Attributes& a = mesh.attributes;
     if (a.group.empty()) {

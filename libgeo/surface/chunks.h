@@ -15,8 +15,9 @@ struct Bond {
   Vec3 centroid = Vec3::Zero();   ///< of the shared area
 };
 
-/// The bonds of a cut body, by (a, b).
-std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces);
+/// The bonds of a cut body, by (a, b). `moved`: where each surface vertex of a deformed body is; then normals and centroids are those
+/// of the shared area where it is now, half way between its two sides, and areas still those of the undeformed material, which held.
+std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {});
 
 struct Chunk {
   TriangleMesh mesh;              ///< closed; patch 0: skin, else inner. Site is empty
@@ -25,7 +26,7 @@ struct Chunk {
 };
 
 /// The pieces, in descending order of volume, with the attributes of `original`, the surface that `complex` was made
-/// from. Each triangle has a group, inner ones "crack", all others "skin" where the original has no groups. Inner
+/// from, or none where it is empty. Each triangle has a group, inner ones "crack", all others "skin" where the original has no groups. Inner
 /// triangles without texture coordinates (0 0) get them along the mean plane of the wall that they belong to, one for
 /// `tile` model units; skin that had none has 0 0. `moved`: where each surface vertex of a deformed body is; then volumes and
 /// centroids are those of the deformed pieces.

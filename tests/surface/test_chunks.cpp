@@ -129,4 +129,11 @@ TEST_CASE("Chunks of a deformed body are the same triangles where their vertices
     CHECK((chunks[p].centroid - place(still[p].centroid, p)).norm() < 1e-12);
     for (std::size_t v = 0; v < chunks[p].mesh.vertices.size(); ++v) CHECK(chunks[p].mesh.vertices[v] == place(still[p].mesh.vertices[v], p));
   }
+  // The bond is half way between its sides, and as strong as the material was.
+  const Vec3 on_wall(0.7, 0.5, 0.5), u = place({0.7, 1, 0.5}, 0) - place(on_wall, 0), v = place({0.7, 0.5, 1}, 0) - place(on_wall, 0);
+  const auto bonds = find_bonds(complex, pieces, moved);
+  REQUIRE(bonds.size() == 1);
+  CHECK(bonds[0].area == Approx(1));
+  CHECK((bonds[0].centroid - 0.5 * (place(on_wall, 0) + place(on_wall, 1))).norm() < 1e-12);
+  CHECK((bonds[0].normal + u.cross(v).normalized()).norm() < 1e-12);  // to the smaller piece, on the other side of x = 0.7
 }

@@ -152,3 +152,17 @@ TEST_CASE("procedural models are solids at any resolution") {
   }
   CHECK_THROWS_AS(make_letter('?', 0.25, 14), InputError);
 }
+
+TEST_CASE("A triangle that names a shared vertex twice crosses", "[check]") {
+  const Vec3 at[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const auto crosses = [&](std::array<std::uint32_t, 3> f, std::array<std::uint32_t, 3> g) {
+    return faces_cross(f, {at[f[0]], at[f[1]], at[f[2]]}, g, {at[g[0]], at[g[1]], at[g[2]]});
+  };
+  CHECK(!crosses({0, 1, 2}, {0, 1, 3}));
+  CHECK(!crosses({0, 1, 2}, {0, 3, 1}));
+  CHECK(crosses({0, 1, 2}, {2, 1, 0}));
+  CHECK(crosses({0, 0, 1}, {0, 2, 3}));
+  CHECK(crosses({0, 2, 3}, {0, 0, 1}));
+  CHECK(crosses({0, 0, 1}, {1, 0, 1}));
+  CHECK(crosses({0, 0, 0}, {0, 0, 0}));
+}

@@ -500,6 +500,12 @@ simulation)
   expect 65 "no frame in the folder of its run" kerf-pieces astray.ply -o x
   kerf-sim -q s.toml -o late --frames 2 && cp whole/frames/frame_0006.ply late/frames/ || fail "a run of two frames"
   expect 65 "was cut after its run's checkpoint" kerf-pieces late/frames/frame_0006.ply -o x
+  # A frame that nothing is cut in is a model like others.
+  sed '/\[\[blade\]\]/,$d' s.toml >still.toml && kerf-sim -q still.toml -o still --frames 1 || fail "a run without a blade"
+  quietly kerf-sample still/frames/frame_0001.ply --spacing 20% -o still.pcd && quietly kerf-info --check -q still.pcd
+  printf '[body]\nmesh = "still/frames/frame_0001.ply"\nspacing = 0.4\n[time]\nframes = 1\n' >again.toml && kerf-sim -q again.toml -o again || fail "a scene of an uncut frame"
+  quietly kerf-score cube.ply --pieces 2 -o c.front && quietly kerf-crack cube.ply --front c.front -o c.ply
+  expect 65 "is cut already; sample the model" kerf-sample c.ply --spacing 20% -o x.pcd
   # A row of a list, told by its number; what is not there.
   kerf-sim -q s.toml -o cut --set blade.0.keys.1.3=0.4 --set blade.0.divide=5 || fail "--set of a row"
   grep -q '"pieces":1' cut/summary.json || fail "the blade stops half way, but: $(cat cut/summary.json)"

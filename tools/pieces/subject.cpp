@@ -57,8 +57,7 @@ Subject read_subject(const std::string& given) {
   const std::string bytes = geo::read_all(path);
   Subject subject;
   if (geo::looks_like_kerf(bytes)) {
-    subject.mesh = geo::parse_body(bytes, path).surface.two_sided();
-    subject.complex = geo::Complex::from_two_sided(subject.mesh);
+    subject.complex = geo::parse_body(bytes, path).surface;  // bodies have no attributes
     return subject;
   }
   geo::SurfaceFile file = geo::parse_surface(bytes, path);

@@ -10,7 +10,7 @@
 namespace pieces {
 
 struct Subject {
-  geo::TriangleMesh mesh;        ///< undeformed, with its attributes; `complex` was made from it
+  geo::TriangleMesh mesh;        ///< undeformed, with its attributes; `complex` was made from it. Empty where a body's file has the complex itself
   geo::Complex complex;
   std::vector<geo::Vec3> moved;  ///< of a deformed frame: where its vertices are, by their rows in `mesh`; else empty
 };

@@ -10,6 +10,7 @@
 #include "graph/guides.h"
 #include "graph/id_flags.h"
 #include "graph/lane_search.h"
+#include "graph/nearest_seen.h"
 #include "graph/old_sight.h"
 #include "graph/row_search.h"
 #include "graph/severed.h"
@@ -134,7 +135,6 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
                          std::span<const NodeId> resized) {
   GraphUpdate result;
   RowSearch& search = own_search();
-  const auto& x = nodes.position;
   graph.resize(nodes.size());
   thread_local IdFlags update;
   update.clear();
@@ -198,7 +198,7 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
 
   for (const NodeId r : resized) graph.resize_node(nodes, r);
 
-  // E_new: each new node's k nearest visible nodes. The nearest are asked in growing numbers, since many may be hidden.
+  // E_new: each new node's k nearest visible nodes.
   const auto old_guides = VisibilityGraph::first_guide + graph.guides().size();
   for (const auto g : guides.retired) graph.retire_guide(g);
   for (const Guide& guide : guides.added) graph.add_guide(guide);
@@ -210,16 +210,10 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   const auto join = [&](NodeId i, NodeId j) {
     if (graph.add(nodes, i, j)) result.added_edges.push_back(std::minmax(i, j));
   };
+  const auto nearest = nearest_seen(nodes, grid, fresh, k, obstacle_near, progress);
   for (std::size_t f = 0; f < fresh.size(); ++f) {
-    if (f % 256 == 0) report(progress, "new edges", f, fresh.size());
     const auto i = fresh[f];
-    int seen = 0;
-    for (const auto j : grid.nearest(x, x[i], static_cast<std::size_t>(3 * k), i, [](auto) { return true; })) {
-      if (seen == k) break;
-      if (sight.blocked(i, j)) continue;
-      ++seen;
-      join(NodeId(i), NodeId(j));
-    }
+    for (const auto j : nearest[f]) join(NodeId(i), NodeId(j));
     seen_guides.clear();
     guides_near(nodes, graph, i, seen_guides);
     for (const auto g : seen_guides)

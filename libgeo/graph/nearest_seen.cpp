@@ -1,0 +1,83 @@
+#include "graph/nearest_seen.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "geometry/bvh.h"
+
+namespace geo {
+namespace {
+
+using Group = std::span<std::uint32_t>;  // places in `ids`
+
+// Into groups so small that what is near one of them is mostly near the others, too: a support across.
+void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all, std::vector<Group>& groups) {
+  Box3 box;
+  double support = 0;
+  for (const auto place : all) box.add(nodes.position[ids[place]]), support = std::max(support, nodes.radius[ids[place]]);
+  Eigen::Index axis = 0;
+  const Vec3 size = box.hi - box.lo, middle = box.center();
+  const auto second = size.maxCoeff(&axis) <= support
+                          ? all.begin()
+                          : std::partition(all.begin(), all.end(), [&](auto place) { return nodes.position[ids[place]][axis] < middle[axis]; });
+  if (second == all.begin() || second == all.end()) {
+    groups.push_back(all);
+    return;
+  }
+  const auto count = static_cast<std::size_t>(second - all.begin());
+  divide(nodes, ids, all.first(count), groups);
+  divide(nodes, ids, all.subspan(count), groups);
+}
+
+}  // namespace
+
+std::vector<std::vector<std::uint32_t>> nearest_seen(const NodeSet& nodes, const NodeGrid& grid, std::span<const std::uint32_t> ids, int k,
+                                                     const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near,
+                                                     const Progress& progress) {
+  const auto& x = nodes.position;
+  const auto most = static_cast<std::size_t>(k);
+  std::vector<std::vector<std::uint32_t>> seen(ids.size());
+  std::vector<std::uint32_t> places(ids.size());
+  std::iota(places.begin(), places.end(), 0u);
+  std::vector<Group> groups;
+  if (!ids.empty()) divide(nodes, ids, places, groups);
+  const auto look = [&](Group group) {
+    std::vector<std::vector<std::uint32_t>> candidates;
+    Box3 box;  // of all segments
+    for (const auto place : group) {
+      candidates.push_back(grid.nearest(x, x[ids[place]], 3 * most, ids[place], [](auto) { return true; }));
+      box.add(x[ids[place]]);
+      for (const auto j : candidates.back()) box.add(x[j]);
+    }
+    std::vector<std::array<Vec3, 3>> triangles;
+    obstacle_near(box, triangles);
+    const TriangleBvh tree(triangles);
+    std::vector<Vec3> ends;
+    std::vector<std::uint8_t> blocked;
+    for (std::size_t g = 0; g < group.size(); ++g) {
+      auto& found = seen[group[g]];
+      // In growing numbers, since many may be hidden.
+      for (std::span<const std::uint32_t> rest = candidates[g]; !rest.empty() && found.size() < most;) {
+        const auto some = rest.first(std::min(most, rest.size()));
+        rest = rest.subspan(some.size());
+        ends.clear();
+        for (const auto j : some) ends.push_back(x[j]);
+        blocked.resize(some.size());
+        tree.blocks(x[ids[group[g]]], ends, blocked.data());
+        for (std::size_t e = 0; e < some.size() && found.size() < most; ++e)
+          if (!blocked[e]) found.push_back(some[e]);
+      }
+    }
+  };
+  constexpr std::size_t part = 256;
+  for (std::size_t first = 0; first < groups.size(); first += part) {
+    report(progress, "new edges", first, groups.size());
+    parallel_for(std::min(part, groups.size() - first), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t g = begin; g < end; ++g) look(groups[first + g]);
+    });
+  }
+  return seen;
+}
+
+}  // namespace geo

@@ -26,6 +26,19 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId exc
   return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return f != except && touches(complex, f, p, q); });
 }
 
+SightIn::SightIn(const Complex& complex, const Box3& box) {
+  triangles_near(complex, box, triangles_);
+  for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
+}
+
+bool SightIn::blocked(const Vec3& p, const Vec3& q) const {
+  Box3 segment{p, p};
+  segment.add(q);
+  for (std::size_t k = 0; k < triangles_.size(); ++k)
+    if (boxes_[k].meets(segment) && segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2])) return true;
+  return false;
+}
+
 bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
   const auto own = k.corners(s.face);
   return k.has(s) && orient3d(own[0], own[1], own[2], p) == (s.which ? 1 : -1) && !is_blocked(k, base, p, s.face);

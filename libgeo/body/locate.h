@@ -16,6 +16,17 @@ bool touches(const Complex& complex, FaceId f, const Vec3& p, const Vec3& q);
 /// True when a face, other than `except`, touches the closed segment pq: exact, through the complex's index.
 bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId except = {});
 
+/// The same for many segments within a box: its faces are read once. For few segments, or near each other.
+class SightIn {
+ public:
+  SightIn(const Complex& complex, const Box3& box);
+  bool blocked(const Vec3& p, const Vec3& q) const;
+
+ private:
+  std::vector<std::array<Vec3, 3>> triangles_;
+  std::vector<Box3> boxes_;
+};
+
 /// True when p is on the given side of the face and nothing else touches the segment from there to `base` on the face:
 /// then p is in the material before that side. The face itself is left out because its own point is rounded.
 bool stands_before(const Complex& complex, Side s, const Vec3& base, const Vec3& p);

@@ -66,9 +66,12 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
       continue;
     // The donor is the nearest node that sees it; else, in a fresh sliver, the nearest of all.
     const auto nearest = body.grid.nearest(body.nodes.position, s.position, 24, ~0u, all);
+    Box3 around{s.position, s.position};
+    for (const auto i : nearest) around.add(body.nodes.position[i]);
+    const SightIn sight(body.surface, around);
     std::vector<std::uint32_t> seen;
     for (const auto i : nearest)
-      if (seen.size() < 12 && !is_blocked(body.surface, body.nodes.position[i], s.position)) seen.push_back(i);
+      if (seen.size() < 12 && !sight.blocked(body.nodes.position[i], s.position)) seen.push_back(i);
     // Where rounding has exchanged two sheets, even air may be before a side with material.
     if (seen.empty() && !is_inside(body.surface, s.position)) continue;
     const NodeId donor(seen.empty() ? nearest[0] : seen[0]);

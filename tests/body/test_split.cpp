@@ -7,6 +7,7 @@
 #include "body/body.h"
 #include "body/locate.h"
 #include "body/nodes.h"
+#include "cases.h"
 #include "geometry/bvh.h"
 #include "graph/neighborhoods.h"
 #include "invariants/cut_bodies.h"
@@ -196,4 +197,28 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
     CHECK(body.nodes.radius[i] >= 1.2 * spacing);
   }
   CHECK(inside > 5);
+}
+
+TEST_CASE("Segments in a box are blocked by the faces read for the box as by the whole complex", "[body]") {
+  Complex complex = Complex::from_skin(make_block({2, 1, 1}, 0.25));
+  auto front = begin_front(std::vector<Vec3>{{0.75, -1, -1}, {0.75, -1, 2}}, false, 1);
+  advance(complex, front, std::vector<Vec3>{{0.75, 0.5, -1}, {0.75, 0.5, 2}});
+  std::size_t blocked = 0, open = 0;
+  for (int seed = 1; seed <= cases(40); ++seed) {
+    CAPTURE(seed);
+    Random random(static_cast<std::uint64_t>(seed));
+    // Every other box on a lattice, where segments touch faces, edges and corners.
+    const auto any = [&] { return seed % 2 ? Vec3(random.uniform(0, 2), random.uniform(), random.uniform()) : Vec3(0.25 * Vec3(random.below(9), random.below(5), random.below(5))); };
+    Box3 box;
+    box.add(any()), box.add(any());
+    const SightIn sight(complex, box);
+    for (int k = 0; k < 50; ++k) {
+      const Vec3 p = any().cwiseMax(box.lo).cwiseMin(box.hi), q = any().cwiseMax(box.lo).cwiseMin(box.hi);
+      const bool expected = is_blocked(complex, p, q);
+      CHECK(sight.blocked(p, q) == expected);
+      ++(expected ? blocked : open);
+    }
+  }
+  CHECK(blocked > 100);
+  CHECK(open > 100);
 }

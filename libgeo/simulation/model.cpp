@@ -88,11 +88,7 @@ Materials materials_of(const Scene& scene, const std::vector<std::uint32_t>& par
     of_body.push_back(static_cast<std::uint16_t>(at - table.begin()));
     if (at == table.end()) table.push_back(own);
   }
-  if (table.size() < 2) return table.empty() ? scene.material : table[0];
-  for (const auto p : part) {
-    if (p >= of_body.size()) throw InputError("the checkpoint has a body that is not in this scene");
-    of_node.push_back(of_body[p]);
-  }
+  for (const auto p : part) of_node.push_back(of_body[p]);
   return {std::move(table), std::move(of_node)};
 }
 

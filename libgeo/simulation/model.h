@@ -26,7 +26,7 @@ TriangleMesh place_obstacles(const Scene& scene, const Model& model, double time
 /// Samples each part and builds the body; `part` receives the row of each node's part. Throws InputError as sampling does.
 Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32_t>& part, const Progress& progress = {});
 
-/// What the nodes of each part are made of. Throws InputError for a part that the scene does not have.
+/// What the nodes of each part are made of.
 Materials materials_of(const Scene& scene, const std::vector<std::uint32_t>& part);
 
 }  // namespace geo

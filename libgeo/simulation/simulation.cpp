@@ -12,6 +12,20 @@
 
 namespace geo {
 
+namespace {
+
+// A state to go on from, with a part for each node.
+RunState fitting(const Scene& scene, const Body& body, RunState state) {
+  const std::size_t n = body.nodes.size();
+  if (state.part.empty()) state.part.assign(n, 0);
+  const bool known = std::all_of(state.part.begin(), state.part.end(), [&](auto p) { return p < scene.bodies.size(); });
+  if (state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.part.size() != n || !known || state.fronts.size() != scene.blades.size())
+    throw InputError("the checkpoint does not belong to this scene");
+  return state;
+}
+
+}  // namespace
+
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress) : Simulation(scene, Model{solid, {solid}}, progress) {}
 
 Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress) : Simulation(scene, begin_run(scene, model, progress)) {}
@@ -19,12 +33,12 @@ Simulation::Simulation(const Scene& scene, const Model& model, const Progress& p
 Simulation::Simulation(const Scene& scene, Beginning begun) : Simulation(scene, std::move(begun.body), std::move(begun.state)) {}
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene), state_(std::move(state)), body_(std::move(body)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
+    : scene_(scene), state_(fitting(scene, body, std::move(state))), body_(std::move(body)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
   begin();
 }
 
 void Simulation::take_up(Body body, RunState state) {
-  state_ = std::move(state), body_ = std::move(body);
+  state_ = fitting(scene_, body, std::move(state)), body_ = std::move(body);
   if (std::exchange(cut_, false)) solid_ = Solid(body_, materials_of(scene_, state_.part));
   obstacles_ = Obstacles(scene_), environment_ = {}, wedge_ = {};
   begin();
@@ -32,10 +46,7 @@ void Simulation::take_up(Body body, RunState state) {
 
 // With body, state and solid as they are.
 void Simulation::begin() {
-  const std::size_t n = body_.nodes.size();
-  if (state_.part.empty()) state_.part.assign(n, 0);
-  if (solid_.size() != n || state_.motion.displacement.size() != n || state_.motion.velocity.size() != n || state_.part.size() != n || state_.fronts.size() != scene_.blades.size())
-    throw InputError("the checkpoint does not belong to this scene");
+  if (solid_.size() != body_.nodes.size()) throw InputError("the checkpoint does not belong to this scene");
   prepare();
   collisions_.emplace(scene_, body_, solid_, state_.surface);
 }

@@ -99,13 +99,12 @@ TEST_CASE("cut bodies of two materials keep theirs, and a run taken up goes on w
   CHECK(mass[0] == Approx(1000).epsilon(1e-12));
   CHECK(mass[1] == Approx(3000).epsilon(1e-12));
   CHECK(deepest[0] < 2 * deepest[1]);  // the soft one gives way
-  // A checkpoint of more bodies than the scene has.
-  Scene fewer = scene;
-  RunState state_of_both = sim.state();
-  fewer.bodies[0].material = fewer.bodies[1].material;
-  state_of_both.part.assign(state_of_both.part.size(), 7);
-  fewer.bodies[0].material->young = 1;
-  CHECK_THROWS_AS(Simulation(fewer, sim.body(), state_of_both), InputError);
+  // A checkpoint of more bodies than the scene has, and one that says too little about them.
+  RunState wrong = sim.state();
+  wrong.part.back() = 2;
+  CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));
+  wrong.part.back() = 1, wrong.part.pop_back();
+  CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));
 }
 
 TEST_CASE("a heavy body among light ones does not sink into an obstacle") {

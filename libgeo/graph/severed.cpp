@@ -6,7 +6,7 @@
 
 #include "geometry/bvh.h"
 #include "graph/id_flags.h"
-#include "graph/id_numbers.h"
+#include "graph/id_pages.h"
 #include "graph/near_faces.h"
 
 namespace geo {
@@ -28,19 +28,16 @@ struct Pair {
 
 // Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other end, rows ascending: these
 // are the same rows, but in order.
-Severed rows_of(std::span<const Pair> pairs, std::span<const std::uint32_t> ids, const std::vector<bool>& above) {
+Severed rows_of(std::span<const Pair> pairs, IdPages& ids, const std::vector<bool>& above) {
   Severed severed;
-  std::vector<std::uint64_t> order;
-  for (std::uint32_t k = 0; k < ids.size(); ++k) order.push_back(std::uint64_t(ids[k]) << 32 | k);
-  std::sort(order.begin(), order.end());
   std::vector<std::uint32_t> next(ids.size(), 0);  // how many entries, then where the next one goes
   for (const Pair& p : pairs) ++next[p.a], ++next[p.b];
   std::uint32_t sum = 0;
-  for (const auto entry : order) {
-    const auto k = static_cast<std::uint32_t>(entry), count = std::exchange(next[k], sum);
-    severed.rows.push_back({ids[k], sum, sum + count, above[k]});
+  ids.each([&](std::uint32_t id, std::uint32_t k) {
+    const auto count = std::exchange(next[k], sum);
+    severed.rows.push_back({id, sum, sum + count, above[k]});
     sum += count;
-  }
+  });
   std::vector<Severed::Entry> mixed(sum);
   auto next_mixed = next;
   for (const Pair& p : pairs) mixed[next_mixed[p.a]++] = {p.b, p.bits}, mixed[next_mixed[p.b]++] = {p.a, p.bits};
@@ -58,7 +55,7 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   const Near near = near_faces(nodes, graph, grid, first_new, faces, tree);
   if (near.ids.empty()) return {};
   thread_local IdFlags has_asked;
-  thread_local IdNumbers number;  // of those that lose something
+  thread_local IdPages number;  // of those that lose something
   has_asked.clear();
   number.clear();
   std::vector<Pair> pairs;
@@ -108,7 +105,7 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
     for (auto a = static_cast<std::size_t>(first); a < kept; ++a)
       if (blocked[a]) pairs.push_back({mine, number_of(row.to[asked[a]]), row.bits[asked[a]]});
   }
-  return rows_of(pairs, number.ids(), is_above);
+  return rows_of(pairs, number, is_above);
 }
 
 }  // namespace geo

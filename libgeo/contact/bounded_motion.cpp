@@ -37,7 +37,7 @@ class Mover {
 
  private:
   static constexpr double spare = 0.05;  // of an edge: so that what is carried further stays in its box
-  static constexpr int most_rounds = 8, most_mendings = 60, patience = 8, growths_apart = 10, most_growths = 20;
+  static constexpr int most_rounds = 8, most_mendings = 240, patience = 6, growths_apart = 10, most_growths = 20;
 
   bool wanting() const {
     return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });
@@ -93,17 +93,17 @@ class Mover {
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
     const FailingPairs::KeptApart bound = [&](std::uint32_t s, std::uint32_t t, double) { return couples.bound(s, t); };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
-    std::size_t fewest = surface_.triangles.size();
-    int since = 0;  // the round in which fewer failed than ever before
+    std::size_t many = ~std::size_t(0);
+    int since = 0;  // the round in which so many failed
     bool free = false;
     for (int round = 0; round < most_mendings; ++round) {
       const auto failing = check.among(near_.pairs(), changed, bound);
       free = failing.empty();
       if (free) break;
-      if (failing.size() < fewest) fewest = failing.size(), since = round;
+      if (failing.size() < many - many / 4) many = failing.size(), since = round;
       const std::vector<Vec3> before = next;
       if (round - since < patience) couples.add(failing, next);
-      else couples.bind(failing), since = round;
+      else couples.bind(failing), many = failing.size(), since = round;
       couples.push(next);
       if (next == before) {
         if (!couples.bind(failing)) break;

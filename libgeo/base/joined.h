@@ -16,6 +16,11 @@ class Joined {
     while (up_[i] != i) i = up_[i] = up_[up_[i]];
     return i;
   }
+  /// The same, by as many threads as want to know.
+  std::uint32_t lowest(std::uint32_t i) const {
+    while (up_[i] != i) i = up_[i];
+    return i;
+  }
   void join(std::uint32_t a, std::uint32_t b) {
     a = (*this)[a], b = (*this)[b];
     up_[std::max(a, b)] = std::min(a, b);

@@ -55,7 +55,7 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
         for (int k = 0; k < Partings::count; ++k)
           if (apart(p.first[k][lane], p.last[k][lane])) return;
         if (some_tilted(couple(some[i]), p, lane, start_, next_, [&](const Vec3&, double first, double last) { return apart(first, last); })) return;
-        if (kept_apart && kept_apart(some[i].first, some[i].second, p.first[Partings::closest][lane])) test(some[i]);
+        if (kept_apart(some[i].first, some[i].second, p.first[Partings::closest][lane])) test(some[i]);
         else found[f].push_back(some[i]);
       };
       CouplesInLanes<decltype(judge)> couples(start_, next_, true, judge);

@@ -6,28 +6,25 @@
 namespace geo {
 
 bool RigidZones::join(const Triangle& s, const Triangle& t) {
-  bool is_new = false;
+  const bool is_new = !have(s, t);
   for (const auto& of : {s, t})
-    for (const auto v : of) {
-      const auto a = zone(s[0]), b = zone(v);
-      is_new |= !in_zone_[v] || a != b;
-      size_ += !in_zone_[v], in_zone_[v] = 1;
-      parent_[std::max(a, b)] = parent_[v] = std::min(a, b);
-    }
+    for (const auto v : of) joined_.join(s[0], v), in_zone_[v] = 1;
   return is_new;
 }
 
 bool RigidZones::have(const Triangle& s, const Triangle& t) const {
   for (const auto& of : {s, t})
     for (const auto v : of)
-      if (!in_zone_[v] || zone(v) != zone(s[0])) return false;
+      if (!in_zone_[v] || joined_.lowest(v) != joined_.lowest(s[0])) return false;
   return true;
 }
+
+std::size_t RigidZones::size() const { return static_cast<std::size_t>(std::count(in_zone_.begin(), in_zone_.end(), 1)); }
 
 std::vector<std::vector<std::uint32_t>> RigidZones::members() const {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of;
   for (std::uint32_t v = 0; v < in_zone_.size(); ++v)
-    if (in_zone_[v]) of[zone(v)].push_back(v);
+    if (in_zone_[v]) of[joined_.lowest(v)].push_back(v);
   std::vector<std::vector<std::uint32_t>> all;
   for (auto& [one, rows] : of) all.push_back(std::move(rows));
   return all;

@@ -57,7 +57,7 @@ std::vector<std::vector<std::uint32_t>> nearest_seen(const NodeSet& nodes, const
     std::vector<std::uint8_t> blocked;
     for (std::size_t g = 0; g < group.size(); ++g) {
       auto& found = seen[group[g]];
-      // In growing numbers, since many may be hidden.
+      // No more at a time than are wanted, since most are seen as a rule.
       for (std::span<const std::uint32_t> rest = candidates[g]; !rest.empty() && found.size() < most;) {
         const auto some = rest.first(std::min(most, rest.size()));
         rest = rest.subspan(some.size());

@@ -20,6 +20,20 @@ State at_rest(const Body& body) {
   return {std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero())};
 }
 
+// A block that was cut across at x = 0.5.
+struct Halves {
+  Body body;
+  Solid solid;
+  State state;
+};
+Halves two_halves() {
+  Body body = block_body({1, 0.6, 0.6}, 0.12);
+  Halves made{body, Solid(body, rubber()), at_rest(body)};
+  auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, 0), false, 1);
+  for (int k = 1; k <= 3; ++k) made.solid.update(made.body, split(made.body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, k)), made.state);
+  return made;
+}
+
 }  // namespace
 
 TEST_CASE("no step brings energy, however little accuracy is asked for") {
@@ -47,11 +61,7 @@ TEST_CASE("no step brings energy, however little accuracy is asked for") {
 }
 
 TEST_CASE("what one part does is nothing to another") {
-  Body body = block_body({1, 0.6, 0.6}, 0.12);
-  Solid solid(body, rubber());
-  State state = at_rest(body);
-  auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, 0), false, 1);
-  for (int k = 1; k <= 3; ++k) solid.update(body, split(body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, k)), state);
+  auto [body, solid, state] = two_halves();
   Environment env;
   State torn = state;
   Random random(6);
@@ -100,11 +110,7 @@ struct Bed : Potential {
 }  // namespace
 
 TEST_CASE("what presses on one part does so once, whatever another begins anew") {
-  Body body = block_body({1, 0.6, 0.6}, 0.12);
-  Solid solid(body, rubber());
-  State state = at_rest(body);
-  auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, 0), false, 1);
-  for (int k = 1; k <= 3; ++k) solid.update(body, split(body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, k)), state);
+  auto [body, solid, state] = two_halves();
   Bed bed(body.nodes.position, 2e3);
   REQUIRE(bed.on.size() > 10);
   Environment env;

@@ -136,7 +136,7 @@ class GroupSearch {
         return hn::Max(hn::Sub(hn::Abs(v), hn::Set(df, static_cast<float>(half * scale_))), zero);
       };
       const auto gx = outside(x, 0), gy = outside(y, 1), gz = outside(z, 2);
-      const auto gap = hn::Add(hn::Mul(gx, gx), hn::Add(hn::Mul(gy, gy), hn::Mul(gz, gz)));
+      const auto gap = hn::MulAdd(gx, gx, hn::MulAdd(gy, gy, hn::Mul(gz, gz)));
       const auto mask = hn::And(hn::Le(gap, limit), hn::FirstN(df, end - at));
       hn::StoreU(hn::Compress(x, mask), df, near_.along[0].data() + near_.size);
       hn::StoreU(hn::Compress(y, mask), df, near_.along[1].data() + near_.size);
@@ -166,7 +166,7 @@ class GroupSearch {
     const auto step = hn::Set(du, static_cast<std::uint32_t>(lanes));
     for (std::size_t i = 0; i < near_.size; i += lanes) {
       const auto x = hn::Sub(hn::LoadU(d, near_x + i), px), y = hn::Sub(hn::LoadU(d, near_y + i), py), z = hn::Sub(hn::LoadU(d, near_z + i), pz);
-      const auto square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+      const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
       const auto mask = hn::RebindMask(du, hn::Le(square, limit));
       hn::StoreU(hn::Compress(hn::Or(hn::And(hn::BitCast(du, square), kept), at), mask), du, keys + count);
       count += static_cast<std::uint32_t>(hn::CountTrue(du, mask));
@@ -220,8 +220,15 @@ class GroupSearch {
     for (std::uint32_t i = 0; i < count; ++i) order_[rank_[i]] = keys[i];
     const float square = std::bit_cast<float>(order_[wanted_ - 1]);
     const auto last = std::bit_cast<std::uint32_t>(square * static_cast<float>(1 + 4 * key_error) + static_cast<float>(2 * float_error));
-    for (std::uint32_t i = 0; i < count && (i < wanted_ || order_[i] <= last); ++i) {
-      const Exact mine = exact(order_[i] & (most_keyed - 1));
+    std::uint32_t taken = wanted_;
+    while (taken < count && order_[taken] <= last) ++taken;
+    // Floats nearly always have them in their order, and then nothing is asked of one at a time.
+    for (std::uint32_t i = 0; i < taken; ++i) exact_[i] = exact(order_[i] & (most_keyed - 1));
+    bool ascend = true;
+    for (std::uint32_t i = 1; i < taken; ++i) ascend &= exact_[i - 1].square < exact_[i].square;
+    if (ascend) return;
+    for (std::uint32_t i = 1; i < taken; ++i) {
+      const Exact mine = exact_[i];
       std::uint32_t j = i;
       for (; j > 0 && mine < exact_[j - 1]; --j) exact_[j] = exact_[j - 1];
       exact_[j] = mine;

@@ -31,8 +31,9 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
   return best;
 }
 
-/// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn. Leaves one thread.
-double threads_speedup(const std::function<void()>& work);
+/// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn, with an untimed
+/// `prepare` before each. Leaves one thread.
+double threads_speedup(const std::function<void()>& work, const std::function<void()>& prepare = [] {});
 
 struct Options {
   std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles

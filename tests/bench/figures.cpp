@@ -7,13 +7,17 @@
 
 namespace bench {
 
-double threads_speedup(const std::function<void()>& work) {
+double threads_speedup(const std::function<void()>& work, const std::function<void()>& prepare) {
   double best[2] = {1e300, 1e300};
-  for (int run = 0; run < 10; ++run) {
+  double spent = 0;
+  for (int run = 0; run < 10 || (run < 100 && spent < 4) || run % 2 == 1; ++run) {
     geo::set_threads(run % 2 + 1);
+    prepare();
     geo::Stopwatch watch;
     work();
-    best[run % 2] = std::min(best[run % 2], watch.lap());
+    const double took = watch.lap();
+    best[run % 2] = std::min(best[run % 2], took);
+    spent += took;
   }
   geo::set_threads(1);
   return best[0] / best[1];

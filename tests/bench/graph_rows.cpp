@@ -1,7 +1,6 @@
 // Rows of neighbours beside Boost's Dijkstra and our own modified Floyd-Warshall (§ 6.2).
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
-#include <chrono>
 #include <cstdio>
 
 #include "base/parallel.h"
@@ -72,8 +71,6 @@ double boost_seconds(const Peer& graph, std::size_t nodes, bool own_heap) {
   return seconds / double(pairs);
 }
 
-double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 }  // namespace
 
 void measure_rows(const GraphCase& c, const Options& options, Figures& figures) {
@@ -109,15 +106,7 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
     mfw = least([] {}, [&] { geo::modified_floyd_warshall(geo::edge_lengths(c.nodes, edges)); }, 3);
   }
 
-  double wall[2] = {1e300, 1e300};
-  for (int run = 0; run < 5; ++run)
-    for (int threads = 1; threads <= 2; ++threads) {
-      geo::set_threads(threads);
-      reset();
-      const double start = wall_seconds();
-      geo::build_neighborhoods(c.nodes, graph, nothing);
-      wall[threads - 1] = std::min(wall[threads - 1], wall_seconds() - start);
-    }
+  const double speedup = threads_speedup([&] { geo::build_neighborhoods(c.nodes, graph, nothing); }, reset);
   geo::set_threads(before);
 
   figures["pairs_per_node"] = double(pairs) / double(n);
@@ -126,7 +115,7 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
   figures["rows_vs_boost"] = boost * double(pairs) / rows;
   figures["rows_vs_boost_own_heap"] = boost_own * double(pairs) / rows;
   if (mfw > 0) figures["rows_vs_mfw"] = mfw / rows;
-  figures["rows_threads_speedup"] = wall[0] / wall[1];
+  figures["rows_threads_speedup"] = speedup;
   figures["rows_bytes_per_node"] = bytes;
   figures["bytes_per_node"] = bytes + double(sizeof(geo::Vec3) + 3 * sizeof(double));
   if (options.json) return;

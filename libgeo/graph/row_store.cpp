@@ -13,6 +13,14 @@ bool operator==(const RowView& a, const RowView& b) {
   return std::ranges::equal(a.to, b.to) && std::ranges::equal(a.bits, b.bits) && std::ranges::equal(a.paths, b.paths);
 }
 
+RowStore::RowStore(const RowStore& o) : places_(o.places_), free_(o.free_), open_(o.open_) {
+  for (const auto& block : o.blocks_) {
+    FreshArray<std::byte> mine(block.size());
+    std::copy(block.begin(), block.end(), mine.begin());
+    blocks_.push_back(std::move(mine));
+  }
+}
+
 void RowStore::swap(RowStore& o) noexcept {
   places_.swap(o.places_), blocks_.swap(o.blocks_), free_.swap(o.free_), open_.swap(o.open_);
 }
@@ -122,7 +130,7 @@ void RowStore::give_block(std::uint32_t block, RowStore& to) {
 
 std::size_t RowStore::bytes() const {
   std::size_t sum = places_.capacity() * sizeof(Place);
-  for (const auto& block : blocks_) sum += block.capacity();
+  for (const auto& block : blocks_) sum += block.size();
   for (const auto& offsets : free_) sum += sizeof(offsets) + offsets.capacity() * sizeof(std::uint32_t);
   return sum;
 }

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/fresh_array.h"
+
 namespace geo {
 
 /// One row: node ids, ascending, with 16 bits each; behind them a float for each entry whose bits say so.
@@ -26,7 +28,7 @@ class RowStore {
   static constexpr bool has_path(std::uint16_t bits) { return bits >> 14 == 1; }
 
   RowStore() = default;
-  RowStore(const RowStore& o) : places_(o.places_), blocks_(o.blocks_), free_(o.free_), open_(o.open_) {}
+  RowStore(const RowStore& o);
   RowStore(RowStore&& o) noexcept { swap(o); }
   RowStore& operator=(RowStore o) noexcept {
     swap(o);
@@ -111,10 +113,10 @@ class RowStore {
   Room open_room(std::uint32_t words);
 
   std::vector<Place> places_;
-  std::vector<std::vector<std::byte>> blocks_;
+  std::vector<FreshArray<std::byte>> blocks_;
   std::vector<std::vector<std::uint32_t>> free_;  // offsets by words
   std::vector<Room> open_;                        // blocks that are not full yet
-  std::vector<std::vector<std::byte>> spare_;     // given and not used yet
+  std::vector<FreshArray<std::byte>> spare_;      // given and not used yet
   std::mutex mutex_;                              // of blocks_, free_, open_ and spare_, for writers
 };
 

@@ -125,7 +125,8 @@ Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   Vec3 x;
   double size = 0, length = 0;
   for (int i = 0; i < 3; ++i) {
-    x[i] = static_cast<double>(a[i] + t * (Long(b[i]) - a[i]));
+    // In a plane along the axes as exactly as its corners are, so that flat skin stays flat.
+    x[i] = p[i] == q[i] && q[i] == r[i] ? p[i] : static_cast<double>(a[i] + t * (Long(b[i]) - a[i]));
     size = std::max({size, std::abs(a[i]), std::abs(b[i])});
     length = std::max(length, std::abs(b[i] - a[i]));
   }

@@ -94,7 +94,7 @@ double longest_reach(const Body& body) { return body.graph.plain_unit() * 0x1p26
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v) {
   const Vec3& q = body.surface.point(body.surface.site(v));
   std::vector<std::uint32_t> near;
-  body.grid.within(body.nodes.position, q, longest_reach(body), near);
+  body.grid.within(body.nodes.position, q, longest_reach(body) * (1 + 1e-9), near);  // not one is missed by rounding
   NodeId best;
   double least = 0;
   for (const auto i : near) {

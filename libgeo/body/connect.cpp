@@ -26,6 +26,27 @@ void look_at(Regions& components, std::int32_t piece, NodeId i, Disagreement& fo
   found.apart.push_back({std::min(i, other), std::max(i, other)});
 }
 
+// Rounding the parts of a face may take the node of a thin piece out of it, though nothing was cut off. What carries the vertices
+// of a piece's surface is in it, but for that.
+void look_for_emptied(const Body& body, std::span<const SurfaceVertexId> touched, Disagreement& found) {
+  std::map<std::int32_t, std::vector<SurfaceVertexId>> of;
+  for (const auto v : touched)
+    if (const auto piece = body.upkeep.piece[v.index()]; piece >= 0 && !found.known.count(piece) && !body.upkeep.bare.count(piece)) of[piece].push_back(v);
+  const Binding& b = body.binding;
+  for (const auto& [piece, vertices] : of) {
+    std::set<NodeId> asked;
+    const auto holds = [&](NodeId i) { return asked.insert(i).second && piece_of(body, i) == piece; };
+    const auto carried = [&](SurfaceVertexId v) { return v.index() < b.master.size() && b.master[v.index()].valid() && holds(b.master_node[b.master[v.index()].index()]); };
+    const auto beside = [&](SurfaceVertexId v) {
+      const auto near = body.grid.nearest(body.nodes.position, body.surface.point(body.surface.site(v)), 8, ~0u, [](auto) { return true; });
+      return std::any_of(near.begin(), near.end(), [&](auto i) { return holds(NodeId(i)); });
+    };
+    if (std::any_of(vertices.begin(), vertices.end(), carried) || std::any_of(vertices.begin(), vertices.end(), beside)) continue;
+    found.empty.push_back(vertices[0]);
+    found.known.emplace(piece, NodeId());  // until it has one
+  }
+}
+
 }  // namespace
 
 Regions components_of(const Body& body) {
@@ -62,7 +83,7 @@ Disagreement find_disagreement(const Body& body, const std::vector<std::uint32_t
 }
 
 Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, std::span<const Offcut> offcuts,
-                               NodeId first_new) {
+                               std::span<const SurfaceVertexId> touched, NodeId first_new) {
   Disagreement found;
   Regions components = components_of(body);
   for (const auto& [a, b] : cut) components.seed(a.value), components.seed(b.value);
@@ -119,6 +140,7 @@ Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, 
         found.empty.push_back(v);
         found.known.emplace(piece, NodeId());  // until it has one
       }
+  look_for_emptied(body, touched, found);
   return found;
 }
 

@@ -23,10 +23,10 @@ struct Disagreement {
 /// The whole body: once over nodes and surface. `component`: of each node, as the graph numbers them. Needs body.upkeep.
 Disagreement find_disagreement(const Body& body, const std::vector<std::uint32_t>& component);
 
-/// After a step: only what cut edges, pieces cut off and nodes from `first_new` on can have changed. Of two parts the one
+/// After a step: only what cut edges, pieces cut off, nodes from `first_new` on and other faces at `touched` vertices can have changed. Of two parts the one
 /// with fewer nodes is walked through; where they are joined round the front of the crack, little more than the cut.
 Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, std::span<const Offcut> offcuts,
-                               NodeId first_new);
+                               std::span<const SurfaceVertexId> touched, NodeId first_new);
 
 /// Nodes from `first_new` on that see no older one: pairs with a node of their piece, where there is one.
 void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Disagreement& found);
@@ -35,7 +35,7 @@ void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Dis
 Regions components_of(const Body& body);
 
 /// A point inside the piece that a shell bounds, on the line from the middle of one of the shell's largest faces straight
-/// into it, half way to what comes next, at most half of `reach` away. Nothing where doubles have no room for one: a crumb
+/// into it, half way to what comes next, at most half of `reach` away; of a needle the clearest of some points between its corners. Nothing where doubles have no room for one: a crumb
 /// some last places thick. v: any vertex of the shell; `piece` numbers the sides with material.
 std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, const std::function<std::int32_t(Side)>& piece);
 

@@ -4,9 +4,11 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/random.h"
 #include "body/connect.h"
 #include "body/locate.h"
 #include "body/way_along.h"
+#include "geometry/bvh.h"
 
 namespace geo {
 namespace {
@@ -80,6 +82,34 @@ bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std
   return false;
 }
 
+// Needles have faces so narrow that their normals lead astray: of points between corners the clearest.
+std::optional<Vec3> room_between(const Complex& k, const std::vector<std::pair<double, Side>>& sides, const std::function<std::int32_t(Side)>& piece, std::int32_t wanted) {
+  constexpr std::size_t most_sides = 64;
+  constexpr int most_tries = 256;
+  if (sides.size() > most_sides) return {};  // no crumb
+  std::vector<std::array<Vec3, 3>> around;
+  std::vector<Vec3> corners;
+  for (const auto& [area, s] : sides) {
+    const Side other{s.face, 1 - s.which};
+    const auto t = k.corners(s.face);
+    if (!k.has(other) || piece(other) != wanted) around.push_back(t);
+    corners.insert(corners.end(), t.begin(), t.end());
+  }
+  const TriangleBvh boundary(around);
+  Random random(corners.size());
+  std::optional<Vec3> best;
+  double clear = 0;
+  for (int i = 0; i < most_tries; ++i) {
+    const auto corner = [&]() -> const Vec3& { return corners[random.below(static_cast<std::uint32_t>(corners.size()))]; };
+    const double u = random.uniform(), v = random.uniform(), w = random.uniform();
+    const Vec3 &a = corner(), &b = corner(), &c = corner(), &d = corner();
+    const Vec3 x = (1 - u) * a + u * ((1 - v) * b + v * ((1 - w) * c + w * d));
+    const double distance = boundary.inside(x) ? boundary.closest(x).distance : 0;
+    if (distance > clear && !is_blocked(k, x, x) && piece_around(k, x, piece) == wanted) clear = distance, best = x;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, const std::function<std::int32_t(Side)>& piece) {
@@ -112,7 +142,7 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, c
       if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) && !is_blocked(k, x, x) && piece_around(k, x, piece) == wanted) return x;
     }
   }
-  return {};
+  return room_between(k, sides, piece, wanted);
 }
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {

@@ -46,7 +46,7 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work, const Prog
   const auto offcuts = part_pieces(body, delta.crack, recounted);
   std::vector<std::uint32_t> component;
   if (recounted) body.graph.components(component);
-  auto found = recounted ? find_disagreement(body, component) : find_disagreement(body, update.cut_edges, offcuts, delta.first_new_node);
+  auto found = recounted ? find_disagreement(body, component) : find_disagreement(body, update.cut_edges, offcuts, delta.crack.touched_surface_vertices, delta.first_new_node);
   const std::size_t sampled = body.nodes.size();
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
     const auto more =

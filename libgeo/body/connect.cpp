@@ -26,8 +26,8 @@ void look_at(Regions& components, std::int32_t piece, NodeId i, Disagreement& fo
   found.apart.push_back({std::min(i, other), std::max(i, other)});
 }
 
-// Rounding the parts of a face may take the node of a thin piece out of it, though nothing was cut off. What carries the vertices
-// of a piece's surface is in it, but for that.
+// Rounding the parts of a face may take the node of a thin piece out of it, though nothing was cut off. Else some of what carries
+// the vertices of a piece's surface is in it, mostly of the first that are asked.
 void look_for_emptied(const Body& body, std::span<const SurfaceVertexId> touched, Disagreement& found) {
   std::map<std::int32_t, std::vector<SurfaceVertexId>> of;
   for (const auto v : touched)
@@ -37,11 +37,22 @@ void look_for_emptied(const Body& body, std::span<const SurfaceVertexId> touched
     std::set<NodeId> asked;
     const auto holds = [&](NodeId i) { return asked.insert(i).second && piece_of(body, i) == piece; };
     const auto carried = [&](SurfaceVertexId v) { return v.index() < b.master.size() && b.master[v.index()].valid() && holds(b.master_node[b.master[v.index()].index()]); };
-    const auto beside = [&](SurfaceVertexId v) {
-      const auto near = body.grid.nearest(body.nodes.position, body.surface.point(body.surface.site(v)), 8, ~0u, [](auto) { return true; });
-      return std::any_of(near.begin(), near.end(), [&](auto i) { return holds(NodeId(i)); });
-    };
-    if (std::any_of(vertices.begin(), vertices.end(), carried) || std::any_of(vertices.begin(), vertices.end(), beside)) continue;
+    std::set<SurfaceVertexId> seen(vertices.begin(), vertices.end());
+    std::vector<SurfaceVertexId> shell(vertices), around;
+    bool held = false;
+    Box3 box;
+    for (std::size_t s = 0; s < shell.size() && !held; ++s) {
+      box.add(body.surface.point(body.surface.site(shell[s])));
+      held = carried(shell[s]);
+      around.clear();
+      body.surface.surface_neighbors(shell[s], around);
+      for (const auto w : around)
+        if (seen.insert(w).second) shell.push_back(w);
+    }
+    if (!held)
+      body.grid.walk([&](int, const Vec3& middle, double half) { return !held && box.grown(half).meets(Box3{middle, middle}); },
+                     [&](int, std::uint32_t i) { held = held || (box.meets(Box3{body.nodes.position[i], body.nodes.position[i]}) && holds(NodeId(i))); });
+    if (held) continue;
     found.empty.push_back(vertices[0]);
     found.known.emplace(piece, NodeId());  // until it has one
   }

@@ -189,6 +189,31 @@ void require_same(const Complex& a, const Complex& b) {
 
 }  // namespace
 
+TEST_CASE("skin along the axes stays exactly flat") {
+  const Seeds which = seeds(100);
+  for (int i = 0; i < which.count; ++i) {
+    const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
+    CAPTURE(seed);
+    Random random(seed);
+    // Doubles are dense about zero: what rounding leaves there of a plane is not flat.
+    const Vec3 corner(0, -2, random.uniform(-3, 3));
+    TriangleMesh block = make_block({2, 2, 2}, 1);
+    for (Vec3& p : block.vertices) p += corner;
+    Complex k = Complex::from_skin(block);
+    const Vec3 middle = corner + Vec3::Ones(), across = 4 * random.direction(), along = 4 * across.unitOrthogonal();
+    FrontState front = begin_front(line(middle - along - across, middle - along + across, 3), false, 1);
+    for (const double at : {-0.2, 0.3, 1.0}) advance(k, front, line(middle + at * along - across, middle + at * along + across, 3));
+    REQUIRE(find_pieces(k).count == 2);
+    for (std::uint32_t f = 0; f < k.face_count(); ++f) {
+      if (!k.alive(FaceId(f)) || k.face(FaceId(f)).crack != 0) continue;
+      const auto t = k.corners(FaceId(f));
+      int flat = 0;
+      for (int axis = 0; axis < 3; ++axis) flat += t[0][axis] == t[1][axis] && t[1][axis] == t[2][axis];
+      CHECK(flat == 1);
+    }
+  }
+}
+
 TEST_CASE("a step that is taken back leaves the complex as it was, and what comes next as it would have been") {
   const auto [first, count] = seeds(20);
   std::size_t taken_back = 0;

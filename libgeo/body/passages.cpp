@@ -172,11 +172,15 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
       if (round == 0)
         for (const auto n : part)
           body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
-      else
-        for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
+      else {
+        std::vector<NodeId> ends{i};  // a way that was not found is not looked for again: that takes longest
+        for (const NodeId end : {NodeId(part.front()), NodeId(part.back())})
+          if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
+        for (const NodeId from : ends) {
           const auto near = pieces.nearest(from, 4, part);
           if (std::any_of(near.begin(), near.end(), [&](auto to) { return insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins); })) break;
         }
+      }
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());

@@ -37,6 +37,7 @@ void look_for_emptied(const Body& body, std::span<const SurfaceVertexId> touched
     std::set<NodeId> asked;
     const auto holds = [&](NodeId i) { return asked.insert(i).second && piece_of(body, i) == piece; };
     const auto carried = [&](SurfaceVertexId v) { return v.index() < b.master.size() && b.master[v.index()].valid() && holds(b.master_node[b.master[v.index()].index()]); };
+    if (std::any_of(vertices.begin(), vertices.end(), carried)) continue;
     std::set<SurfaceVertexId> seen(vertices.begin(), vertices.end());
     std::vector<SurfaceVertexId> shell(vertices), around;
     bool held = false;

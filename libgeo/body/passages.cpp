@@ -147,6 +147,7 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, c
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
+  std::set<std::pair<NodeId, NodeId>> wayless;  // not asked again: a way that is not found takes longest
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
     for (const auto v : found.empty) {
@@ -173,12 +174,16 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
         for (const auto n : part)
           body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
       else {
-        std::vector<NodeId> ends{i};  // a way that was not found is not looked for again: that takes longest
-        for (const NodeId end : {NodeId(part.front()), NodeId(part.back())})
-          if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
-        for (const NodeId from : ends) {
+        for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
           const auto near = pieces.nearest(from, 4, part);
-          if (std::any_of(near.begin(), near.end(), [&](auto to) { return insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins); })) break;
+          if (std::any_of(near.begin(), near.end(), [&](auto n) {
+                const NodeId to(n);
+                if (wayless.count({from, to})) return false;
+                if (insert_along(body, from, to, scale * body.grid.cell(), joins)) return true;
+                wayless.insert({from, to});
+                return false;
+              }))
+            break;
         }
       }
     }

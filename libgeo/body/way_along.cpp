@@ -15,6 +15,18 @@ namespace {
 
 using Step = std::pair<Side, int>;  ///< out of a side over one of its edges
 
+// Sight along links of a way, as often as one search may ask: nearly all that are found take less than a thousand.
+class Sight {
+ public:
+  explicit Sight(const Complex& k) : k_(k) {}
+  bool blocked(const Vec3& p, const Vec3& q) { return left_ == 0 || (--left_, is_blocked(k_, p, q)); }
+  bool spent() const { return left_ == 0; }
+
+ private:
+  const Complex& k_;
+  int left_ = 100000;
+};
+
 // Where one looks at each of the sides that are seen along the axes and at the middles of near faces. One point may see several
 // shells.
 std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) {
@@ -135,8 +147,8 @@ std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, con
 }
 
 // The way over such a path; where there is none, `blocked` is a step of the path that did not go.
-std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, const Vec3& from, const Vec3& start, const Vec3& to,
-                           const Vec3& end, double reach, double clear, std::size_t& blocked) {
+std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Step>& path, const Vec3& from, const Vec3& start,
+                           const Vec3& to, const Vec3& end, double reach, double clear, std::size_t& blocked) {
   const double least = 1e-16 * k.extent().diagonal();
   std::vector<Hold> holds{{start, {(from - start).normalized()}, std::min(0.25 * reach, (from - start).norm())}};
   const auto at = crossings(k, path, start, end, clear);
@@ -152,18 +164,18 @@ std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, cons
   holds.push_back({end, {(to - end).normalized()}, std::min(0.25 * reach, (to - end).norm()), at.size()});
   int tries = 0;
   Random random(at.size());
-  for (std::size_t h = 0; h < holds.size();) {
+  for (std::size_t h = 0; h < holds.size() && !sight.spent();) {
     // What is blocked is held lower, at its higher end; then what comes before is asked again.
     bool open = true;
-    for (std::size_t i = 0; i + 1 < holds[h].off.size() && open; ++i) open = !is_blocked(k, holds[h].point(i), holds[h].point(i + 1));
-    if (open && (h + 1 == holds.size() || !is_blocked(k, holds[h].point(holds[h].off.size() - 1), holds[h + 1].point(0)))) {
+    for (std::size_t i = 0; i + 1 < holds[h].off.size() && open; ++i) open = !sight.blocked(holds[h].point(i), holds[h].point(i + 1));
+    if (open && (h + 1 == holds.size() || !sight.blocked(holds[h].point(holds[h].off.size() - 1), holds[h + 1].point(0)))) {
       ++h;
       continue;
     }
     Hold& high = open && holds[h + 1].height > holds[h].height ? holds[h + 1] : holds[h];
     high.height *= 0.5;
     if (high.height < least) {
-      if (tries++ == 1000) {
+      if (tries++ == 250) {
         blocked = high.step;
         return {};
       }
@@ -178,7 +190,7 @@ std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, cons
     for (std::size_t i = 0; i < hold.off.size(); ++i) way.push_back(hold.point(i));
   way.push_back(to);
   for (std::size_t s = 0; s + 1 < way.size(); ++s)
-    if (is_blocked(k, way[s], way[s + 1])) {
+    if (sight.blocked(way[s], way[s + 1])) {
       blocked = 0;
       return {};
     }
@@ -190,12 +202,13 @@ std::vector<Vec3> way_over(const Complex& k, const std::vector<Step>& path, cons
 std::vector<Vec3> way_along(const Complex& k, const Vec3& from, const Vec3& to, double reach) {
   const auto starts = look_around(k, from, reach), ends = look_around(k, to, reach);
   std::set<Step> closed;
-  for (int attempt = 0; attempt < 32; ++attempt) {
+  Sight sight(k);
+  while (!sight.spent()) {
     const auto path = sides_between(k, starts, ends, closed);
     if (path.empty()) return {};
     std::size_t blocked = 0;
     for (const double clear : {1.0 / 16, 1.0 / 4, 1.0 / 2}) {
-      auto way = way_over(k, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach, clear, blocked);
+      auto way = way_over(k, sight, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach, clear, blocked);
       if (!way.empty()) return way;
     }
     if (path.size() == 1) return {};

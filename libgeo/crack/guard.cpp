@@ -196,6 +196,40 @@ class Inspection {
     return {};
   }
 
+  // A front's line that comes back into the material beside where it left: the next step would leave a passage there that is
+  // finer than doubles.
+  Fault coming_back(std::span<const Exit> exits) const {
+    if (exits.empty()) return {};
+    std::vector<FaceId> removed = edit_.removed_faces;
+    std::sort(removed.begin(), removed.end());
+    for (const Exit& exit : exits) {
+      const Vec3& from = point(exit.from);
+      const Vec3 to = exit.at.valid() ? point(exit.at) : exit.to;
+      Box3 box{from, from};
+      box.add(to);
+      const auto met = [&](const std::array<VertexId, 3>& v, const std::array<Vec3, 3>& t) {
+        for (const VertexId w : v)
+          if (w == exit.from || w == exit.at) return false;
+        return segment_meets_triangle(from, to, t[0], t[1], t[2]);
+      };
+      bool back = false;
+      for (std::uint32_t i = 0; i < count_ && !back; ++i)
+        back = !faces_[i].cracked && faces_[i].box.meets(box) && met(edit_.new_faces[i].v, faces_[i].corners);
+      for (std::size_t i = 0; i < exit.near.size() && !back; ++i) {
+        const FaceId f = exit.near[i];
+        back = complex_.face(f).crack == 0 && complex_.box(f).meets(box) && !std::binary_search(removed.begin(), removed.end(), f) &&
+               met(complex_.face(f).v, complex_.corners(f));
+      }
+      if (!back) continue;
+      Fault fault{"rounding would bring the front back into the material where it leaves", {}};
+      for (std::uint32_t i = 0; i < count_; ++i)
+        for (const VertexId v : edit_.new_faces[i].v)
+          if (v == exit.from || v == exit.at) fault.faces.push_back(i);
+      return fault;
+    }
+    return {};
+  }
+
  private:
   struct New {
     std::array<Vec3, 3> corners;
@@ -228,19 +262,21 @@ class Inspection {
 
 }  // namespace
 
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance) {
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance,
+                 std::span<const Exit> exits) {
   const Inspection inspection(complex, edit, families, moved, clearance);
   Fault fault = inspection.turned();
   if (!fault) fault = inspection.coincident();
   if (!fault) fault = find_misplaced(complex, edit, moved);
   if (!fault) fault = inspection.crossing_old();
   if (!fault) fault = inspection.crossing_new();
+  if (!fault) fault = inspection.coming_back(exits);
   return fault;
 }
 
 Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
-             std::span<const std::uint8_t> moved, double clearance, std::size_t& repairs) {
-  Fault fault = find_fault(complex, edit, families, moved, clearance);
+             std::span<const std::uint8_t> moved, double clearance, std::span<const Exit> exits, std::size_t& repairs) {
+  Fault fault = find_fault(complex, edit, families, moved, clearance, exits);
   if (!fault) return fault;
   const double last_place = 0x1p-52 * (complex.extent().diagonal() + complex.extent().lo.cwiseAbs().cwiseMax(complex.extent().hi.cwiseAbs()).maxCoeff());
   std::vector<Family> rest(families.begin(), families.end());  // what is left out does not follow the points
@@ -258,7 +294,7 @@ Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> 
         edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * random.direction();
       }
     if (before.empty()) return fault;
-    Fault now = find_fault(complex, edit, rest, moved, clearance);
+    Fault now = find_fault(complex, edit, rest, moved, clearance, exits);
     if (!now) {
       ++repairs;
       return now;

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "contact/friction.h"
 
 namespace geo {
+namespace {
+
+constexpr std::size_t few = 64;  // rows that a thread is worth
+
+}  // namespace
 
 void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
   rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness, start, Mat3::Zero(), false});
@@ -22,14 +28,18 @@ void TouchPenalty::each_row(const VisitRow& visit) const {
 }
 
 void TouchPenalty::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sums) const {
-  for (const Row& row : rows_) {
-    if (row.first == row.end) continue;
-    double& sum = sums[part[entries_[row.first].node]];
-    const Vec3 way = at(row, u) - row.start;
-    const double along = row.normal.dot(way), depth = std::max(0.0, row.depth - along);
-    sum += 0.5 * row.stiffness * depth * depth;
-    if (row.depth > 0 && options_.friction > 0) sum += friction_energy(most_friction(row), (way - along * row.normal).norm(), options_.slow);
-  }
+  std::vector<double> energy(rows_.size());
+  parallel_for(rows_.size(), few, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      const Row& row = rows_[r];
+      const Vec3 way = at(row, u) - row.start;
+      const double along = row.normal.dot(way), depth = std::max(0.0, row.depth - along);
+      energy[r] = 0.5 * row.stiffness * depth * depth;
+      if (row.depth > 0 && options_.friction > 0) energy[r] += friction_energy(most_friction(row), (way - along * row.normal).norm(), options_.slow);
+    }
+  });
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    if (rows_[r].first != rows_[r].end) sums[part[entries_[rows_[r].first].node]] += energy[r];
 }
 
 std::size_t TouchPenalty::pressing() const {
@@ -37,21 +47,26 @@ std::size_t TouchPenalty::pressing() const {
 }
 
 void TouchPenalty::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
-  for (Row& row : rows_) {
-    const Vec3& n = row.normal;
-    const Vec3 way = at(row, u) - row.start;
-    const double along = n.dot(way), depth = std::max(0.0, row.depth - along);
-    Vec3 f = row.stiffness * depth * n;
-    row.pressing = depth > 0;
-    row.curvature = depth > 0 ? Mat3(row.stiffness * n * n.transpose()) : Mat3(Mat3::Zero());
-    if (row.depth > 0 && options_.friction > 0) {
+  std::vector<Vec3> force(rows_.size());
+  parallel_for(rows_.size(), few, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      Row& row = rows_[r];
+      const Vec3& n = row.normal;
+      const Vec3 way = at(row, u) - row.start;
+      const double along = n.dot(way), depth = std::max(0.0, row.depth - along);
+      force[r] = row.stiffness * depth * n;
+      row.pressing = depth > 0;
+      row.curvature = depth > 0 ? Mat3(row.stiffness * n * n.transpose()) : Mat3(Mat3::Zero());
+      if (!(row.depth > 0 && options_.friction > 0)) continue;
       const Vec3 slide = way - along * n;
       const double drag = friction_drag(most_friction(row), slide.norm(), options_.slow);
-      f -= drag * slide;
+      force[r] -= drag * slide;
       row.curvature += drag * (Mat3::Identity() - n * n.transpose());
     }
-    for (const auto& e : entries(row)) out[e.node] += e.weight * f;
-  }
+  });
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    if (!force[r].isZero(0))
+      for (const auto& e : entries(rows_[r])) out[e.node] += e.weight * force[r];
 }
 
 }  // namespace geo

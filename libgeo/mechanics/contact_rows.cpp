@@ -9,17 +9,15 @@ namespace geo {
 
 ContactRows::ContactRows(std::span<Potential* const> potentials, std::size_t nodes) : potentials_(potentials), first_share_(nodes + 1, 0) {
   for (const Potential* p : potentials_)
-    p->each_row([&](std::span<const NodeWeight> entries, const Mat3&) {
-      entries_.insert(entries_.end(), entries.begin(), entries.end());
-      first_.push_back(entries_.size());
-    });
-  curvature_.assign(first_.size() - 1, Mat3::Zero());
+    p->each_row([&](std::span<const NodeWeight> entries, const Mat3&) { entries_.push_back(entries); });
+  curvature_.assign(entries_.size(), Mat3::Zero());
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples() const {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::span<const std::uint32_t> part) const {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (std::size_t r = 0; r < curvature_.size(); ++r)
-    for (std::size_t i = first_[r] + 1; i < first_[r + 1]; ++i) pairs.emplace_back(entries_[i - 1].node, entries_[i].node);
+  for (const auto row : entries_)
+    for (const auto& e : row)
+      if (const std::pair pair(part[row[0].node], part[e.node]); pair.first != pair.second && (pairs.empty() || pair != pairs.back())) pairs.push_back(pair);
   return pairs;
 }
 
@@ -32,7 +30,7 @@ void ContactRows::read() {
       curvature_[row] = curvature;
       if (!curvature.isZero(0)) {
         active_.push_back(row);
-        for (const auto& e : entries(row)) ++first_share_[e.node + 1];
+        for (const auto& e : entries_[row]) ++first_share_[e.node + 1];
       }
       ++row;
     });
@@ -40,14 +38,14 @@ void ContactRows::read() {
   shares_.resize(first_share_.back());
   std::vector<std::size_t> next(first_share_.begin(), first_share_.end() - 1);
   for (std::uint32_t a = 0; a < active_.size(); ++a)
-    for (const auto& e : entries(active_[a])) shares_[next[e.node]++] = {a, static_cast<float>(e.weight)};
+    for (const auto& e : entries_[active_[a]]) shares_[next[e.node]++] = {a, static_cast<float>(e.weight)};
 }
 
 void ContactRows::add_product(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
   if (active_.empty()) return;
   std::vector<Vec3> pull(active_.size());
   parallel_for(active_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t a = begin; a < end; ++a) pull[a] = curvature_[active_[a]] * weighed(entries(active_[a]), p);
+    for (std::size_t a = begin; a < end; ++a) pull[a] = curvature_[active_[a]] * weighed(entries_[active_[a]], p);
   });
   parallel_for(p.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -61,7 +59,7 @@ void ContactRows::add_product(const std::vector<Vec3>& p, std::vector<Vec3>& out
 void ContactRows::add_blocks(std::vector<Mat3>& out) const {
   constexpr double together = 0.2;  // of a row's weights, in what solves for a node with its neighbours
   for (const auto r : active_)
-    for (const auto& e : entries(r)) out[e.node] += std::abs(e.weight) * std::max(std::abs(e.weight), together) * curvature_[r];
+    for (const auto& e : entries_[r]) out[e.node] += std::abs(e.weight) * std::max(std::abs(e.weight), together) * curvature_[r];
 }
 
 }  // namespace geo

@@ -14,8 +14,8 @@ class ContactRows {
  public:
   /// Of all of these, which outlive it, after their begin(); until read() no row does anything.
   ContactRows(std::span<Potential* const> potentials, std::size_t nodes);
-  /// Pairs that join all nodes of each row.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
+  /// Pairs that join the parts of all nodes of each row, where `part` is each node's; none of a part with itself.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(std::span<const std::uint32_t> part) const;
   /// Takes over the curvatures of the potentials' last force().
   void read();
   /// Adds ∂²E/∂u² p.
@@ -25,11 +25,8 @@ class ContactRows {
   void add_blocks(std::vector<Mat3>& out) const;
 
  private:
-  std::span<const NodeWeight> entries(std::size_t row) const { return {&entries_[first_[row]], first_[row + 1] - first_[row]}; }
-
   std::span<Potential* const> potentials_;
-  std::vector<std::size_t> first_{0};
-  std::vector<NodeWeight> entries_;
+  std::vector<std::span<const NodeWeight>> entries_;  // of each row, where its potential has them
   std::vector<Mat3> curvature_;
   // Of rows that do something, by node, so that threads need not wait for each other.
   struct Share {

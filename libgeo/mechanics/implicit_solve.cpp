@@ -65,7 +65,7 @@ void ImplicitStep::precondition() {
   }
   at_once(make_coarse, [&] {
     if (!patches_) {
-      patches_.emplace(s_.patches_, s_.materials_, moduli_, modes_, blocks, env_.fixed);
+      patches_.emplace(s_.patches_, s_.materials_, moduli_, modes_, blocks, env_.fixed, s_.inverses_);
       return;
     }
     std::vector<std::uint32_t> changed;

@@ -11,11 +11,11 @@
 
 namespace geo {
 
-// Nodes that contact, or the penalty of mueller04, makes depend on each other.
+// Parts of the graph that contact, or the penalty of mueller04, makes depend on each other.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() const {
-  auto pairs = rows_.couples();
+  auto pairs = rows_.couples(s_.part_);
   if (s_.penalty_)
-    for (std::uint32_t i = 1; i < n_; ++i) pairs.emplace_back(i - 1, i);
+    for (std::uint32_t p = 1; p < s_.parts_; ++p) pairs.emplace_back(p - 1, p);
   return pairs;
 }
 

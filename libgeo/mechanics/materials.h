@@ -45,6 +45,7 @@ class Materials {
 /// Of a small-strain stiffness, Pa.
 struct Moduli {
   float shear = 0, bulk = 0;
+  friend bool operator==(const Moduli&, const Moduli&) = default;
 };
 
 }  // namespace geo

@@ -66,24 +66,26 @@ NodePatches::NodePatches(const std::vector<Vec3>& position, const NodeRows& rows
   sum_points(points, std::vector<char>(count(), 1));
 }
 
-void NodePatches::follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points,
-                         const PointChanges& changes) {
+std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
+                                               const MaterialPoints& points, const PointChanges& changes) {
   NodePatches before = std::move(*this);
   *this = NodePatches();
   list(position, rows, spacing);
   std::vector<char> wanted(count(), 1);
+  std::vector<std::uint32_t> old(count(), ~0u);
   for (std::size_t p = 0; p < count(); ++p) {
     const auto now = nodes(p);
     if (now[0] + 1 >= before.begin_.size() || std::any_of(now.begin(), now.end(), [&](auto i) { return changes.nodes[i]; })) continue;
     for (const Incidence& at : before.patches_of(now[0])) {
       const auto was = before.nodes(at.patch);
       if (before.outer_[at.patch].empty() || !std::equal(now.begin(), now.end(), was.begin(), was.end())) continue;
-      outer_[p] = std::move(before.outer_[at.patch]), point_[p] = before.point_[at.patch], wanted[p] = 0;
+      outer_[p] = std::move(before.outer_[at.patch]), point_[p] = before.point_[at.patch], wanted[p] = 0, old[p] = at.patch;
       if (point_[p].first != ~0u) point_[p].first = changes.blocks[point_[p].first];
       break;
     }
   }
   sum_points(points, wanted);
+  return old;
 }
 
 void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing) {

@@ -16,8 +16,9 @@ class NodePatches {
   /// Boxes of half a dozen nodes, which are halves of halves of cubes about the origin; then what hangs together in a box, with
   /// the neighbours of these nodes within 0.9 of both spacings.
   NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points);
-  /// After points have changed: sums anew what they concern. The result is that of a build from scratch, bit for bit.
-  void follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points, const PointChanges& changes);
+  /// After points have changed: sums anew what they concern. The result is that of a build from scratch, bit for bit. Returns for each
+  /// patch the number of the one that it was before, with the same nodes and sums; ~0u: it was none.
+  std::vector<std::uint32_t> follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points, const PointChanges& changes);
 
   struct Incidence {
     std::uint32_t patch, slot;

@@ -17,19 +17,29 @@ std::uint16_t half(float x) { return static_cast<std::uint16_t>((std::bit_cast<s
 }  // namespace
 
 PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli, const std::vector<StiffnessModes>& modes,
-                         const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed)
-    : patches_(patches), materials_(materials), moduli_(moduli), rotation_(patches.count(), Mat3f::Identity()), first_(1, 0), parts_(4 * patches.first(patches.count())) {
-  for (std::size_t p = 0; p < patches.count(); ++p) {
-    const std::size_t size = 3 * patches.nodes(p).size();
-    first_.push_back(first_.back() + size * padded(size));
-  }
-  inverse_.resize(first_.back());
+                         const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::vector<PatchInverse>& inverses)
+    : patches_(patches), materials_(materials), moduli_(moduli), inverse_(inverses), rotation_(patches.count(), Mat3f::Identity()), parts_(4 * patches.first(patches.count())) {
+  inverse_.resize(patches.count());
   parallel_for(patches.count(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = modes[block].rotation(point);
-      invert(p, blocks, fixed);
+      const Moduli& moduli = moduli_[materials_.number(patches.nodes(p)[0])];
+      const PatchInverse& known = inverse_[p];
+      if (known.besides.empty() || known.moduli != moduli || known.besides != besides(p, blocks, fixed)) invert(p, blocks, fixed);
     }
   });
+}
+
+// Empty where what nodes have is not the same in all directions: it would turn with the patch.
+std::vector<PatchInverse::Besides> PatchMotion::besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const {
+  std::vector<PatchInverse::Besides> all;
+  for (const auto i : patches_.nodes(patch)) {
+    const Mat3& k = blocks[i];
+    const bool held = !fixed.empty() && fixed[i];
+    if (!held && k != Mat3(k(0, 0) * Mat3::Identity())) return {};
+    all.push_back({held ? -1.0f : float(k(0, 0)), static_cast<std::uint32_t>(patches_.patches_of(i).size())});
+  }
+  return all;
 }
 
 void PatchMotion::renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
@@ -44,7 +54,9 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
   std::vector<float> matrix(size * row, 0.0f), share(nodes.size());
   const float* tile = patches_.outer(patch);
   const Mat3f& turn = rotation_[patch];
-  const auto [shear, bulk] = moduli_[materials_.number(nodes[0])];
+  PatchInverse& to = inverse_[patch];
+  to.moduli = moduli_[materials_.number(nodes[0])], to.besides = besides(patch, blocks, fixed), to.matrix.resize(size * row);
+  const auto [shear, bulk] = to.moduli;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const bool held = !fixed.empty() && fixed[nodes[a]];
     share[a] = held ? 0 : 1 / std::sqrt(static_cast<float>(patches_.patches_of(nodes[a]).size()));
@@ -54,7 +66,7 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
       Mat3f k;
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) k(r, c) = bulk * tile[4 * r + c] + shear * tile[4 * c + r] + (r == c ? even : 0);
-      if (a == b) k += turn.transpose() * blocks[nodes[a]].cast<float>() * turn;
+      if (a == b) k += to.besides.empty() ? Mat3f(turn.transpose() * blocks[nodes[a]].cast<float>() * turn) : Mat3f(to.besides[a].inertia * Mat3f::Identity());
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < 3; ++c)
           matrix[(3 * a + r) * row + 3 * b + c] = matrix[(3 * b + c) * row + 3 * a + r] = k(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c));
@@ -63,9 +75,8 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
       for (std::size_t r = 3 * a; r < 3 * a + 3; ++r) matrix[r * row + r] = 1;
   }
   invert_positive(size, matrix.data());
-  std::uint16_t* const to = &inverse_[first_[patch]];
   for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j <= i; ++j) to[i * row + j] = to[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
+    for (std::size_t j = 0; j <= i; ++j) to.matrix[i * row + j] = to.matrix[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
 }
 
 void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches) {
@@ -78,7 +89,7 @@ void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_
       x.resize(padded(size)), y.resize(padded(size));
       const Mat3f &turn = rotation_[p], back = turn.transpose();
       for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>{&x[3 * a]} = back * r[nodes[a]].cast<float>();
-      multiply_halves(size, &inverse_[first_[p]], x.data(), y.data());
+      multiply_halves(size, inverse_[p].matrix.data(), x.data(), y.data());
       float* const out = &parts_[4 * patches_.first(p)];
       for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>(out + 4 * a) = turn * Eigen::Map<const Eigen::Vector3f>(&y[3 * a]);
     }

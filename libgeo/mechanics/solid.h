@@ -15,6 +15,7 @@
 #include "mechanics/node_groups.h"
 #include "mechanics/node_patches.h"
 #include "mechanics/node_rows.h"
+#include "mechanics/patch_motion.h"
 #include "mechanics/point_lanes.h"
 #include "mechanics/potential.h"
 #include "sampling/node_set.h"
@@ -92,7 +93,8 @@ class Solid {
   Mat3 stress_at(const State& state, const Vec3& x, double radius, const std::function<bool(const Vec3&)>& sees = {}) const;
 
   /// Backward Euler as an incremental potential: Newton, conjugate gradients preconditioned on two levels, line search. Divided in
-  /// two halves, and these again, where Newton does not converge. `accuracy`: of displacements, over the nodes' spacing.
+  /// two halves, and these again, where Newton does not converge. `accuracy`: of displacements, over the nodes' spacing. One at a time:
+  /// it keeps what the next will need as well, which changes nothing but time.
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3) const;
   /// Leapfrog (symplectic Euler) with as many substeps as the fastest wave asks for; twice as many where the energy rises.
   StepReport step_explicit(State& state, double dt, const Environment& environment) const;
@@ -123,6 +125,7 @@ class Solid {
   NodeRows rows_;
   NodeGroups groups_;
   NodePatches patches_;
+  mutable std::vector<PatchInverse> inverses_;  // of the last implicit step, per patch
   MaterialPoints points_;
   std::optional<Galerkin> galerkin_;
   std::optional<ModePenalty> penalty_;  // of mueller04

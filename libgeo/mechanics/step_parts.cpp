@@ -13,13 +13,12 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
                      std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled)
     : all_patches_(patches), of_(component.size(), 0), node_(component.size()) {
   Joined joined(components);
-  const auto join = [&](std::uint32_t i, std::uint32_t j) { joined.join(component[i], component[j]); };
-  for (const auto& [i, j] : coupled) join(i, j);
+  for (const auto& [a, b] : coupled) joined.join(a, b);
   // A point may see nodes that see nothing of each other.
   for (const PointBlock& block : points.blocks) {
     if (std::all_of(block.nodes.begin(), block.nodes.end(), [&](auto j) { return component[j] == component[block.nodes[0]]; })) continue;
     for (std::size_t i = 0; i < block.points.size(); ++i)
-      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) join(block.nodes[block.to[q - 1]], block.nodes[block.to[q]]);
+      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) joined.join(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
   }
   std::vector<std::uint32_t> number(components, 0);
   for (std::uint32_t c = 0; c < components; ++c) number[c] = joined[c] == c ? static_cast<std::uint32_t>(count_++) : number[joined[c]];

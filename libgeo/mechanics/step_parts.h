@@ -15,7 +15,7 @@ namespace geo {
 
 class StepParts {
  public:
-  /// `component`: per node, of the graph, of so many; `coupled`: nodes that something else joins. Refers to `patches`.
+  /// `component`: per node, of the graph, of so many; `coupled`: components that something else joins. Refers to `patches`.
   StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
             std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled);
   std::size_t count() const { return count_; }

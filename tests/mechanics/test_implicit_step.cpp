@@ -166,3 +166,28 @@ TEST_CASE("points side by side have the energy and the stress of one point's for
     }
   }
 }
+
+TEST_CASE("what a solid keeps from step to step changes nothing but time") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    Body body = block_body({1, 0.6, 0.6}, 0.13);
+    Solid solid(body, rubber());
+    State state = at_rest(body);
+    const Vec3 a(random.uniform(0.3, 0.5), -0.2, 0.9), b(random.uniform(0.5, 0.7), 0.9, 0.9), down(0, 0, -0.16);
+    auto front = begin_front(blade_at(a, b, down, 0), false, 1);
+    Environment env;
+    for (int k = 1; k <= 8; ++k) {
+      if (random.below(2)) solid.update(body, split(body, front, blade_at(a, b, down, static_cast<int>(front.step) + 1)), state);
+      env.ground = random.below(2), env.ground_point = Vec3(0, 0, 0.02);  // what touches it has another stiffness upwards
+      env.fixed.assign(body.nodes.size(), 0);
+      for (std::size_t i = 0; i < body.nodes.size(); ++i) env.fixed[i] = body.nodes.position[i].x() < 0.1 && k % 3 != 0;
+      const double dt = random.below(3) ? 0.01 : 0.02;
+      State anew = state;
+      Solid(body, rubber()).step_implicit(anew, dt, env, 1e-3);
+      solid.step_implicit(state, dt, env, 1e-3);
+      CHECK(anew.displacement == state.displacement);
+      CHECK(anew.velocity == state.velocity);
+    }
+  }
+}

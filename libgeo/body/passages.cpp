@@ -147,7 +147,8 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, c
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
-  std::set<std::pair<NodeId, NodeId>> wayless;  // not asked again: a way that is not found takes longest
+  // Not asked again, though later rounds look a little nearer: a way that is not found takes longest, and few are found at a second try.
+  std::set<std::pair<NodeId, NodeId>> wayless;
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
     for (const auto v : found.empty) {

@@ -203,7 +203,7 @@ std::vector<Vec3> way_along(const Complex& k, const Vec3& from, const Vec3& to, 
   const auto starts = look_around(k, from, reach), ends = look_around(k, to, reach);
   std::set<Step> closed;
   Sight sight(k);
-  while (!sight.spent()) {
+  for (int attempt = 0; attempt < 32 && !sight.spent(); ++attempt) {
     const auto path = sides_between(k, starts, ends, closed);
     if (path.empty()) return {};
     std::size_t blocked = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "crack/exits.h"
 #include "crack/ring_order.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
@@ -107,8 +108,10 @@ class Inspection {
 
   // Two vertices that rounding has left a few places from each other: slivers that no later step could round.
   Fault coincident() const {
-    std::vector<std::pair<double, VertexId>> by_x;
-    by_x.reserve(3 * faces_.size());
+    // Sorted along a direction that no model is likely to be flat across.
+    const Vec3 along(0.5412, 0.6173, 0.5710);
+    std::vector<std::pair<double, VertexId>> sorted;
+    sorted.reserve(3 * faces_.size());
     std::vector<bool> fresh(edit_.new_vertices.size(), true);
     for (const auto& f : edit_.new_faces)
       for (const VertexId v : f.v) {
@@ -117,13 +120,14 @@ class Inspection {
           if (!fresh[i]) continue;
           fresh[i] = false;
         }
-        by_x.push_back({point(v).x(), v});
+        sorted.push_back({along.dot(point(v)), v});
       }
-    std::sort(by_x.begin(), by_x.end());
+    std::sort(sorted.begin(), sorted.end());
     const double close = std::max(clearance_, 0x1p-48 * complex_.extent().diagonal());
-    for (std::size_t i = 0; i < by_x.size(); ++i)
-      for (std::size_t j = i + 1; j < by_x.size() && by_x[j].first <= by_x[i].first + close; ++j) {
-        const VertexId p = by_x[i].second, q = by_x[j].second;
+    const double reach = 2 * close + 0x1p-50 * (complex_.extent().lo.cwiseAbs().cwiseMax(complex_.extent().hi.cwiseAbs()).sum());  // and rounding
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+      for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first <= sorted[i].first + reach; ++j) {
+        const VertexId p = sorted[i].second, q = sorted[j].second;
         if (p == q || !(is_moved(p) || is_moved(q))) continue;
         if (((point(p) - point(q)).cwiseAbs().array() > close).any()) continue;
         Fault fault{"rounding would leave two vertices at one place", {}};
@@ -196,40 +200,6 @@ class Inspection {
     return {};
   }
 
-  // A front's line that comes back into the material beside where it left: the next step would leave a passage there that is
-  // finer than doubles.
-  Fault coming_back(std::span<const Exit> exits) const {
-    if (exits.empty()) return {};
-    std::vector<FaceId> removed = edit_.removed_faces;
-    std::sort(removed.begin(), removed.end());
-    for (const Exit& exit : exits) {
-      const Vec3& from = point(exit.from);
-      const Vec3 to = exit.at.valid() ? point(exit.at) : exit.to;
-      Box3 box{from, from};
-      box.add(to);
-      const auto met = [&](const std::array<VertexId, 3>& v, const std::array<Vec3, 3>& t) {
-        for (const VertexId w : v)
-          if (w == exit.from || w == exit.at) return false;
-        return segment_meets_triangle(from, to, t[0], t[1], t[2]);
-      };
-      bool back = false;
-      for (std::uint32_t i = 0; i < count_ && !back; ++i)
-        back = !faces_[i].cracked && faces_[i].box.meets(box) && met(edit_.new_faces[i].v, faces_[i].corners);
-      for (std::size_t i = 0; i < exit.near.size() && !back; ++i) {
-        const FaceId f = exit.near[i];
-        back = complex_.face(f).crack == 0 && complex_.box(f).meets(box) && !std::binary_search(removed.begin(), removed.end(), f) &&
-               met(complex_.face(f).v, complex_.corners(f));
-      }
-      if (!back) continue;
-      Fault fault{"rounding would bring the front back into the material where it leaves", {}};
-      for (std::uint32_t i = 0; i < count_; ++i)
-        for (const VertexId v : edit_.new_faces[i].v)
-          if (v == exit.from || v == exit.at) fault.faces.push_back(i);
-      return fault;
-    }
-    return {};
-  }
-
  private:
   struct New {
     std::array<Vec3, 3> corners;
@@ -270,7 +240,7 @@ Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<cons
   if (!fault) fault = find_misplaced(complex, edit, moved);
   if (!fault) fault = inspection.crossing_old();
   if (!fault) fault = inspection.crossing_new();
-  if (!fault) fault = inspection.coming_back(exits);
+  if (!fault) fault = find_return(complex, edit, exits);
   return fault;
 }
 

@@ -21,7 +21,7 @@ struct Family {
   bool whole;                      ///< they cover the triangle, or those that are left out do not turn over either
 };
 
-/// A piece of a front's line that leaves the material at a vertex. The next step starts from it, so that it must not meet the skin.
+/// A piece of a front's line that leaves the material at a vertex; see exits.h.
 struct Exit {
   VertexId from;
   Vec3 to;
@@ -37,8 +37,8 @@ struct Fault {
 };
 
 /// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
-/// vertex stands where another does, faces stand around edges as they are listed, no new face crosses a near one, and no exit
-/// meets a face of the skin that does not have its end. Exact.
+/// vertex stands where another does, faces stand around edges as they are listed, no new face crosses a near one, and exits
+/// are outside. Exact.
 /// `moved` says per new vertex whether rounding moved it; faces that it has not touched are as exact decisions left them
 /// (empty: all are asked about). Families list every new face once, in order. With a `clearance`, features of cracks that do
 /// not touch must also be that far apart, exact faces' as well, since some may be near what an earlier step has rounded: what is

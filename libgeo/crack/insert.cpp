@@ -39,14 +39,11 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
   return families;
 }
 
-// Where the new front's line runs outside, beside a vertex of K: what is neither an edge of the strip's kept parts nor on K.
-std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement, std::span<const Part> parts, const ComplexEdit& edit,
+// Where the new front's line runs outside, from a new vertex of K or to one: what is neither an edge of the strip's kept parts nor on K.
+std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement, const EdgeTable& edges, std::span<const Part> parts,
                            std::span<const VertexId> vertex) {
-  const auto on_k = [&](VertexId u, VertexId v) {
-    const auto has = [&](const auto& f) { return std::count(f.v.begin(), f.v.end(), u) + std::count(f.v.begin(), f.v.end(), v) == 2; };
-    if (u.value < complex.vertex_count() && v.value < complex.vertex_count() && !complex.around(u, v).empty()) return true;
-    return std::any_of(edit.new_faces.begin(), edit.new_faces.end(), has);
-  };
+  const auto fresh = [&](VertexId v) { return v.valid() && v.value >= complex.vertex_count(); };
+  std::vector<Use> on_k;
   std::vector<Exit> exits;
   std::vector<Local> kept;  // of the pieces that kept parts have, those ends that come first in the chain
   for (std::uint32_t t = 0; t < arrangement.strip_size; ++t)
@@ -60,10 +57,12 @@ std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arr
         for (std::size_t e = 0; e < 3; ++e)
           if (child.edge[e] == k) kept.push_back(child.v[e]);
       }
+      std::sort(kept.begin(), kept.end());
       for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
         const VertexId u = vertex[chain[i]], v = vertex[chain[i + 1]];
-        if (!u.valid() && !v.valid()) continue;
-        if (std::find(kept.begin(), kept.end(), chain[i]) != kept.end() || (u.valid() && v.valid() && on_k(u, v))) continue;
+        if (!fresh(u) && !fresh(v)) continue;
+        edges.find(chain[i], chain[i + 1], on_k);
+        if (!on_k.empty() || std::binary_search(kept.begin(), kept.end(), chain[i])) continue;
         const auto [from, to] = u.valid() ? std::pair(i, i + 1) : std::pair(i + 1, i);
         exits.push_back({vertex[chain[from]], arrangement.points()[chain[to]], vertex[chain[to]], arrangement.near(t)});
       }
@@ -110,7 +109,8 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   for (Local l = 0; l < vertex.size(); ++l)
     if (vertex[l].valid() && vertex[l].value >= complex.vertex_count())
       moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
-  const auto exits = exits_of(complex, strip, arrangement, parts, edit, vertex);
+  std::vector<Exit> exits;
+  if (clearance > 0) exits = exits_of(complex, strip, arrangement, edges, parts, vertex);
   if (const Fault fault = repair(complex, edit, families, moved, clearance, exits, work.repairs)) throw GeometryError(fault.what);
   work.guard_seconds += watch.lap();
   CrackDelta delta = complex.apply(edit);

@@ -108,6 +108,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   }, 0);
   const TrianglePlanes planes(corners, m.from, m.to);
   constexpr std::size_t stretch = 1024;
+  constexpr double sure = 1 + 1e-9;  // so that examine() would say the same
   std::vector<Pairs> some((known.pairs().size() + stretch - 1) / stretch);
   std::vector<std::vector<Between>> some_between(some.size());
   parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -115,6 +116,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
       for (std::size_t i = k * stretch; i < std::min(known.pairs().size(), (k + 1) * stretch); ++i)
         if (const auto& [s, t] = known.pairs()[i]; !surface.touch(s, t)) some[k].push_back({s, t});
       planes.keep_unparted(some[k], m.gap, m.reach);
+      planes.keep_unparted_across(some[k], sure * m.gap, sure * m.reach);
       if (owner.empty()) continue;
       const std::vector<double> left = planes.left(some[k]);
       for (std::size_t i = 0; i < some[k].size(); ++i) {
@@ -129,14 +131,11 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   for (const auto& s : some_between) between.insert(between.end(), s.begin(), s.end());
   if (!owner.empty()) pairs = closest_between(pairs, between, owner, most);
   constexpr std::size_t in_lanes = 256;
-  constexpr double sure = 1 + 1e-9;  // so that examine() would say the same
   std::vector<std::vector<Watched>> found((pairs.size() + in_lanes - 1) / in_lanes);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      Pairs few(pairs.begin() + static_cast<std::ptrdiff_t>(s * in_lanes), pairs.begin() + static_cast<std::ptrdiff_t>(std::min(pairs.size(), (s + 1) * in_lanes)));
-      planes.keep_unparted_across(few, sure * m.gap, sure * m.reach);
       const auto couple = [&](std::size_t i) {
-        const auto &a = corners[few[i].first], &b = corners[few[i].second];
+        const auto &a = corners[pairs[i].first], &b = corners[pairs[i].second];
         return Couple{{{a[0], a[1], a[2]}, 3}, {{b[0], b[1], b[2]}, 3}};
       };
       const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
@@ -145,7 +144,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
         if (examine(m, p, lane, w)) found[s].push_back(w);
       };
       CouplesInLanes<decltype(judge)> couples(m.from, m.to, false, judge);
-      for (std::size_t i = 0; i < few.size(); ++i) couples.add(couple(i), i);
+      for (std::size_t i = s * in_lanes; i < std::min(pairs.size(), (s + 1) * in_lanes); ++i) couples.add(couple(i), i);
       couples.finish();
     }
   });

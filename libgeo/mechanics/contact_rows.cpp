@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -22,44 +23,71 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::s
 }
 
 void ContactRows::read() {
-  active_.clear();
-  std::fill(first_share_.begin(), first_share_.end(), 0);
+  active_.clear(), first_own_.assign(1, 0);
   std::uint32_t row = 0;
   for (const Potential* p : potentials_)
     p->each_row([&](std::span<const NodeWeight>, const Mat3& curvature) {
       curvature_[row] = curvature;
-      if (!curvature.isZero(0)) {
-        active_.push_back(row);
-        for (const auto& e : entries_[row]) ++first_share_[e.node + 1];
-      }
+      if (!curvature.isZero(0)) active_.push_back(row), first_own_.push_back(first_own_.back() + entries_[row].size());
       ++row;
     });
-  for (std::size_t n = 0; n + 1 < first_share_.size(); ++n) first_share_[n + 1] += first_share_[n];
-  shares_.resize(first_share_.back());
-  std::vector<std::size_t> next(first_share_.begin(), first_share_.end() - 1);
-  for (std::uint32_t a = 0; a < active_.size(); ++a)
-    for (const auto& e : entries_[active_[a]]) shares_[next[e.node]++] = {a, static_cast<float>(e.weight)};
+  // Runs of rows count their nodes each, then know where each node's shares from them go.
+  constexpr std::size_t most_runs = 8, rows_a_run = 256;
+  const std::size_t nodes = first_share_.size() - 1, runs = std::clamp<std::size_t>(active_.size() / rows_a_run, 1, most_runs);
+  const auto begin_of = [&](std::size_t run) { return active_.size() * run / runs; };
+  std::vector<std::vector<std::size_t>> next(runs);
+  own_.resize(first_own_.back());
+  parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run) {
+      next[run].assign(nodes, 0);
+      for (std::size_t a = begin_of(run); a < begin_of(run + 1); ++a) {
+        Share* to = own_.data() + first_own_[a];
+        for (const auto& e : entries_[active_[a]]) *to++ = {e.node, static_cast<float>(e.weight)}, ++next[run][e.node];
+      }
+    }
+  });
+  std::size_t at = 0;
+  for (std::size_t n = 0; n < nodes; ++n) {
+    first_share_[n] = at;
+    for (auto& of_run : next) at += std::exchange(of_run[n], at);
+  }
+  first_share_[nodes] = at;
+  shares_.resize(at);
+  parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run)
+      for (std::size_t a = begin_of(run); a < begin_of(run + 1); ++a)
+        for (auto k = first_own_[a]; k < first_own_[a + 1]; ++k) shares_[next[run][own_[k].of]++] = {static_cast<std::uint32_t>(a), own_[k].weight};
+  });
 }
 
 void ContactRows::add_product(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
   if (active_.empty()) return;
-  std::vector<Vec3> pull(active_.size());
+  std::vector<Eigen::Vector4f> pull(active_.size());
   parallel_for(active_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t a = begin; a < end; ++a) pull[a] = curvature_[active_[a]] * weighed(entries_[active_[a]], p);
+    for (std::size_t a = begin; a < end; ++a) {
+      Vec3 way = Vec3::Zero();
+      for (auto k = first_own_[a]; k < first_own_[a + 1]; ++k) way += double(own_[k].weight) * p[own_[k].of];
+      pull[a] << (curvature_[active_[a]] * way).cast<float>(), 0;
+    }
   });
   parallel_for(p.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      Vec3 sum = Vec3::Zero();
-      for (auto i = first_share_[n]; i < first_share_[n + 1]; ++i) sum += shares_[i].weight * pull[shares_[i].active];
-      out[n] += sum;
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      for (auto i = first_share_[n]; i < first_share_[n + 1]; ++i) sum += shares_[i].weight * pull[shares_[i].of];
+      out[n] += sum.head<3>().cast<double>();
     }
   });
 }
 
 void ContactRows::add_blocks(std::vector<Mat3>& out) const {
-  constexpr double together = 0.2;  // of a row's weights, in what solves for a node with its neighbours
-  for (const auto r : active_)
-    for (const auto& e : entries_[r]) out[e.node] += std::abs(e.weight) * std::max(std::abs(e.weight), together) * curvature_[r];
+  constexpr float together = 0.2f;  // of a row's weights, in what solves for a node with its neighbours
+  parallel_for(out.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      for (auto i = first_share_[n]; i < first_share_[n + 1]; ++i) {
+        const float weight = std::abs(shares_[i].weight);
+        out[n] += double(weight * std::max(weight, together)) * curvature_[active_[shares_[i].of]];
+      }
+  });
 }
 
 }  // namespace geo

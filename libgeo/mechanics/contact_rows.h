@@ -28,14 +28,14 @@ class ContactRows {
   std::span<Potential* const> potentials_;
   std::vector<std::span<const NodeWeight>> entries_;  // of each row, where its potential has them
   std::vector<Mat3> curvature_;
-  // Of rows that do something, by node, so that threads need not wait for each other.
+  // Of rows that do something, in single precision: by row, and by node so that threads need not wait for each other.
   struct Share {
-    std::uint32_t active;
+    std::uint32_t of;  // a node, or a number in active_
     float weight;
   };
   std::vector<std::uint32_t> active_;
-  std::vector<std::size_t> first_share_;
-  std::vector<Share> shares_;
+  std::vector<std::size_t> first_own_, first_share_;
+  std::vector<Share> own_, shares_;
 };
 
 }  // namespace geo

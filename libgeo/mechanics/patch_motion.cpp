@@ -17,22 +17,20 @@ std::uint16_t half(float x) { return static_cast<std::uint16_t>((std::bit_cast<s
 }  // namespace
 
 PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli, const std::vector<StiffnessModes>& modes,
-                         const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::vector<PatchInverse>& inverses)
+                         const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, PatchInverses& inverses)
     : patches_(patches), materials_(materials), moduli_(moduli), inverse_(inverses), rotation_(patches.count(), Mat3f::Identity()), parts_(4 * patches.first(patches.count())) {
-  inverse_.resize(patches.count());
+  if (inverse_.count() != patches.count()) inverse_.begin(patches);
   parallel_for(patches.count(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = modes[block].rotation(point);
-      const Moduli& moduli = moduli_[materials_.number(patches.nodes(p)[0])];
-      const PatchInverse& known = inverse_[p];
-      if (known.besides.empty() || known.moduli != moduli || known.besides != besides(p, blocks, fixed)) invert(p, blocks, fixed);
+      if (!inverse_.knows(p, besides(p, blocks, fixed), moduli_[materials_.number(patches.nodes(p)[0])])) invert(p, blocks, fixed);
     }
   });
 }
 
 // Empty where what nodes have is not the same in all directions: it would turn with the patch.
-std::vector<PatchInverse::Besides> PatchMotion::besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const {
-  std::vector<PatchInverse::Besides> all;
+std::vector<PatchInverses::Besides> PatchMotion::besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const {
+  std::vector<PatchInverses::Besides> all;
   for (const auto i : patches_.nodes(patch)) {
     const Mat3& k = blocks[i];
     const bool held = !fixed.empty() && fixed[i];
@@ -54,9 +52,9 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
   std::vector<float> matrix(size * row, 0.0f), share(nodes.size());
   const float* tile = patches_.outer(patch);
   const Mat3f& turn = rotation_[patch];
-  PatchInverse& to = inverse_[patch];
-  to.moduli = moduli_[materials_.number(nodes[0])], to.besides = besides(patch, blocks, fixed), to.matrix.resize(size * row);
-  const auto [shear, bulk] = to.moduli;
+  const auto plain = besides(patch, blocks, fixed);
+  const Moduli& moduli = moduli_[materials_.number(nodes[0])];
+  const auto [shear, bulk] = moduli;
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const bool held = !fixed.empty() && fixed[nodes[a]];
     share[a] = held ? 0 : 1 / std::sqrt(static_cast<float>(patches_.patches_of(nodes[a]).size()));
@@ -66,7 +64,7 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
       Mat3f k;
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) k(r, c) = bulk * tile[4 * r + c] + shear * tile[4 * c + r] + (r == c ? even : 0);
-      if (a == b) k += to.besides.empty() ? Mat3f(turn.transpose() * blocks[nodes[a]].cast<float>() * turn) : Mat3f(to.besides[a].inertia * Mat3f::Identity());
+      if (a == b) k += plain.empty() ? Mat3f(turn.transpose() * blocks[nodes[a]].cast<float>() * turn) : Mat3f(plain[a].inertia * Mat3f::Identity());
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < 3; ++c)
           matrix[(3 * a + r) * row + 3 * b + c] = matrix[(3 * b + c) * row + 3 * a + r] = k(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c));
@@ -75,8 +73,10 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
       for (std::size_t r = 3 * a; r < 3 * a + 3; ++r) matrix[r * row + r] = 1;
   }
   invert_positive(size, matrix.data());
+  inverse_.tell(patch, plain, moduli);
+  std::uint16_t* const to = inverse_.matrix(patch);
   for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j <= i; ++j) to.matrix[i * row + j] = to.matrix[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
+    for (std::size_t j = 0; j <= i; ++j) to[i * row + j] = to[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
 }
 
 void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches) {
@@ -89,7 +89,7 @@ void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_
       x.resize(padded(size)), y.resize(padded(size));
       const Mat3f &turn = rotation_[p], back = turn.transpose();
       for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>{&x[3 * a]} = back * r[nodes[a]].cast<float>();
-      multiply_halves(size, inverse_[p].matrix.data(), x.data(), y.data());
+      multiply_halves(size, inverse_.matrix(p), x.data(), y.data());
       float* const out = &parts_[4 * patches_.first(p)];
       for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>(out + 4 * a) = turn * Eigen::Map<const Eigen::Vector3f>(&y[3 * a]);
     }

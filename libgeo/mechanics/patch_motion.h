@@ -7,21 +7,10 @@
 #include <vector>
 
 #include "mechanics/node_patches.h"
+#include "mechanics/patch_inverses.h"
 #include "mechanics/stiffness_lanes.h"
 
 namespace geo {
-
-/// A patch's inverse, upper halves of its numbers, and what it is made of beside the patch's own sums.
-struct PatchInverse {
-  struct Besides {
-    float inertia;        ///< the same in all directions; below zero: the node is held
-    std::uint32_t among;  ///< how many patches its share is spread over
-    friend bool operator==(const Besides&, const Besides&) = default;
-  };
-  std::vector<std::uint16_t> matrix;
-  std::vector<Besides> besides;  ///< per node; empty: something else acts on one, too
-  Moduli moduli{};
-};
 
 class PatchMotion {
  public:
@@ -29,7 +18,7 @@ class PatchMotion {
   /// `fixed`: as in Environment. `inverses`: of an earlier step, of which those are left that are the same now. Keeps all but modes,
   /// blocks and fixed.
   PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli, const std::vector<StiffnessModes>& modes,
-              const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::vector<PatchInverse>& inverses);
+              const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, PatchInverses& inverses);
   /// Patches that have another block than before, with the rotations that they have.
   void renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   /// Inverses of the patches times r, each on its own; then their sum at a node.
@@ -41,12 +30,12 @@ class PatchMotion {
   }
 
  private:
-  std::vector<PatchInverse::Besides> besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const;
+  std::vector<PatchInverses::Besides> besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const;
   void invert(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   const NodePatches& patches_;
   const Materials& materials_;
   std::span<const Moduli> moduli_;
-  std::vector<PatchInverse>& inverse_;      // per patch
+  PatchInverses& inverse_;
   std::vector<Eigen::Matrix3f> rotation_;   // per patch
   std::vector<float> parts_;                // four numbers a node of a patch
 };

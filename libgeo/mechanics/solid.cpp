@@ -63,10 +63,7 @@ void Solid::settle(const Body& body, State& state) {
   if (!changes) return;
   points_.set_materials(materials_);
   groups_ = NodeGroups(position_, rows_, part_, parts_);
-  std::vector<PatchInverse> inverses;
-  for (const auto was : patches_.follow(position_, rows_, spacing_, points_, *changes))
-    inverses.push_back(was < inverses_.size() ? std::move(inverses_[was]) : PatchInverse());
-  inverses_ = std::move(inverses);
+  inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, points_, *changes));
   const auto& kept = changes->kept;
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());
@@ -104,7 +101,7 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
 
 void Solid::group_nodes() {
   groups_ = NodeGroups(position_, rows_, part_, parts_);
-  patches_ = NodePatches(position_, rows_, spacing_, points_), inverses_.clear();
+  patches_ = NodePatches(position_, rows_, spacing_, points_), inverses_ = {};
 }
 
 RungCounts Solid::rungs() const {

@@ -15,7 +15,7 @@
 #include "mechanics/node_groups.h"
 #include "mechanics/node_patches.h"
 #include "mechanics/node_rows.h"
-#include "mechanics/patch_motion.h"
+#include "mechanics/patch_inverses.h"
 #include "mechanics/point_lanes.h"
 #include "mechanics/potential.h"
 #include "sampling/node_set.h"
@@ -125,7 +125,7 @@ class Solid {
   NodeRows rows_;
   NodeGroups groups_;
   NodePatches patches_;
-  mutable std::vector<PatchInverse> inverses_;  // of the last implicit step, per patch
+  mutable PatchInverses inverses_;  // of the last implicit step
   MaterialPoints points_;
   std::optional<Galerkin> galerkin_;
   std::optional<ModePenalty> penalty_;  // of mueller04

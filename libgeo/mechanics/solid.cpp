@@ -52,7 +52,7 @@ void Solid::update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId fi
 void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
   std::vector<Vec3> before;
   for (const NodeId i : delta.moved_nodes) before.push_back(position_[i.index()]);
-  follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
+  follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state, !delta.parted.empty());
   if (!galerkin_) return nodal_points(delta.updated_nodes);
   galerkin_->note(body, delta, before);
 }

@@ -108,7 +108,8 @@ class Solid {
  private:
   friend class ImplicitStep;
   void follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
-                    std::span<const NodeId> updated, State& state);
+                    std::span<const NodeId> updated, State& state, bool parted = true);
+  void number_parts(const VisibilityGraph& graph, std::size_t first_new);
   void group_nodes();
   std::size_t point_stride() const { return galerkin_ ? 2 : 1; }  // two of a cell's four points will do for the preconditioner
   bool flows() const { return materials_.any([](const Material& m) { return m.yield > 0; }); }

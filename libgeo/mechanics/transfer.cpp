@@ -39,8 +39,22 @@ RigidMotion correction(const PartMotion& was, const PartMotion& now) {
 
 }  // namespace
 
+// Where nothing came off: new nodes are of the part of those that they see. The lowest node of each part decides its number, so all stay.
+void Solid::number_parts(const VisibilityGraph& graph, std::size_t first_new) {
+  for (std::size_t i = first_new; i < graph.node_count(); ++i) {
+    std::uint32_t part = ~0u;
+    for (const NodeId j : graph.edges(NodeId(i)))
+      if (j.index() < part_.size()) part = part_[j.index()];
+    if (part == ~0u) {  // it sees newer ones only
+      parts_ = graph.components(part_);
+      return;
+    }
+    part_.push_back(part);
+  }
+}
+
 void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
-                         std::span<const NodeId> updated, State& state) {
+                         std::span<const NodeId> updated, State& state, bool parted) {
   const std::size_t n = nodes.size(), old = first_new.index();
   const bool moving = !state.displacement.empty();
   // Where each node's mass was, and how it moved: a new node's at its donor.
@@ -71,7 +85,8 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
   for (std::size_t i = old; i < n; ++i) materials_.add(donors[i - old].index());
   for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
   rows_.update(nodes, graph, updated);
-  parts_ = graph.components(part_);
+  if (parted || part_.size() != old) parts_ = graph.components(part_);
+  else number_parts(graph, old);
   if (changed.empty()) return;
   std::vector<char> concerned(parts_, 0);
   for (const auto i : changed) concerned[part_[i]] = 1;

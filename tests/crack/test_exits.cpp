@@ -104,5 +104,5 @@ TEST_CASE("a complete cut that grazes a valley separates", "[exits]") {
     CHECK(report.first_problem == "");
     CHECK(find_pieces(k).count >= 2);
   }
-  CHECK(refused <= which.count / 50);
+  CHECK(refused <= 1 + which.count / 50);
 }

@@ -147,8 +147,8 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, c
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
-  // Not asked again, though later rounds look a little nearer: a way that is not found takes longest, and few are found at a second try.
-  std::set<std::pair<NodeId, NodeId>> wayless;
+  // For a way, once, though later rounds look a little nearer: one that is not found takes longest, and few are found at a second try.
+  std::set<std::pair<NodeId, NodeId>> asked;
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
     for (const auto v : found.empty) {
@@ -174,19 +174,12 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
       if (round == 0)
         for (const auto n : part)
           body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
-      else {
+      else
         for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
           const auto near = pieces.nearest(from, 4, part);
-          if (std::any_of(near.begin(), near.end(), [&](auto n) {
-                const NodeId to(n);
-                if (wayless.count({from, to})) return false;
-                if (insert_along(body, from, to, scale * body.grid.cell(), joins)) return true;
-                wayless.insert({from, to});
-                return false;
-              }))
-            break;
+          const auto finds_way = [&](auto to) { return asked.insert({from, NodeId(to)}).second && insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins); };
+          if (std::any_of(near.begin(), near.end(), finds_way)) break;
         }
-      }
     }
     std::sort(narrow.begin(), narrow.end());
     narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());

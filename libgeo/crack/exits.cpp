@@ -27,8 +27,7 @@ class Surroundings {
       if (edit.new_faces[i].crack == 0) skin_.push_back(i);
     }
     std::sort(at_.begin(), at_.end());
-    many_ = exits.size() * skin_.size() > few;
-    if (!many_) return;
+    if (exits.size() * skin_.size() <= few) return;
     std::vector<std::array<Vec3, 3>> corners;
     for (const auto i : skin_) corners.push_back(corners_of(edit.new_faces[i].v));
     index_.emplace(corners);
@@ -65,7 +64,7 @@ class Surroundings {
       const auto t = corners_of(v);
       return box_of(t[0], t[1], t[2]).meets(box) && segment_meets_triangle(from, to, t[0], t[1], t[2]);
     };
-    if (!many_)
+    if (!index_)
       return std::any_of(skin_.begin(), skin_.end(), [&](auto i) { return met(edit_.new_faces[i].v); }) ||
              std::any_of(exit.near.begin(), exit.near.end(), [&](FaceId f) { return stays(f) && met(complex_.face(f).v); });
     std::vector<std::uint32_t> near;
@@ -88,8 +87,7 @@ class Surroundings {
   std::vector<FaceId> removed_;
   std::vector<std::uint32_t> skin_;                        // new faces of it
   std::vector<std::pair<VertexId, std::uint32_t>> at_;     // new faces by the exits' ends
-  bool many_ = false;
-  std::optional<TriangleBvh> index_;                       // of skin_
+  std::optional<TriangleBvh> index_;                       // of skin_, where these and the exits are many
 };
 
 }  // namespace

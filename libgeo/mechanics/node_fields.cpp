@@ -3,35 +3,21 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "mechanics/deformation.h"
 #include "mechanics/node_sums.h"
 
 namespace geo {
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
-  // Eq. 1, of one affine map a node about a common middle: those of all neighbours are summed before they act.
-  using Affine = Eigen::Matrix<double, 3, 4>;
   const auto gradient = solid.gradients(state.displacement);
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& x : nodes.position) middle += x / double(nodes.size());
-  std::vector<Affine> map(nodes.size());
   std::vector<Vec3> moved(nodes.size());
   parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) map[i] << gradient[i], state.displacement[i] - gradient[i] * (nodes.position[i] - middle);
-  });
-  parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::pair<NodeId, double>> around;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& x = nodes.position[i];
-      double total = 0;
-      Affine sum = Affine::Zero();
-      const auto add = [&](std::size_t j) {
-        const double far = (x - nodes.position[j]).squaredNorm() / (nodes.radius[j] * nodes.radius[j]);
-        if (!(far < 1)) return;
-        const double w = (1 - far) * (1 - far) * (1 - far);
-        total += w, sum += w * map[j];
-      };
-      add(i);
-      for (const auto& n : graph.neighbors(nodes, NodeId(i))) add(n.to.index());
-      moved[i] = (sum.leftCols<3>() * (x - middle) + sum.col(3)) / total;
+      around.assign(1, {NodeId(i), 0.0});
+      for (const auto& n : graph.neighbors(nodes, NodeId(i))) around.push_back({n.to, (x - nodes.position[n.to.index()]).norm()});
+      moved[i] = displacement_at(x, around, nodes, state.displacement, gradient);
     }
   });
   return moved;

@@ -23,7 +23,7 @@ PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials,
   parallel_for(patches.count(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (const auto [block, point] = patches.point(p); block != ~0u) rotation_[p] = modes[block].rotation(point);
-      if (!inverse_.knows(p, besides(p, blocks, fixed), moduli_[materials_.number(patches.nodes(p)[0])])) invert(p, blocks, fixed);
+      if (const auto own = besides(p, blocks, fixed); !inverse_.knows(p, own, moduli_of(p))) invert(p, own, blocks, fixed);
     }
   });
 }
@@ -42,19 +42,17 @@ std::vector<PatchInverses::Besides> PatchMotion::besides(std::size_t patch, cons
 
 void PatchMotion::renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
   parallel_for(which.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) invert(which[k], blocks, fixed);
+    for (std::size_t k = begin; k < end; ++k) invert(which[k], besides(which[k], blocks, fixed), blocks, fixed);
   });
 }
 
-void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
+void PatchMotion::invert(std::size_t patch, std::span<const PatchInverses::Besides> plain, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
   const auto nodes = patches_.nodes(patch);
   const std::size_t size = 3 * nodes.size(), row = padded(size);
   std::vector<float> matrix(size * row, 0.0f), share(nodes.size());
   const float* tile = patches_.outer(patch);
   const Mat3f& turn = rotation_[patch];
-  const auto plain = besides(patch, blocks, fixed);
-  const Moduli& moduli = moduli_[materials_.number(nodes[0])];
-  const auto [shear, bulk] = moduli;
+  const auto [shear, bulk] = moduli_of(patch);
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const bool held = !fixed.empty() && fixed[nodes[a]];
     share[a] = held ? 0 : 1 / std::sqrt(static_cast<float>(patches_.patches_of(nodes[a]).size()));
@@ -73,7 +71,7 @@ void PatchMotion::invert(std::size_t patch, const std::vector<Mat3>& blocks, con
       for (std::size_t r = 3 * a; r < 3 * a + 3; ++r) matrix[r * row + r] = 1;
   }
   invert_positive(size, matrix.data());
-  inverse_.tell(patch, plain, moduli);
+  inverse_.tell(patch, plain, moduli_of(patch));
   std::uint16_t* const to = inverse_.matrix(patch);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j <= i; ++j) to[i * row + j] = to[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);

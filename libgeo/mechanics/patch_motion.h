@@ -31,7 +31,8 @@ class PatchMotion {
 
  private:
   std::vector<PatchInverses::Besides> besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const;
-  void invert(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
+  const Moduli& moduli_of(std::size_t patch) const { return moduli_[materials_.number(patches_.nodes(patch)[0])]; }
+  void invert(std::size_t patch, std::span<const PatchInverses::Besides> plain, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
   const NodePatches& patches_;
   const Materials& materials_;
   std::span<const Moduli> moduli_;

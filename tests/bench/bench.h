@@ -3,6 +3,7 @@
 
 #include <ctime>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <string>
@@ -30,6 +31,9 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
   }
   return best;
 }
+
+/// How a time grows with a size: t ~ size^exponent, between two of them.
+inline double growth(double time, double later, double size, double larger) { return std::log(later / time) / std::log(larger / size); }
 
 /// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn, with an untimed
 /// `prepare` before each. Leaves one thread.

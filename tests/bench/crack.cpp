@@ -121,7 +121,7 @@ int crack(const Options& options) {
   }
   if (options.frequencies.size() >= 2) {
     const Row &a = rows[0], &b = rows[options.frequencies.size() - 1];
-    figures["progressive_exponent"] = std::log(b.progressive / a.progressive) / std::log(double(b.triangles) / double(a.triangles));
+    figures["progressive_exponent"] = growth(a.progressive, b.progressive, double(a.triangles), double(b.triangles));
   }
   print(figures, options.json);
   return 0;

@@ -1,7 +1,6 @@
 // The visibility graph beside what other libraries offer for its parts (§ 6).
 #include "graph.h"
 
-#include <cmath>
 #include <cstdio>
 
 namespace bench {
@@ -9,7 +8,7 @@ namespace {
 
 // How a step of fixed size, and a build, grow with the number of nodes since the size before.
 void add_exponents(const Figures& before, Figures& figures) {
-  const auto exponent = [&](const char* name) { return std::log(figures.at(name) / before.at(name)) / std::log(figures.at("nodes") / before.at("nodes")); };
+  const auto exponent = [&](const char* name) { return growth(before.at(name), figures.at(name), before.at("nodes"), figures.at("nodes")); };
   figures["step_exponent"] = exponent("fixed_crack_seconds"), figures["build_exponent"] = exponent("rebuild_seconds");
 }
 

@@ -118,8 +118,7 @@ TEST_CASE("nodes that a penalty makes depend on each other hang together by the 
       std::vector<std::uint32_t> part(n);
       std::iota(part.begin(), part.end(), 0u);
       for (const auto& [i, j] : rows.couples(part)) joined.join(i, j);
-      part.clear();
-      for (std::uint32_t i = 0; i < n; ++i) part.push_back(joined[i]);
+      for (std::uint32_t i = 0; i < n; ++i) part[i] = joined[i];
       std::vector<Vec3> force(n, Vec3::Zero());
       p->force(at, force);
       rows.read();

@@ -12,7 +12,11 @@ namespace geo {
 namespace {
 std::unique_ptr<tbb::global_control> limit;
 int wanted = 0;
+thread_local int alone = 0;
 }  // namespace
+
+Alone::Alone() { ++alone; }
+Alone::~Alone() { --alone; }
 
 void set_threads(int count) {
   wanted = count > 0 ? count : 0;
@@ -26,13 +30,13 @@ int threads() { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
-  if (threads() == 1 || count <= grain) return body(0, count);
+  if (threads() == 1 || alone > 0 || count <= grain) return body(0, count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
 }
 
 void at_once(const std::function<void()>& one, const std::function<void()>& other) {
-  if (threads() > 1) return tbb::parallel_invoke(one, other);
+  if (threads() > 1 && alone == 0) return tbb::parallel_invoke(one, other);
   one();
   other();
 }

@@ -12,6 +12,15 @@ void set_threads(int count);
 /// How many threads `parallel_for` uses.
 int threads();
 
+/// While one lives, loops of the thread that made it go on in that thread alone: for work that others do not wait for, beside work that they do.
+class Alone {
+ public:
+  Alone();
+  ~Alone();
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+};
+
 /// Calls body(begin, end) for disjoint ranges that cover [0, count), in any order and from any thread.
 /// `grain` is the smallest range worth a task. Exceptions thrown by `body` are passed on to the caller.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);

@@ -49,13 +49,13 @@ class Mover {
   Way advance(int round) {
     std::vector<Vec3> start = at_;
     if (round == 0) move_affinely(surface_.rows, at_, m_.to, start);
-    std::vector<Vec3> next = wanted(start);
+    std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
     cover(start, next);
     if (give_way(start, next)) {
       at_ = std::move(next);
       return Way::free;
     }
-    next = wanted(start);
+    next = straight(start, m_.to);
     cover(start, next);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
     std::optional<Carried> carried;
@@ -81,9 +81,9 @@ class Mover {
     return !carried || carried->share() == 1 ? Way::carried : Way::behind;
   }
 
-  std::vector<Vec3> wanted(const std::vector<Vec3>& start) const {
+  std::vector<Vec3> straight(const std::vector<Vec3>& start, const std::vector<Vec3>& to) const {
     std::vector<Vec3> next = start;
-    for (const auto v : surface_.rows) next[v] = m_.to[v];
+    for (const auto v : surface_.rows) next[v] = to[v];
     return next;
   }
 

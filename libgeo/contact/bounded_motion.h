@@ -15,7 +15,7 @@ struct BoundedMotion {
 
 /// The end of the motion, by row; rows together move together. At the beginning no triangles cross, and at the end none do. After
 /// the affine motion that is closest to what they want, all go straight to their places. Where pairs of triangles would cross, by
-/// the exact test of crossing.h, or pass, the places are mended first, again and again; the few that no mending parts move as rigid
+/// the exact test of crossing.h, or pass, the places (or the guess) are mended first, again and again; the few that no mending parts move as rigid
 /// zones meanwhile (give_way.h). If something fails after many rounds all the same, vertices of such pairs are carried along by a
 /// smooth field of what all want (smooth_field.h), in which neither side of a narrow gap passes the other; what crosses all the same,
 /// since triangles are flat and the field is not, moves as rigid zones (Provot 1997; Bridson, Fedkiw, Anderson 2002), which grow until nothing does. From there, then, each vertex for itself

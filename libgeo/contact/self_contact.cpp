@@ -90,6 +90,8 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   const std::vector<Vec3>& now = known_targets(body, state.displacement);
   const std::vector<Vec3> free = targets(body, u);
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
+  held_off_.resize(here.size());
+  std::transform(positions_.begin(), positions_.end(), here.begin(), held_off_.begin(), [](const Vec3& is, const Vec3& wants) { return is - wants; });
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
   touch_.restart({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
   std::vector<double> stiffness;  // per material, 1/s²
@@ -184,6 +186,15 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
   return touching;
 }
 
+// What kept places from where nodes would have them when the step began is likely to do so at its end. Where it does not, they come back by and by.
+std::vector<Vec3> SelfContact::likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const {
+  constexpr double stays = 0.9, negligible = 1e-3;  // a step; of a mean edge
+  std::vector<Vec3> result = goal;
+  for (std::size_t v = 0; v < std::min(result.size(), held_off_.size()); ++v)
+    if (const Vec3& off = held_off_[together[v]]; off.norm() > negligible * surface_.edge) result[v] += stays * off;
+  return result;
+}
+
 void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                           State& state, ContactWork* told) {
   Stopwatch clock;
@@ -195,13 +206,14 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   if (work.opened = open_sheets(surface_, fans(), copies, to, options_.gap * surface_.edge, options_.opening * surface_.edge, positions_); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;
+  const std::vector<Vec3> guess = likely(goal, together);
   BoundedMotion bounded;
-  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap}, true, &bounded, &near_, &fans());
+  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap, begun_ ? &guess : nullptr}, true, &bounded, &near_, &fans());
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (std::size_t v = 0; v < to.size(); ++v)
     if (body.surface.alive(SurfaceVertexId(v))) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
-  begun_ = false, near_ = {};
+  begun_ = false, near_ = {}, held_off_.clear();
   if (told) *told += work;
 }
 

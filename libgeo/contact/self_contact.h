@@ -48,6 +48,7 @@ class SelfContact {
   const std::vector<Vec3>& known_targets(const Body& body, const std::vector<Vec3>& u);
   std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                                    std::span<const std::uint32_t> together, const Copies& copies, State& state);
+  std::vector<Vec3> likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const;
   const VertexFans& fans();
 
   ContactOptions options_;
@@ -62,6 +63,7 @@ class SelfContact {
     std::vector<Vec3> targets, of;
     std::vector<std::uint32_t> stale;
   } last_;
+  std::vector<Vec3> held_off_;  // how far the surface was from where nodes would have it at begin(); empty: no step has begun
   bool begun_ = false;  // a step that touch_ acts in
   Birth birth_;  // of the step that was expected last
 };

@@ -17,6 +17,7 @@ struct SurfaceMotion {
   const std::vector<Vec3>&from, &to;
   double gap = 0;    ///< that sheets in contact keep
   double reach = 0;  ///< pairs that come closer than this are watched
+  const std::vector<Vec3>* guess = nullptr;  ///< where given: near `to`, and less likely to be in each other's way; taken as the end if nothing fails there
 };
 
 /// The same in rows that stand for others.

@@ -144,7 +144,7 @@ void require_place(const std::string& path) {
   if (!possible) throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
 }
 
-void write_all(const std::string& path, const std::function<void(std::ostream&)>& write) {
+void write_all(const std::string& path, const std::function<void(std::ostream&)>& write, Kept kept) {
   if (path == "-") {
     DescriptorBuffer buffer(1);
     std::ostream out(&buffer);
@@ -162,7 +162,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
   if (special) {
     fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a device or a pipe cannot be renamed over
   } else {
-    std::random_device random;
+    thread_local std::random_device random;
     for (int tries = 0; tries < 16 && fd < 0; ++tries) {
       aside = path + "." + std::to_string(random()) + ".tmp";
       unfinished = std::make_unique<Unfinished>(aside);
@@ -182,10 +182,19 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
     ::close(fd);
     throw;
   }
-  if (error == 0 && !special && ::fsync(fd) != 0) error = errno;
+  if (error == 0 && !special && kept == Kept::on_disk && ::fsync(fd) != 0) error = errno;
   if (::close(fd) != 0 && error == 0) error = errno;
   if (error != 0) throw OutputError(path + ": cannot be written (" + reason(error) + ")");
   if (unfinished) unfinished->commit(path);
+}
+
+void flush_to_disk(std::span<const std::string> paths) {
+  for (const std::string& path : paths) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    int error = fd < 0 || ::fsync(fd) != 0 ? errno : 0;
+    if (fd >= 0 && ::close(fd) != 0 && error == 0) error = errno;
+    if (error != 0) throw OutputError(path + ": cannot be written (" + reason(error) + ")");
+  }
 }
 
 }  // namespace geo

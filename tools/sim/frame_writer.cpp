@@ -42,7 +42,7 @@ void FrameWriter::wait_until_waiting(std::unique_lock<std::mutex>& lock, std::si
 
 void FrameWriter::add(Frame frame) {
   std::unique_lock lock(mutex_);
-  wait_until_waiting(lock, 2);
+  wait_until_waiting(lock, most_waiting);
   waiting_.push_back(std::move(frame));
   changed_.notify_all();
 }
@@ -50,6 +50,8 @@ void FrameWriter::add(Frame frame) {
 const std::string& FrameWriter::log() {
   std::unique_lock lock(mutex_);
   wait_until_waiting(lock, 0);
+  geo::flush_to_disk(written_);
+  written_.clear();
   return log_;
 }
 
@@ -77,11 +79,16 @@ void FrameWriter::run() {
   }
 }
 
+void FrameWriter::write(const std::string& path, const std::function<void(std::ostream&)>& how) {
+  geo::write_all(path, how, geo::Kept::by_system);
+  written_.push_back(path);
+}
+
 void FrameWriter::write(const Frame& frame) {
   const int i = frame.outcome.frame;
-  geo::write_all(folder_.nodes(i), [&](std::ostream& out) { geo::write_frame_nodes(out, frame.nodes); });
-  if (!frame.obstacles.triangles.empty()) geo::write_all(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
-  geo::write_all(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
+  write(folder_.nodes(i), [&](std::ostream& out) { geo::write_frame_nodes(out, frame.nodes); });
+  if (!frame.obstacles.triangles.empty()) write(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
+  write(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
   if (i == 0) return;  // nothing has happened yet
   const std::string line = line_of(frame.outcome, geo::count_crossings(frame.surface));
   log_ += line + "}\n";

@@ -4,9 +4,12 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <ostream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "io/run_files.h"
 #include "sim/frame_line.h"
@@ -30,18 +33,21 @@ class FrameWriter {
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// Waits while two frames are waiting. Throws what went wrong with an earlier one, OutputError as a rule.
+  /// Waits while many frames are waiting. Throws what went wrong with an earlier one, OutputError as a rule.
   void add(Frame frame);
-  /// Waits until all are written; then the log's text has their lines. Throws as add() does.
+  /// Waits until all are written, and on the disk; then the log's text has their lines. Throws as add() does.
   const std::string& log();
 
  private:
   void run();
   void write(const Frame& frame);
+  void write(const std::string& path, const std::function<void(std::ostream&)>& how);
   void wait_until_waiting(std::unique_lock<std::mutex>& lock, std::size_t most);
 
+  static constexpr std::size_t most_waiting = 4;
   RunFolder folder_;
   std::string log_;
+  std::vector<std::string> written_;  // since log() was called
   bool json_, busy_ = false, ended_ = false;
   std::deque<Frame> waiting_;
   std::exception_ptr error_;

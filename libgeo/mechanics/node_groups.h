@@ -1,4 +1,4 @@
-// Nodes that hang together, in groups of some dozens: the coarse bodies of the preconditioner's second level.
+// Nodes that hang together, in groups of a hundred or so: the coarse bodies of the preconditioner's second level.
 #pragma once
 
 #include <cstdint>

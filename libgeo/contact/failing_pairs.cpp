@@ -1,6 +1,7 @@
 #include "contact/failing_pairs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.h"
 #include "contact/crossing.h"
@@ -81,6 +82,7 @@ void FailingPairs::renew(const std::vector<std::uint8_t>& changed) {
   shut_.clear();
   for (std::uint32_t v = 0; v < asked.size(); ++v)
     if (asked[v] && !opens_out_[v]) shut_.push_back(v);
+  if (!std::exchange(asked_before_, true)) return;  // planes are of what `next` was when they were made
   parallel_for(changed.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       if (changed[t]) planes_.renew_end(t);

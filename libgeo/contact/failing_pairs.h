@@ -23,7 +23,7 @@ class FailingPairs {
                const std::vector<Vec3>& next, double rounding);
 
   /// Of those pairs, which share no vertex of the surface, and of all that share one, that have a triangle marked in `changed`
-  /// (whose end is another than at the call before; at the first all must be): those that cross at the end, by the exact test of crossing.h, or may have passed through each other on the way. That they have not
+  /// (whose end is another than at the call before; at the first all must be, with the end that there was when this was made): those that cross at the end, by the exact test of crossing.h, or may have passed through each other on the way. That they have not
   /// is clear where one direction parts them at both ends, and where they are kept apart. Ascending.
   std::vector<Pair> among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const KeptApart& kept_apart);
 
@@ -40,6 +40,7 @@ class FailingPairs {
   TrianglePlanes planes_;
   std::vector<std::uint8_t> opens_out_;  // per vertex: VertexFans::open_out() at the end
   std::vector<std::uint32_t> shut_;      // vertices of triangles that have changed whose fans do not
+  bool asked_before_ = false;
 };
 
 }  // namespace geo

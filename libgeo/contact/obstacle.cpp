@@ -28,18 +28,22 @@ Eigen::Isometry3d Obstacle::pose(double share) const {
   return p;
 }
 
-void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness) {
+void Obstacle::watch(const Body& body, const SurfaceWeights& weights, std::span<const std::uint8_t> near, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness) {
   const Complex& k = body.surface;
   slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
   rows_.clear();
-  std::vector<std::uint8_t> near(k.surface_vertex_count(), 0);
+  std::vector<std::uint8_t> reached(k.surface_vertex_count(), 0);
   const Eigen::Isometry3d back = from_.inverse();
-  parallel_for(near.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      if (const SurfaceVertexId id(v); k.alive(id) && !weights.row(v).empty()) near[v] = shape_->near(back * (k.point(k.site(id)) + weights.at(v, u)), reach);
+  parallel_for(reached.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const SurfaceVertexId id(v);
+      const auto row = weights.row(v);
+      if (!k.alive(id) || std::none_of(row.begin(), row.end(), [&](const NodeWeight& w) { return near[w.node] != 0; })) continue;
+      reached[v] = shape_->near(back * (k.point(k.site(id)) + weights.at(v, u)), reach);
+    }
   });
-  for (std::size_t v = 0; v < near.size(); ++v) {
-    if (!near[v]) continue;
+  for (std::size_t v = 0; v < reached.size(); ++v) {
+    if (!reached[v]) continue;
     const double pressure = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]);
     rows_.push_back({weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v))});
   }

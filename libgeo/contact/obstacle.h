@@ -22,10 +22,10 @@ class Obstacle : public Potential {
   /// Moves from one pose to the other during the step, its turn even.
   Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
-  /// For a step that begins at displacements u: which vertices may reach the obstacle (those nearer than `reach`), their weights,
-  /// which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth. `firmness`: per node, of what its
+  /// For a step that begins at displacements u: which vertices may reach the obstacle (those nearer than `reach`, of surface that nodes marked in `near`
+  /// carry; one a node), their weights, which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth. `firmness`: per node, of what its
   /// surface is pressed with, times the pressure; empty: 1.
-  void watch(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness = {});
+  void watch(const Body& body, const SurfaceWeights& weights, std::span<const std::uint8_t> near, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness = {});
 
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 

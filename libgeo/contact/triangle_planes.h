@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/fresh_array.h"
 #include "base/vec.h"
 
 namespace geo {
@@ -46,7 +47,7 @@ class TrianglePlanes {
  private:
   std::span<const Triangle> triangles_;
   const std::vector<Vec3>& to_;
-  std::vector<Plane> planes_;
+  FreshArray<Plane> planes_;
 };
 
 }  // namespace geo

@@ -75,17 +75,19 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
     for (std::size_t m = 0; m < 6; ++m)
       for (std::size_t k = 0; k < (s == t ? m + 1 : 6); ++k) matrix_.at(6 * t + k, 6 * s + m) += at[8 * m + k];
   });
-  for (std::size_t g = 0; g < groups_.count(); ++g) {
-    Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
-    for (auto k = first_[g]; k < first_[g + 1]; ++k) {
-      Eigen::Matrix<double, 3, 6> rigid;
-      rigid.leftCols<3>().setIdentity();
-      for (int m = 0; m < 3; ++m) rigid.col(3 + m) = Vec3::Unit(m).cross(arm_[member_[k]]);
-      sum += rigid.transpose() * blocks[member_[k]] * rigid;
+  parallel_for(groups_.count(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+      for (auto k = first_[g]; k < first_[g + 1]; ++k) {
+        Eigen::Matrix<double, 3, 6> rigid;
+        rigid.leftCols<3>().setIdentity();
+        for (int m = 0; m < 3; ++m) rigid.col(3 + m) = Vec3::Unit(m).cross(arm_[member_[k]]);
+        sum += rigid.transpose() * blocks[member_[k]] * rigid;
+      }
+      for (int m = 0; m < 6; ++m)
+        for (int k = 0; k <= m; ++k) matrix_.at(6 * g + static_cast<std::size_t>(k), 6 * g + static_cast<std::size_t>(m)) += float(sum(k, m));
     }
-    for (int m = 0; m < 6; ++m)
-      for (int k = 0; k <= m; ++k) matrix_.at(6 * g + static_cast<std::size_t>(k), 6 * g + static_cast<std::size_t>(m)) += float(sum(k, m));
-  }
+  });
   matrix_.factor();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "simulation/between_bodies.h"
 
 namespace geo {
@@ -13,11 +14,13 @@ Eigen::Isometry3d isometry(const Pose& p) {
   return at;
 }
 
-// The surface is within a support radius of nodes. So what is far from obstacles needs no weights of its surface.
-bool any_near(const RigidShape& shape, const Eigen::Isometry3d& back, const NodeSet& nodes, const std::vector<Vec3>& u, double reach) {
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (shape.near(back * (nodes.position[i] + u[i]), reach + nodes.radius[i])) return true;
-  return false;
+// The surface is within a support radius of its nodes. So what is far from obstacles needs no weights of its surface.
+std::vector<std::uint8_t> near_nodes(const RigidShape& shape, const Eigen::Isometry3d& back, const NodeSet& nodes, const std::vector<Vec3>& u, double reach) {
+  std::vector<std::uint8_t> near(nodes.size());
+  parallel_for(nodes.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) near[i] = shape.near(back * (nodes.position[i] + u[i]), reach + nodes.radius[i]);
+  });
+  return near;
 }
 
 // True when the boxes that bodies may be in during the step meet.
@@ -81,8 +84,8 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
     const double moved = (to.translation() - from.translation()).norm() + shapes_[k]->extent() * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
     const double reach = 2 * dt * (fastest + fall) + moved + spacing;
     acting_.emplace_back(shapes_[k], options, from, to);
-    if (any_near(*shapes_[k], from.inverse(), body.nodes, motion.displacement, reach))
-      acting_.back().watch(body, weights_of(weights, body, solid), motion.displacement, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
+    if (const auto near = near_nodes(*shapes_[k], from.inverse(), body.nodes, motion.displacement, reach); std::find(near.begin(), near.end(), 1) != near.end())
+      acting_.back().watch(body, weights_of(weights, body, solid), near, motion.displacement, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
   }
   if (scene.ground && scene.self_contact) environment.ground = false;
   for (Obstacle& o : acting_)

@@ -67,12 +67,13 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
   const Block block(0.3);
   Random random(3);
   const std::size_t n = block.solid.size();
+  const std::vector<std::uint8_t> all(n, 1);
   for (const bool plane : {true, false}) {
     const auto shape = std::make_shared<RigidShape>(plane ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
     const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
     Obstacle o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
-    o.watch(block.body, block.weights, u, 0.5, 1e-3);
+    o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
     o.begin(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
     for (int i = 0; i < 40; ++i) {
@@ -106,10 +107,11 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
 TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   const Block block(0.3);
   const std::size_t n = block.solid.size();
+  const std::vector<std::uint8_t> all(n, 1);
   const Vec3 place(0.5, 0.45, -0.5);
   Obstacle o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero()), force(n, Vec3::Zero());
-  o.watch(block.body, block.weights, u, 0.5, 1e-3);
+  o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
   o.begin(u, 0, 1);
   o.force(u, force);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();

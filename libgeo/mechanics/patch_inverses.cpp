@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/fresh_array.h"
+#include "base/parallel.h"
 #include "mechanics/patch_lanes.h"
 
 namespace geo {
@@ -14,21 +14,22 @@ void PatchInverses::begin(const NodePatches& patches) {
     const std::size_t nodes = patches.nodes(p).size();
     node_.push_back(node_.back() + nodes), first_.push_back(first_.back() + 3 * nodes * padded(3 * nodes));
   }
-  matrix_.clear(), matrix_.reserve(first_.back());
-  give_in_large_pages(matrix_.data(), first_.back() * sizeof(std::uint16_t));
-  matrix_.resize(first_.back()), besides_.resize(node_.back()), moduli_.resize(patches.count()), known_.assign(patches.count(), 0);
+  matrix_ = FreshArray<std::uint16_t>(first_.back());
+  besides_.resize(node_.back()), moduli_.resize(patches.count()), known_.assign(patches.count(), 0);
 }
 
 void PatchInverses::follow(const NodePatches& patches, std::span<const std::uint32_t> was) {
   const PatchInverses before = std::exchange(*this, {});
   begin(patches);
-  for (std::size_t p = 0; p < was.size(); ++p) {
-    const std::size_t o = was[p];
-    if (o >= before.count() || !before.known_[o]) continue;
-    std::copy(&before.matrix_[before.first_[o]], &before.matrix_[0] + before.first_[o + 1], matrix(p));
-    std::copy(&before.besides_[before.node_[o]], &before.besides_[0] + before.node_[o + 1], &besides_[node_[p]]);
-    moduli_[p] = before.moduli_[o], known_[p] = 1;
-  }
+  parallel_for(was.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::size_t o = was[p];
+      if (o >= before.count() || !before.known_[o]) continue;
+      std::copy_n(before.matrix(o), before.first_[o + 1] - before.first_[o], matrix(p));
+      std::copy(&before.besides_[before.node_[o]], &before.besides_[0] + before.node_[o + 1], &besides_[node_[p]]);
+      moduli_[p] = before.moduli_[o], known_[p] = 1;
+    }
+  });
 }
 
 bool PatchInverses::knows(std::size_t p, std::span<const Besides> besides, const Moduli& moduli) const {

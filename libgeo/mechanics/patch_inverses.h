@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/fresh_array.h"
 #include "mechanics/materials.h"
 #include "mechanics/node_patches.h"
 
@@ -36,7 +37,7 @@ class PatchInverses {
 
  private:
   std::vector<std::size_t> node_, first_;  // per patch and one more: of its nodes, of its numbers
-  std::vector<std::uint16_t> matrix_;
+  FreshArray<std::uint16_t> matrix_;
   std::vector<Besides> besides_;           // per node of a patch
   std::vector<Moduli> moduli_;             // per patch
   std::vector<char> known_;

@@ -1,5 +1,6 @@
 #include "mechanics/patch_motion.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -73,8 +74,10 @@ void PatchMotion::invert(std::size_t patch, std::span<const PatchInverses::Besid
   invert_positive(size, matrix.data());
   inverse_.tell(patch, plain, moduli_of(patch));
   std::uint16_t* const to = inverse_.matrix(patch);
-  for (std::size_t i = 0; i < size; ++i)
+  for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j <= i; ++j) to[i * row + j] = to[j * row + i] = half(share[i / 3] * share[j / 3] * matrix[i * row + j]);
+    std::fill(to + i * row + size, to + (i + 1) * row, std::uint16_t(0));
+  }
 }
 
 void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> patches) {

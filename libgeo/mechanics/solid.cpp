@@ -62,8 +62,8 @@ void Solid::settle(const Body& body, State& state) {
   const auto changes = galerkin_->settle(body, points_);
   if (!changes) return;
   points_.set_materials(materials_);
-  groups_ = NodeGroups(position_, rows_, part_, parts_);
-  inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, points_, *changes));
+  at_once([&] { groups_ = NodeGroups(position_, rows_, part_, parts_); },
+          [&] { inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, points_, *changes)); });
   const auto& kept = changes->kept;
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());

@@ -46,17 +46,19 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
   if (env.ground)
     for (std::size_t i = 0; i < n_; ++i)
       if (depth(env, i, s_.position_[i] + state.displacement[i]) > 0) drag_[i] = s_.mass_[i] * env.friction / (0.01 * dt);
-  std::vector<double> values;
   const bool viscous = s_.materials_.any([](const Material& m) { return m.viscosity > 0; });
-  for (std::size_t b = 0; b < weight_.size(); ++b) {
-    const auto& points = s_.points_.blocks[b].points;
-    weight_[b].assign((points.size() + 7) / 8 * 8, 0);
-    for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
-    if (viscous) {
+  if (viscous) before_.resize(weight_.size());
+  parallel_for(weight_.size(), 4, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> values;
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto& points = s_.points_.blocks[b].points;
+      weight_[b].assign((points.size() + 7) / 8 * 8, 0);
+      for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
+      if (!viscous) continue;
       s_.points_.values(b, state.displacement, values);
-      point_gradients(s_.points_.blocks[b], values.data(), before_.emplace_back());
+      point_gradients(s_.points_.blocks[b], values.data(), before_[b]);
     }
-  }
+  });
 }
 
 void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force) {

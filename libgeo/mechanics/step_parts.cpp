@@ -1,6 +1,7 @@
 #include "mechanics/step_parts.h"
 
 #include "base/joined.h"
+#include "base/parallel.h"
 
 namespace geo {
 namespace {
@@ -14,9 +15,17 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
     : all_patches_(patches), of_(component.size(), 0), node_(component.size()) {
   Joined joined(components);
   for (const auto& [a, b] : coupled) joined.join(a, b);
+  std::vector<char> of_one(points.blocks.size());
+  parallel_for(of_one.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto& nodes = points.blocks[b].nodes;
+      of_one[b] = std::all_of(nodes.begin(), nodes.end(), [&](auto j) { return component[j] == component[nodes[0]]; });
+    }
+  });
   // A point may see nodes that see nothing of each other.
-  for (const PointBlock& block : points.blocks) {
-    if (std::all_of(block.nodes.begin(), block.nodes.end(), [&](auto j) { return component[j] == component[block.nodes[0]]; })) continue;
+  for (std::size_t b = 0; b < of_one.size(); ++b) {
+    const PointBlock& block = points.blocks[b];
+    if (of_one[b]) continue;
     for (std::size_t i = 0; i < block.points.size(); ++i)
       for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) joined.join(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
   }
@@ -30,9 +39,10 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
   for (std::uint32_t i = 0; i < of_.size(); ++i) node_[next[of_[i]]++] = i;
   block_first_.push_back(0);
   std::vector<std::uint32_t> here;
-  for (const PointBlock& block : points.blocks) {
+  for (std::size_t b = 0; b < of_one.size(); ++b) {
+    const std::span nodes(points.blocks[b].nodes);
     here.clear();
-    for (const auto j : block.nodes)
+    for (const auto j : of_one[b] ? nodes.first(std::min<std::size_t>(1, nodes.size())) : nodes)
       if (here.empty() || of_[j] != here.back()) here.push_back(of_[j]);
     std::sort(here.begin(), here.end());
     block_part_.insert(block_part_.end(), here.begin(), std::unique(here.begin(), here.end()));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 
@@ -18,51 +19,79 @@ double squared_distance(const Box3& box, const Vec3& p) {
 
 }  // namespace
 
+// Halves ranges of triangles along the longest side of their middles' box.
+struct TriangleBvh::Builder {
+  struct Job {
+    std::uint32_t node, begin, end;
+  };
+  std::vector<Box3> boxes;
+  std::vector<Vec3> centers;
+  std::vector<std::uint32_t>& order;
+
+  // Grows `nodes` from the job's; ranges below `least` are left for later where there is a list for them.
+  void grow(const Job& root, std::vector<Node>& nodes, std::uint32_t least = 0, std::vector<Job>* later = nullptr) const {
+    std::vector<Job> jobs{root};
+    while (!jobs.empty()) {
+      const Job job = jobs.back();
+      jobs.pop_back();
+      if (later && job.end - job.begin < least) {
+        later->push_back(job);
+        continue;
+      }
+      Box3 box, spread;
+      for (auto i = job.begin; i < job.end; ++i) box.add(boxes[order[i]]), spread.add(centers[order[i]]);
+      nodes[job.node].box = box;
+      if (job.end - job.begin <= leaf_size) {
+        nodes[job.node].first = job.begin;
+        nodes[job.node].count = job.end - job.begin;
+        continue;
+      }
+      int axis = 0;
+      (spread.hi - spread.lo).maxCoeff(&axis);
+      // Whole blocks of lanes stay together, and whole blocks of these.
+      const auto count = job.end - job.begin;
+      std::uint32_t unit = 1;
+      while (unit < (count + TriangleLanes::width - 1) / TriangleLanes::width) unit *= TriangleLanes::width;
+      const auto middle = job.begin + ((count + unit - 1) / unit + 1) / 2 * unit;
+      std::nth_element(order.begin() + job.begin, order.begin() + middle, order.begin() + job.end, [&](auto a, auto b) {
+        return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
+      });
+      const auto left = static_cast<std::uint32_t>(nodes.size());
+      nodes[job.node].first = left;
+      nodes.emplace_back();
+      nodes.emplace_back();
+      jobs.push_back({left, job.begin, middle});
+      jobs.push_back({left + 1, middle, job.end});
+    }
+  }
+};
+
 TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles) : corners_(triangles.begin(), triangles.end()) {
   const auto n = static_cast<std::uint32_t>(corners_.size());
   if (n == 0) return;
-  std::vector<Box3> boxes(n);
-  std::vector<Vec3> centers(n);
+  Builder builder{std::vector<Box3>(n), std::vector<Vec3>(n), order_};
   for (std::uint32_t i = 0; i < n; ++i) {
-    boxes[i] = box_of(corners_[i][0], corners_[i][1], corners_[i][2]);
-    centers[i] = boxes[i].center();
-    box_.add(boxes[i]);
+    builder.boxes[i] = box_of(corners_[i][0], corners_[i][1], corners_[i][2]);
+    builder.centers[i] = builder.boxes[i].center();
+    box_.add(builder.boxes[i]);
   }
   order_.resize(n);
   std::iota(order_.begin(), order_.end(), 0u);
   nodes_.reserve(n);
   nodes_.emplace_back();
-  struct Job {
-    std::uint32_t node, begin, end;
-  };
-  std::vector<Job> jobs{{0, 0, n}};
-  while (!jobs.empty()) {
-    const Job job = jobs.back();
-    jobs.pop_back();
-    Box3 box, spread;
-    for (auto i = job.begin; i < job.end; ++i) box.add(boxes[order_[i]]), spread.add(centers[order_[i]]);
-    nodes_[job.node].box = box;
-    if (job.end - job.begin <= leaf_size) {
-      nodes_[job.node].first = job.begin;
-      nodes_[job.node].count = job.end - job.begin;
-      continue;
-    }
-    int axis = 0;
-    (spread.hi - spread.lo).maxCoeff(&axis);
-    // Whole blocks of lanes stay together, and whole blocks of these.
-    const auto count = job.end - job.begin;
-    std::uint32_t unit = 1;
-    while (unit < (count + TriangleLanes::width - 1) / TriangleLanes::width) unit *= TriangleLanes::width;
-    const auto middle = job.begin + ((count + unit - 1) / unit + 1) / 2 * unit;
-    std::nth_element(order_.begin() + job.begin, order_.begin() + middle, order_.begin() + job.end, [&](auto a, auto b) {
-      return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
-    });
-    const auto left = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[job.node].first = left;
-    nodes_.emplace_back();
-    nodes_.emplace_back();
-    jobs.push_back({left, job.begin, middle});
-    jobs.push_back({left + 1, middle, job.end});
+  constexpr std::uint32_t many = 1024, shares = 16;
+  std::vector<Builder::Job> later;
+  builder.grow({0, 0, n}, nodes_, std::max(many, n) / shares, n < many ? nullptr : &later);
+  std::vector<std::vector<Node>> below(later.size());
+  parallel_for(later.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) below[k].emplace_back(), builder.grow({0, later[k].begin, later[k].end}, below[k]);
+  });
+  for (std::size_t k = 0; k < later.size(); ++k) {
+    const auto offset = static_cast<std::uint32_t>(nodes_.size() - 1);
+    for (Node& node : below[k])
+      if (node.count == 0) node.first += offset;
+    nodes_[later[k].node] = below[k][0];
+    nodes_.insert(nodes_.end(), below[k].begin() + 1, below[k].end());
   }
   lanes_ = TriangleLanes(corners_, order_);
 }

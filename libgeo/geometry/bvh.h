@@ -45,6 +45,7 @@ class TriangleBvh {
     Box3 box;
     std::uint32_t first = 0, count = 0;  // count 0: children are first and first + 1
   };
+  struct Builder;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
   std::vector<std::array<Vec3, 3>> corners_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 
@@ -17,9 +18,11 @@ template <class T>
 class FreshArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
+  static constexpr std::align_val_t alignment{alignof(T) > alignof(std::max_align_t) ? alignof(T) : alignof(std::max_align_t)};
+
  public:
   FreshArray() = default;
-  explicit FreshArray(std::size_t size) : at_(static_cast<T*>(::operator new(size * sizeof(T)))), size_(size) { give_in_large_pages(data(), size * sizeof(T)); }
+  explicit FreshArray(std::size_t size) : at_(static_cast<T*>(::operator new(size * sizeof(T), alignment))), size_(size) { give_in_large_pages(data(), size * sizeof(T)); }
   std::size_t size() const { return size_; }
   T* data() { return at_.get(); }
   const T* data() const { return at_.get(); }
@@ -33,7 +36,7 @@ class FreshArray {
 
  private:
   struct Release {
-    void operator()(T* at) const { ::operator delete(at); }
+    void operator()(T* at) const { ::operator delete(at, alignment); }
   };
   std::unique_ptr<T, Release> at_;
   std::size_t size_ = 0;

@@ -191,6 +191,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
 void flush_to_disk(std::span<const std::string> paths) {
   for (const std::string& path : paths) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0 && errno == ENOENT) continue;
     int error = fd < 0 || ::fsync(fd) != 0 ? errno : 0;
     if (fd >= 0 && ::close(fd) != 0 && error == 0) error = errno;
     if (error != 0) throw OutputError(path + ": cannot be written (" + reason(error) + ")");

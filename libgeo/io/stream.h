@@ -21,7 +21,8 @@ enum class Kept { on_disk, by_system };
 /// behind and what was there before stays. "-" writes to standard output. Throws OutputError.
 void write_all(const std::string& path, const std::function<void(std::ostream&)>& write, Kept kept = Kept::on_disk);
 
-/// After it, what write_all() left with the system is on the disk. Many files at once cost little more than one. Throws OutputError.
+/// After it, what write_all() left with the system is on the disk. Many files at once cost little more than one; what somebody has taken away since
+/// is nobody's loss. Throws OutputError.
 void flush_to_disk(std::span<const std::string> paths);
 
 /// Throws OutputError, as write_all would, where no file of this name can be made: to be called before long work.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
-
 namespace geo {
 namespace {
 
@@ -33,14 +31,6 @@ class Tracer {
       s.gap = (s.material - body_.nodes.position[place.anchor.index()]).norm() - body_.nodes.radius[place.anchor.index()];
     }
     return s;
-  }
-
-  std::vector<Sample> corners() const {
-    std::vector<Sample> all(blade_.points.size());
-    parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) all[i] = at(double(i));
-    });
-    return all;
   }
 
   // What is between two samples, both left out, as finely as the mapping asks for.
@@ -94,15 +84,11 @@ bool follows(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
 
 std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
   const Tracer tracer(map, body, blade, pose);
-  const std::vector<Sample> corners = tracer.corners();
-  std::vector<std::vector<Sample>> inside(corners.size() - 1);
-  parallel_for(inside.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) tracer.between(corners[i], corners[i + 1], 6, inside[i]);
-  });
-  std::vector<Sample> samples{corners[0]};
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    samples.insert(samples.end(), inside[i].begin(), inside[i].end());
-    samples.push_back(corners[i + 1]);
+  std::vector<Sample> samples{tracer.at(0)};
+  for (std::size_t i = 1; i < blade.points.size(); ++i) {
+    const Sample last = samples.back(), next = tracer.at(double(i));
+    tracer.between(last, next, 6, samples);
+    samples.push_back(next);
   }
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
@@ -126,7 +112,7 @@ std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& b
 std::vector<EdgePoint> closed_run(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
   const Tracer tracer(map, body, blade, pose);
   std::vector<EdgePoint> run;
-  for (const Sample& s : tracer.corners()) run.push_back(s.point());
+  for (std::size_t i = 0; i < blade.points.size(); ++i) run.push_back(tracer.at(double(i)).point());
   return run;
 }
 

@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "geometry/distance.h"
 #include "mechanics/deformation.h"
@@ -39,29 +38,23 @@ bool PointMap::counts(FaceId f) const {
   return !nodes.empty() && counted_[nodes[0].first.index()];
 }
 
-// The nodes that may count at a point of the world, and half their supports about one of the material.
-struct PointMap::Round {
-  std::optional<Vec3> material;
-  std::vector<std::uint32_t> node;
-  std::vector<double> share;  // of their weight, by how near they are in the world
-};
-
-void PointMap::look_round(const Vec3& y, const Vec3& x, Round& round) const {
-  if (round.material && (*round.material - x).norm() < 0.5 * reach_) return;
-  round = {x, {}, {}};
+// The nodes that may count at y in the world, and half their supports about x in the material.
+void PointMap::look_round(const Vec3& y, const Vec3& x) const {
+  if (round_.world == y && (round_.material - x).norm() < 0.5 * reach_) return;
+  round_ = {y, x, {}, {}};
   std::vector<std::uint32_t> near;
   body_.grid.within(body_.nodes.position, x, 1.5 * reach_, near);
   for (const auto i : near)
-    if (const double share = fade((y - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0 && counts(i)) round.node.push_back(i), round.share.push_back(share);
+    if (const double share = fade((y - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0 && counts(i)) round_.node.push_back(i), round_.share.push_back(share);
 }
 
-bool PointMap::forward(const Vec3& y, const Vec3& x, Round& round, Vec3& to, Mat3& slope) const {
-  look_round(y, x, round);
+bool PointMap::forward(const Vec3& y, const Vec3& x, Vec3& to, Mat3& slope) const {
+  look_round(y, x);
   double total = 0;
   to.setZero(), slope.setZero();
-  for (std::size_t k = 0; k < round.node.size(); ++k) {
-    const auto i = round.node[k];
-    const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * round.share[k];
+  for (std::size_t k = 0; k < round_.node.size(); ++k) {
+    const auto i = round_.node[k];
+    const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * round_.share[k];
     if (!(w > 0)) continue;
     total += w, slope += w * gradient_[i];
     to += w * (u_[i] + gradient_[i] * (x - body_.nodes.position[i]));
@@ -71,11 +64,11 @@ bool PointMap::forward(const Vec3& y, const Vec3& x, Round& round, Vec3& to, Mat
   return true;
 }
 
-Vec3 PointMap::solve(const Vec3& y, Vec3 x, double enough, Round& round) const {
+Vec3 PointMap::solve(const Vec3& y, Vec3 x, double enough) const {
   Vec3 best = x, to;
   Mat3 slope;
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 24 && forward(y, x, round, to, slope); ++i) {
+  for (int i = 0; i < 24 && forward(y, x, to, slope); ++i) {
     const Vec3 rest = y - to;
     if (!(rest.norm() < least)) break;
     least = rest.norm(), best = x;
@@ -86,25 +79,23 @@ Vec3 PointMap::solve(const Vec3& y, Vec3 x, double enough, Round& round) const {
 }
 
 Vec3 PointMap::deformed(SurfaceVertexId v) const {
-  {
-    const std::lock_guard lock(knowing_);
-    if (const auto known = deformed_.find(v.value); known != deformed_.end()) return known->second;
+  const auto [it, fresh] = deformed_.try_emplace(v.value);
+  if (fresh) {
+    std::vector<std::pair<NodeId, double>> nodes;
+    bound_nodes(body_, v, nodes);
+    const Vec3 x = body_.surface.point(body_.surface.site(v));
+    it->second = x + (nodes.empty() ? Vec3(Vec3::Zero()) : displacement_at(x, nodes, body_.nodes, u_, gradient_));
   }
-  std::vector<std::pair<NodeId, double>> nodes;
-  bound_nodes(body_, v, nodes);
-  const Vec3 x = body_.surface.point(body_.surface.site(v));
-  const Vec3 at = x + (nodes.empty() ? Vec3(Vec3::Zero()) : displacement_at(x, nodes, body_.nodes, u_, gradient_));
-  const std::lock_guard lock(knowing_);
-  return deformed_.try_emplace(v.value, at).first->second;
+  return it->second;
 }
 
 // What Eq. 1 and the deformed triangles of the skin near y differ by: the nearest ones say most, and one that holds y all.
-Vec3 PointMap::on_skin(const Vec3& y, const Vec3& x, double reach, Round& round) const {
+Vec3 PointMap::on_skin(const Vec3& y, const Vec3& x, double reach) const {
   Vec3 to;
   Mat3 slope;
   std::vector<FaceId> faces;
   body_.surface.near(Box3{x, x}.grown(2 * reach), faces);
-  if (faces.empty() || !forward(y, x, round, to, slope)) return Vec3::Zero();
+  if (faces.empty() || !forward(y, x, to, slope)) return Vec3::Zero();
   const Mat3 back = inverse_of(slope);
   Vec3 sum = Vec3::Zero();
   double total = 0, least = reach;
@@ -143,9 +134,8 @@ PointMap::Place PointMap::material(const Vec3& y) const {
     const double agreed = w * fade((x - guess).norm() / nodes.radius[a], 0.5, 1);
     sum += agreed * x, total += agreed;
   }
-  Round round;
-  const Vec3 x = solve(y, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a], round);
-  return {x + on_skin(y, x, 0.5 * nodes.spacing[a], round), NodeId(a), true};
+  const Vec3 x = solve(y, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a]);
+  return {x + on_skin(y, x, 0.5 * nodes.spacing[a]), NodeId(a), true};
 }
 
 }  // namespace geo

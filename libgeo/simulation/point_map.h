@@ -2,7 +2,6 @@
 #pragma once
 
 #include <limits>
-#include <mutex>
 #include <unordered_map>
 
 #include "body/body.h"
@@ -28,18 +27,16 @@ class PointMap {
     NodeId anchor;       ///< invalid: no node is near
     bool within = false; ///< of the anchor's support; else only the anchor's translation is meant
   };
-  /// From any thread.
   Place material(const Vec3& world) const;
 
  private:
-  struct Round;
-  void look_round(const Vec3& world, const Vec3& x, Round& round) const;
+  void look_round(const Vec3& world, const Vec3& x) const;
   bool counts(std::size_t node) const { return counted_.empty() || counted_[node]; }
   bool counts(FaceId f) const;
   /// Where Eq. 1 puts x, its slope there; false where no node counts.
-  bool forward(const Vec3& world, const Vec3& x, Round& round, Vec3& to, Mat3& slope) const;
-  Vec3 solve(const Vec3& world, Vec3 x, double enough, Round& round) const;
-  Vec3 on_skin(const Vec3& world, const Vec3& x, double reach, Round& round) const;
+  bool forward(const Vec3& world, const Vec3& x, Vec3& to, Mat3& slope) const;
+  Vec3 solve(const Vec3& world, Vec3 x, double enough) const;
+  Vec3 on_skin(const Vec3& world, const Vec3& x, double reach) const;
   Vec3 deformed(SurfaceVertexId v) const;
 
   const Body& body_;
@@ -49,8 +46,13 @@ class PointMap {
   double reach_;             // the largest support radius
   std::vector<Vec3> world_;  // per node
   NodeGrid grid_;            // of those near `about`
-  mutable std::mutex knowing_;
   mutable std::unordered_map<std::uint32_t, Vec3> deformed_;  // surface vertices asked for
+  struct Round {
+    Vec3 world = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), material;
+    std::vector<std::uint32_t> node;
+    std::vector<double> share;  // of their weight, by how near they are in the world
+  };
+  mutable Round round_;  // looked at last
 };
 
 }  // namespace geo

@@ -83,6 +83,23 @@ TEST_CASE("whatever a motion wants, nothing crosses at its end", "[campaign]") {
   }
 }
 
+TEST_CASE("a guess where nothing fails is the end, and one where something does is mended", "[campaign]") {
+  const auto [first, count] = seeds(40);
+  std::size_t held = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const Sheets s(random);
+    const auto end = s.move();
+    const auto again = [&](const std::vector<Vec3>& guess) { return move_without_crossing({s.triangles, s.together, s.from, s.to, 1e-4, 2e-3, &guess}, false); };
+    held += again(end) == end;
+    std::vector<Vec3> worse = s.to;
+    for (Vec3& x : worse) x += 0.01 * Sheets::edge * random.direction();
+    CHECK(s.crossings(again(worse)) == 0);
+  }
+  CHECK(held > static_cast<std::size_t>(count) * 9 / 10);  // where all gave way; what was carried along did not end as it was mended
+}
+
 TEST_CASE("what is clear of everything goes where it wants to, to the bit") {
   Soup s;
   s.add(make_sphere(2), {0, 0, 0}, 1);

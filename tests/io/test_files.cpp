@@ -294,6 +294,11 @@ TEST_CASE("an output appears whole or not at all") {
                   GeometryError);
   CHECK(read_all(path) == "first");
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+  write_all(path, [](std::ostream& out) { out << "third"; }, Kept::by_system);
+  CHECK(read_all(path) == "third");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+  CHECK_NOTHROW(flush_to_disk(std::vector<std::string>{path, (folder / "taken away").string()}));
+  CHECK_THROWS_AS(flush_to_disk(std::vector<std::string>{path + "/none"}), OutputError);
   CHECK_THROWS_AS(write_all("/dev/full", [](std::ostream& out) { out << "x"; }), OutputError);
   CHECK_THROWS_AS(write_all((folder / "none" / "out").string(), [](std::ostream& out) { out << "x"; }), OutputError);
   CHECK_THROWS_AS(read_all((folder / "missing").string()), MissingInputError);

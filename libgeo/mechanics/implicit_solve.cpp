@@ -116,10 +116,9 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
   });
 }
 
-// For each part at work, until what is left is a seventh in the norm that counts, and what the preconditioner would still add is less than the accuracy
-// asks for. One of the two will do: the first where Newton will go on anyhow, the second where it has made a step. `left`: that addition, over the
-// nodes' spacing.
-int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
+// For each part at work, until what the preconditioner would still add is less than the accuracy asks for, or, where Newton will go on anyhow, until
+// what is left is a quarter in the norm that counts. `left`: that addition, over the nodes' spacing.
+int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();
   std::vector<char> working = all;
   std::vector<Vec3> r(n_), z(n_), p(n_, Vec3::Zero()), hp(n_);
@@ -136,8 +135,8 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
   int k = 0;
   for (; k < 500; ++k) {
     for (std::size_t q = 0; q < working.size(); ++q) {
-      const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.02 * begun[q], little = k > 0 && left[q] < 0.5 * accuracy_;
-      if (working[q] && (!(rz[q] > 0) || (reduced && (little || far_from_done)) || (little && !first))) working[q] = 0;
+      const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.05 * begun[q], little = k > 0 && left[q] < 0.5 * accuracy_;
+      if (working[q] && (!(rz[q] > 0) || little || (reduced && far_from_done))) working[q] = 0;
     }
     if (std::find(working.begin(), working.end(), 1) == working.end()) break;
     parts_.choose(working);

@@ -177,12 +177,12 @@ bool ImplicitStep::run(StepReport& report) {
     // The stiffness of points is used again while they have hardly strained since.
     wanted.assign(parts, 0);
     for (std::size_t p = 0; p < parts; ++p)
-      if (active[p] && moved[p] > 0.15) wanted[p] = 1, moved[p] = 0;
+      if (active[p] && moved[p] > 0.1) wanted[p] = 1, moved[p] = 0;
     parts_.choose(wanted);
     linearise();
     parts_.choose(active);
     precondition();
-    report.cg += solve(force, newton == 0, direction, moved, left);
+    report.cg += solve(force, direction, moved, left);
     ++report.newton;
     keep_momentum(direction);
     most(direction, longest);

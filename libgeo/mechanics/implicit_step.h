@@ -39,7 +39,7 @@ class ImplicitStep {
     const auto sum = s_.points_.sum<4>(product_.data(), node);
     return {sum[0], sum[1], sum[2]};
   }
-  int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
+  int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
   void most(const std::vector<Vec3>& moved, std::vector<double>& most) const;
   void keep_momentum(std::vector<Vec3>& direction) const;
   double trusted() const { return std::min(accuracy_, 0.01); }

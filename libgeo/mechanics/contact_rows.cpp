@@ -60,21 +60,13 @@ void ContactRows::read() {
   });
 }
 
-void ContactRows::add_product(const std::vector<Vec3>& p, std::vector<Vec3>& out) const {
-  if (active_.empty()) return;
-  std::vector<Eigen::Vector4f> pull(active_.size());
+void ContactRows::multiply(const std::vector<Vec3>& p) {
+  pull_.resize(active_.size());
   parallel_for(active_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t a = begin; a < end; ++a) {
       Vec3 way = Vec3::Zero();
       for (auto k = first_own_[a]; k < first_own_[a + 1]; ++k) way += double(own_[k].weight) * p[own_[k].of];
-      pull[a] << (curvature_[active_[a]] * way).cast<float>(), 0;
-    }
-  });
-  parallel_for(p.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      for (auto i = first_share_[n]; i < first_share_[n + 1]; ++i) sum += shares_[i].weight * pull[shares_[i].of];
-      out[n] += sum.head<3>().cast<double>();
+      pull_[a] << (curvature_[active_[a]] * way).cast<float>(), 0;
     }
   });
 }

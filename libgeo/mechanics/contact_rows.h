@@ -18,8 +18,13 @@ class ContactRows {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(std::span<const std::uint32_t> part) const;
   /// Takes over the curvatures of the potentials' last force().
   void read();
-  /// Adds ∂²E/∂u² p.
-  void add_product(const std::vector<Vec3>& p, std::vector<Vec3>& out) const;
+  /// ∂²E/∂u² p; then what a node has of it.
+  void multiply(const std::vector<Vec3>& p);
+  Vec3 product_at(std::size_t node) const {
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    for (auto i = first_share_[node]; i < first_share_[node + 1]; ++i) sum += shares_[i].weight * pull_[shares_[i].of];
+    return sum.head<3>().cast<double>();
+  }
   /// Adds for each node a 3×3 block, N/m, for a preconditioner: that of ∂²E/∂u², and more where a row's weight is spread over many nodes, as those near
   /// each other move together.
   void add_blocks(std::vector<Mat3>& out) const;
@@ -36,6 +41,7 @@ class ContactRows {
   std::vector<std::uint32_t> active_;
   std::vector<std::size_t> first_own_, first_share_;
   std::vector<Share> own_, shares_;
+  std::vector<Eigen::Vector4f> pull_;  // of each that is active: what it has for its nodes, but for their weights
 };
 
 }  // namespace geo

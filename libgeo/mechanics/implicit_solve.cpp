@@ -105,28 +105,34 @@ void ImplicitStep::elastic_product(const std::vector<Vec3>& p) {
 // out = K p, and for each part at work p · K p.
 void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature) {
   elastic_product(p);
-  const auto elastic = [&](std::size_t i) -> Vec3 { return is_fixed(env_, i) ? Vec3(Vec3::Zero()) : Vec3(elastic_at(i) + local_[i] * p[i]); };
-  if (env_.contact.empty() && !s_.penalty_) return parts_.sums(curvature, 0.0, [&](std::size_t i) { return p[i].dot(out[i] = elastic(i)); });
-  parts_.each_node([&](std::size_t i) { out[i] = elastic(i); });
-  if (s_.penalty_) s_.penalty_->add(s_.rows_, p, &out);
-  rows_.add_product(p, out);
+  rows_.multiply(p);
+  const auto sum = [&](std::size_t i) -> Vec3 { return elastic_at(i) + local_[i] * p[i] + rows_.product_at(i); };
+  if (s_.penalty_) {
+    parts_.each_node([&](std::size_t i) { out[i] = sum(i); });
+    s_.penalty_->add(s_.rows_, p, &out);
+  }
   parts_.sums(curvature, 0.0, [&](std::size_t i) {
     if (is_fixed(env_, i)) out[i].setZero();
+    else if (!s_.penalty_) out[i] = sum(i);
     return p[i].dot(out[i]);
   });
 }
 
 // For each part at work, until what the preconditioner would still add is less than the accuracy asks for, or, where Newton will go on anyhow, until
-// what is left is a quarter in the norm that counts. `left`: that addition, over the nodes' spacing.
-int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
+// what is left is a quarter in the norm that counts. Of a step's first direction a third may be left in any case: a guess doubles what the steps before
+// have left, and what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
+int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();
   std::vector<char> working = all;
   std::vector<Vec3> r(n_), z(n_), p(n_, Vec3::Zero()), hp(n_);
   std::vector<double> rz, next, curvature, along(parts_.count()), begun, far(parts_.count(), 0);
   const auto improve = [&](std::vector<double>& product) {
     at_once([&] { coarse_->solve(r, parts_); }, [&] { patches_->solve(r, parts_.patches()); });
-    parts_.sums(product, 0.0, [&](std::size_t i) { return r[i].dot(z[i] = patches_->at(i) + coarse_->at(i)); });
-    most(z, left);
+    parts_.sums_and_most(product, left, [&](std::size_t i) {
+      z[i] = patches_->at(i) + coarse_->at(i);
+      return std::pair(r[i].dot(z[i]), of_spacing(z, i));
+    });
+    take_roots(left);
   };
   parts_.each_node([&](std::size_t i) { x[i].setZero(), r[i] = force[i]; });
   improve(rz);
@@ -136,7 +142,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, co
   for (; k < 500; ++k) {
     for (std::size_t q = 0; q < working.size(); ++q) {
       const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.05 * begun[q], little = k > 0 && left[q] < 0.5 * accuracy_;
-      if (working[q] && (!(rz[q] > 0) || little || (reduced && far_from_done))) working[q] = 0;
+      if (working[q] && (!(rz[q] > 0) || (little && (!first || rz[q] <= 0.1 * begun[q])) || (reduced && far_from_done))) working[q] = 0;
     }
     if (std::find(working.begin(), working.end(), 1) == working.end()) break;
     parts_.choose(working);
@@ -146,11 +152,12 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, co
       along[q] = working[q] ? rz[q] / curvature[q] : 0;
     }
     parts_.choose(working);
-    parts_.each_node([&](std::size_t i) {
+    parts_.most(far, [&](std::size_t i) {
       const double alpha = along[parts_.of(i)];
       x[i] += alpha * p[i], r[i] -= alpha * hp[i];
+      return of_spacing(x, i);
     });
-    most(x, far);
+    take_roots(far);
     improve(next);
     parts_.each_node([&](std::size_t i) { p[i] = z[i] + next[parts_.of(i)] / rz[parts_.of(i)] * p[i]; });
     for (std::size_t q = 0; q < working.size(); ++q)
@@ -162,9 +169,13 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, co
 
 // Of the nodes' spacing, for each part at work.
 void ImplicitStep::most(const std::vector<Vec3>& moved, std::vector<double>& most) const {
-  parts_.most(most, [&](std::size_t i) { return moved[i].squaredNorm() / (s_.spacing_[i] * s_.spacing_[i]); });
-  for (std::size_t p = 0; p < most.size(); ++p)
-    if (parts_.chosen()[p]) most[p] = std::sqrt(most[p]);
+  parts_.most(most, [&](std::size_t i) { return of_spacing(moved, i); });
+  take_roots(most);
+}
+
+void ImplicitStep::take_roots(std::vector<double>& squares) const {
+  for (std::size_t p = 0; p < squares.size(); ++p)
+    if (parts_.chosen()[p]) squares[p] = std::sqrt(squares[p]);
 }
 
 std::vector<Vec3> ImplicitStep::product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) {

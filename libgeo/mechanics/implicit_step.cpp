@@ -182,7 +182,7 @@ bool ImplicitStep::run(StepReport& report) {
     linearise();
     parts_.choose(active);
     precondition();
-    report.cg += solve(force, direction, moved, left);
+    report.cg += solve(force, newton == 0, direction, moved, left);
     ++report.newton;
     keep_momentum(direction);
     most(direction, longest);

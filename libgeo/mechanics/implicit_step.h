@@ -39,8 +39,10 @@ class ImplicitStep {
     const auto sum = s_.points_.sum<4>(product_.data(), node);
     return {sum[0], sum[1], sum[2]};
   }
-  int solve(const std::vector<Vec3>& force, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
+  int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
   void most(const std::vector<Vec3>& moved, std::vector<double>& most) const;
+  double of_spacing(const std::vector<Vec3>& moved, std::size_t node) const { return moved[node].squaredNorm() / (s_.spacing_[node] * s_.spacing_[node]); }
+  void take_roots(std::vector<double>& squares) const;
   void keep_momentum(std::vector<Vec3>& direction) const;
   double trusted() const { return std::min(accuracy_, 0.01); }
   Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -51,11 +52,24 @@ class StepParts {
   /// The same of the largest, where none is negative; NaN is larger than any.
   template <class Term>
   void most(std::vector<double>& most, const Term& term) const {
-    const auto larger = [](double& most, double x) { most = most >= x ? most : most != most ? most : x; };
-    reduce(most, 0.0, [&](double& own, std::uint32_t node) { larger(own, term(node)); }, larger);
+    reduce(most, 0.0, [&](double& own, std::uint32_t node) { keep_larger(own, term(node)); }, keep_larger);
+  }
+  /// Both at once: of what term(node) returns, the first is summed, of the second there is the largest.
+  template <class Term>
+  void sums_and_most(std::vector<double>& sum, std::vector<double>& most, const Term& term) const {
+    using Both = std::pair<double, double>;
+    std::vector<Both> both;
+    reduce(both, Both(0, 0), [&](Both& own, std::uint32_t node) {
+      const Both more = term(node);
+      own.first += more.first, keep_larger(own.second, more.second);
+    }, [](Both& own, const Both& run) { own.first += run.first, keep_larger(own.second, run.second); });
+    sum.resize(count_, 0), most.resize(count_, 0);
+    for (std::size_t p = 0; p < count_; ++p)
+      if (chosen_[p]) sum[p] = both[p].first, most[p] = both[p].second;
   }
 
  private:
+  static void keep_larger(double& most, double x) { most = most >= x ? most : most != most ? most : x; }
   struct Run {
     std::uint32_t part, begin, end;  // of node_
   };

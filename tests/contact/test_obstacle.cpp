@@ -5,6 +5,7 @@
 #include "contact/obstacle.h"
 #include "geometry/distance.h"
 #include "mechanics/contact_rows.h"
+#include "products.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -77,7 +78,7 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     o.begin(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
     for (int i = 0; i < 40; ++i) {
-      std::vector<Vec3> way, force(n, Vec3::Zero()), behind = force, before = force, turned = force;
+      std::vector<Vec3> way, force(n, Vec3::Zero()), behind = force, before = force;
       for (std::size_t k = 0; k < n; ++k) u[k] = 0.01 * random.direction(), way.push_back(random.direction());
       const auto moved = [&](double h) {
         std::vector<Vec3> there = u;
@@ -97,7 +98,7 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
       Potential* const all[] = {&o};
       ContactRows rows(all, n);
       rows.read();
-      rows.add_product(way, turned);
+      const std::vector<Vec3> turned = product_of(rows, way);
       if (plane) CHECK(along(turned) >= -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
       CHECK(along(turned) > 0);
     }

@@ -12,6 +12,7 @@
 #include "contact/touch_penalty.h"
 #include "contact/triangle_planes.h"
 #include "mechanics/contact_rows.h"
+#include "products.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -77,15 +78,14 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
     Potential* const all[] = {&penalty};
     ContactRows rows(all, n);
     rows.read();
-    std::vector<Vec3> product(n, Vec3::Zero());
-    rows.add_product(way, product);
+    const std::vector<Vec3> product = product_of(rows, way);
     CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
     std::vector<Mat3> blocks(n, Mat3::Zero());
     rows.add_blocks(blocks);
     for (std::size_t i = 0; i < n; ++i) {
-      std::vector<Vec3> unit(n, Vec3::Zero()), column(n, Vec3::Zero());
+      std::vector<Vec3> unit(n, Vec3::Zero());
       unit[i] = Vec3::UnitY();
-      rows.add_product(unit, column);
+      const std::vector<Vec3> column = product_of(rows, unit);
       CHECK(column[i].y() > 0);
       CHECK(blocks[i](1, 1) >= column[i].y() * (1 - 1e-6));  // no less than the matrix has there
       CHECK(blocks[i](1, 1) < 20 * column[i].y());
@@ -126,9 +126,9 @@ TEST_CASE("nodes that a penalty makes depend on each other hang together by the 
       p->add_energy(at, part, energy);
       CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(p->energy(at)).epsilon(1e-12));
       for (std::uint32_t i = 0; i < n; ++i) {
-        std::vector<Vec3> unit(n, Vec3::Zero()), column(n, Vec3::Zero()), x = at;
+        std::vector<Vec3> unit(n, Vec3::Zero()), x = at;
         unit[i] = random.direction(), x[i] += 0.2 * unit[i];
-        rows.add_product(unit, column);
+        const std::vector<Vec3> column = product_of(rows, unit);
         moved.assign(n, 0);
         p->add_energy(x, part, moved);
         for (std::uint32_t j = 0; j < n; ++j)

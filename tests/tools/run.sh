@@ -579,7 +579,8 @@ scene)
   for letter in K E R F; do kerf-model letter --text $letter --depth 0.25 --resolution 12 -o models/letter-$letter.ply; done
   moves=0    # how far something must have gone at least
   frames=32
-  soft=      # not empty: in material ten times softer, too, it parts in as many pieces (crumbs may come off besides), and one step at most is refused: which is chance
+  soft=      # not empty: in material ten times softer, too, it parts in as many pieces (crumbs may come off besides), and one step at most is refused;
+             # which is chance (one run of ten has more), so that it may be at two of three accuracies
   cracks=0   # that begin by themselves
   # most: elastic energy, J; less than weight times the way that it falls
   case $scene in
@@ -618,9 +619,15 @@ scene)
     crossing other | grep . && fail "$scene with $other has frames in which triangles cross"
     grep -qi "nan\|inf" other/frames.jsonl && fail "$scene with $other has numbers that are none"
     kerf-info --check -q other/checkpoint.kerf || fail "the body of $scene with $other is not sound"
-    if [ -n "$whole" ]; then
-      parted=$(sed 's/.*"pieces":\([0-9]*\),.*/\1/' other/summary.json)
-      { [ "$parted" -ge $pieces ] && grep -q '"refused":[01],' other/summary.json; } || fail "$scene with $other: $(cat other/summary.json)"
+    parts_well() { [ "$(sed 's/.*"pieces":\([0-9]*\),.*/\1/' other/summary.json)" -ge $pieces ] && grep -q '"refused":[01],' other/summary.json; }
+    if [ -n "$whole" ] && ! parts_well; then
+      kept=$(cat other/summary.json)
+      for accuracy in 0.0009 0.0011; do
+        rm -rf other
+        kerf-sim -q $file $set --set $other --set time.accuracy=$accuracy -o other --frames $few || fail "$scene with $other"
+        crossing other | grep . && fail "$scene with $other and accuracy $accuracy has frames in which triangles cross"
+        parts_well || fail "$scene with $other: $kept, and with accuracy $accuracy: $(cat other/summary.json)"
+      done
     fi
     rm -rf other
   done

@@ -1,4 +1,4 @@
-// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+// Compiled once for each kind of vector, like point_lanes.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/coarse_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -68,9 +68,9 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
           const auto e3 = hn::LoadU(d8, e + 24 + k), e4 = hn::LoadU(d8, e + 32 + k), e5 = hn::LoadU(d8, e + 40 + k);
           for (std::size_t m = 0; m < 6; ++m) {
             auto sum = hn::LoadU(d8, to + 8 * m + k);
-            sum = hn::Add(sum, hn::Add(hn::Mul(hn::Set(d8, f[m]), e0), hn::Mul(hn::Set(d8, f[8 + m]), e1)));
-            sum = hn::Add(sum, hn::Add(hn::Mul(hn::Set(d8, f[16 + m]), e2), hn::Mul(hn::Set(d8, f[24 + m]), e3)));
-            sum = hn::Add(sum, hn::Add(hn::Mul(hn::Set(d8, f[32 + m]), e4), hn::Mul(hn::Set(d8, f[40 + m]), e5)));
+            sum = hn::MulAdd(hn::Set(d8, f[8 + m]), e1, hn::MulAdd(hn::Set(d8, f[m]), e0, sum));
+            sum = hn::MulAdd(hn::Set(d8, f[24 + m]), e3, hn::MulAdd(hn::Set(d8, f[16 + m]), e2, sum));
+            sum = hn::MulAdd(hn::Set(d8, f[40 + m]), e5, hn::MulAdd(hn::Set(d8, f[32 + m]), e4, sum));
             hn::StoreU(sum, d8, to + 8 * m + k);
           }
         }

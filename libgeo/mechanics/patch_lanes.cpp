@@ -1,4 +1,4 @@
-// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+// Compiled once for each kind of vector, like point_lanes.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/patch_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -43,7 +43,7 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const No
           float* const to = tiles + 12 * (s * (s + 1) / 2 + t);
           for (std::size_t k = 0; k < 4; k += step) {
             const auto g = hn::LoadU(d, list[b].g + k);
-            for (std::size_t r = 0; r < 3; ++r) hn::StoreU(hn::Add(hn::LoadU(d, to + 4 * r + k), hn::Mul(hn::Set(d, w * list[a].g[r]), g)), d, to + 4 * r + k);
+            for (std::size_t r = 0; r < 3; ++r) hn::StoreU(hn::MulAdd(hn::Set(d, w * list[a].g[r]), g, hn::LoadU(d, to + 4 * r + k)), d, to + 4 * r + k);
           }
         }
       if (list.size() > out.most[p].count) out.most[p] = {static_cast<std::uint32_t>(list.size()), static_cast<std::uint32_t>(i)};
@@ -78,7 +78,7 @@ void InvertPositive(std::size_t size, float* matrix) {
       const auto of_row = hn::LoadU(d, own + j);
       const auto take = [&](std::size_t i) HWY_ATTR {
         float* const to = matrix + i * row + j;
-        hn::StoreU(hn::Sub(hn::LoadU(d, to), hn::Mul(hn::Set(d, by[i]), of_row)), d, to);
+        hn::StoreU(hn::NegMulAdd(hn::Set(d, by[i]), of_row, hn::LoadU(d, to)), d, to);
       };
       for (std::size_t i = 0; i < k; ++i) take(i);
       for (std::size_t i = k + 1; i < size; ++i) take(i);
@@ -99,13 +99,13 @@ void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* 
     auto sum = hn::Zero(d), next = hn::Zero(d);
     for (std::size_t j = 0; j < size; ++j) {
       const auto by = hn::Set(d, x[j]);
-      sum = hn::Add(sum, hn::Mul(by, column(j * row + at))), next = hn::Add(next, hn::Mul(by, column(j * row + at + wide)));
+      sum = hn::MulAdd(by, column(j * row + at), sum), next = hn::MulAdd(by, column(j * row + at + wide), next);
     }
     hn::StoreU(sum, d, out + at), hn::StoreU(next, d, out + at + wide);
   }
   for (; at < row; at += wide) {
     auto sum = hn::Zero(d);
-    for (std::size_t j = 0; j < size; ++j) sum = hn::Add(sum, hn::Mul(hn::Set(d, x[j]), column(j * row + at)));
+    for (std::size_t j = 0; j < size; ++j) sum = hn::MulAdd(hn::Set(d, x[j]), column(j * row + at), sum);
     hn::StoreU(sum, d, out + at);
   }
 }

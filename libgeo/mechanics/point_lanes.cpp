@@ -1,5 +1,5 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector. No operation
-// is fused and each lane has its own sum, so all kinds find the same numbers.
+// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector. Each lane has its own sum, and
+// products and sums are one operation for all kinds that have it, so these find the same numbers.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/point_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -27,9 +27,9 @@ void Gradients(const PointBlock& block, const double* values, double* const* out
       auto x = hn::Zero(d), y = x, z = x;
       for (std::size_t q = begin; q < end; ++q) {
         const auto u = hn::LoadU(d, values + 4 * to[q] + at);
-        x = hn::Add(x, hn::Mul(u, hn::Set(d, g[3 * q])));
-        y = hn::Add(y, hn::Mul(u, hn::Set(d, g[3 * q + 1])));
-        z = hn::Add(z, hn::Mul(u, hn::Set(d, g[3 * q + 2])));
+        x = hn::MulAdd(u, hn::Set(d, g[3 * q]), x);
+        y = hn::MulAdd(u, hn::Set(d, g[3 * q + 1]), y);
+        z = hn::MulAdd(u, hn::Set(d, g[3 * q + 2]), z);
       }
       hn::StoreU(x, d, out[0] + 4 * i + at);
       hn::StoreU(y, d, out[1] + 4 * i + at);
@@ -50,8 +50,7 @@ void Divergence(const PointBlock& block, const double* const* stress, double* ou
       const auto x = hn::LoadU(d, stress[0] + 4 * i + at), y = hn::LoadU(d, stress[1] + 4 * i + at), z = hn::LoadU(d, stress[2] + 4 * i + at);
       for (std::size_t q = begin; q < end; ++q) {
         double* const f = out + 4 * to[q] + at;
-        const auto sum = hn::Add(hn::Add(hn::Mul(x, hn::Set(d, g[3 * q])), hn::Mul(y, hn::Set(d, g[3 * q + 1]))), hn::Mul(z, hn::Set(d, g[3 * q + 2])));
-        hn::StoreU(hn::Add(hn::LoadU(d, f), sum), d, f);
+        hn::StoreU(hn::MulAdd(z, hn::Set(d, g[3 * q + 2]), hn::MulAdd(y, hn::Set(d, g[3 * q + 1]), hn::MulAdd(x, hn::Set(d, g[3 * q]), hn::LoadU(d, f)))), d, f);
       }
     }
   }

@@ -1,4 +1,5 @@
-// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+// Compiled once for each kind of vector, like point_lanes.cpp. Products and sums are one operation here where the processor has it: a product is
+// limited by how many it can do. All kinds that have it find the same numbers.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/product_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -52,7 +53,7 @@ HWY_INLINE void add_node(hn::Vec<Wide> u, const std::int16_t* HWY_RESTRICT at, h
   const hn::Vec<Wide> of[3] = {hn::Broadcast<0>(u), hn::Broadcast<1>(u), hn::Broadcast<2>(u)};
   for (std::size_t c = 0; c < 3; ++c) {
     const auto g = shape<Wide>(at + 8 * c);
-    for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] = hn::Add(sum[3 * c + r], hn::Mul(of[r], g));
+    for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] = hn::MulAdd(of[r], g, sum[3 * c + r]);
   }
 }
 
@@ -90,7 +91,7 @@ HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const floa
   // Coordinates of the force, each the sum over four points.
   const auto force = [&](const std::int16_t* at) HWY_ATTR {
     const hn::Vec<Wide> g[3] = {shape<Wide>(at), shape<Wide>(at + 8), shape<Wide>(at + 16)};
-    const auto of = [&](std::size_t r) HWY_ATTR { return hn::Add(hn::Add(hn::Mul(s[r], g[0]), hn::Mul(s[3 + r], g[1])), hn::Mul(s[6 + r], g[2])); };
+    const auto of = [&](std::size_t r) HWY_ATTR { return hn::MulAdd(s[6 + r], g[2], hn::MulAdd(s[3 + r], g[1], hn::Mul(s[r], g[0]))); };
     const auto x = of(0), y = of(1), z = of(2), zero = hn::Zero(d);
     const auto xz = hn::Add(hn::InterleaveLower(d, x, z), hn::InterleaveUpper(d, x, z)), y0 = hn::Add(hn::InterleaveLower(d, y, zero), hn::InterleaveUpper(d, y, zero));
     return hn::Add(hn::InterleaveLower(d, xz, y0), hn::InterleaveUpper(d, xz, y0));
@@ -110,6 +111,15 @@ HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const floa
 }
 #endif
 
+HWY_INLINE V<float> fused(V<float> a0, V<float> b0, V<float> a1, V<float> b1, V<float> a2, V<float> b2) { return hn::MulAdd(a2, b2, hn::MulAdd(a1, b1, hn::Mul(a0, b0))); }
+// a · b
+HWY_INLINE Matrix<float> fused_product(const Matrix<float>& a, const Matrix<float>& b) {
+  Matrix<float> m;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) m.at[c][r] = fused(a.at[0][r], b.at[c][0], a.at[1][r], b.at[c][1], a.at[2][r], b.at[c][2]);
+  return m;
+}
+
 // Gradients of points from `first` on, in multiples of their unit, become the stresses that belong to them, times it.
 HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes, std::size_t first, std::size_t count, float* HWY_RESTRICT gradient) {
   const Lanes<float> d;
@@ -127,20 +137,20 @@ HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes
     Matrix<float> at, out;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) at.at[c][r] = hn::LoadU(d, gradient + batch * (3 * c + r) + i);
-    Matrix<float> in = product(transposed(u), product(at, v));
+    Matrix<float> in = fused_product(transposed(u), fused_product(at, v));
     for (auto& column : in.at)
       for (auto& x : column) x = hn::Mul(x, unit);
     const V<float> a[3][3] = {{number(0), number(3), number(4)}, {number(3), number(1), number(5)}, {number(4), number(5), number(2)}};
-    for (int k = 0; k < 3; ++k) out.at[k][k] = hn::Add(hn::Add(hn::Mul(a[k][0], in.at[0][0]), hn::Mul(a[k][1], in.at[1][1])), hn::Mul(a[k][2], in.at[2][2]));
+    for (int k = 0; k < 3; ++k) out.at[k][k] = fused(a[k][0], in.at[0][0], a[k][1], in.at[1][1], a[k][2], in.at[2][2]);
     for (std::size_t k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2;
       const auto own = number(6 + 2 * k), other = number(7 + 2 * k);
-      out.at[p][q] = hn::Add(hn::Mul(own, in.at[p][q]), hn::Mul(other, in.at[q][p]));
-      out.at[q][p] = hn::Add(hn::Mul(own, in.at[q][p]), hn::Mul(other, in.at[p][q]));
+      out.at[p][q] = hn::MulAdd(own, in.at[p][q], hn::Mul(other, in.at[q][p]));
+      out.at[q][p] = hn::MulAdd(own, in.at[q][p], hn::Mul(other, in.at[p][q]));
     }
     for (auto& column : out.at)
       for (auto& x : column) x = hn::Mul(x, unit);
-    at = product(product(u, out), transposed(v));
+    at = fused_product(fused_product(u, out), transposed(v));
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) hn::StoreU(at.at[c][r], d, gradient + batch * (3 * c + r) + i);
   }

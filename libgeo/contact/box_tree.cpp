@@ -153,39 +153,70 @@ bool add(BoxTree::Block& block, std::size_t lane, const float* lo, const float* 
 }  // namespace
 
 BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) : boxes_(std::move(boxes)), place_(boxes_.size(), ~0u) {
-  Box3 all;
-  for (const Box3& b : boxes_)
-    if (!b.empty()) all.add(b);
+  const Box3 all = bound();
   if (all.empty()) return;
-  middle_ = 0.5 * all.lo + 0.5 * all.hi;
   Places along;
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i)
+    if (!boxes_[i].empty()) along.push_back({0, i});
   const Vec3 scale = 1023 * (all.hi - all.lo).cwiseMax(1e-300).cwiseInverse();
-  for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
-    if (boxes_[i].empty()) continue;
-    const Vec3 at = (0.5 * boxes_[i].lo + 0.5 * boxes_[i].hi - all.lo).cwiseProduct(scale);
-    along.push_back({spread(static_cast<std::uint32_t>(at[0])) << 2 | spread(static_cast<std::uint32_t>(at[1])) << 1 | spread(static_cast<std::uint32_t>(at[2])), i});
-  }
+  parallel_for(along.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Box3& box = boxes_[along[k].second];
+      const Vec3 at = (0.5 * box.lo + 0.5 * box.hi - all.lo).cwiseProduct(scale);
+      along[k].first = spread(static_cast<std::uint32_t>(at[0])) << 2 | spread(static_cast<std::uint32_t>(at[1])) << 1 | spread(static_cast<std::uint32_t>(at[2]));
+    }
+  });
   sort_along(along);
   order_.resize(along.size());
-  levels_.push_back(empty_blocks(along.size()));
-  if (!triangles.empty()) corners_.resize(levels_[0].size());
+  if (!triangles.empty()) corners_.resize((along.size() + width - 1) / width);
   parallel_for(along.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = along[i].second;
       order_[i] = row, place_[row] = static_cast<std::uint32_t>(i);
-      const Floats b = local(boxes_[row]);
-      add(levels_[0][i / width], i % width, b.lo, b.hi);
       for (std::size_t k = 0; k < 3 && !triangles.empty(); ++k) corners_[i / width].v[k][i % width] = triangles[row][k];
+    }
+  });
+  fill();
+}
+
+bool BoxTree::replace(std::vector<Box3>& boxes) {
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (place_[i] == ~0u && !boxes[i].empty()) return false;
+  boxes_ = std::move(boxes);
+  bound();
+  if (!order_.empty()) fill();
+  return true;
+}
+
+// Of all boxes; floats are about its middle from now on.
+Box3 BoxTree::bound() {
+  Box3 all;
+  for (const Box3& b : boxes_)
+    if (!b.empty()) all.add(b);
+  if (!all.empty()) middle_ = 0.5 * all.lo + 0.5 * all.hi;
+  return all;
+}
+
+void BoxTree::fill() {
+  levels_.assign(1, empty_blocks(order_.size()));
+  parallel_for(order_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (boxes_[order_[i]].empty()) continue;
+      const Floats b = local(boxes_[order_[i]]);
+      add(levels_[0][i / width], i % width, b.lo, b.hi);
     }
   });
   while (levels_.size() < 2 || levels_.back().size() > 1) {
     const auto& lower = levels_.back();
     auto level = empty_blocks(lower.size());
-    for (std::size_t i = 0; i < lower.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis) {
-        level[i / width].lo[axis][i % width] = *std::min_element(lower[i].lo[axis], lower[i].lo[axis] + width);
-        level[i / width].hi[axis][i % width] = *std::max_element(lower[i].hi[axis], lower[i].hi[axis] + width);
-      }
+    parallel_for(lower.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+          float lo = INFINITY, hi = -INFINITY;
+          for (std::uint32_t k = 0; k < width; ++k) lo = std::min(lo, lower[i].lo[axis][k]), hi = std::max(hi, lower[i].hi[axis][k]);
+          level[i / width].lo[axis][i % width] = lo, level[i / width].hi[axis][i % width] = hi;
+        }
+    });
     levels_.push_back(std::move(level));
   }
 }

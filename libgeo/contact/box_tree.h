@@ -27,6 +27,10 @@ class BoxTree {
   /// Finite boxes; empty ones meet none. `triangles`: whose boxes they are, or empty.
   explicit BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles = {});
 
+  /// Other boxes of the same things: the curve stays as it is, which is as good while they have not gone far. False, and all is as it was, where a box
+  /// that was empty at first no longer is.
+  bool replace(std::vector<Box3>& boxes);
+
   const std::vector<Box3>& boxes() const { return boxes_; }
   /// Makes a box larger, so that it holds this one, too.
   void enlarge(std::uint32_t row, const Box3& box);
@@ -44,6 +48,8 @@ class BoxTree {
     float lo[3], hi[3];
   };
   Floats local(const Box3& box) const;
+  Box3 bound();
+  void fill();
 
   std::vector<Box3> boxes_;
   Vec3 middle_ = Vec3::Zero();

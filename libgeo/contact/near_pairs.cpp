@@ -27,7 +27,8 @@ void NearPairs::cover(std::span<const Triangle> triangles, const std::function<B
   const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
   if (known && count == 0) return;
   if (!known || (count * most_outside > triangles.size() && !changed)) {
-    tree_ = BoxTree(std::move(boxes), triangles), pairs_ = tree_.pairs();
+    if (!known || !tree_.replace(boxes)) tree_ = BoxTree(std::move(boxes), triangles);
+    pairs_ = tree_.pairs();
     return;
   }
   for (std::uint32_t t = 0; t < triangles.size(); ++t)

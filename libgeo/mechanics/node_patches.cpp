@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -43,20 +44,24 @@ std::vector<std::vector<std::uint32_t>> boxes(const std::vector<Vec3>& position,
     for (const auto i : nodes) box[i] = static_cast<std::uint32_t>(found.size());
     found.push_back(nodes);
   });
-  std::vector<std::vector<std::uint32_t>> parts;
+  std::vector<std::vector<std::vector<std::uint32_t>>> parts(found.size());  // of each box
   std::vector<char> taken(position.size(), 0);
-  for (const auto& nodes : found) {
-    std::sort(nodes.begin(), nodes.end());
-    for (const auto i : nodes) {
-      if (taken[i]) continue;
-      taken[i] = 1;
-      auto& part = parts.emplace_back(1, i);
-      for (std::size_t k = 0; k < part.size(); ++k)
-        for (const auto j : rows[part[k]].to)
-          if (box[j] == box[i] && !std::exchange(taken[j], 1)) part.push_back(j);
+  parallel_for(found.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      std::sort(found[b].begin(), found[b].end());
+      for (const auto i : found[b]) {
+        if (taken[i]) continue;
+        taken[i] = 1;
+        auto& part = parts[b].emplace_back(1, i);
+        for (std::size_t k = 0; k < part.size(); ++k)
+          for (const auto j : rows[part[k]].to)
+            if (box[j] == b && !std::exchange(taken[j], 1)) part.push_back(j);
+      }
     }
-  }
-  return parts;
+  });
+  std::vector<std::vector<std::uint32_t>> all_parts;
+  for (auto& of_box : parts) std::move(of_box.begin(), of_box.end(), std::back_inserter(all_parts));
+  return all_parts;
 }
 
 }  // namespace

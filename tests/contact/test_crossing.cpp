@@ -82,5 +82,20 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
       CHECK(tree.pairs() == all);
       CHECK(tree.pairs(&some) == with_some);
     });
+    // All go elsewhere, some far; one that was empty keeps the tree from following.
+    std::vector<Box3> others = boxes;
+    for (Box3& b : others) {
+      const Vec3 by = random.uniform(0, random.below(10) == 0 ? 4 : 0.1) * random.direction();
+      if (!b.empty()) b.lo += by, b.hi += by;
+    }
+    boxes = others;
+    REQUIRE(tree.replace(others));
+    CHECK(sorted(tree.pairs()) == expected(false));
+    CHECK(sorted(tree.pairs(&some)) == expected(true));
+    const auto empty = std::find_if(boxes.begin(), boxes.end(), [](const Box3& b) { return b.empty(); });
+    if (empty == boxes.end()) continue;
+    others = boxes, others[static_cast<std::size_t>(empty - boxes.begin())].add(Vec3::Zero());
+    CHECK(!tree.replace(others));
+    CHECK(sorted(tree.pairs()) == expected(false));
   }
 }

@@ -130,7 +130,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
     at_once([&] { coarse_->solve(r, parts_); }, [&] { patches_->solve(r, parts_.patches()); });
     parts_.sums_and_most(product, left, [&](std::size_t i) {
       z[i] = patches_->at(i) + coarse_->at(i);
-      return std::pair(r[i].dot(z[i]), of_spacing(z, i));
+      return std::pair(r[i].dot(z[i]), squared_in_spacings(z, i));
     });
     take_roots(left);
   };
@@ -155,7 +155,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
     parts_.most(far, [&](std::size_t i) {
       const double alpha = along[parts_.of(i)];
       x[i] += alpha * p[i], r[i] -= alpha * hp[i];
-      return of_spacing(x, i);
+      return squared_in_spacings(x, i);
     });
     take_roots(far);
     improve(next);
@@ -169,7 +169,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
 
 // Of the nodes' spacing, for each part at work.
 void ImplicitStep::most(const std::vector<Vec3>& moved, std::vector<double>& most) const {
-  parts_.most(most, [&](std::size_t i) { return of_spacing(moved, i); });
+  parts_.most(most, [&](std::size_t i) { return squared_in_spacings(moved, i); });
   take_roots(most);
 }
 

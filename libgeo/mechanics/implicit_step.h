@@ -41,8 +41,8 @@ class ImplicitStep {
   }
   int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
   void most(const std::vector<Vec3>& moved, std::vector<double>& most) const;
-  double of_spacing(const std::vector<Vec3>& moved, std::size_t node) const { return moved[node].squaredNorm() / (s_.spacing_[node] * s_.spacing_[node]); }
-  void take_roots(std::vector<double>& squares) const;
+  double squared_in_spacings(const std::vector<Vec3>& moved, std::size_t node) const { return moved[node].squaredNorm() / (s_.spacing_[node] * s_.spacing_[node]); }
+  void take_roots(std::vector<double>& squares) const;  // of parts at work
   void keep_momentum(std::vector<Vec3>& direction) const;
   double trusted() const { return std::min(accuracy_, 0.01); }
   Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }

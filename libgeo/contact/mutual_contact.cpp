@@ -8,46 +8,31 @@
 namespace geo {
 
 void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
-  for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(u);
+  for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(row.start);
 }
 
-void MutualContact::each_row(const VisitRow& visit) const {
-  for (const Row& row : rows_) visit(row.apart, row.curvature);
+double MutualContact::energy(std::size_t r, const Vec3& apart) const {
+  const Row& row = rows_[r];
+  const double normal = 0.5 * row.stiffness * std::pow(row.depth(apart), 2);
+  return row.pressed > 0 ? normal + friction_energy(friction_ * row.pressed, row.along(apart - row.start).norm(), slow_) : normal;
 }
 
-void MutualContact::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sums) const {
-  for (const Row& row : rows_) {
-    if (row.apart.empty()) continue;
-    double& sum = sums[part[row.apart[0].node]];
-    sum += 0.5 * row.stiffness * std::pow(row.depth(u), 2);
-    if (row.pressed > 0) sum += friction_energy(friction_ * row.pressed, row.along(row.at(u) - row.start).norm(), slow_);
+Potential::Push MutualContact::push(std::size_t r, const Vec3& apart) {
+  const Row& row = rows_[r];
+  const double depth = row.depth(apart);
+  const Mat3 across = row.normal * row.normal.transpose();
+  Push push{row.stiffness * depth * row.normal, depth > 0 ? Mat3(row.stiffness * across) : Mat3(Mat3::Zero())};
+  if (row.pressed > 0) {
+    const Vec3 slide = row.along(apart - row.start);
+    const double drag = friction_drag(friction_ * row.pressed, slide.norm(), slow_);
+    push.force -= drag * slide, push.curvature += drag * (Mat3::Identity() - across);
   }
-}
-
-void MutualContact::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
-  for (Row& row : rows_) {
-    const double depth = row.depth(u);
-    const Mat3 across = row.normal * row.normal.transpose();
-    Vec3 f = row.stiffness * depth * row.normal;
-    row.curvature = depth > 0 ? Mat3(row.stiffness * across) : Mat3(Mat3::Zero());
-    if (row.pressed > 0) {
-      const Vec3 slide = row.along(row.at(u) - row.start);
-      const double drag = friction_drag(friction_ * row.pressed, slide.norm(), slow_);
-      f -= drag * slide;
-      row.curvature += drag * (Mat3::Identity() - across);
-    }
-    if (f.isZero(0)) continue;
-    for (const auto& e : row.apart) out[e.node] += e.weight * f;
-  }
-}
-
-void MutualContact::each_stiffness(const VisitStiffness& visit) const {
-  for (const Row& row : rows_) visit(row.apart, row.stiffness);
+  return push;
 }
 
 void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {
   for (const Row& row : rows_) {
-    const double push = h * row.stiffness * row.depth(u);
+    const double push = h * row.stiffness * row.depth(row.at(u));
     double lightness = 0;
     for (const auto& e : row.apart) lightness += e.weight * e.weight * inverse_mass[e.node];
     if (!(push > 0 && lightness > 0)) continue;
@@ -60,7 +45,7 @@ void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vec
 
 double MutualContact::depth(const std::vector<Vec3>& u) const {
   double most = 0;
-  for (const Row& row : rows_) most = std::max(most, row.depth(u));
+  for (const Row& row : rows_) most = std::max(most, row.depth(row.at(u)));
   return most;
 }
 

@@ -18,10 +18,11 @@ class MutualContact : public Potential {
   bool empty() const { return rows_.empty(); }
 
   void begin(const std::vector<Vec3>& u, double from, double to) override;
-  void each_row(const VisitRow& visit) const override;
-  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
-  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  void each_stiffness(const VisitStiffness& visit) const override;
+  std::size_t size() const override { return rows_.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return rows_[r].apart; }
+  double energy(std::size_t r, const Vec3& way) const override;
+  Push push(std::size_t r, const Vec3& way) override;
+  double stiffness(std::size_t r) const override { return rows_[r].stiffness; }
   void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
 
   /// The deepest vertex at displacements u; 0: none.
@@ -34,9 +35,8 @@ class MutualContact : public Potential {
     double stiffness;
     double pressed = 0;             // N, when this part of the step began
     Vec3 start = Vec3::Zero();      // how far apart then
-    Mat3 curvature = Mat3::Zero();  // of the last force()
     Vec3 at(const std::vector<Vec3>& values) const { return weighed(apart, values); }
-    double depth(const std::vector<Vec3>& u) const { return std::max(0.0, -normal.dot(way + at(u))); }
+    double depth(const Vec3& apart) const { return std::max(0.0, -normal.dot(way + apart)); }
     Vec3 along(const Vec3& v) const { return v - normal.dot(v) * normal; }
   };
   double friction_, slow_;

@@ -6,17 +6,16 @@
 #include "base/parallel.h"
 #include "contact/contact_surface.h"
 #include "contact/friction.h"
+#include "mechanics/row_sums.h"
 
 namespace geo {
 
 Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
-template <class Work>
-void Obstacle::in_parallel(const Work& work) const {
-  parallel_for(rows_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) work(r);
-  });
+template <class Take>
+void Obstacle::each_way(const std::vector<Vec3>& u, const Take& take) const {
+  each_row_sum(rows_.size(), u, [&](std::size_t r) { return rows_[r].weights; }, take);
 }
 
 Eigen::Isometry3d Obstacle::pose(double share) const {
@@ -42,11 +41,17 @@ void Obstacle::watch(const Body& body, const SurfaceWeights& weights, std::span<
       reached[v] = shape_->near(back * (k.point(k.site(id)) + weights.at(v, u)), reach);
     }
   });
-  for (std::size_t v = 0; v < reached.size(); ++v) {
-    if (!reached[v]) continue;
-    const double pressure = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]);
-    rows_.push_back({weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v))});
-  }
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t v = 0; v < reached.size(); ++v)
+    if (reached[v]) vertices.push_back(v);
+  rows_.resize(vertices.size());
+  parallel_for(vertices.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      const auto v = vertices[r];
+      const double pressure = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]);
+      rows_[r] = {weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v))};
+    }
+  });
 }
 
 void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
@@ -54,9 +59,9 @@ void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
   else if (from == ended_ && !impulses_) add_reaction(u, sum_);
   const Eigen::Isometry3d start = pose(from), back = start.inverse();
   begun_ = from, ended_ = to, now_ = pose(to);
-  in_parallel([&](std::size_t r) {
+  each_way(u, [&](std::size_t r, const Vec3& way) {
     Row& row = rows_[r];
-    row.start = row.rest + at(row, u);
+    row.start = row.rest + way;
     const Vec3 local = back * row.start;
     const RigidShape::Field field = shape_->at(local);
     row.outside = field.distance;
@@ -82,42 +87,23 @@ Vec3 Obstacle::slide(const Row& row, const Vec3& y) {
 
 double Obstacle::drag(const Row& row, const Vec3& slide) const { return friction_drag(options_.friction * row.pressed, slide.norm(), slow_); }
 
-void Obstacle::each_row(const VisitRow& visit) const {
-  for (const Row& row : rows_) visit(row.weights, row.curvature);
+double Obstacle::energy(std::size_t r, const Vec3& way) const {
+  const Row& row = rows_[r];
+  const Vec3 y = row.rest + way;
+  const double normal = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
+  return row.pressed > 0 ? normal + friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_) : normal;
 }
 
-void Obstacle::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const {
-  std::vector<double> energy(rows_.size(), 0);
-  in_parallel([&](std::size_t r) {
-    const Row& row = rows_[r];
-    const Vec3 y = row.rest + at(row, u);
-    energy[r] = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
-    if (row.pressed > 0) energy[r] += friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_);
-  });
-  for (std::size_t r = 0; r < rows_.size(); ++r) sum[part[rows_[r].weights[0].node]] += energy[r];
-}
-
-void Obstacle::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
-  std::vector<Vec3> part(rows_.size(), Vec3::Zero());
-  in_parallel([&](std::size_t r) {
-    Row& row = rows_[r];
-    const Vec3 y = row.rest + at(row, u);
-    const RigidShape::Field field = inside(row, y);
-    part[r] = -row.stiffness * field.distance * field.normal;
-    row.curvature = row.stiffness * field.square;
-    if (!(row.pressed > 0)) return;
+Potential::Push Obstacle::pushed(const Row& row, const Vec3& way) const {
+  const Vec3 y = row.rest + way;
+  const RigidShape::Field field = inside(row, y);
+  Push push{-row.stiffness * field.distance * field.normal, row.stiffness * field.square};
+  if (row.pressed > 0) {
     const Vec3 slid = slide(row, y);
     const double rub = drag(row, slid);
-    part[r] -= rub * slid;
-    row.curvature += rub * (Mat3::Identity() - row.normal * row.normal.transpose());
-  });
-  for (std::size_t r = 0; r < rows_.size(); ++r)
-    if (!part[r].isZero(0))
-      for (const auto& e : rows_[r].weights) out[e.node] += e.weight * part[r];
-}
-
-void Obstacle::each_stiffness(const VisitStiffness& visit) const {
-  for (const Row& row : rows_) visit(row.weights, row.stiffness);
+    push.force -= rub * slid, push.curvature += rub * (Mat3::Identity() - row.normal * row.normal.transpose());
+  }
+  return push;
 }
 
 void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {
@@ -125,7 +111,7 @@ void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<d
   std::vector<RigidShape::Field> fields(rows_.size());
   const double share = ended_ - begun_;
   impulses_ = true;
-  in_parallel([&](std::size_t r) { fields[r] = inside(rows_[r], rows_[r].rest + at(rows_[r], u)); });
+  each_way(u, [&](std::size_t r, const Vec3& way) { fields[r] = inside(rows_[r], rows_[r].rest + way); });
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Row& row = rows_[r];
     if (!(fields[r].distance < 0)) continue;
@@ -146,17 +132,12 @@ void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<d
 
 void Obstacle::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
   const double share = ended_ - begun_;
-  for (const Row& row : rows_) {
-    const Vec3 y = row.rest + at(row, u);
-    const RigidShape::Field field = inside(row, y);
-    Vec3 f = -row.stiffness * field.distance * field.normal;
-    if (row.pressed > 0) {
-      const Vec3 slid = slide(row, y);
-      f -= drag(row, slid) * slid;
-    }
-    to.force -= share * f;
-    to.torque -= share * (y - now_.translation()).cross(f);
-  }
+  std::vector<Reaction> of(rows_.size());
+  each_way(u, [&](std::size_t r, const Vec3& way) {
+    const Vec3 f = share * pushed(rows_[r], way).force;
+    of[r] = {f, (rows_[r].rest + way - now_.translation()).cross(f)};
+  });
+  for (const Reaction& r : of) to.force -= r.force, to.torque -= r.torque;
 }
 
 Obstacle::Reaction Obstacle::reaction(const std::vector<Vec3>& u) const {

@@ -30,10 +30,11 @@ class Obstacle : public Potential {
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 
   void begin(const std::vector<Vec3>& u, double from, double to) override;
-  void each_row(const VisitRow& visit) const override;
-  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
-  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
-  void each_stiffness(const VisitStiffness& visit) const override;
+  std::size_t size() const override { return rows_.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return rows_[r].weights; }
+  double energy(std::size_t r, const Vec3& way) const override;
+  Push push(std::size_t r, const Vec3& way) override { return pushed(rows_[r], way); }
+  double stiffness(std::size_t r) const override { return rows_[r].stiffness; }
   /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction can.
   void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
 
@@ -56,9 +57,9 @@ class Obstacle : public Potential {
     double pressed = 0;           // N, then
     Vec3 normal = Vec3::Zero();   // world, then
     Vec3 stuck = Vec3::Zero();    // where it would be had it stuck to the obstacle
-    Mat3 curvature = Mat3::Zero();  // of the last force()
   };
   static Vec3 at(const Row& row, const std::vector<Vec3>& values) { return weighed(row.weights, values); }
+  Push pushed(const Row& row, const Vec3& way) const;
   Eigen::Isometry3d pose(double share) const;
   /// In world coordinates; distance 0 where the row is outside.
   RigidShape::Field inside(const Row& row, const Vec3& y) const;
@@ -66,8 +67,9 @@ class Obstacle : public Potential {
   static Vec3 slide(const Row& row, const Vec3& y);
   double drag(const Row& row, const Vec3& slide) const;
   void add_reaction(const std::vector<Vec3>& u, Reaction& to) const;
-  template <class Work>
-  void in_parallel(const Work& work) const;
+  /// Calls take(row number, its way) for each row, from any thread.
+  template <class Take>
+  void each_way(const std::vector<Vec3>& u, const Take& take) const;
 
   std::shared_ptr<const RigidShape> shape_;
   ObstacleOptions options_;

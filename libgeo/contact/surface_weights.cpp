@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "mechanics/kernel.h"
+#include "mechanics/row_sums.h"
 
 namespace geo {
 
@@ -37,28 +38,8 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
 }
 
 std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const {
-  std::vector<Eigen::Vector4d> padded(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) padded[i] << values[i], 0;
   std::vector<Vec3> result(vertices.size());
-  constexpr std::size_t together = 4;
-  parallel_for((vertices.size() + together - 1) / together, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end; ++g) {
-      const std::size_t first = g * together, count = std::min(together, vertices.size() - first);
-      std::span<const Entry> rows[together];
-      Eigen::Vector4d sum[together];
-      std::size_t least = ~std::size_t(0);
-      for (std::size_t r = 0; r < together; ++r) {
-        rows[r] = rows_[vertices[first + std::min(r, count - 1)]], sum[r].setZero();
-        least = std::min(least, rows[r].size());
-      }
-      for (std::size_t k = 0; k < least; ++k)
-        for (std::size_t r = 0; r < together; ++r) sum[r] += rows[r][k].weight * padded[rows[r][k].node];
-      for (std::size_t r = 0; r < count; ++r) {
-        for (std::size_t k = least; k < rows[r].size(); ++k) sum[r] += rows[r][k].weight * padded[rows[r][k].node];
-        result[first + r] = sum[r].head<3>();
-      }
-    }
-  });
+  each_row_sum(vertices.size(), values, [&](std::size_t k) { return row(vertices[k]); }, [&](std::size_t k, const Vec3& sum) { result[k] = sum; });
   return result;
 }
 

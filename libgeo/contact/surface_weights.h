@@ -28,7 +28,7 @@ class SurfaceWeights {
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
   /// What the nodes' values are at surface vertex v; zero for a vertex that no node carries.
   Vec3 at(std::size_t v, const std::vector<Vec3>& values) const { return weighed(rows_[v], values); }
-  /// The same of many, by all threads, some rows side by side: sums wait for each other less.
+  /// The same of many, by all threads.
   std::vector<Vec3> at_each(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;
 
  private:

@@ -28,13 +28,13 @@ class TouchPenalty : public Potential {
   void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start);
   /// Room for as many more.
   void reserve(std::span<const RelativeRow> rows);
-  std::size_t size() const { return rows_.size(); }
-  /// How many press on each other, at the displacements of the last force() call.
+  /// How many press on each other, where each was last asked for its push().
   std::size_t pressing() const;
 
-  void each_row(const VisitRow& visit) const override;
-  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
-  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
+  std::size_t size() const override { return rows_.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return {entries_.data() + rows_[r].first, entries_.data() + rows_[r].end}; }
+  double energy(std::size_t r, const Vec3& way) const override;
+  Push push(std::size_t r, const Vec3& way) override;
 
  private:
   struct Row {
@@ -43,11 +43,8 @@ class TouchPenalty : public Potential {
     double depth;            // when the step began
     double stiffness;        // N/m
     Vec3 start;              // relative displacement then
-    Mat3 curvature;          // of the last force()
-    bool pressing;           // then
+    bool pressing;           // at the last push()
   };
-  std::span<const NodeWeight> entries(const Row& row) const { return {entries_.data() + row.first, entries_.data() + row.end}; }
-  Vec3 at(const Row& row, const std::vector<Vec3>& values) const { return weighed(entries(row), values); }
   double most_friction(const Row& row) const { return options_.friction * row.stiffness * row.depth; }
 
   TouchPenaltyOptions options_;

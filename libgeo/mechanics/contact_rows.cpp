@@ -2,83 +2,131 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 #include "base/parallel.h"
+#include "mechanics/row_sums.h"
 
 namespace geo {
+namespace {
 
-ContactRows::ContactRows(std::span<Potential* const> potentials, std::size_t nodes) : potentials_(potentials), first_share_(nodes + 1, 0) {
-  for (const Potential* p : potentials_)
-    p->each_row([&](std::span<const NodeWeight> entries, const Mat3&) { entries_.push_back(entries); });
-  curvature_.assign(entries_.size(), Mat3::Zero());
+constexpr std::size_t few = 64;  // rows, or nodes, that a thread is worth
+
+}  // namespace
+
+ContactRows::ContactRows(std::span<Potential* const> potentials, std::size_t nodes) : nodes_(nodes) {
+  for (Potential* p : potentials)
+    for (std::size_t r = 0; r < p->size(); ++r)
+      if (const auto entries = p->row(r); !entries.empty()) rows_.push_back({p, static_cast<std::uint32_t>(r)}), entries_.push_back(entries);
+  way_.assign(rows_.size(), Vec3::Zero()), force_ = way_, curvature_.assign(rows_.size(), Mat3::Zero());
+  listed_.assign(rows_.size(), 0), pull_.assign(rows_.size(), Eigen::Vector4f::Zero());
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::span<const std::uint32_t> part) const {
+  // Those of runs of rows one after another.
+  constexpr std::size_t rows_a_run = 512;
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> of_run((rows_.size() + rows_a_run - 1) / rows_a_run);
+  parallel_for(of_run.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t r = k * rows_a_run; r < std::min(rows_.size(), (k + 1) * rows_a_run); ++r)
+        for (const auto& e : entries_[r])
+          if (const std::pair pair(part[entries_[r][0].node], part[e.node]); pair.first != pair.second && (of_run[k].empty() || pair != of_run[k].back())) of_run[k].push_back(pair);
+  });
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (const auto row : entries_)
-    for (const auto& e : row)
-      if (const std::pair pair(part[row[0].node], part[e.node]); pair.first != pair.second && (pairs.empty() || pair != pairs.back())) pairs.push_back(pair);
+  for (const auto& some : of_run) pairs.insert(pairs.end(), some.begin(), some.end());
   return pairs;
 }
 
-void ContactRows::read() {
-  active_.clear(), first_own_.assign(1, 0);
-  std::uint32_t row = 0;
-  for (const Potential* p : potentials_)
-    p->each_row([&](std::span<const NodeWeight>, const Mat3& curvature) {
-      curvature_[row] = curvature;
-      if (!curvature.isZero(0)) active_.push_back(row), first_own_.push_back(first_own_.back() + entries_[row].size());
-      ++row;
-    });
-  // Runs of rows count their nodes each, then know where each node's shares from them go.
-  constexpr std::size_t most_runs = 8, rows_a_run = 256;
-  const std::size_t nodes = first_share_.size() - 1, runs = std::clamp<std::size_t>(active_.size() / rows_a_run, 1, most_runs);
-  const auto begin_of = [&](std::size_t run) { return active_.size() * run / runs; };
-  std::vector<std::vector<std::size_t>> next(runs);
-  own_.resize(first_own_.back());
-  parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t run = begin; run < end; ++run) {
-      next[run].assign(nodes, 0);
-      for (std::size_t a = begin_of(run); a < begin_of(run + 1); ++a) {
-        Share* to = own_.data() + first_own_[a];
-        for (const auto& e : entries_[active_[a]]) *to++ = {e.node, static_cast<float>(e.weight)}, ++next[run][e.node];
-      }
+std::vector<std::uint32_t> ContactRows::rows_of(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const {
+  std::vector<std::uint32_t> rows(rows_.size());
+  std::iota(rows.begin(), rows.end(), 0u);
+  if (std::find(chosen.begin(), chosen.end(), 0) != chosen.end()) std::erase_if(rows, [&](std::uint32_t r) { return !chosen[part[entries_[r][0].node]]; });
+  return rows;
+}
+
+void ContactRows::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen, std::vector<double>& sum) {
+  const auto rows = rows_of(part, chosen);
+  std::vector<double> energy(rows.size());
+  each_row_sum(rows.size(), u, [&](std::size_t k) { return entries_[rows[k]]; }, [&](std::size_t k, const Vec3& way) {
+    const auto r = rows[k];
+    way_[r] = way, energy[k] = rows_[r].of->energy(rows_[r].number, way);
+  });
+  for (std::size_t k = 0; k < rows.size(); ++k) sum[part[entries_[rows[k]][0].node]] += energy[k];
+}
+
+void ContactRows::push(std::span<const std::uint32_t> part, const std::vector<char>& chosen) {
+  const auto rows = rows_of(part, chosen);
+  parallel_for(rows.size(), few, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto r = rows[k];
+      const auto push = rows_[r].of->push(rows_[r].number, way_[r]);
+      force_[r] = push.force, curvature_[r] = push.curvature;
     }
   });
-  std::size_t at = 0;
-  for (std::size_t n = 0; n < nodes; ++n) {
-    first_share_[n] = at;
-    for (auto& of_run : next) at += std::exchange(of_run[n], at);
+  list();
+}
+
+// Rows that do something for the first time join the second list; where that is no small one, there is one of all.
+void ContactRows::list() {
+  constexpr std::size_t small = 8;
+  std::vector<std::uint32_t> rows;
+  bool came = false;
+  for (std::uint32_t r = 0; r < rows_.size(); ++r) {
+    if (listed_[r] == 1) continue;
+    if (listed_[r] == 0 && force_[r].isZero(0) && curvature_[r].isZero(0)) continue;
+    came |= listed_[r] == 0, listed_[r] = 2;
+    rows.push_back(r);
   }
-  first_share_[nodes] = at;
-  shares_.resize(at);
-  parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t run = begin; run < end; ++run)
-      for (std::size_t a = begin_of(run); a < begin_of(run + 1); ++a)
-        for (auto k = first_own_[a]; k < first_own_[a + 1]; ++k) shares_[next[run][own_[k].of]++] = {static_cast<std::uint32_t>(a), own_[k].weight};
-  });
+  if (!came) return;
+  if (rows.size() * small <= lists_[0].size()) {
+    lists_[1] = RowLists(rows, entries_, nodes_);
+    return;
+  }
+  rows.clear();
+  for (std::uint32_t r = 0; r < rows_.size(); ++r)
+    if (listed_[r]) listed_[r] = 1, rows.push_back(r);
+  lists_[0] = RowLists(rows, entries_, nodes_), lists_[1] = {};
+}
+
+Vec3 ContactRows::force_at(std::size_t node) const {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& lists : lists_) {
+    const auto shares = lists.of_node(node);
+    for (std::size_t k = 0; k < shares.size(); ++k) sum += lists.weights_of_node(node)[k] * force_[shares[k].of];
+  }
+  return sum;
 }
 
 void ContactRows::multiply(const std::vector<Vec3>& p) {
-  pull_.resize(active_.size());
-  parallel_for(active_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t a = begin; a < end; ++a) {
-      Vec3 way = Vec3::Zero();
-      for (auto k = first_own_[a]; k < first_own_[a + 1]; ++k) way += double(own_[k].weight) * p[own_[k].of];
-      pull_[a] << (curvature_[active_[a]] * way).cast<float>(), 0;
-    }
+  if (lists_[0].size() == 0) return;
+  single_.resize(nodes_);
+  parallel_for(nodes_, 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) single_[i] << p[i].cast<float>(), 0;
   });
+  for (const auto& lists : lists_)
+    parallel_for(lists.size(), few, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto shares = lists.of_row(k);
+        Eigen::Vector4f some[4] = {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()};
+        std::size_t at = 0;
+        for (; at + 4 <= shares.size(); at += 4)
+          for (std::size_t c = 0; c < 4; ++c) some[c] += shares[at + c].weight * single_[shares[at + c].of];
+        for (; at < shares.size(); ++at) some[0] += shares[at].weight * single_[shares[at].of];
+        const Eigen::Vector4f way = (some[0] + some[1]) + (some[2] + some[3]);
+        pull_[lists.row(k)] << (curvature_[lists.row(k)] * way.head<3>().cast<double>()).cast<float>(), 0;
+      }
+    });
 }
 
 void ContactRows::add_blocks(std::vector<Mat3>& out) const {
   constexpr float together = 0.2f;  // of a row's weights, in what solves for a node with its neighbours
-  parallel_for(out.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(out.size(), few, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      for (auto i = first_share_[n]; i < first_share_[n + 1]; ++i) {
-        const float weight = std::abs(shares_[i].weight);
-        out[n] += double(weight * std::max(weight, together)) * curvature_[active_[shares_[i].of]];
-      }
+      for (const auto& lists : lists_)
+        for (const auto& share : lists.of_node(n)) {
+          const float weight = std::abs(share.weight);
+          out[n] += double(weight * std::max(weight, together)) * curvature_[share.of];
+        }
   });
 }
 

@@ -1,4 +1,5 @@
-// The rows of all that acts on nodes besides elasticity in a time step, beside each other: what they make depend on each other, and their product.
+// The rows of all that acts on nodes besides elasticity in a time step, beside each other: what they make depend on each other, their energies, forces and
+// product.
 #pragma once
 
 #include <cstdint>
@@ -6,23 +7,30 @@
 #include <utility>
 #include <vector>
 
-#include "mechanics/potential.h"
+#include "mechanics/row_lists.h"
 
 namespace geo {
 
 class ContactRows {
  public:
-  /// Of all of these, which outlive it, after their begin(); until read() no row does anything.
+  /// Of all of these, which outlive it, after their begin().
   ContactRows(std::span<Potential* const> potentials, std::size_t nodes);
+  bool empty() const { return rows_.empty(); }
   /// Pairs that join the parts of all nodes of each row, where `part` is each node's; none of a part with itself.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(std::span<const std::uint32_t> part) const;
-  /// Takes over the curvatures of the potentials' last force().
-  void read();
-  /// ∂²E/∂u² p; then what a node has of it.
+
+  /// Adds to sum[part] the energies, J, at displacements u of rows of parts that are chosen. `part`: of each node, a row's nodes of one.
+  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen, std::vector<double>& sum);
+  /// Takes over what rows of parts that are chosen do, each at the displacements of the last add_energy() that it was chosen in.
+  void push(std::span<const std::uint32_t> part, const std::vector<char>& chosen);
+  /// What a node gets of that, N.
+  Vec3 force_at(std::size_t node) const;
+  /// ∂²E/∂u² p, by the curvatures of the last push(); then what a node has of it, until push() is called again.
   void multiply(const std::vector<Vec3>& p);
   Vec3 product_at(std::size_t node) const {
     Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-    for (auto i = first_share_[node]; i < first_share_[node + 1]; ++i) sum += shares_[i].weight * pull_[shares_[i].of];
+    for (const auto& lists : lists_)
+      for (const auto& share : lists.of_node(node)) sum += share.weight * pull_[share.of];
     return sum.head<3>().cast<double>();
   }
   /// Adds for each node a 3×3 block, N/m, for a preconditioner: that of ∂²E/∂u², and more where a row's weight is spread over many nodes, as those near
@@ -30,18 +38,24 @@ class ContactRows {
   void add_blocks(std::vector<Mat3>& out) const;
 
  private:
-  std::span<Potential* const> potentials_;
-  std::vector<std::span<const NodeWeight>> entries_;  // of each row, where its potential has them
-  std::vector<Mat3> curvature_;
-  // Of rows that do something, in single precision: by row, and by node so that threads need not wait for each other.
-  struct Share {
-    std::uint32_t of;  // a node, or a number in active_
-    float weight;
+  struct Row {
+    Potential* of;
+    std::uint32_t number;
   };
-  std::vector<std::uint32_t> active_;
-  std::vector<std::size_t> first_own_, first_share_;
-  std::vector<Share> own_, shares_;
-  std::vector<Eigen::Vector4f> pull_;  // of each that is active: what it has for its nodes, but for their weights
+  /// Which rows' parts are chosen, where not all are.
+  std::vector<std::uint32_t> rows_of(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const;
+  void list();
+
+  std::size_t nodes_;
+  std::vector<Row> rows_;
+  std::vector<std::span<const NodeWeight>> entries_;
+  std::vector<Vec3> way_, force_;
+  std::vector<Mat3> curvature_;
+  // Rows that do something, or have done so since the step began: those that did when the first list was made, and the few that came since.
+  RowLists lists_[2];
+  std::vector<std::uint8_t> listed_;  // 1 + of which
+  std::vector<Eigen::Vector4f> single_;  // what multiply() is given
+  std::vector<Eigen::Vector4f> pull_;  // of each that is listed: what it has for its nodes, but for their weights
 };
 
 }  // namespace geo

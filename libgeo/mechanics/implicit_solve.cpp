@@ -48,7 +48,6 @@ void ImplicitStep::precondition() {
   });
   if (coarse_ && env_.contact.empty()) return;  // not much has turned since
   std::vector<Mat3> blocks = local_;
-  rows_.read();
   rows_.add_blocks(blocks);
   const auto make_coarse = [&] {
     if (coarse_) return;

@@ -101,7 +101,7 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
     if (drag_[i] > 0) sum += 0.5 * drag_[i] * tangential(u[i] - state_.displacement[i]).squaredNorm();
     return sum;
   });
-  for (const Potential* p : env_.contact) p->add_energy(u, parts_.of_nodes(), contact);
+  rows_.add_energy(u, parts_.of_nodes(), parts_.chosen(), contact);
   for (std::size_t p = 0; p < parts_.count(); ++p) {
     if (!parts_.chosen()[p]) continue;
     value[p] += elastic[p] + contact[p];
@@ -123,14 +123,13 @@ void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
   });
 }
 
-// Elastic forces at u_ become all that acts on nodes; `elastic` keeps them.
+// Elastic forces at u_, where evaluate() was asked last, become all that acts on nodes; `elastic` keeps them.
 void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic) {
   parts_.each_node([&](std::size_t i) { elastic[i] = force[i]; });
-  std::vector<Vec3> contact(env_.contact.empty() ? 0 : n_, Vec3::Zero());
-  for (Potential* p : env_.contact) p->force(u_, contact);
+  rows_.push(parts_.of_nodes(), parts_.chosen());
   parts_.each_node([&](std::size_t i) {
     Vec3& r = force[i];
-    if (!contact.empty()) r += contact[i];  // potentials act on parts that are not at work, too
+    r += rows_.force_at(i);
     r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
     if (env_.ground) {
       const double d = depth(env_, i, s_.position_[i] + u_[i]);

@@ -46,24 +46,17 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
   }
 }
 
-void Wedge::each_row(const VisitRow& visit) const {
-  for (const Contact& c : contacts_) visit({&c.at, 1}, c.deep ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero()));
-}
+double Wedge::energy(std::size_t r, const Vec3& way) const { return 0.5 * contacts_[r].stiffness * std::pow(contacts_[r].depth(way), 2); }
 
-void Wedge::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const {
-  for (const Contact& c : contacts_) sum[part[c.at.node]] += 0.5 * c.stiffness * std::pow(std::max(0.0, c.depth(u)), 2);
-}
-
-void Wedge::force(const std::vector<Vec3>& u, std::vector<Vec3>& out) {
-  for (Contact& c : contacts_) {
-    c.deep = c.depth(u) > 0;
-    if (c.deep) out[c.at.node] += c.stiffness * c.depth(u) * c.normal;
-  }
+Potential::Push Wedge::push(std::size_t r, const Vec3& way) {
+  const Contact& c = contacts_[r];
+  const double depth = c.depth(way);
+  return {c.stiffness * depth * c.normal, depth > 0 ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero())};
 }
 
 std::vector<Vec3> Wedge::reaction(const std::vector<Vec3>& u, std::size_t blades) const {
   std::vector<Vec3> sum(blades, Vec3::Zero());
-  for (const Contact& c : contacts_) sum[c.blade] -= c.stiffness * std::max(0.0, c.depth(u)) * c.normal;
+  for (const Contact& c : contacts_) sum[c.blade] -= c.stiffness * c.depth(u[c.at.node]) * c.normal;
   return sum;
 }
 

@@ -18,9 +18,10 @@ class Wedge : public Potential {
            const std::vector<double>& clearance, const std::vector<double>& mass, double stiffness);
   bool empty() const { return contacts_.empty(); }
 
-  void each_row(const VisitRow& visit) const override;
-  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override;
-  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override;
+  std::size_t size() const override { return contacts_.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return {&contacts_[r].at, 1}; }
+  double energy(std::size_t r, const Vec3& way) const override;
+  Push push(std::size_t r, const Vec3& way) override;
   /// What the material does to each of so many blades at displacements u, N.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
 
@@ -31,8 +32,7 @@ class Wedge : public Potential {
     Vec3 normal;        // out of the blade
     double stiffness;   // N/m
     double offset;      // depth = offset − normal · u
-    bool deep = false;  // at the last force()
-    double depth(const std::vector<Vec3>& u) const { return offset - normal.dot(u[at.node]); }
+    double depth(const Vec3& u) const { return std::max(0.0, offset - normal.dot(u)); }
   };
   std::vector<Contact> contacts_;
 };

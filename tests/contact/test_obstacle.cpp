@@ -1,11 +1,10 @@
 #include <catch2/catch.hpp>
 
+#include "acting.h"
 #include "base/random.h"
 #include "cases.h"
 #include "contact/obstacle.h"
 #include "geometry/distance.h"
-#include "mechanics/contact_rows.h"
-#include "products.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -77,8 +76,9 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
     o.begin(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
+    Acting acting(o, n);
     for (int i = 0; i < 40; ++i) {
-      std::vector<Vec3> way, force(n, Vec3::Zero()), behind = force, before = force;
+      std::vector<Vec3> way;
       for (std::size_t k = 0; k < n; ++k) u[k] = 0.01 * random.direction(), way.push_back(random.direction());
       const auto moved = [&](double h) {
         std::vector<Vec3> there = u;
@@ -91,14 +91,10 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
         return sum;
       };
       const double h = 1e-7;
-      o.force(moved(h), behind), o.force(moved(-h), before), o.force(u, force);
+      const std::vector<Vec3> behind = acting.force(moved(h)), before = acting.force(moved(-h)), force = acting.force(u), turned = acting.product(way);
       // Central differences; where a vertex passes a ridge of the field between, the derivative jumps.
-      const double slope = (o.energy(moved(h)) - o.energy(moved(-h))) / (2 * h);
+      const double slope = (acting.energy(moved(h)) - acting.energy(moved(-h))) / (2 * h);
       CHECK(-along(force) == Approx(slope).epsilon(1e-4));
-      Potential* const all[] = {&o};
-      ContactRows rows(all, n);
-      rows.read();
-      const std::vector<Vec3> turned = product_of(rows, way);
       if (plane) CHECK(along(turned) >= -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
       CHECK(along(turned) > 0);
     }
@@ -111,10 +107,10 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   const std::vector<std::uint8_t> all(n, 1);
   const Vec3 place(0.5, 0.45, -0.5);
   Obstacle o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
-  std::vector<Vec3> u(n, Vec3::Zero()), force(n, Vec3::Zero());
+  std::vector<Vec3> u(n, Vec3::Zero());
   o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
   o.begin(u, 0, 1);
-  o.force(u, force);
+  const std::vector<Vec3> force = Acting(o, n).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
   for (std::size_t i = 0; i < n; ++i) sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
   const auto reaction = o.reaction(u);

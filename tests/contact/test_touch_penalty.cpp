@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "acting.h"
 #include "base/joined.h"
 #include "base/random.h"
 #include "body/agreement.h"
@@ -11,8 +13,6 @@
 #include "contact/self_contact.h"
 #include "contact/touch_penalty.h"
 #include "contact/triangle_planes.h"
-#include "mechanics/contact_rows.h"
-#include "products.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
 
@@ -64,28 +64,20 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
       for (std::size_t i = 0; i < n; ++i) sum += f[i].dot(way[i]);
       return sum;
     };
-    const auto force_at = [&](const std::vector<Vec3>& x) {
-      std::vector<Vec3> f(n, Vec3::Zero());
-      penalty.force(x, f);
-      return f;
-    };
-    const std::vector<Vec3> force = force_at(at);
+    Acting acting(penalty, n);
+    const std::vector<Vec3> force = acting.force(at), product = acting.product(way);
     Vec3 sum = Vec3::Zero();
     for (const Vec3& f : force) sum += f;
     CHECK(sum.norm() < 1e-12);
     const double step = 1e-6;
-    CHECK((penalty.energy(moved(step)) - penalty.energy(moved(-step))) / (2 * step) == Approx(-along(force)).epsilon(1e-4).margin(1e-5));
-    Potential* const all[] = {&penalty};
-    ContactRows rows(all, n);
-    rows.read();
-    const std::vector<Vec3> product = product_of(rows, way);
+    CHECK((acting.energy(moved(step)) - acting.energy(moved(-step))) / (2 * step) == Approx(-along(force)).epsilon(1e-4).margin(1e-5));
     CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
     std::vector<Mat3> blocks(n, Mat3::Zero());
-    rows.add_blocks(blocks);
+    acting.rows().add_blocks(blocks);
     for (std::size_t i = 0; i < n; ++i) {
       std::vector<Vec3> unit(n, Vec3::Zero());
       unit[i] = Vec3::UnitY();
-      const std::vector<Vec3> column = product_of(rows, unit);
+      const std::vector<Vec3> column = acting.product(unit);
       CHECK(column[i].y() > 0);
       CHECK(blocks[i](1, 1) >= column[i].y() * (1 - 1e-6));  // no less than the matrix has there
       CHECK(blocks[i](1, 1) < 20 * column[i].y());
@@ -113,29 +105,80 @@ TEST_CASE("nodes that a penalty makes depend on each other hang together by the 
     }
     mutual.begin(u, 0, 1);
     for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
-      ContactRows rows(std::span(&p, 1), n);
+      Acting acting(*p, n);
       Joined joined(n);
       std::vector<std::uint32_t> part(n);
       std::iota(part.begin(), part.end(), 0u);
-      for (const auto& [i, j] : rows.couples(part)) joined.join(i, j);
+      for (const auto& [i, j] : acting.rows().couples(part)) joined.join(i, j);
       for (std::uint32_t i = 0; i < n; ++i) part[i] = joined[i];
-      std::vector<Vec3> force(n, Vec3::Zero());
-      p->force(at, force);
-      rows.read();
+      const std::vector<Vec3> force = acting.force(at);
+      const std::vector<char> all(n, 1);
       std::vector<double> energy(n, 0), moved(n, 0);
-      p->add_energy(at, part, energy);
-      CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(p->energy(at)).epsilon(1e-12));
+      acting.rows().add_energy(at, part, all, energy);
+      CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(acting.energy(at)).epsilon(1e-12));
       for (std::uint32_t i = 0; i < n; ++i) {
         std::vector<Vec3> unit(n, Vec3::Zero()), x = at;
         unit[i] = random.direction(), x[i] += 0.2 * unit[i];
-        const std::vector<Vec3> column = product_of(rows, unit);
+        const std::vector<Vec3> column = acting.product(unit);
         moved.assign(n, 0);
-        p->add_energy(x, part, moved);
+        acting.rows().add_energy(x, part, all, moved);
         for (std::uint32_t j = 0; j < n; ++j)
           if (part[j] != part[i]) {
             CHECK(column[j].isZero(0));
             CHECK(moved[j] == energy[j]);
           }
+      }
+    }
+  }
+}
+
+namespace {
+
+// Springs towards way 0 that act once they are woken.
+struct Sleepers : Potential {
+  std::vector<std::vector<NodeWeight>> nodes;
+  std::vector<Mat3> firm;
+  std::vector<char> awake;
+  std::size_t size() const override { return nodes.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return nodes[r]; }
+  double energy(std::size_t r, const Vec3& way) const override { return awake[r] ? 0.5 * way.dot(firm[r] * way) : 0; }
+  Push push(std::size_t r, const Vec3& way) override { return awake[r] ? Push{-firm[r] * way, firm[r]} : Push{}; }
+};
+
+}  // namespace
+
+TEST_CASE("rows that come to act in the middle of a step, or cease to, are in forces and products like those that did from the first") {
+  const auto [first, count] = seeds(30);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const std::size_t n = 40, total = 600;
+    Sleepers sleepers;
+    for (std::size_t r = 0; r < total; ++r) {
+      std::vector<NodeWeight> row;
+      for (std::uint32_t i = static_cast<std::uint32_t>(random.below(8)); i < n && r % 17 != 3; i += 1 + static_cast<std::uint32_t>(random.below(9))) row.push_back({i, random.uniform(-1, 1)});
+      const Vec3 d = random.direction();
+      sleepers.nodes.push_back(row), sleepers.firm.push_back(random.uniform(1, 3) * d * d.transpose()), sleepers.awake.push_back(0);
+    }
+    Acting acting(sleepers, n);
+    for (int round = 0; round < 12; ++round) {
+      const double some = std::array{0.0, 0.3, 0.01, 0.002, 0.05, 0.5}[static_cast<std::size_t>(random.below(6))];
+      for (auto& awake : sleepers.awake)
+        if (random.uniform() < some) awake = !awake;
+      std::vector<Vec3> u, p, force(n, Vec3::Zero()), product = force;
+      for (std::size_t i = 0; i < n; ++i) u.push_back(random.direction()), p.push_back(random.direction());
+      double energy = 0;
+      for (std::size_t r = 0; r < total; ++r) {
+        if (!sleepers.awake[r]) continue;
+        const Vec3 way = weighed(sleepers.nodes[r], u), pull = sleepers.firm[r] * weighed(sleepers.nodes[r], p);
+        energy += sleepers.energy(r, way);
+        for (const auto& e : sleepers.nodes[r]) force[e.node] -= e.weight * sleepers.firm[r] * way, product[e.node] += e.weight * pull;
+      }
+      CHECK(acting.energy(u) == Approx(energy).epsilon(1e-12).margin(1e-300));
+      const auto pushed = acting.force(u), multiplied = acting.product(p);
+      for (std::size_t i = 0; i < n; ++i) {
+        CHECK((pushed[i] - force[i]).norm() < 1e-11);
+        CHECK((multiplied[i] - product[i]).norm() < 1e-3);  // in single precision
       }
     }
   }

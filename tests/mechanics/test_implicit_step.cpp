@@ -88,22 +88,17 @@ namespace {
 struct Bed : Potential {
   const std::vector<Vec3>& at;
   std::vector<NodeWeight> on;
-  std::vector<char> deep;
-  double stiffness;
-  Bed(const std::vector<Vec3>& position, double k) : at(position), stiffness(k) {
+  double firm;
+  Bed(const std::vector<Vec3>& position, double k) : at(position), firm(k) {
     for (std::uint32_t i = 0; i < at.size(); ++i)
       if (at[i].y() < 0.1) on.push_back({i, 1});
-    deep.assign(on.size(), 0);
   }
-  double depth(std::size_t row, const std::vector<Vec3>& u) const { return std::max(0.0, -u[on[row].node].y()); }
-  void each_row(const VisitRow& visit) const override {
-    for (std::size_t r = 0; r < on.size(); ++r) visit({&on[r], 1}, deep[r] ? Mat3(stiffness * Vec3::UnitY() * Vec3::UnitY().transpose()) : Mat3(Mat3::Zero()));
-  }
-  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, std::vector<double>& sum) const override {
-    for (std::size_t r = 0; r < on.size(); ++r) sum[part[on[r].node]] += 0.5 * stiffness * depth(r, u) * depth(r, u);
-  }
-  void force(const std::vector<Vec3>& u, std::vector<Vec3>& out) override {
-    for (std::size_t r = 0; r < on.size(); ++r) deep[r] = depth(r, u) > 0, out[on[r].node].y() += stiffness * depth(r, u);
+  std::size_t size() const override { return on.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return {&on[r], 1}; }
+  double energy(std::size_t, const Vec3& way) const override { return 0.5 * firm * std::pow(std::max(0.0, -way.y()), 2); }
+  Push push(std::size_t, const Vec3& way) override {
+    if (way.y() < 0) return {-firm * way.y() * Vec3::UnitY(), firm * Vec3::UnitY() * Vec3::UnitY().transpose()};
+    return {};
   }
 };
 

@@ -1,0 +1,40 @@
+// What potentials do to all nodes, by their rows.
+#pragma once
+
+#include <vector>
+
+#include "mechanics/contact_rows.h"
+
+namespace geo {
+
+class Acting {
+ public:
+  Acting(std::span<Potential* const> potentials, std::size_t nodes) : rows_(potentials, nodes), part_(nodes, 0) {}
+  Acting(Potential& one, std::size_t nodes) : Acting(std::vector<Potential*>{&one}, nodes) {}
+  ContactRows& rows() { return rows_; }
+
+  double energy(const std::vector<Vec3>& u) {
+    std::vector<double> sum(1, 0);
+    rows_.add_energy(u, part_, {1}, sum);
+    return sum[0];
+  }
+  /// Products are of what acts there from now on.
+  std::vector<Vec3> force(const std::vector<Vec3>& u) {
+    energy(u), rows_.push(part_, {1});
+    std::vector<Vec3> force;
+    for (std::size_t i = 0; i < u.size(); ++i) force.push_back(rows_.force_at(i));
+    return force;
+  }
+  std::vector<Vec3> product(const std::vector<Vec3>& p) {
+    rows_.multiply(p);
+    std::vector<Vec3> product;
+    for (std::size_t i = 0; i < p.size(); ++i) product.push_back(rows_.product_at(i));
+    return product;
+  }
+
+ private:
+  ContactRows rows_;
+  std::vector<std::uint32_t> part_;
+};
+
+}  // namespace geo

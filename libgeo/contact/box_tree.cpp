@@ -180,6 +180,7 @@ BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) :
 }
 
 bool BoxTree::replace(std::vector<Box3>& boxes) {
+  if (boxes.size() != boxes_.size()) return false;
   for (std::size_t i = 0; i < boxes.size(); ++i)
     if (place_[i] == ~0u && !boxes[i].empty()) return false;
   boxes_ = std::move(boxes);

@@ -27,16 +27,17 @@ class BoxTree {
   /// Finite boxes; empty ones meet none. `triangles`: whose boxes they are, or empty.
   explicit BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles = {});
 
-  /// Other boxes of the same things: the curve stays as it is, which is as good while they have not gone far. False, and all is as it was, where a box
-  /// that was empty at first no longer is.
+  /// Other boxes of the same things, taken from `boxes`: the curve stays that of the first ones, which is as good while they have not gone far. False,
+  /// and all is as it was, `boxes` too, where there are not as many as before, or where one that was empty at first no longer is.
   bool replace(std::vector<Box3>& boxes);
 
   const std::vector<Box3>& boxes() const { return boxes_; }
   /// Makes a box larger, so that it holds this one, too.
   void enlarge(std::uint32_t row, const Box3& box);
-  /// All pairs (i < j) of boxes that meet, each once, neighbours near each other, in an order that depends on the boxes alone. Only
-  /// pairs with a box marked in `only`, where given; none of two triangles with a corner in common. By all threads; cost follows the
-  /// boxes that are asked for, and the pairs.
+  /// All pairs (i < j) of boxes that meet, each once, neighbours near each other, in an order that depends on the boxes and `only`
+  /// alone; after replace() or enlarge() it is still told by the curve of the first boxes, and may not be that of a new tree. Only pairs with a box
+  /// marked in `only`, where given; none of two triangles with a corner in common. By all threads; cost follows the boxes that are asked for, and the
+  /// pairs.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
 
   /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].

@@ -1,4 +1,5 @@
-// Compiled once for each kind of vector, like point_lanes.cpp.
+// Compiled once for each kind of vector, like point_lanes.cpp. Product and sum are one operation, where the processor has it,
+// only in the loop over pairs of slots.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/coarse_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)

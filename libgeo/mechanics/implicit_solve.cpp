@@ -117,9 +117,10 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
   });
 }
 
-// For each part at work, until what the preconditioner would still add is less than the accuracy asks for, or, where Newton will go on anyhow, until
-// what is left is a quarter in the norm that counts. Of a step's first direction a third may be left in any case: a guess doubles what the steps before
-// have left, and what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
+// For each part at work, until what the preconditioner would still add is less than half the accuracy, after one iteration at least, or, where Newton
+// will go on anyhow, until less than a quarter (√0.05) is left in the norm that counts, whose square is r · z. Of a step's first direction no more than
+// a third (√0.1) of that may be left, however little is to add: a guess doubles what the steps before have left, and what comes to rest would never
+// quite do so. `left`: that addition, over the nodes' spacing.
 int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();
   std::vector<char> working = all;

@@ -1,5 +1,6 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector. Each lane has its own sum, and
-// products and sums are one operation for all kinds that have it, so these find the same numbers.
+// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector. Each lane has its own sum. What
+// is written MulAdd is one operation for all kinds that have it, so these find the same numbers, and others such as differ by rounding; what is written
+// Add of Mul, as in Shares, is two for all, and the same for all.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/point_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)

@@ -111,7 +111,9 @@ class Solid {
                     std::span<const NodeId> updated, State& state, bool parted = true);
   void number_parts(const VisibilityGraph& graph, std::size_t first_new);
   void group_nodes();
-  std::size_t point_stride() const { return galerkin_ ? 5 : 1; }  // of the preconditioner: of cells beside each other another of their four points
+  // Of the points that the preconditioner's second level is made of. A cell has four, so that with five it is another of them from cell to cell, and
+  // none of every fifth cell: less work, and a step's result is the same to its accuracy.
+  std::size_t point_stride() const { return galerkin_ ? 5 : 1; }
   bool flows() const { return materials_.any([](const Material& m) { return m.yield > 0; }); }
   void nodal_points(std::span<const NodeId> updated);
   void update_plasticity(State& state, double dt) const;

@@ -1,5 +1,8 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
+#include "base/parallel.h"
 #include "base/random.h"
 #include "cases.h"
 #include "contact/close_pairs.h"
@@ -97,5 +100,55 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
     others = boxes, others[static_cast<std::size_t>(empty - boxes.begin())].add(Vec3::Zero());
     CHECK(!tree.replace(others));
     CHECK(sorted(tree.pairs()) == expected(false));
+  }
+}
+
+TEST_CASE("pairs of many boxes are the same in the same order for any number of threads, also after all were replaced") {
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  Random random(5);
+  std::vector<Box3> first, then;
+  std::vector<std::uint8_t> some;
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)), by = random.uniform(0, 0.1) * random.direction();
+    const Vec3 size = 0.1 * Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+    const bool none = random.below(50) == 0;
+    first.push_back(none ? Box3() : Box3{p, p + size});
+    then.push_back(none || random.below(10) == 0 ? Box3() : Box3{p + by, p + by + size});
+    some.push_back(random.below(4) == 0);
+  }
+  const auto same = [](const std::vector<Box3>& a, const std::vector<Box3>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Box3& p, const Box3& q) { return p.lo == q.lo && p.hi == q.hi; });
+  };
+  const auto run = [&] {
+    BoxTree tree(first);
+    std::vector<Pairs> found{tree.pairs(), tree.pairs(&some)};
+    // What is refused changes nothing on either side: a box where there was none, one too few, one too many.
+    auto wrong = then;
+    wrong[static_cast<std::size_t>(std::find_if(first.begin(), first.end(), [](const Box3& b) { return b.empty(); }) - first.begin())].add(Vec3::Zero());
+    for (const auto& refused : {wrong, std::vector<Box3>(then.begin(), then.end() - 1), std::vector<Box3>(then.size() + 1)}) {
+      auto given = refused;
+      CHECK(!tree.replace(given));
+      CHECK(same(given, refused));
+      CHECK(same(tree.boxes(), first));
+      CHECK(tree.pairs() == found[0]);
+    }
+    auto given = then;
+    REQUIRE(tree.replace(given));
+    CHECK(same(tree.boxes(), then));
+    found.push_back(tree.pairs()), found.push_back(tree.pairs(&some));
+    return found;
+  };
+  set_threads(1);
+  const auto alone = run();
+  set_threads(3);
+  CHECK(run() == alone);
+  set_threads(0);
+  CHECK(alone[0].size() > 5000);
+  // One that is made of the others finds the same pairs.
+  const BoxTree anew(then);
+  for (const bool asked : {false, true}) {
+    auto replaced = alone[asked ? 3 : 2], expected = anew.pairs(asked ? &some : nullptr);
+    std::sort(replaced.begin(), replaced.end()), std::sort(expected.begin(), expected.end());
+    CHECK(replaced == expected);
   }
 }

@@ -9,8 +9,9 @@ namespace geo {
 
 class Acting {
  public:
-  Acting(std::span<Potential* const> potentials, std::size_t nodes) : rows_(potentials, nodes), part_(nodes, 0) {}
-  Acting(Potential& one, std::size_t nodes) : Acting(std::vector<Potential*>{&one}, nodes) {}
+  /// After their begin() at displacements u, which outlive it.
+  Acting(std::span<Potential* const> potentials, const std::vector<Vec3>& u) : rows_(potentials, u), part_(u.size(), 0) {}
+  Acting(Potential& one, const std::vector<Vec3>& u) : Acting(std::vector<Potential*>{&one}, u) {}
   ContactRows& rows() { return rows_; }
 
   double energy(const std::vector<Vec3>& u) {

@@ -49,7 +49,7 @@ void Obstacle::watch(const Body& body, const SurfaceWeights& weights, std::span<
     for (std::size_t r = begin; r < end; ++r) {
       const auto v = vertices[r];
       const double pressure = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]);
-      rows_[r] = {weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v))};
+      rows_[r] = {weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v)), weights.spread(v)};
     }
   });
 }
@@ -68,6 +68,7 @@ void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
     row.pressed = row.stiffness * std::max(0.0, -field.distance);
     row.normal = start.linear() * field.normal;
     row.stuck = now_ * local;
+    row.reach = std::max(0.0, row.outside - (row.start - row.stuck).norm()) / row.spread;
   });
 }
 

@@ -32,6 +32,7 @@ class Obstacle : public Potential {
   void begin(const std::vector<Vec3>& u, double from, double to) override;
   std::size_t size() const override { return rows_.size(); }
   std::span<const NodeWeight> row(std::size_t r) const override { return rows_[r].weights; }
+  double reach(std::size_t r) const override { return rows_[r].reach; }
   double energy(std::size_t r, const Vec3& way) const override;
   Push push(std::size_t r, const Vec3& way) override { return pushed(rows_[r], way); }
   double stiffness(std::size_t r) const override { return rows_[r].stiffness; }
@@ -52,8 +53,10 @@ class Obstacle : public Potential {
     std::span<const SurfaceWeights::Entry> weights;
     Vec3 rest;
     double stiffness;             // N/m
+    double spread;                // of its weights
     Vec3 start = Vec3::Zero();    // where the vertex was
     double outside = 0;           // how far outside then
+    double reach = 0;             // how far nodes may go before it can be inside
     double pressed = 0;           // N, then
     Vec3 normal = Vec3::Zero();   // world, then
     Vec3 stuck = Vec3::Zero();    // where it would be had it stuck to the obstacle

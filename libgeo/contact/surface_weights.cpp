@@ -11,7 +11,7 @@
 namespace geo {
 
 void SurfaceWeights::update(const Body& body, const Solid& solid) {
-  rows_.clear(), heaviest_.clear();
+  rows_.clear(), heaviest_.clear(), spread_.clear();
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   make(body, solid, all);
@@ -45,7 +45,7 @@ std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertice
 
 void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
   rows_.resize(body.surface.surface_vertex_count());
-  heaviest_.resize(rows_.size(), ~0u);
+  heaviest_.resize(rows_.size(), ~0u), spread_.resize(rows_.size(), 0);
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
@@ -54,7 +54,7 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
-      rows_[v].clear(), heaviest_[v] = ~0u;
+      rows_[v].clear(), heaviest_[v] = ~0u, spread_[v] = 0;
       if (!body.surface.alive(id)) continue;
       bound_nodes(body, id, bound);
       if (bound.empty()) continue;
@@ -86,6 +86,7 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
         }
       const auto most = std::max_element(rows_[v].begin(), rows_[v].end(), [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
       if (most != rows_[v].end()) heaviest_[v] = most->node;
+      spread_[v] = geo::spread(rows_[v]);
     }
   });
 }

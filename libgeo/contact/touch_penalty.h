@@ -20,7 +20,7 @@ class TouchPenalty : public Potential {
   /// As if it were new; the memory is kept.
   void restart(const TouchPenaltyOptions& options) { options_ = options, rows_.clear(), entries_.clear(); }
 
-  /// A couple whose places, along its normal, have passed the limit by `depth` (negative: not yet) at displacements u.
+  /// A couple whose places, along its normal, have passed the limit by `depth` (negative: not yet) at displacements u, those at which the step begins.
   void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u) {
     add(row, normal, depth, stiffness, weighed(row.entries, u));
   }
@@ -33,6 +33,8 @@ class TouchPenalty : public Potential {
 
   std::size_t size() const override { return rows_.size(); }
   std::span<const NodeWeight> row(std::size_t r) const override { return {entries_.data() + rows_[r].first, entries_.data() + rows_[r].end}; }
+  void begin(const std::vector<Vec3>&, double from, double) override { begun_ = from <= 0; }
+  double reach(std::size_t r) const override { return begun_ ? rows_[r].reach : 0; }
   double energy(std::size_t r, const Vec3& way) const override;
   Push push(std::size_t r, const Vec3& way) override;
 
@@ -42,12 +44,14 @@ class TouchPenalty : public Potential {
     Vec3 normal;
     double depth;            // when the step began
     double stiffness;        // N/m
+    double reach;            // how far nodes may go since then before the couple can press
     Vec3 start;              // relative displacement then
     bool pressing;           // at the last push()
   };
   double most_friction(const Row& row) const { return options_.friction * row.stiffness * row.depth; }
 
   TouchPenaltyOptions options_;
+  bool begun_ = false;  // rows' starts are where nodes were at begin()
   std::vector<Row> rows_;
   std::vector<SurfaceWeights::Entry> entries_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "mechanics/row_sums.h"
@@ -14,12 +13,14 @@ constexpr std::size_t few = 64;  // rows, or nodes, that a thread is worth
 
 }  // namespace
 
-ContactRows::ContactRows(std::span<Potential* const> potentials, std::size_t nodes) : nodes_(nodes) {
+ContactRows::ContactRows(std::span<Potential* const> potentials, const std::vector<Vec3>& u) : begun_(u) {
   for (Potential* p : potentials)
     for (std::size_t r = 0; r < p->size(); ++r)
-      if (const auto entries = p->row(r); !entries.empty()) rows_.push_back({p, static_cast<std::uint32_t>(r)}), entries_.push_back(entries);
+      if (const auto entries = p->row(r); !entries.empty()) {
+        rows_.push_back({p, static_cast<std::uint32_t>(r), entries[0].node, p->reach(r)}), entries_.push_back(entries);
+      }
   way_.assign(rows_.size(), Vec3::Zero()), force_ = way_, curvature_.assign(rows_.size(), Mat3::Zero());
-  listed_.assign(rows_.size(), 0), pull_.assign(rows_.size(), Eigen::Vector4f::Zero());
+  listed_.assign(rows_.size(), 0), idle_ = listed_, pull_.assign(rows_.size(), Eigen::Vector4f::Zero());
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::span<const std::uint32_t> part) const {
@@ -37,25 +38,32 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::s
   return pairs;
 }
 
-std::vector<std::uint32_t> ContactRows::rows_of(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const {
-  std::vector<std::uint32_t> rows(rows_.size());
-  std::iota(rows.begin(), rows.end(), 0u);
-  if (std::find(chosen.begin(), chosen.end(), 0) != chosen.end()) std::erase_if(rows, [&](std::uint32_t r) { return !chosen[part[entries_[r][0].node]]; });
+std::vector<std::uint32_t> ContactRows::rows_at_work(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t r = 0; r < rows_.size(); ++r)
+    if (!idle_[r] && chosen[part[rows_[r].node]]) rows.push_back(r);
   return rows;
 }
 
 void ContactRows::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen, std::vector<double>& sum) {
-  const auto rows = rows_of(part, chosen);
+  if (empty()) return;
+  std::vector<double> moved(chosen.size(), 0);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (double& most = moved[part[i]]; chosen[part[i]]) most = std::max(most, (u[i] - begun_[i]).squaredNorm());
+  for (double& most : moved) most = std::sqrt(most);
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    if (const auto p = part[rows_[r].node]; chosen[p]) idle_[r] = !listed_[r] && moved[p] < rows_[r].reach;
+  const auto rows = rows_at_work(part, chosen);
   std::vector<double> energy(rows.size());
   each_row_sum(rows.size(), u, [&](std::size_t k) { return entries_[rows[k]]; }, [&](std::size_t k, const Vec3& way) {
     const auto r = rows[k];
     way_[r] = way, energy[k] = rows_[r].of->energy(rows_[r].number, way);
   });
-  for (std::size_t k = 0; k < rows.size(); ++k) sum[part[entries_[rows[k]][0].node]] += energy[k];
+  for (std::size_t k = 0; k < rows.size(); ++k) sum[part[rows_[rows[k]].node]] += energy[k];
 }
 
 void ContactRows::push(std::span<const std::uint32_t> part, const std::vector<char>& chosen) {
-  const auto rows = rows_of(part, chosen);
+  const auto rows = rows_at_work(part, chosen);
   parallel_for(rows.size(), few, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto r = rows[k];
@@ -79,13 +87,13 @@ void ContactRows::list() {
   }
   if (!came) return;
   if (rows.size() * small <= lists_[0].size()) {
-    lists_[1] = RowLists(rows, entries_, nodes_);
+    lists_[1] = RowLists(rows, entries_, begun_.size());
     return;
   }
   rows.clear();
   for (std::uint32_t r = 0; r < rows_.size(); ++r)
     if (listed_[r]) listed_[r] = 1, rows.push_back(r);
-  lists_[0] = RowLists(rows, entries_, nodes_), lists_[1] = {};
+  lists_[0] = RowLists(rows, entries_, begun_.size()), lists_[1] = {};
 }
 
 Vec3 ContactRows::force_at(std::size_t node) const {
@@ -99,8 +107,8 @@ Vec3 ContactRows::force_at(std::size_t node) const {
 
 void ContactRows::multiply(const std::vector<Vec3>& p) {
   if (lists_[0].size() == 0) return;
-  single_.resize(nodes_);
-  parallel_for(nodes_, 8192, [&](std::size_t begin, std::size_t end) {
+  single_.resize(begun_.size());
+  parallel_for(begun_.size(), 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) single_[i] << p[i].cast<float>(), 0;
   });
   for (const auto& lists : lists_)

@@ -13,8 +13,8 @@ namespace geo {
 
 class ContactRows {
  public:
-  /// Of all of these, which outlive it, after their begin().
-  ContactRows(std::span<Potential* const> potentials, std::size_t nodes);
+  /// Of all of these, after their begin() at displacements u; refers to both.
+  ContactRows(std::span<Potential* const> potentials, const std::vector<Vec3>& u);
   bool empty() const { return rows_.empty(); }
   /// Pairs that join the parts of all nodes of each row, where `part` is each node's; none of a part with itself.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(std::span<const std::uint32_t> part) const;
@@ -40,15 +40,17 @@ class ContactRows {
  private:
   struct Row {
     Potential* of;
-    std::uint32_t number;
+    std::uint32_t number, node;  // its own, and of one of its nodes
+    double reach;
   };
-  /// Which rows' parts are chosen, where not all are.
-  std::vector<std::uint32_t> rows_of(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const;
+  /// Those of parts that are chosen, whose nodes have gone so far: not those that are idle.
+  std::vector<std::uint32_t> rows_at_work(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const;
   void list();
 
-  std::size_t nodes_;
+  const std::vector<Vec3>& begun_;
   std::vector<Row> rows_;
   std::vector<std::span<const NodeWeight>> entries_;
+  std::vector<std::uint8_t> idle_;  // has never done anything, nor could where nodes were at its last evaluation
   std::vector<Vec3> way_, force_;
   std::vector<Mat3> curvature_;
   // Rows that do something, or have done so since the step began: those that did when the first list was made, and the few that came since.

@@ -20,7 +20,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() con
 }
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
-    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), rows_(env.contact, n_),
+    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), rows_(env.contact, state.displacement),
       parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
       relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
   std::vector<double> keep;  // per material

@@ -10,8 +10,7 @@ double Potential::stiffest(const std::vector<double>& inverse_mass) const {
   for (std::size_t r = 0; r < size(); ++r) {
     const double firm = stiffness(r);
     if (!(firm > 0)) continue;
-    double all = 0;
-    for (const auto& e : row(r)) all += std::abs(e.weight);
+    const double all = spread(row(r));
     for (const auto& e : row(r)) sum[e.node] += firm * std::abs(e.weight) * all;
   }
   double most = 0;

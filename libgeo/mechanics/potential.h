@@ -1,6 +1,7 @@
 // An energy of node displacements that acts besides elasticity: what contact brings into a time step.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,6 +15,12 @@ struct NodeWeight {
   std::uint32_t node;
   double weight;
 };
+/// Σ |weight|: how far the sum below goes at most where each value goes as far as 1.
+inline double spread(std::span<const NodeWeight> entries) {
+  double sum = 0;
+  for (const auto& e : entries) sum += std::abs(e.weight);
+  return sum;
+}
 /// Σ weight × value: what the nodes' values come to.
 inline Vec3 weighed(std::span<const NodeWeight> entries, const std::vector<Vec3>& values) {
   Vec3 sum = Vec3::Zero();
@@ -32,6 +39,8 @@ class Potential {
   virtual std::size_t size() const = 0;
   /// A row's nodes, none twice; of none: it does nothing. All can be made to depend on each other by it.
   virtual std::span<const NodeWeight> row(std::size_t r) const = 0;
+  /// How far nodes may go from where they were at begin() before a row does anything, model units; 0: it may do so there.
+  virtual double reach(std::size_t) const { return 0; }
   /// The energy of a row that has gone so far, J.
   virtual double energy(std::size_t r, const Vec3& way) const = 0;
   struct Push {

@@ -76,7 +76,8 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
     o.begin(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
-    Acting acting(o, n);
+    const std::vector<Vec3> begun = u;
+    Acting acting(o, begun);
     for (int i = 0; i < 40; ++i) {
       std::vector<Vec3> way;
       for (std::size_t k = 0; k < n; ++k) u[k] = 0.01 * random.direction(), way.push_back(random.direction());
@@ -110,7 +111,7 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   std::vector<Vec3> u(n, Vec3::Zero());
   o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
   o.begin(u, 0, 1);
-  const std::vector<Vec3> force = Acting(o, n).force(u);
+  const std::vector<Vec3> force = Acting(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
   for (std::size_t i = 0; i < n; ++i) sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
   const auto reaction = o.reaction(u);

@@ -64,7 +64,8 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
       for (std::size_t i = 0; i < n; ++i) sum += f[i].dot(way[i]);
       return sum;
     };
-    Acting acting(penalty, n);
+    penalty.begin(u, 0, 1);
+    Acting acting(penalty, u);
     const std::vector<Vec3> force = acting.force(at), product = acting.product(way);
     Vec3 sum = Vec3::Zero();
     for (const Vec3& f : force) sum += f;
@@ -103,9 +104,9 @@ TEST_CASE("nodes that a penalty makes depend on each other hang together by the 
       touch.add(row, normal, random.uniform(0, 0.5), random.uniform(1, 5), u);
       mutual.add(row.entries, random.uniform(-0.5, 0) * normal, normal, random.uniform(1, 5));
     }
-    mutual.begin(u, 0, 1);
     for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
-      Acting acting(*p, n);
+      p->begin(u, 0, 1);
+      Acting acting(*p, u);
       Joined joined(n);
       std::vector<std::uint32_t> part(n);
       std::iota(part.begin(), part.end(), 0u);
@@ -160,7 +161,8 @@ TEST_CASE("rows that come to act in the middle of a step, or cease to, are in fo
       const Vec3 d = random.direction();
       sleepers.nodes.push_back(row), sleepers.firm.push_back(random.uniform(1, 3) * d * d.transpose()), sleepers.awake.push_back(0);
     }
-    Acting acting(sleepers, n);
+    const std::vector<Vec3> begun(n, Vec3::Zero());
+    Acting acting(sleepers, begun);
     for (int round = 0; round < 12; ++round) {
       const double some = std::array{0.0, 0.3, 0.01, 0.002, 0.05, 0.5}[static_cast<std::size_t>(random.below(6))];
       for (auto& awake : sleepers.awake)

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "contact/contact_surface.h"
 #include "contact/friction.h"
 #include "mechanics/row_sums.h"
 
@@ -27,29 +26,36 @@ Eigen::Isometry3d Obstacle::pose(double share) const {
   return p;
 }
 
-void Obstacle::watch(const Body& body, const SurfaceWeights& weights, std::span<const std::uint8_t> near, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness) {
+void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow, std::span<const double> firmness) {
   const Complex& k = body.surface;
   slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
-  rows_.clear();
+  const auto rest = [&](std::uint32_t v) -> const Vec3& { return k.point(k.site(SurfaceVertexId(v))); };
   std::vector<std::uint8_t> reached(k.surface_vertex_count(), 0);
+  std::vector<Vec3> at(watched.at.empty() ? reached.size() : 0);
+  const auto place = [&](std::uint32_t v) -> const Vec3& { return at.empty() ? watched.at[v] : at[v]; };
   const Eigen::Isometry3d back = from_.inverse();
   parallel_for(reached.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const SurfaceVertexId id(v);
+    for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
       const auto row = weights.row(v);
-      if (!k.alive(id) || std::none_of(row.begin(), row.end(), [&](const NodeWeight& w) { return near[w.node] != 0; })) continue;
-      reached[v] = shape_->near(back * (k.point(k.site(id)) + weights.at(v, u)), reach);
+      if (!k.alive(SurfaceVertexId(v)) || row.empty()) continue;
+      if (!at.empty()) {
+        if (std::none_of(row.begin(), row.end(), [&](const NodeWeight& w) { return watched.near[w.node] != 0; })) continue;
+        at[v] = rest(v) + weights.at(v, watched.u);
+      }
+      reached[v] = shape_->near(back * place(v), reach);
     }
   });
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t v = 0; v < reached.size(); ++v)
     if (reached[v]) vertices.push_back(v);
   rows_.resize(vertices.size());
-  parallel_for(vertices.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(rows_.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const auto v = vertices[r];
-      const double pressure = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]);
-      rows_[r] = {weights.row(v), k.point(k.site(SurfaceVertexId(v))), pressure * area_about(k, SurfaceVertexId(v)), weights.spread(v)};
+      Row& row = rows_[r];
+      row = {};
+      row.weights = weights.row(v), row.spread = weights.spread(v), row.rest = rest(v), row.way = place(v) - row.rest;
+      row.stiffness = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]) * weights.area(v);
     }
   });
 }
@@ -59,7 +65,7 @@ void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
   else if (from == ended_ && !impulses_) add_reaction(u, sum_);
   const Eigen::Isometry3d start = pose(from), back = start.inverse();
   begun_ = from, ended_ = to, now_ = pose(to);
-  each_way(u, [&](std::size_t r, const Vec3& way) {
+  const auto stand = [&](std::size_t r, const Vec3& way) {
     Row& row = rows_[r];
     row.start = row.rest + way;
     const Vec3 local = back * row.start;
@@ -69,6 +75,10 @@ void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
     row.normal = start.linear() * field.normal;
     row.stuck = now_ * local;
     row.reach = std::max(0.0, row.outside - (row.start - row.stuck).norm()) / row.spread;
+  };
+  if (from > 0) return each_way(u, stand);
+  parallel_for(rows_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) stand(r, rows_[r].way);
   });
 }
 

@@ -22,13 +22,19 @@ class Obstacle : public Potential {
   /// Moves from one pose to the other during the step, its turn even.
   Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
-  /// For a step that begins at displacements u: which vertices may reach the obstacle (those nearer than `reach`, of surface that nodes marked in `near`
-  /// carry; one a node), their weights, which must outlive it, and areas. `slow`: a way along the obstacle, model units, below which friction is smooth. `firmness`: per node, of what its
-  /// surface is pressed with, times the pressure; empty: 1.
-  void watch(const Body& body, const SurfaceWeights& weights, std::span<const std::uint8_t> near, const std::vector<Vec3>& u, double reach, double slow, std::span<const double> firmness = {});
+  /// Where a body is when a step begins.
+  struct Watched {
+    const std::vector<Vec3>& u;          ///< displacements of its nodes
+    std::span<const Vec3> at;            ///< its surface vertices; empty: found from u, where they may be near
+    std::span<const std::uint8_t> near;  ///< then: nodes that carry surface that may be
+  };
+  /// Which vertices may reach the obstacle in that step (those nearer than `reach`), and their weights, which must outlive it. `slow`: a way along the
+  /// obstacle, model units, below which friction is smooth. `firmness`: per node, of what its surface is pressed with, times the pressure; empty: 1.
+  void watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow, std::span<const double> firmness = {});
 
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 
+  /// A step's first part begins at the displacements of watch().
   void begin(const std::vector<Vec3>& u, double from, double to) override;
   std::size_t size() const override { return rows_.size(); }
   std::span<const NodeWeight> row(std::size_t r) const override { return rows_[r].weights; }
@@ -51,9 +57,9 @@ class Obstacle : public Potential {
  private:
   struct Row {
     std::span<const SurfaceWeights::Entry> weights;
-    Vec3 rest;
-    double stiffness;             // N/m
-    double spread;                // of its weights
+    Vec3 rest = Vec3::Zero(), way = Vec3::Zero();  // way: when it was watched
+    double stiffness = 0;         // N/m
+    double spread = 0;            // of its weights
     Vec3 start = Vec3::Zero();    // where the vertex was
     double outside = 0;           // how far outside then
     double reach = 0;             // how far nodes may go before it can be inside

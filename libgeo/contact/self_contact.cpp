@@ -57,7 +57,7 @@ std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>
 }
 
 // The same. Where nodes are where they were at the last call, only what has other weights since is worked out.
-const std::vector<Vec3>& SelfContact::known_targets(const Body& body, const std::vector<Vec3>& u) {
+const std::vector<Vec3>& SelfContact::targets_at(const Body& body, const std::vector<Vec3>& u) {
   if (last_.of.size() <= u.size() && !last_.of.empty() && std::equal(last_.of.begin(), last_.of.end(), u.begin())) {
     last_.targets.resize(weights_.size(), Vec3::Zero());
     const auto moved = weights_.at_each(last_.stale, u);
@@ -87,7 +87,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   }
   const auto together = vertices_together(surface_.site, positions_);
   const Copies copies(together);
-  const std::vector<Vec3>& now = known_targets(body, state.displacement);
+  const std::vector<Vec3>& now = targets_at(body, state.displacement);
   const std::vector<Vec3> free = targets(body, u);
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
   held_off_.resize(here.size());
@@ -202,7 +202,7 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   auto together = vertices_together(surface_.site, positions_);
   Copies copies(together);
   work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, together, copies, state);
-  const std::vector<Vec3>& to = known_targets(body, state.displacement);
+  const std::vector<Vec3>& to = targets_at(body, state.displacement);
   if (work.opened = open_sheets(surface_, fans(), copies, to, options_.gap * surface_.edge, options_.opening * surface_.edge, positions_); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;

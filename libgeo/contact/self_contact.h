@@ -39,13 +39,13 @@ class SelfContact {
 
   /// World positions, per surface vertex; of dead ones nothing is said.
   const std::vector<Vec3>& positions() const { return positions_; }
+  /// Where displacements of nodes have each; kept until other ones are asked for.
+  const std::vector<Vec3>& targets_at(const Body& body, const std::vector<Vec3>& u);
   const SurfaceWeights& weights() const { return weights_; }
   const ContactSurface& surface() const { return surface_; }
 
  private:
-  /// Where displacements of nodes have the surface.
   std::vector<Vec3> targets(const Body& body, const std::vector<Vec3>& u) const;
-  const std::vector<Vec3>& known_targets(const Body& body, const std::vector<Vec3>& u);
   std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
                                    std::span<const std::uint32_t> together, const Copies& copies, State& state);
   std::vector<Vec3> likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const;
@@ -58,7 +58,7 @@ class SelfContact {
   TouchPenalty touch_{TouchPenaltyOptions{}};
   NearPairs near_;       // of the step that is worked on
   VertexFans fans_;      // of the surface; empty: not asked for yet
-  // What targets() said last, of which displacements, and the vertices whose weights have changed since.
+  // What targets_at() said last, of which displacements, and the vertices whose weights have changed since.
   struct {
     std::vector<Vec3> targets, of;
     std::vector<std::uint32_t> stale;

@@ -5,13 +5,14 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "contact/contact_surface.h"
 #include "mechanics/kernel.h"
 #include "mechanics/row_sums.h"
 
 namespace geo {
 
 void SurfaceWeights::update(const Body& body, const Solid& solid) {
-  rows_.clear(), heaviest_.clear(), spread_.clear();
+  rows_.clear(), heaviest_.clear(), spread_.clear(), area_.clear();
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   make(body, solid, all);
@@ -27,7 +28,8 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
   const std::size_t n = body.surface.surface_vertex_count();
   std::vector<std::uint8_t> asked(n, 0);
   for (const auto v : delta.rebound) asked[v.index()] = 1;
-  for (const auto v : delta.crack.new_surface_vertices) asked[v.index()] = 1;
+  for (const auto* some : {&delta.crack.new_surface_vertices, &delta.crack.touched_surface_vertices})
+    for (const auto v : *some) asked[v.index()] = 1;
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t v = 0; v < n; ++v) {
     const SurfaceVertexId master = body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
@@ -45,7 +47,7 @@ std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertice
 
 void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
   rows_.resize(body.surface.surface_vertex_count());
-  heaviest_.resize(rows_.size(), ~0u), spread_.resize(rows_.size(), 0);
+  heaviest_.resize(rows_.size(), ~0u), spread_.resize(rows_.size(), 0), area_.resize(rows_.size(), 0);
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
@@ -54,8 +56,9 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
-      rows_[v].clear(), heaviest_[v] = ~0u, spread_[v] = 0;
+      rows_[v].clear(), heaviest_[v] = ~0u, spread_[v] = area_[v] = 0;
       if (!body.surface.alive(id)) continue;
+      area_[v] = area_about(body.surface, id);
       bound_nodes(body, id, bound);
       if (bound.empty()) continue;
       const Vec3& x = body.surface.point(body.surface.site(id));

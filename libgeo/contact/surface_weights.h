@@ -24,6 +24,7 @@ class SurfaceWeights {
 
   std::size_t size() const { return rows_.size(); }
   std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
+  double area(std::size_t v) const { return area_[v]; }      ///< area_about() it
   double spread(std::size_t v) const { return spread_[v]; }  ///< spread() of its row
   /// Per surface vertex the node that weighs most, the lowest of several; ~0u: none carries it.
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
@@ -37,7 +38,7 @@ class SurfaceWeights {
 
   std::vector<std::vector<Entry>> rows_;
   std::vector<std::uint32_t> heaviest_;
-  std::vector<double> spread_;
+  std::vector<double> area_, spread_;
 };
 
 }  // namespace geo

@@ -108,7 +108,7 @@ MutualContact between_bodies(const Body& body, const Solid& solid, const Surface
       for (const auto& [node, w] : apart) entries.push_back({node, w});
       const auto firm = [&](SurfaceVertexId of) { return options.firmness.empty() ? 1.0 : options.firmness[weights.heaviest()[of.index()]]; };
       const double pressure = 0.5 * options.pressure * std::max(firm(v), firm(k.surface_vertex(n.side, 0)));
-      contact.add(std::move(entries), around.material(v) - n.point, normal, pressure * area_about(k, v));
+      contact.add(std::move(entries), around.material(v) - n.point, normal, pressure * weights.area(v.index()));
     }
   }
   return contact;

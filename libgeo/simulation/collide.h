@@ -28,6 +28,8 @@ class Collisions {
   std::vector<Vec3> rows(const Body& body) const;
   /// The surface's weights where on(), else nothing.
   const SurfaceWeights* weights() const { return surface_ ? &surface_->weights() : nullptr; }
+  /// Where nodes have each surface vertex where on(), else nothing; until the next call of anything.
+  std::span<const Vec3> wanted(const Body& body, const State& motion) { return surface_ ? std::span<const Vec3>(surface_->targets_at(body, motion.displacement)) : std::span<const Vec3>(); }
 
  private:
   std::optional<SelfContact> surface_;

@@ -54,7 +54,7 @@ const SurfaceWeights& Obstacles::weights_of(const SurfaceWeights* given, const B
   return *own_;
 }
 
-void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, const std::vector<std::uint32_t>& part,
+void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, std::span<const Vec3> at, const std::vector<std::uint32_t>& part,
                       const State& motion, double time, double dt, Environment& environment) {
   acting_.clear();
   const bool mutual = scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
@@ -85,7 +85,7 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
     const double reach = 2 * dt * (fastest + fall) + moved + spacing;
     acting_.emplace_back(shapes_[k], options, from, to);
     if (const auto near = near_nodes(*shapes_[k], from.inverse(), body.nodes, motion.displacement, reach); std::find(near.begin(), near.end(), 1) != near.end())
-      acting_.back().watch(body, weights_of(weights, body, solid), near, motion.displacement, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
+      acting_.back().watch(body, weights_of(weights, body, solid), {motion.displacement, at, near}, reach, 1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
   }
   if (scene.ground && scene.self_contact) environment.ground = false;
   for (Obstacle& o : acting_)

@@ -18,8 +18,9 @@ class Obstacles {
   explicit Obstacles(const Scene& scene);
 
   /// Before a step of dt seconds from `time` on: adds them to what acts on nodes, and bodies that touch each other where nothing
-  /// else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is; none: they are found here.
-  void begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, const std::vector<std::uint32_t>& part, const State& motion,
+  /// else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is; none: they are found here. `at`: where they
+  /// have the surface now; empty: that is found here.
+  void begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, std::span<const Vec3> at, const std::vector<std::uint32_t>& part, const State& motion,
              double time, double dt, Environment& environment);
   /// After a crack step.
   void follow() { own_.reset(); }

@@ -73,7 +73,7 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
     Obstacle o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
-    o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
+    o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
     o.begin(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
     const std::vector<Vec3> begun = u;
@@ -109,7 +109,7 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   const Vec3 place(0.5, 0.45, -0.5);
   Obstacle o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero());
-  o.watch(block.body, block.weights, all, u, 0.5, 1e-3);
+  o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
   o.begin(u, 0, 1);
   const std::vector<Vec3> force = Acting(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();

@@ -34,14 +34,7 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     if (!env.load.empty()) load_[i] += env.load[i];
     if (!is_fixed(env, i)) target_[i] += dt * keep[s_.materials_.number(i)] * state.velocity[i];
   }
-  // Where nodes come to if they accelerate as in the step before, or, where that is unknown, fly on their own, unless that is too far from
-  // anything.
-  u_ = target_;
-  const bool known = state.acceleration.size() == n_;
-  for (std::size_t i = 0; i < n_; ++i) {
-    const Vec3 more = dt * dt * (known ? state.acceleration[i] : Vec3(load_[i] / s_.mass_[i]));
-    if (!is_fixed(env, i) && more.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i]) u_[i] += more;
-  }
+  go_on();
   // Drag along the ground: lagged, from where the step began.
   if (env.ground)
     for (std::size_t i = 0; i < n_; ++i)
@@ -58,6 +51,27 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
       s_.points_.values(b, state.displacement, values);
       point_gradients(s_.points_.blocks[b], values.data(), before_[b]);
     }
+  });
+}
+
+// Where Newton begins: nodes go on as they are, and parts that accelerate alike in all of their nodes, as those do that fall, accelerate as in the step before,
+// or, where that is unknown, as they would on their own. Other accelerations are mostly of what trembles, which goes on otherwise.
+void ImplicitStep::go_on() {
+  constexpr double alike = 0.8;  // of squares, what the mean has
+  u_ = target_;
+  const bool known = state_.acceleration.size() == n_;
+  std::vector<Vec3> more(n_, Vec3::Zero());
+  parts_.each_node([&](std::size_t i) {
+    const Vec3 way = dt_ * dt_ * (known ? state_.acceleration[i] : Vec3(load_[i] / s_.mass_[i]));
+    if (!is_fixed(env_, i) && way.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i]) more[i] = way;  // else it is too far from anything
+  });
+  std::vector<double> mass, squares;
+  std::vector<Vec3> sum;
+  parts_.sums(mass, 0.0, [&](std::size_t i) { return is_fixed(env_, i) ? 0.0 : s_.mass_[i]; });
+  parts_.sums(sum, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return s_.mass_[i] * more[i]; });
+  parts_.sums(squares, 0.0, [&](std::size_t i) { return s_.mass_[i] * more[i].squaredNorm(); });
+  parts_.each_node([&](std::size_t i) {
+    if (const auto p = parts_.of(i); sum[p].squaredNorm() > alike * mass[p] * squares[p]) u_[i] += more[i];
   });
 }
 
@@ -140,20 +154,25 @@ void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elast
   });
 }
 
-// Newton may as well begin where the step did: after an impact or a cut, nodes do not go on as before. That is asked only of parts for which forces
-// say that it could have less, by how far they pull there and what inertia alone has against it; true for those where it has.
-std::vector<char> ImplicitStep::better_at_start(const std::vector<Vec3>& force, const std::vector<double>& value) {
-  std::vector<double> less, at_start;
-  std::vector<char> better(parts_.count());
-  parts_.sums(less, 0.0, [&](std::size_t i) {
-    const Vec3 back = state_.displacement[i] - u_[i];
-    return back.dot(force[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * back);
-  });
-  for (std::size_t p = 0; p < better.size(); ++p) better[p] = less[p] > 0;
-  parts_.choose(better);
+// How much of the way back to where the step began Newton had better go before it begins: after an impact or a cut, or where it is pushed, a part does not go
+// on as before. By a parabola through the potential here, its slope there, and the potential where the step began. That is asked only of parts for which
+// forces say that it could have less there, by how far they pull and what inertia alone has against it.
+std::vector<double> ImplicitStep::way_back(const std::vector<Vec3>& force, const std::vector<double>& value) {
+  constexpr double least = 0.2;  // less is not worth the evaluation
+  std::vector<double> pull, inert, at_start, share(parts_.count(), 0);
+  std::vector<char> asked(parts_.count());
+  const auto back = [&](std::size_t i) -> Vec3 { return state_.displacement[i] - u_[i]; };
+  parts_.sums(pull, 0.0, [&](std::size_t i) { return back(i).dot(force[i]); });
+  parts_.sums(inert, 0.0, [&](std::size_t i) { return 0.5 * s_.mass_[i] / (dt_ * dt_) * back(i).squaredNorm(); });
+  for (std::size_t p = 0; p < asked.size(); ++p) asked[p] = pull[p] > inert[p];
+  parts_.choose(asked);
   evaluate(state_.displacement, at_start, nullptr);
-  for (std::size_t p = 0; p < better.size(); ++p) better[p] = better[p] && at_start[p] < value[p];
-  return better;
+  for (std::size_t p = 0; p < asked.size(); ++p) {
+    if (!asked[p]) continue;
+    const double bend = 2 * (at_start[p] - value[p] + pull[p]), best = bend > pull[p] ? pull[p] / bend : 1;
+    if (best > least) share[p] = best > 1 - least ? 1 : best;
+  }
+  return share;
 }
 
 bool ImplicitStep::run(StepReport& report) {
@@ -164,10 +183,15 @@ bool ImplicitStep::run(StepReport& report) {
   const auto any = [](const std::vector<char>& of) { return std::find(of.begin(), of.end(), 1) != of.end(); };
   evaluate(u_, value, &force);
   add_forces(force, elastic);
-  wanted = better_at_start(force, value);
+  const std::vector<double> back = way_back(force, value);
+  wanted.assign(parts, 0);
+  for (std::size_t p = 0; p < parts; ++p) wanted[p] = back[p] > 0;
   if (any(wanted)) {
     parts_.choose(wanted);
-    parts_.each_node([&](std::size_t i) { u_[i] = state_.displacement[i]; });
+    parts_.each_node([&](std::size_t i) {
+      const double share = back[parts_.of(i)];
+      u_[i] = share == 1 ? state_.displacement[i] : Vec3((1 - share) * u_[i] + share * state_.displacement[i]);
+    });
     evaluate(u_, value, &force);
     add_forces(force, elastic);
   }

@@ -30,7 +30,8 @@ class ImplicitStep {
   void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
   void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
-  std::vector<char> better_at_start(const std::vector<Vec3>& force, const std::vector<double>& value);
+  void go_on();
+  std::vector<double> way_back(const std::vector<Vec3>& force, const std::vector<double>& value);
   void linearise();
   void precondition();
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature);

@@ -119,8 +119,7 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
 
 // For each part at work, until what the preconditioner would still add is less than half the accuracy, after one iteration at least, or, where Newton
 // will go on anyhow, until less than a quarter (√0.05) is left in the norm that counts, whose square is r · z. Of a step's first direction no more than
-// a third (√0.1) of that may be left, however little is to add: a guess doubles what the steps before have left, and what comes to rest would never
-// quite do so. `left`: that addition, over the nodes' spacing.
+// a half (√0.3) of that may be left, however little is to add, or what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
 int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();
   std::vector<char> working = all;
@@ -142,7 +141,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
   for (; k < 500; ++k) {
     for (std::size_t q = 0; q < working.size(); ++q) {
       const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.05 * begun[q], little = k > 0 && left[q] < 0.5 * accuracy_;
-      if (working[q] && (!(rz[q] > 0) || (little && (!first || rz[q] <= 0.1 * begun[q])) || (reduced && far_from_done))) working[q] = 0;
+      if (working[q] && (!(rz[q] > 0) || (little && (!first || rz[q] <= 0.3 * begun[q])) || (reduced && far_from_done))) working[q] = 0;
     }
     if (std::find(working.begin(), working.end(), 1) == working.end()) break;
     parts_.choose(working);

@@ -4,8 +4,10 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "contact/box_tree.h"
 #include "contact/close_pairs.h"
 #include "contact/triangle_sides.h"
+#include "contact/vertex_fans.h"
 #include "surface/check.h"
 
 namespace geo {
@@ -25,6 +27,31 @@ Pairs unclear(const Pairs& pairs, const TriangleSides& sides) {
   });
   Pairs result;
   for (const Pairs& s : some) result.insert(result.end(), s.begin(), s.end());
+  return result;
+}
+
+// Those that cross and share a corner on the surface.
+Pairs about_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, std::span<const std::uint32_t> together, bool two_sided) {
+  const VertexFans fans(triangles, positions.size());
+  std::vector<std::uint8_t> clear(fans.size());
+  parallel_for(fans.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) clear[v] = fans.open_out(static_cast<std::uint32_t>(v), together, positions);
+  });
+  std::vector<std::uint32_t> shut;
+  for (std::uint32_t v = 0; v < clear.size(); ++v)
+    if (!clear[v]) shut.push_back(v);
+  std::vector<Pairs> found(shut.size());
+  const auto standing = [&](std::uint32_t t) { return Triangle{together[triangles[t][0]], together[triangles[t][1]], together[triangles[t][2]]}; };
+  parallel_for(shut.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto v = shut[i];
+      fans.each_pair(v, [&](std::uint32_t w) { return w < v || clear[w]; }, [&](std::uint32_t s, std::uint32_t t) {
+        if (triangles_cross(standing(s), standing(t), positions, two_sided)) found[i].push_back({s, t});
+      });
+    }
+  });
+  Pairs result;
+  for (const Pairs& f : found) result.insert(result.end(), f.begin(), f.end());
   return result;
 }
 
@@ -67,9 +94,15 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
     for (Box3& b : boxes)
       if (!b.meets(region)) b = Box3();
   }
-  auto pairs = close_pairs(std::move(boxes), only);
-  if (!only) pairs = unclear(pairs, TriangleSides(triangles, together, positions));
-  auto result = find_crossings(pairs, triangles, positions, together, two_sided, only);
+  Pairs result;
+  if (only) {
+    result = find_crossings(close_pairs(std::move(boxes), only), triangles, positions, together, two_sided, only);
+  } else {
+    const auto pairs = unclear(BoxTree(std::move(boxes), triangles).pairs(), TriangleSides(triangles, together, positions));
+    result = find_crossings(pairs, triangles, positions, together, two_sided);
+    const Pairs about = about_vertices(triangles, positions, together, two_sided);
+    result.insert(result.end(), about.begin(), about.end());
+  }
   std::sort(result.begin(), result.end());
   return result;
 }

@@ -7,6 +7,19 @@
 
 namespace geo {
 
+/// The same row by row, of all rows.
+inline double energy_of(const Potential& of, const std::vector<Vec3>& u) {
+  double sum = 0;
+  for (std::size_t r = 0; r < of.size(); ++r) sum += of.energy(r, weighed(of.row(r), u));
+  return sum;
+}
+inline std::vector<Vec3> force_of(Potential& of, const std::vector<Vec3>& u) {
+  std::vector<Vec3> force(u.size(), Vec3::Zero());
+  for (std::size_t r = 0; r < of.size(); ++r)
+    for (const auto& e : of.row(r)) force[e.node] += e.weight * of.push(r, weighed(of.row(r), u)).force;
+  return force;
+}
+
 class Acting {
  public:
   /// After their begin() at displacements u, which outlive it.

@@ -21,7 +21,8 @@ std::vector<std::uint32_t> vertices_together(std::span<const std::uint32_t> site
 bool triangles_cross(const Triangle& s, const Triangle& t, const std::vector<Vec3>& positions, bool two_sided);
 
 /// Pairs of triangles that cross, ascending. `together` from vertices_together(); `two_sided`: two triangles with the same three
-/// corners are two sides of a face, and touch. Only pairs with a triangle marked in `only`, where given.
+/// corners are two sides of a face, and touch. No triangle has a vertex twice. Only pairs with a triangle marked in `only`, where given: then each is
+/// tested for itself, else those about a vertex all at once where they open out (vertex_fans.h).
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
                                                                     std::span<const std::uint32_t> together, bool two_sided,
                                                                     const std::vector<std::uint8_t>* only = nullptr);

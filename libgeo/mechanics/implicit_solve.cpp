@@ -119,7 +119,7 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
 
 // For each part at work, until what the preconditioner would still add is less than half the accuracy, after one iteration at least, or, where Newton
 // will go on anyhow, until less than a quarter (√0.05) is left in the norm that counts, whose square is r · z. Of a step's first direction no more than
-// a half (√0.3) of that may be left, however little is to add, or what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
+// 0.55 (√0.3) of that may be left, however little is to add, or what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
 int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();
   std::vector<char> working = all;

@@ -54,10 +54,10 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
   });
 }
 
-// Where Newton begins: nodes go on as they are, and parts that accelerate alike in all of their nodes, as those do that fall, accelerate as in the step before,
-// or, where that is unknown, as they would on their own. Other accelerations are mostly of what trembles, which goes on otherwise.
+// Where Newton begins: nodes go on as they are, and parts whose accelerations are much the same from node to node, as those of what falls or swings, accelerate
+// as in the step before, or, where that is unknown, as they would on their own. Other accelerations are mostly of what trembles, which goes on otherwise.
 void ImplicitStep::go_on() {
-  constexpr double alike = 0.8;  // of squares, what the mean has
+  constexpr double alike = 0.8;
   u_ = target_;
   const bool known = state_.acceleration.size() == n_;
   std::vector<Vec3> more(n_, Vec3::Zero());
@@ -65,13 +65,28 @@ void ImplicitStep::go_on() {
     const Vec3 way = dt_ * dt_ * (known ? state_.acceleration[i] : Vec3(load_[i] / s_.mass_[i]));
     if (!is_fixed(env_, i) && way.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i]) more[i] = way;  // else it is too far from anything
   });
+  // The squares that the affine field nearest to them has, of all.
   std::vector<double> mass, squares;
-  std::vector<Vec3> sum;
-  parts_.sums(mass, 0.0, [&](std::size_t i) { return is_fixed(env_, i) ? 0.0 : s_.mass_[i]; });
-  parts_.sums(sum, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return s_.mass_[i] * more[i]; });
-  parts_.sums(squares, 0.0, [&](std::size_t i) { return s_.mass_[i] * more[i].squaredNorm(); });
+  std::vector<Vec3> middle, mean;
+  std::vector<Mat3> spread, slope;
+  const auto m = [&](std::size_t i) { return is_fixed(env_, i) ? 0.0 : s_.mass_[i]; };
+  const auto arm = [&](std::size_t i) -> Vec3 { return s_.position_[i] - middle[parts_.of(i)]; };
+  parts_.sums(mass, 0.0, m);
+  parts_.sums(middle, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return m(i) * s_.position_[i]; });
+  parts_.sums(mean, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return m(i) * more[i]; });
+  parts_.sums(squares, 0.0, [&](std::size_t i) { return m(i) * more[i].squaredNorm(); });
+  for (std::size_t p = 0; p < mass.size(); ++p)
+    if (mass[p] > 0) middle[p] /= mass[p], mean[p] /= mass[p];
+  parts_.sums(spread, Mat3(Mat3::Zero()), [&](std::size_t i) -> Mat3 { return m(i) * arm(i) * arm(i).transpose(); });
+  parts_.sums(slope, Mat3(Mat3::Zero()), [&](std::size_t i) -> Mat3 { return m(i) * more[i] * arm(i).transpose(); });
+  std::vector<char> together(mass.size());
+  for (std::size_t p = 0; p < mass.size(); ++p) {
+    const Mat3 firm = spread[p] + 1e-9 * spread[p].trace() * Mat3::Identity();
+    const double affine = spread[p].trace() > 0 ? (slope[p] * firm.inverse()).cwiseProduct(slope[p]).sum() : 0;
+    together[p] = mass[p] * mean[p].squaredNorm() + affine > alike * squares[p];
+  }
   parts_.each_node([&](std::size_t i) {
-    if (const auto p = parts_.of(i); sum[p].squaredNorm() > alike * mass[p] * squares[p]) u_[i] += more[i];
+    if (together[parts_.of(i)]) u_[i] += more[i];
   });
 }
 

@@ -25,7 +25,7 @@ namespace geo {
 struct State {
   std::vector<Vec3> displacement;  ///< per node, model units
   std::vector<Vec3> velocity;      ///< per node, model units per second
-  std::vector<Vec3> acceleration = {};  ///< per node, of the step before: where Newton begins; empty: not known
+  std::vector<Vec3> acceleration = {};  ///< per node, of the step before: Newton begins with them where they are much the same from node to node; empty: not known
   std::vector<Mat3> plastic = {};  ///< per material point: plastic part of the Green strain; empty: none yet
 };
 

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -42,6 +44,53 @@ TEST_CASE("crossings of a plain mesh are those of the definition") {
   CHECK(count_crossings(two) == 0);
   for (std::size_t v = base; v < two.vertices.size(); ++v) two.vertices[v].x() -= 1.5;
   CHECK(count_crossings(two) > 10);
+}
+
+TEST_CASE("crossings of crumpled, torn and doubled surfaces are those that a double loop of the definition finds") {
+  const auto [first, count] = seeds(200);
+  std::size_t crossed = 0, clean = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    TriangleMesh m = make_sphere(2 + static_cast<int>(random.below(3)));
+    const double rough = std::array{0.0, 0.05, 0.3, 1.0}[random.below(4)];
+    for (Vec3& p : m.vertices) p += rough * random.uniform() * random.direction();
+    const bool two_sided = random.below(2) == 0;
+    if (random.below(2) == 0) std::erase_if(m.triangles, [&](const Triangle&) { return random.below(8) == 0; });  // open fans
+    if (random.below(2) == 0)  // flat: exact answers only
+      for (Vec3& p : m.vertices) p.z() = 0;
+    // Other sides of some, with vertices of their own at the same sites, some of them elsewhere.
+    std::vector<std::uint32_t> site(m.vertices.size());
+    std::iota(site.begin(), site.end(), 0u);
+    std::vector<std::uint32_t> copy(m.vertices.size(), ~0u);
+    const std::size_t own = random.below(2) == 0 ? m.triangles.size() : 0;
+    for (std::size_t t = 0; t < own; ++t) {
+      if (random.below(3) != 0) continue;
+      Triangle other = m.triangles[t];
+      std::swap(other[1], other[2]);
+      for (auto& v : other) {
+        if (random.below(4) == 0) continue;  // joined there
+        if (copy[v] == ~0u) {
+          copy[v] = static_cast<std::uint32_t>(m.vertices.size()), site.push_back(v);
+          m.vertices.push_back(random.below(3) == 0 ? Vec3(m.vertices[v] + 0.1 * random.direction()) : Vec3(m.vertices[v]));
+        }
+        v = copy[v];
+      }
+      m.triangles.push_back(other);
+    }
+    const auto together = vertices_together(site, m.vertices);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+    const auto standing = [&](std::uint32_t t) { return Triangle{together[m.triangles[t][0]], together[m.triangles[t][1]], together[m.triangles[t][2]]}; };
+    for (std::uint32_t s = 0; s < m.triangles.size(); ++s)
+      for (std::uint32_t t = s + 1; t < m.triangles.size(); ++t)
+        if (triangles_cross(standing(s), standing(t), m.vertices, two_sided)) expected.push_back({s, t});
+    CHECK(find_crossings(m.triangles, m.vertices, together, two_sided) == expected);
+    (expected.empty() ? clean : crossed) += 1;
+  }
+  if (count >= 200) {
+    CHECK(crossed > 50);
+    CHECK(clean > 2);
+  }
 }
 
 TEST_CASE("pairs of boxes are those that a double loop finds") {

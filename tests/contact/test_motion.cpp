@@ -25,7 +25,10 @@ struct Soup {
     for (const auto& [a, b, c] : m.triangles) triangles.push_back({a + base, b + base, c + base});
   }
   std::vector<Vec3> move(BoundedMotion* report = nullptr) const { return move_without_crossing({triangles, together, from, to, 1e-4, 2e-3}, false, report); }
-  std::size_t crossings(const std::vector<Vec3>& at) const { return find_crossings(triangles, at, together, false).size(); }
+  std::size_t crossings(const std::vector<Vec3>& at) const {
+    const std::vector<std::uint8_t> all(triangles.size(), 1);  // pair by pair
+    return find_crossings(triangles, at, together, false, &all).size();
+  }
 };
 
 // Two uneven sheets, a little apart, meshed differently, that are to be pressed into each other while they slide.

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "contact/obstacle.h"
+#include "contact/touch_penalty.h"
 #include "geometry/distance.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
@@ -118,4 +119,54 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   REQUIRE(sum.norm() > 1);
   CHECK((reaction.force + sum).norm() < 1e-12 * sum.norm());
   CHECK((reaction.torque + torque).norm() < 1e-9 * sum.norm());  // weights are exact for linear fields
+}
+
+TEST_CASE("rows that are left out while nodes have not gone far do nothing there: energy and force are those of all rows") {
+  const Block block(0.3);
+  const auto [first, count] = seeds(40);
+  const std::size_t n = block.solid.size();
+  const std::vector<std::uint8_t> all(n, 1);
+  std::size_t skipped = 0, acted = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const auto shape = std::make_shared<RigidShape>(random.below(2) == 0 ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
+    const Vec3 below = shape->extent() == 0 ? Vec3(0.5, 0.5, random.uniform(-0.2, 0.05)) : Vec3(0.5, 0.45, random.uniform(-0.8, -0.4));
+    Obstacle o(shape, {1e4, 0.4}, at(below), at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
+    TouchPenalty touch({0.4, 0.05});
+    std::vector<Vec3> u, part;
+    for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());
+    o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    for (int r = 0; r < 30; ++r) {
+      RelativeRow row;
+      for (int k = 0; k < 4; ++k) row.entries.push_back({static_cast<std::uint32_t>(4 * random.below(static_cast<std::uint32_t>(n / 4)) + static_cast<std::uint32_t>(k)), random.uniform(-1, 1)});
+      touch.add(row, random.direction(), random.uniform(-0.3, 0.1), random.uniform(1, 5), u);
+    }
+    // Of a step's first part, and of one that begins later, where nodes have gone on since.
+    for (const bool later : {false, true}) {
+      std::vector<Vec3> begun = u;
+      for (Vec3& x : begun) x += later ? Vec3(0.05 * random.direction()) : Vec3(Vec3::Zero());
+      for (Potential* p : {static_cast<Potential*>(&o), static_cast<Potential*>(&touch)}) {
+        if (later) p->begin(u, 0, 0.5);
+        p->begin(begun, later ? 0.5 : 0, later ? 1 : random.uniform(0.3, 1));
+        for (const double far : {0.0, 0.003, 0.01, 0.03, 0.1, 0.3}) {
+          std::vector<Vec3> x = begun;
+          const Vec3 together = far * random.direction();
+          const double alike = random.uniform();
+          for (Vec3& y : x) y += alike * together + (1 - alike) * far * random.direction();
+          Acting acting(*p, begun);
+          const double wanted = energy_of(*p, x);
+          CHECK(acting.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));
+          const auto force = acting.force(x), expected = force_of(*p, x);
+          double size = 1e-12, wrong = 0;
+          for (std::size_t i = 0; i < n; ++i) size = std::max(size, expected[i].norm()), wrong = std::max(wrong, (force[i] - expected[i]).norm());
+          CHECK(wrong < 1e-11 * size);
+          acted += wanted > 0;
+          for (std::size_t r = 0; r < p->size(); ++r) skipped += p->reach(r) > far;
+        }
+      }
+    }
+  }
+  CHECK(acted > 0);
+  CHECK(skipped > 0);
 }

@@ -164,6 +164,13 @@ TEST_CASE("rows that are left out while nodes have not gone far do nothing there
           acted += wanted > 0;
           for (std::size_t r = 0; r < p->size(); ++r) skipped += p->reach(r) > far;
         }
+        // Nor where all of a row's nodes go as far as it says, each the way that counts.
+        for (std::size_t r = 0; r < p->size(); ++r) {
+          if (!(p->reach(r) > 0)) continue;
+          double most = 0;
+          for (int k = 0; k < 20; ++k) most = std::max(most, p->energy(r, weighed(p->row(r), begun) + 0.999 * p->reach(r) * spread(p->row(r)) * random.direction()));
+          CHECK(most == 0);
+        }
       }
     }
   }

@@ -7,7 +7,6 @@
 #include "contact/box_tree.h"
 #include "contact/close_pairs.h"
 #include "contact/triangle_sides.h"
-#include "contact/vertex_fans.h"
 #include "surface/check.h"
 
 namespace geo {
@@ -33,26 +32,13 @@ Pairs unclear(const Pairs& pairs, const TriangleSides& sides) {
 // Those that cross and share a corner on the surface.
 Pairs about_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, std::span<const std::uint32_t> together, bool two_sided) {
   const VertexFans fans(triangles, positions.size());
-  std::vector<std::uint8_t> clear(fans.size());
-  parallel_for(fans.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) clear[v] = fans.open_out(static_cast<std::uint32_t>(v), together, positions);
-  });
-  std::vector<std::uint32_t> shut;
-  for (std::uint32_t v = 0; v < clear.size(); ++v)
-    if (!clear[v]) shut.push_back(v);
-  std::vector<Pairs> found(shut.size());
-  const auto standing = [&](std::uint32_t t) { return Triangle{together[triangles[t][0]], together[triangles[t][1]], together[triangles[t][2]]}; };
-  parallel_for(shut.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto v = shut[i];
-      fans.each_pair(v, [&](std::uint32_t w) { return w < v || clear[w]; }, [&](std::uint32_t s, std::uint32_t t) {
-        if (triangles_cross(standing(s), standing(t), positions, two_sided)) found[i].push_back({s, t});
-      });
-    }
-  });
-  Pairs result;
-  for (const Pairs& f : found) result.insert(result.end(), f.begin(), f.end());
-  return result;
+  std::vector<std::uint8_t> opens_out(fans.size(), 0);
+  const std::vector<std::uint8_t> all(triangles.size(), 1);
+  const auto shut = fans.find_shut(all, together, positions, opens_out);
+  std::vector<Triangle> standing = triangles;
+  for (Triangle& t : standing)
+    for (auto& v : t) v = together[v];
+  return crossings_about(fans, shut, opens_out, standing, positions, two_sided, all);
 }
 
 }  // namespace
@@ -123,6 +109,20 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(std::span<co
   std::vector<std::pair<std::uint32_t, std::uint32_t>> result;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (crosses[i]) result.push_back(pairs[i]);
+  return result;
+}
+
+Pairs crossings_about(const VertexFans& fans, std::span<const std::uint32_t> shut, const std::vector<std::uint8_t>& opens_out, const std::vector<Triangle>& triangles,
+                      const std::vector<Vec3>& positions, bool two_sided, const std::vector<std::uint8_t>& changed) {
+  std::vector<Pairs> found(shut.size());
+  parallel_for(shut.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      fans.each_pair(shut[i], [&, v = shut[i]](std::uint32_t w) { return w < v || opens_out[w]; }, [&](std::uint32_t s, std::uint32_t t) {
+        if ((changed[s] || changed[t]) && triangles_cross(triangles[s], triangles[t], positions, two_sided)) found[i].push_back({s, t});
+      });
+  });
+  Pairs result;
+  for (const Pairs& f : found) result.insert(result.end(), f.begin(), f.end());
   return result;
 }
 

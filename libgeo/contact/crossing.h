@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/vertex_fans.h"
 #include "surface/triangle_mesh.h"
 
 namespace geo {
@@ -32,6 +33,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(std::span<co
                                                                     const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
                                                                     std::span<const std::uint32_t> together, bool two_sided,
                                                                     const std::vector<std::uint8_t>* only = nullptr);
+
+/// Of pairs of triangles (of rows that stand for others) about the vertices `shut`, one of each pair marked in `changed`: those that cross, each once. Where
+/// two have more vertices in common, and one of them opens out, they do not.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings_about(const VertexFans& fans, std::span<const std::uint32_t> shut, const std::vector<std::uint8_t>& opens_out,
+                                                                     const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, bool two_sided,
+                                                                     const std::vector<std::uint8_t>& changed);
 
 /// How many pairs of triangles of a surface cross: of a frame, or of a plain mesh.
 std::size_t count_crossings(const TriangleMesh& surface);

@@ -16,25 +16,11 @@ FailingPairs::FailingPairs(const StandingRows& surface, const VertexFans& fans, 
       opens_out_(start.size(), 0) {}
 
 std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const KeptApart& kept_apart) {
-  renew(changed);
-  constexpr std::size_t stretch = 1024, vertices = 64;
-  const std::size_t stretches = (pairs.size() + stretch - 1) / stretch, groups = (shut_.size() + vertices - 1) / vertices;
-  std::vector<std::vector<Pair>> found(stretches + groups);
-  // Neighbours cannot pass without crossing others.
-  const auto look_around = [&](std::size_t group, std::vector<Pair>& out) {
-    for (std::size_t i = group * vertices; i < std::min(shut_.size(), (group + 1) * vertices); ++i) {
-      const auto v = shut_[i];
-      fans_.each_pair(v, [&](std::uint32_t w) { return w < v || opens_out_[w]; }, [&](std::uint32_t s, std::uint32_t t) {
-        if ((changed[s] || changed[t]) && triangles_cross(triangles_[s], triangles_[t], next_, two_sided_)) out.push_back({s, t});
-      });
-    }
-  };
+  renew_planes(changed);
+  constexpr std::size_t stretch = 1024;
+  std::vector<std::vector<Pair>> found((pairs.size() + stretch - 1) / stretch);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
-      if (f >= stretches) {
-        look_around(f - stretches, found[f]);
-        continue;
-      }
       const auto test = [&](const Pair& p) {
         if (triangles_cross(triangles_[p.first], triangles_[p.second], next_, two_sided_)) found[f].push_back(p);
       };
@@ -64,25 +50,16 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
       couples.finish();
     }
   });
-  std::vector<Pair> result;
+  // Neighbours cannot pass without crossing others.
+  const auto shut = fans_.find_shut(changed, together_, next_, opens_out_);
+  std::vector<Pair> result = crossings_about(fans_, shut, opens_out_, triangles_, next_, two_sided_, changed);
   for (const auto& some : found) result.insert(result.end(), some.begin(), some.end());
   std::sort(result.begin(), result.end());
   return result;
 }
 
-void FailingPairs::renew(const std::vector<std::uint8_t>& changed) {
-  std::vector<std::uint8_t> asked(opens_out_.size(), 0);
-  parallel_for(asked.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const auto links = fans_.about(v);
-      asked[v] = std::any_of(links.begin(), links.end(), [&](const VertexFans::Link& l) { return changed[l.triangle]; });
-      if (asked[v]) opens_out_[v] = fans_.open_out(static_cast<std::uint32_t>(v), together_, next_);
-    }
-  });
-  shut_.clear();
-  for (std::uint32_t v = 0; v < asked.size(); ++v)
-    if (asked[v] && !opens_out_[v]) shut_.push_back(v);
-  if (!std::exchange(asked_before_, true)) return;  // planes are of what `next` was when they were made
+void FailingPairs::renew_planes(const std::vector<std::uint8_t>& changed) {
+  if (!std::exchange(asked_before_, true)) return;  // they are of what `next` was when they were made
   parallel_for(changed.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       if (changed[t]) planes_.renew_end(t);

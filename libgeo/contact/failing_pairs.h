@@ -28,7 +28,7 @@ class FailingPairs {
   std::vector<Pair> among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const KeptApart& kept_apart);
 
  private:
-  void renew(const std::vector<std::uint8_t>& changed);
+  void renew_planes(const std::vector<std::uint8_t>& changed);
 
   const StandingRows& surface_;
   const std::vector<Triangle>& triangles_;
@@ -39,7 +39,6 @@ class FailingPairs {
   double rounding_;
   TrianglePlanes planes_;
   std::vector<std::uint8_t> opens_out_;  // per vertex: VertexFans::open_out() at the end
-  std::vector<std::uint32_t> shut_;      // vertices of triangles that have changed whose fans do not
   bool asked_before_ = false;
 };
 

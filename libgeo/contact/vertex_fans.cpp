@@ -49,4 +49,21 @@ bool VertexFans::open_out(std::uint32_t v, std::span<const std::uint32_t> togeth
   return turns == 1;
 }
 
+std::vector<std::uint32_t> VertexFans::find_shut(const std::vector<std::uint8_t>& changed, std::span<const std::uint32_t> together, const std::vector<Vec3>& at,
+                                                 std::vector<std::uint8_t>& opens_out) const {
+  std::vector<std::uint8_t> is_shut(size(), 0);
+  parallel_for(size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto links = about(v);
+      if (std::none_of(links.begin(), links.end(), [&](const Link& l) { return changed[l.triangle]; })) continue;
+      opens_out[v] = open_out(static_cast<std::uint32_t>(v), together, at);
+      is_shut[v] = !opens_out[v];
+    }
+  });
+  std::vector<std::uint32_t> shut;
+  for (std::uint32_t v = 0; v < size(); ++v)
+    if (is_shut[v]) shut.push_back(v);
+  return shut;
+}
+
 }  // namespace geo

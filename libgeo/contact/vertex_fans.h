@@ -27,6 +27,9 @@ class VertexFans {
   /// more in common than corners and edges. `together`: per vertex the row of `at` that says where it is (vertices_together()).
   /// Floating point, but never true where that is not so.
   bool open_out(std::uint32_t v, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const;
+  /// The same of each vertex with a triangle marked in `changed`, into opens_out (per vertex). Returns those of them that do not, ascending.
+  std::vector<std::uint32_t> find_shut(const std::vector<std::uint8_t>& changed, std::span<const std::uint32_t> together, const std::vector<Vec3>& at,
+                                       std::vector<std::uint8_t>& opens_out) const;
 
   /// use(s, t) for each pair of triangles about v (s < t), but for those that have another vertex in common that `instead` accepts.
   template <class Instead, class Use>

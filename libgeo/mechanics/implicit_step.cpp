@@ -57,7 +57,7 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
 // Where Newton begins: nodes go on as they are, and parts whose accelerations are much the same from node to node, as those of what falls or swings, accelerate
 // as in the step before, or, where that is unknown, as they would on their own. Other accelerations are mostly of what trembles, which goes on otherwise.
 void ImplicitStep::go_on() {
-  constexpr double alike = 0.8;
+  constexpr double alike = 0.8;  // of squares
   u_ = target_;
   const bool known = state_.acceleration.size() == n_;
   std::vector<Vec3> more(n_, Vec3::Zero());

@@ -16,6 +16,8 @@ class Obstacles {
  public:
   /// The scene's obstacles; the ground, too, where surfaces are kept from crossing.
   explicit Obstacles(const Scene& scene);
+  /// False: begin() has nothing to look at but bodies that touch each other.
+  bool any() const { return !shapes_.empty(); }
 
   /// Before a step of dt seconds from `time` on: adds them to what acts on nodes, and bodies that touch each other where nothing
   /// else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is; none: they are found here. `at`: where they

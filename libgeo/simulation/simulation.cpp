@@ -198,7 +198,8 @@ void Simulation::push(double dt) {
 
 void Simulation::meet_obstacles(double dt, FrameWork& work) {
   Stopwatch watch;
-  obstacles_.begin(scene_, body_, solid_, collisions_->weights(), collisions_->wanted(body_, state_.motion), state_.part, state_.motion, state_.time, dt, environment_);
+  const std::span<const Vec3> at = obstacles_.any() ? collisions_->wanted(body_, state_.motion) : std::span<const Vec3>();
+  obstacles_.begin(scene_, body_, solid_, collisions_->weights(), at, state_.part, state_.motion, state_.time, dt, environment_);
   collisions_->begin(body_, solid_, state_.motion, dt, environment_);
   work.contact_seconds += watch.lap();
 }

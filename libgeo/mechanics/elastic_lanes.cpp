@@ -4,6 +4,8 @@
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
+#include <algorithm>
+
 #include "hwy/highway.h"
 #include "mechanics/elastic_lanes.h"
 #include "mechanics/matrix_lanes.h"
@@ -142,6 +144,33 @@ void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, cons
   }
 }
 
+void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* const* relaxed, const float* const* gradient, float* HWY_RESTRICT own) {
+  const hn::Rebind<float, Tag> d32;
+  constexpr std::size_t lanes = width<double>;
+  float numbers[2][4 * lanes];
+  for (std::size_t i = begin; i < end; i += lanes) {
+    Matrix<double> h, pull;
+    for (std::size_t c = 0; c < 3; ++c) {
+      hn::Vec<decltype(d32)> x, y, z, unused;
+      hn::LoadInterleaved4(d32, gradient[c] + 4 * i, x, y, z, unused);
+      h.at[c][0] = hn::PromoteTo(Tag(), x), h.at[c][1] = hn::PromoteTo(Tag(), y), h.at[c][2] = hn::PromoteTo(Tag(), z);
+    }
+    if (relaxed) {
+      h = product(with_identity(h), load(relaxed, i));
+      for (int k = 0; k < 3; ++k) h.at[k][k] = hn::Sub(h.at[k][k], number(1));
+    }
+    elastic(m, h, pull);
+    const Matrix<double> f = with_identity(h), stress = product(pull, transposed(f));
+    const auto j = dot3(f.at[0], cofactor(f).at[0]);
+    const auto upright = hn::Gt(j, hn::Zero(Tag()));
+    const auto number_of = [&](int r, int c) HWY_ATTR { return hn::DemoteTo(d32, hn::IfThenElseZero(upright, hn::Div(hn::Mul(number(0.5), hn::Add(stress.at[c][r], stress.at[r][c])), j))); };
+    hn::StoreInterleaved4(number_of(0, 0), number_of(1, 1), number_of(2, 2), number_of(0, 1), d32, numbers[0]);
+    hn::StoreInterleaved4(number_of(1, 2), number_of(2, 0), hn::DemoteTo(d32, hn::IfThenElseZero(upright, number(1))), hn::Zero(d32), d32, numbers[1]);
+    for (std::size_t k = 0; k < lanes; ++k)
+      for (std::size_t part = 0; part < 2; ++part) std::copy_n(numbers[part] + 4 * k, 4, own + 8 * (i + k) + 4 * part);
+  }
+}
+
 }  // namespace geo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -150,6 +179,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace geo {
 HWY_EXPORT(Elastic);
+HWY_EXPORT(Cauchy);
 
 ElasticConstants elastic_constants(const Material& m, double dt) {
   // What the stable neo-Hookean energy has of its own, so that small strains see Lamé's constants (elasticity.cpp).
@@ -167,6 +197,12 @@ void elastic_points(const ElasticConstants& constants, std::size_t begin, std::s
   float* const kept[3] = {deformed ? deformed->column[0].data() : nullptr, deformed ? deformed->column[1].data() : nullptr, deformed ? deformed->column[2].data() : nullptr};
   HWY_DYNAMIC_DISPATCH(Elastic)(constants, begin, end, volume.data(), history.relaxed ? relaxed.data() : nullptr, history.before ? before.data() : nullptr, to,
                                 energy.data(), deformed ? kept : nullptr);
+}
+
+void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<float>& gradient, float* own) {
+  const float* const from[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
+  const double* const turned[3] = {relaxed ? relaxed->column[0].data() : nullptr, relaxed ? relaxed->column[1].data() : nullptr, relaxed ? relaxed->column[2].data() : nullptr};
+  HWY_DYNAMIC_DISPATCH(Cauchy)(constants, begin, end, relaxed ? turned : nullptr, from, own);
 }
 
 }  // namespace geo

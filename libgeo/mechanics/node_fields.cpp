@@ -1,35 +1,59 @@
 #include "mechanics/node_fields.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
-#include "mechanics/deformation.h"
+#include "mechanics/elastic_lanes.h"
 #include "mechanics/node_sums.h"
+#include "mechanics/plasticity.h"
 
 namespace geo {
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
   const auto gradient = solid.gradients(state.displacement);
+  // Eq. 1, as displacement_at() has it; the node itself is at distance zero.
   std::vector<Vec3> moved(nodes.size());
   parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::pair<NodeId, double>> around;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& x = nodes.position[i];
-      around.assign(1, {NodeId(i), 0.0});
-      for (const auto& n : graph.neighbors(nodes, NodeId(i))) around.push_back({n.to, (x - nodes.position[n.to.index()]).norm()});
-      moved[i] = displacement_at(x, around, nodes, state.displacement, gradient);
+      Vec3 sum = state.displacement[i];
+      double total = 1;  // of the kernel without its scale
+      for (const auto& n : graph.neighbors(nodes, NodeId(i))) {
+        const std::size_t j = n.to.index();
+        const Vec3 way = x - nodes.position[j];
+        const double left = 1 - way.squaredNorm() / (nodes.radius[j] * nodes.radius[j]);
+        if (!(left > 0)) continue;
+        const double w = left * left * left;
+        total += w, sum += w * (state.displacement[j] + gradient[j] * way);
+      }
+      moved[i] = sum / total;
     }
   });
   return moved;
 }
 
 std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, const State& state) {
-  const auto sums = node_sums(solid, nodes, state, [](const Material& material, const Mat3&, const Mat3& elastic, std::array<double, 6>& out) {
-    const double j = elastic.determinant();
-    if (!(j > 0)) return false;
-    const Mat3 s = stress(material, elastic) * elastic.transpose() / j;
-    out = {s(0, 0), s(1, 1), s(2, 2), 0.5 * (s(0, 1) + s(1, 0)), 0.5 * (s(1, 2) + s(2, 1)), 0.5 * (s(2, 0) + s(0, 2))};
-    return true;
+  const MaterialPoints& points = solid.points();
+  std::vector<ElasticConstants> constants;  // per material
+  for (const Material& m : solid.materials().all()) constants.push_back(elastic_constants(m));
+  const auto sums = node_sums(solid, nodes, state, [&](std::size_t b, const Columns<float>& gradient, float* own) {
+    const PointBlock& block = points.blocks[b];
+    Columns<double> relaxed;
+    if (!state.plastic.empty()) {
+      relaxed.resize(block.points.size());
+      for (std::size_t i = 0; i < block.points.size(); ++i) {
+        const Mat3 back = relaxation(state.plastic[points.first(b) + i]);
+        for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&relaxed.column[c][4 * i]) = back.col(c);
+      }
+    }
+    std::vector<float> aside(8 * ((block.points.size() + 7) / 8 * 8));
+    for (const MaterialRun& run : block.runs) {
+      float* const to = run.alone ? own : aside.data();
+      cauchy_stresses(constants[run.material], run.begin, run.end, state.plastic.empty() ? nullptr : &relaxed, gradient, to);
+      for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.alone; ++i)
+        if (block.is_of(run, i)) std::copy_n(&aside[8 * i], 8, own + 8 * i);
+    }
   });
   std::vector<double> result(nodes.size(), 0);
   for (std::size_t i = 0; i < sums.size(); ++i) {

@@ -9,35 +9,30 @@
 
 namespace geo {
 
-std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const PointStress& stress) {
+std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const BlockStress& stress) {
   constexpr std::size_t width = 8, used = std::tuple_size_v<StressSums>;
   const MaterialPoints& points = solid.points();
-  FreshArray<double> parts(width * points.parts());
+  FreshArray<float> parts(width * points.parts());
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> values, place, own;
-    Columns<double> gradient;
-    std::array<double, 6> numbers;
+    std::vector<float> values, place, own;
+    Columns<float> gradient;
     for (std::size_t b = begin; b < end; ++b) {
       const PointBlock& block = points.blocks[b];
-      points.values(b, state.displacement, values);
-      point_gradients(block, values.data(), gradient);
-      own.assign(width * block.points.size(), 0);
-      for (std::size_t i = 0; i < block.points.size(); ++i) {
-        if (block.points[i].rung == Rung::rigid) continue;
-        Mat3 all = Mat3::Identity();
-        for (int c = 0; c < 3; ++c) all.col(c) += Eigen::Map<const Vec3>(&gradient.column[c][4 * i]);
-        const Mat3 elastic = state.plastic.empty() ? all : Mat3(all * relaxation(state.plastic[points.first(b) + i]));
-        if (!stress(solid.materials()[block.points[i].material], all, elastic, numbers)) continue;
-        std::copy(numbers.begin(), numbers.end(), &own[width * i]), own[width * i + used - 1] = 1;
-      }
-      place.clear();
+      const Vec3 base = 0.5 * (block.box.lo + block.box.hi);
+      values.clear(), place.clear();
+      const auto add = [](std::vector<float>& to, const Vec3& x, double fourth) { to.insert(to.end(), {float(x[0]), float(x[1]), float(x[2]), float(fourth)}); };
       for (const auto j : block.nodes) {
-        const Vec3& x = nodes.position[j];
-        place.insert(place.end(), {x[0], x[1], x[2], 1 / (nodes.radius[j] * nodes.radius[j])});
+        add(values, state.displacement[j] - state.displacement[block.nodes[0]], 0);
+        add(place, nodes.position[j] - base, 1 / (nodes.radius[j] * nodes.radius[j]));
       }
-      double* const sums = parts.data() + width * points.part(b);
-      std::fill_n(sums, width * block.nodes.size(), 0.0);
-      point_shares(block, place.data(), own.data(), sums);
+      rounded_gradients(block, values.data(), gradient);
+      own.assign(width * ((block.points.size() + 7) / 8 * 8), 0);
+      stress(b, gradient, own.data());
+      for (std::size_t i = 0; i < block.points.size(); ++i)
+        if (block.points[i].rung == Rung::rigid) own[width * i + used - 1] = 0;
+      float* const sums = parts.data() + width * points.part(b);
+      std::fill_n(sums, width * block.nodes.size(), 0.0f);
+      point_shares(block, base, place.data(), own.data(), sums);
     }
   });
   std::vector<StressSums> sums(nodes.size());
@@ -48,6 +43,22 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
     }
   });
   return sums;
+}
+
+std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const PointStress& stress) {
+  const MaterialPoints& points = solid.points();
+  return node_sums(solid, nodes, state, [&](std::size_t b, const Columns<float>& gradient, float* own) {
+    const PointBlock& block = points.blocks[b];
+    std::array<double, 6> numbers;
+    for (std::size_t i = 0; i < block.points.size(); ++i) {
+      if (block.points[i].rung == Rung::rigid) continue;
+      Mat3 all = Mat3::Identity();
+      for (int c = 0; c < 3; ++c) all.col(c) += Eigen::Map<const Eigen::Vector3f>(&gradient.column[c][4 * i]).cast<double>();
+      const Mat3 elastic = state.plastic.empty() ? all : Mat3(all * relaxation(state.plastic[points.first(b) + i]));
+      if (!stress(solid.materials()[block.points[i].material], all, elastic, numbers)) continue;
+      std::copy(numbers.begin(), numbers.end(), own + 8 * i), own[8 * i + 6] = 1;
+    }
+  });
 }
 
 }  // namespace geo

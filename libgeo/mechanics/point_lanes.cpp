@@ -57,21 +57,42 @@ void Divergence(const PointBlock& block, const double* const* stress, double* ou
   }
 }
 
-void Shares(const PointBlock& block, const double* HWY_RESTRICT place, const double* HWY_RESTRICT own, double* HWY_RESTRICT out) {
-  using Tag = hn::CappedTag<double, 8>;
+void RoundedGradients(const PointBlock& block, const float* HWY_RESTRICT values, float* const* out) {
+  using Tag = hn::CappedTag<float, 4>;
   const Tag d;
   constexpr std::size_t step = hn::MaxLanes(Tag());
+  const std::uint16_t* to = block.to.data();
+  const float* g = block.rounded.data();
+  for (std::size_t i = 0; i < block.points.size(); ++i)
+    for (std::size_t at = 0; at < 4; at += step) {
+      auto x = hn::Zero(d), y = x, z = x;
+      for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
+        const auto u = hn::LoadU(d, values + 4 * to[q] + at);
+        x = hn::Add(x, hn::Mul(u, hn::Set(d, g[3 * q])));
+        y = hn::Add(y, hn::Mul(u, hn::Set(d, g[3 * q + 1])));
+        z = hn::Add(z, hn::Mul(u, hn::Set(d, g[3 * q + 2])));
+      }
+      hn::StoreU(x, d, out[0] + 4 * i + at);
+      hn::StoreU(y, d, out[1] + 4 * i + at);
+      hn::StoreU(z, d, out[2] + 4 * i + at);
+    }
+}
+
+void Shares(const PointBlock& block, const Vec3& base, const float* HWY_RESTRICT place, const float* HWY_RESTRICT own, float* HWY_RESTRICT out) {
+  using Tag = hn::CappedTag<float, 8>;
+  const Tag d;
+  constexpr std::size_t step = hn::MaxLanes(Tag());
+  const std::uint16_t* to = block.to.data();
   for (std::size_t i = 0; i < block.points.size(); ++i) {
     if (own[8 * i + 6] == 0) continue;
-    const Vec3& at = block.points[i].position;
-    const double volume = block.points[i].volume;
+    const Vec3 from = block.points[i].position - base;
+    const auto x0 = static_cast<float>(from[0]), y0 = static_cast<float>(from[1]), z0 = static_cast<float>(from[2]), volume = static_cast<float>(block.points[i].volume);
     for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
-      const double* const node = place + 4 * block.to[q];
-      const double x = at[0] - node[0], y = at[1] - node[1], z = at[2] - node[2];
-      const double left = 1 - (x * x + y * y + z * z) * node[3];  // the kernel, but for its scale
-      if (!(left > 0)) continue;
+      const float* const node = place + 4 * to[q];
+      const float x = x0 - node[0], y = y0 - node[1], z = z0 - node[2];
+      const float left = std::max(0.0f, 1 - (x * x + y * y + z * z) * node[3]);  // the kernel, but for its scale
       const auto w = hn::Set(d, volume * left * left * left);
-      double* const sum = out + 8 * block.to[q];
+      float* const sum = out + 8 * to[q];
       for (std::size_t c = 0; c < 8; c += step) hn::StoreU(hn::Add(hn::LoadU(d, sum + c), hn::Mul(w, hn::LoadU(d, own + 8 * i + c))), d, sum + c);
     }
   }
@@ -84,6 +105,7 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Gradients);
 HWY_EXPORT(Divergence);
+HWY_EXPORT(RoundedGradients);
 HWY_EXPORT(Shares);
 
 template <class Number>
@@ -102,7 +124,12 @@ void point_divergence(const PointBlock& block, const Columns<double>& stress, do
   const double* const columns[3] = {stress.column[0].data(), stress.column[1].data(), stress.column[2].data()};
   HWY_DYNAMIC_DISPATCH(Divergence)(block, columns, out);
 }
-void point_shares(const PointBlock& block, const double* place, const double* own, double* out) { HWY_DYNAMIC_DISPATCH(Shares)(block, place, own, out); }
+void rounded_gradients(const PointBlock& block, const float* values, Columns<float>& out) {
+  out.resize(block.points.size());
+  float* const columns[3] = {out.column[0].data(), out.column[1].data(), out.column[2].data()};
+  HWY_DYNAMIC_DISPATCH(RoundedGradients)(block, values, columns);
+}
+void point_shares(const PointBlock& block, const Vec3& base, const float* place, const float* own, float* out) { HWY_DYNAMIC_DISPATCH(Shares)(block, base, place, own, out); }
 
 }  // namespace geo
 #endif

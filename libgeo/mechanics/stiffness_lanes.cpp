@@ -15,23 +15,28 @@ namespace geo::HWY_NAMESPACE {
 
 using Vector = V<float>;
 
-// Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v.
+// Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v. A rotation is left out where it would
+// turn by less than rounding does, so that a sweep in which all are is the last.
 HWY_INLINE void diagonalise(Vector (&a)[3][3], Matrix<float>& v) {
   const Lanes<float> d;
-  const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f), tiny = hn::Set(d, 1e-30f);
+  const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), two = hn::Set(d, 2.0f), rounding = hn::Set(d, 1e-8f), tiny = hn::Set(d, 1e-18f);
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) v.at[c][r] = c == r ? one : zero;
-  for (int sweep = 0; sweep < 4; ++sweep)
+  bool done = false;
+  for (int sweep = 0; sweep < 4 && !done; ++sweep) {
+    done = true;
     for (int k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
-      // tan of the angle: the smaller root of t² + 2 θ t − 1 = 0.
-      const auto apq = a[p][q];
-      const auto none = hn::Lt(hn::Abs(apq), tiny);
-      const auto theta = hn::Div(hn::Mul(half, hn::Sub(a[q][q], a[p][p])), hn::IfThenElse(none, one, apq));
-      const auto t = hn::IfThenElse(none, zero, hn::CopySign(hn::Div(one, hn::Add(hn::Abs(theta), hn::Sqrt(hn::Add(hn::Mul(theta, theta), one)))), theta));
+      const auto apq = a[p][q], twice = hn::Mul(two, apq), apart = hn::Sub(a[q][q], a[p][p]);
+      const auto turns = hn::Gt(hn::Abs(apq), hn::Max(hn::Mul(rounding, hn::Max(hn::Abs(a[p][p]), hn::Abs(a[q][q]))), tiny));
+      if (hn::AllFalse(d, turns)) continue;
+      done = false;
+      // tan of the angle: the smaller root of t² + (a_qq − a_pp) / a_pq t − 1 = 0.
+      const auto root = hn::Sqrt(hn::Add(hn::Mul(apart, apart), hn::Mul(twice, twice)));
+      const auto t = hn::IfThenElseZero(turns, hn::Div(hn::CopySign(twice, hn::Xor(twice, apart)), hn::IfThenElse(turns, hn::Add(hn::Abs(apart), root), one)));
       const auto c = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s = hn::Mul(t, c), step = hn::Mul(t, apq);
       a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
-      a[p][q] = a[q][p] = zero;
+      a[p][q] = a[q][p] = hn::IfThenElse(turns, zero, apq);
       const auto arp = a[r][p], arq = a[r][q];
       a[r][p] = a[p][r] = hn::Sub(hn::Mul(c, arp), hn::Mul(s, arq));
       a[r][q] = a[q][r] = hn::Add(hn::Mul(s, arp), hn::Mul(c, arq));
@@ -41,6 +46,7 @@ HWY_INLINE void diagonalise(Vector (&a)[3][3], Matrix<float>& v) {
         v.at[q][i] = hn::Add(hn::Mul(s, vp), hn::Mul(c, vq));
       }
     }
+  }
 }
 
 // F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out.

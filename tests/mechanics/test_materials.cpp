@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "graph/lane_search.h"
 #include "mechanics/bodies.h"
+#include "mechanics/node_fields.h"
 #include "mechanics/solid.h"
 
 using namespace geo;
@@ -90,8 +91,20 @@ TEST_CASE("forces and stiffness of a body are those of its own material, also wh
     Random random(3);
     std::vector<Vec3> u(body.nodes.size()), p(u.size()), own[2] = {std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.02 * random.direction(), p[i] = random.direction(), own[is_second(body, i)][i] = u[i];
+    State strained{u, u}, flown = strained;
+    for (std::size_t k = 0; k < mixed.points().size(); ++k) {
+      const Vec3 by = 0.05 * random.direction();
+      flown.plastic.push_back(by.asDiagonal());
+    }
+    std::vector<double> shown;  // by the first kind of vectors
     for (const auto& target : vector_targets()) {
       use_vector_target(target);
+      for (const State* state : {&strained, &flown}) {
+        const auto stress = von_mises_stress(mixed, body.nodes, *state), of_first = von_mises_stress(uniform[0], body.nodes, *state), of_second = von_mises_stress(uniform[1], body.nodes, *state);
+        for (std::size_t i = 0; i < u.size(); ++i) REQUIRE(stress[i] == (is_second(body, i) ? of_second : of_first)[i]);
+        if (shown.empty()) shown = stress;
+        if (state == &strained) CHECK(stress == shown);
+      }
       for (const bool second_bar : {false, true}) {
         const Solid& alike = uniform[second_bar];
         const auto force = mixed.forces(u), forces = alike.forces(u), product = mixed.stiffness_product(u, p), products = alike.stiffness_product(u, p);

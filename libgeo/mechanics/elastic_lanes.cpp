@@ -144,17 +144,12 @@ void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, cons
   }
 }
 
-void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* const* relaxed, const float* const* gradient, float* HWY_RESTRICT own) {
+void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* const* relaxed, const double* const* gradient, float* HWY_RESTRICT own) {
   const hn::Rebind<float, Tag> d32;
   constexpr std::size_t lanes = width<double>;
   float numbers[2][4 * lanes];
   for (std::size_t i = begin; i < end; i += lanes) {
-    Matrix<double> h, pull;
-    for (std::size_t c = 0; c < 3; ++c) {
-      hn::Vec<decltype(d32)> x, y, z, unused;
-      hn::LoadInterleaved4(d32, gradient[c] + 4 * i, x, y, z, unused);
-      h.at[c][0] = hn::PromoteTo(Tag(), x), h.at[c][1] = hn::PromoteTo(Tag(), y), h.at[c][2] = hn::PromoteTo(Tag(), z);
-    }
+    Matrix<double> h = load<double>(gradient, i), pull;
     if (relaxed) {
       h = product(with_identity(h), load(relaxed, i));
       for (int k = 0; k < 3; ++k) h.at[k][k] = hn::Sub(h.at[k][k], number(1));
@@ -199,8 +194,8 @@ void elastic_points(const ElasticConstants& constants, std::size_t begin, std::s
                                 energy.data(), deformed ? kept : nullptr);
 }
 
-void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<float>& gradient, float* own) {
-  const float* const from[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
+void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<double>& gradient, float* own) {
+  const double* const from[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
   const double* const turned[3] = {relaxed ? relaxed->column[0].data() : nullptr, relaxed ? relaxed->column[1].data() : nullptr, relaxed ? relaxed->column[2].data() : nullptr};
   HWY_DYNAMIC_DISPATCH(Cauchy)(constants, begin, end, relaxed ? turned : nullptr, from, own);
 }

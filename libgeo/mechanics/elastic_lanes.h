@@ -28,6 +28,6 @@ void elastic_points(const ElasticConstants& constants, std::size_t begin, std::s
 
 /// From point `begin` to `end`, both multiples of eight: of ∇u and, where given, `relaxed` as above, eight numbers a point from own[8 · point] on: the Cauchy stress, Pa
 /// (xx, yy, zz, xy, yz, zx), 1 and 0; all are zero where F is not upright.
-void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<float>& gradient, float* own);
+void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<double>& gradient, float* own);
 
 }  // namespace geo

@@ -37,7 +37,7 @@ std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, c
   const MaterialPoints& points = solid.points();
   std::vector<ElasticConstants> constants;  // per material
   for (const Material& m : solid.materials().all()) constants.push_back(elastic_constants(m));
-  const auto sums = node_sums(solid, nodes, state, [&](std::size_t b, const Columns<float>& gradient, float* own) {
+  const auto sums = node_sums(solid, nodes, state, [&](std::size_t b, const Columns<double>& gradient, float* own) {
     const PointBlock& block = points.blocks[b];
     Columns<double> relaxed;
     if (!state.plastic.empty()) {

@@ -14,18 +14,19 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
   const MaterialPoints& points = solid.points();
   FreshArray<float> parts(width * points.parts());
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> values, place, own;
-    Columns<float> gradient;
+    std::vector<double> values;
+    std::vector<float> place, own;
+    Columns<double> gradient;
     for (std::size_t b = begin; b < end; ++b) {
       const PointBlock& block = points.blocks[b];
       const Vec3 base = 0.5 * (block.box.lo + block.box.hi);
-      values.clear(), place.clear();
-      const auto add = [](std::vector<float>& to, const Vec3& x, double fourth) { to.insert(to.end(), {float(x[0]), float(x[1]), float(x[2]), float(fourth)}); };
+      place.clear();
       for (const auto j : block.nodes) {
-        add(values, state.displacement[j] - state.displacement[block.nodes[0]], 0);
-        add(place, nodes.position[j] - base, 1 / (nodes.radius[j] * nodes.radius[j]));
+        const Vec3 x = nodes.position[j] - base;
+        place.insert(place.end(), {float(x[0]), float(x[1]), float(x[2]), float(1 / (nodes.radius[j] * nodes.radius[j]))});
       }
-      rounded_gradients(block, values.data(), gradient);
+      points.values(b, state.displacement, values);
+      point_gradients(block, values.data(), gradient);
       own.assign(width * ((block.points.size() + 7) / 8 * 8), 0);
       stress(b, gradient, own.data());
       for (std::size_t i = 0; i < block.points.size(); ++i)
@@ -47,13 +48,13 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
 
 std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const PointStress& stress) {
   const MaterialPoints& points = solid.points();
-  return node_sums(solid, nodes, state, [&](std::size_t b, const Columns<float>& gradient, float* own) {
+  return node_sums(solid, nodes, state, [&](std::size_t b, const Columns<double>& gradient, float* own) {
     const PointBlock& block = points.blocks[b];
     std::array<double, 6> numbers;
     for (std::size_t i = 0; i < block.points.size(); ++i) {
       if (block.points[i].rung == Rung::rigid) continue;
       Mat3 all = Mat3::Identity();
-      for (int c = 0; c < 3; ++c) all.col(c) += Eigen::Map<const Eigen::Vector3f>(&gradient.column[c][4 * i]).cast<double>();
+      for (int c = 0; c < 3; ++c) all.col(c) += Eigen::Map<const Vec3>(&gradient.column[c][4 * i]);
       const Mat3 elastic = state.plastic.empty() ? all : Mat3(all * relaxation(state.plastic[points.first(b) + i]));
       if (!stress(solid.materials()[block.points[i].material], all, elastic, numbers)) continue;
       std::copy(numbers.begin(), numbers.end(), own + 8 * i), own[8 * i + 6] = 1;

@@ -57,27 +57,6 @@ void Divergence(const PointBlock& block, const double* const* stress, double* ou
   }
 }
 
-void RoundedGradients(const PointBlock& block, const float* HWY_RESTRICT values, float* const* out) {
-  using Tag = hn::CappedTag<float, 4>;
-  const Tag d;
-  constexpr std::size_t step = hn::MaxLanes(Tag());
-  const std::uint16_t* to = block.to.data();
-  const float* g = block.rounded.data();
-  for (std::size_t i = 0; i < block.points.size(); ++i)
-    for (std::size_t at = 0; at < 4; at += step) {
-      auto x = hn::Zero(d), y = x, z = x;
-      for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
-        const auto u = hn::LoadU(d, values + 4 * to[q] + at);
-        x = hn::Add(x, hn::Mul(u, hn::Set(d, g[3 * q])));
-        y = hn::Add(y, hn::Mul(u, hn::Set(d, g[3 * q + 1])));
-        z = hn::Add(z, hn::Mul(u, hn::Set(d, g[3 * q + 2])));
-      }
-      hn::StoreU(x, d, out[0] + 4 * i + at);
-      hn::StoreU(y, d, out[1] + 4 * i + at);
-      hn::StoreU(z, d, out[2] + 4 * i + at);
-    }
-}
-
 void Shares(const PointBlock& block, const Vec3& base, const float* HWY_RESTRICT place, const float* HWY_RESTRICT own, float* HWY_RESTRICT out) {
   using Tag = hn::CappedTag<float, 8>;
   const Tag d;
@@ -90,7 +69,8 @@ void Shares(const PointBlock& block, const Vec3& base, const float* HWY_RESTRICT
     for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q) {
       const float* const node = place + 4 * to[q];
       const float x = x0 - node[0], y = y0 - node[1], z = z0 - node[2];
-      const float left = std::max(0.0f, 1 - (x * x + y * y + z * z) * node[3]);  // the kernel, but for its scale
+      const float left = 1 - (x * x + y * y + z * z) * node[3];  // the kernel, but for its scale
+      if (!(left > 0)) continue;
       const auto w = hn::Set(d, volume * left * left * left);
       float* const sum = out + 8 * to[q];
       for (std::size_t c = 0; c < 8; c += step) hn::StoreU(hn::Add(hn::LoadU(d, sum + c), hn::Mul(w, hn::LoadU(d, own + 8 * i + c))), d, sum + c);
@@ -105,7 +85,6 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Gradients);
 HWY_EXPORT(Divergence);
-HWY_EXPORT(RoundedGradients);
 HWY_EXPORT(Shares);
 
 template <class Number>
@@ -123,11 +102,6 @@ void point_gradients(const PointBlock& block, const double* values, Columns<doub
 void point_divergence(const PointBlock& block, const Columns<double>& stress, double* out) {
   const double* const columns[3] = {stress.column[0].data(), stress.column[1].data(), stress.column[2].data()};
   HWY_DYNAMIC_DISPATCH(Divergence)(block, columns, out);
-}
-void rounded_gradients(const PointBlock& block, const float* values, Columns<float>& out) {
-  out.resize(block.points.size());
-  float* const columns[3] = {out.column[0].data(), out.column[1].data(), out.column[2].data()};
-  HWY_DYNAMIC_DISPATCH(RoundedGradients)(block, values, columns);
 }
 void point_shares(const PointBlock& block, const Vec3& base, const float* place, const float* own, float* out) { HWY_DYNAMIC_DISPATCH(Shares)(block, base, place, own, out); }
 

@@ -15,8 +15,8 @@ namespace geo::HWY_NAMESPACE {
 
 using Vector = V<float>;
 
-// Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v. A rotation is left out where it would
-// turn by less than rounding does, so that a sweep in which all are is the last.
+// Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v. A rotation is left out where
+// what it would take away is less than rounding of the diagonal, so that a sweep in which all are is the last. Numbers' squares are to be finite.
 HWY_INLINE void diagonalise(Vector (&a)[3][3], Matrix<float>& v) {
   const Lanes<float> d;
   const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), two = hn::Set(d, 2.0f), rounding = hn::Set(d, 1e-8f), tiny = hn::Set(d, 1e-18f);
@@ -144,6 +144,8 @@ void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t en
   const auto columns_of = [](const Columns<float>& c) { return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()}; };
   const auto columns = columns_of(gradient);
   const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full);
+  const float firm = material.mu + material.lambda + material.volume;
+  const auto firmness = hn::Set(d, firm), one_over_firmness = hn::Set(d, 1 / firm);
   for (std::size_t i = begin; i < end; i += width<float>) {
     Matrix<float> f = load(columns.data(), i), u, v;
     for (int c = 0; c < 3; ++c) f.at[c][c] = hn::Add(f.at[c][c], one);
@@ -151,6 +153,8 @@ void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t en
     decompose(f, u, sigma, v);
     Principal p = principal(material, sigma);
     Matrix<float> e;
+    for (auto& row : p.a)
+      for (auto& x : row) x = hn::Mul(x, one_over_firmness);
     diagonalise(p.a, e);
     // Where plastic strain has made V no rotation, what its numbers are too long by is the stiffness'.
     Vector longest = one;
@@ -169,7 +173,7 @@ void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t en
     const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
     float* const to = &out.stiffness[out.number(i, 12)];
     Vector kept[3];
-    for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(w, hn::Max(p.a[k][k], hn::Zero(d)));
+    for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(hn::Mul(w, firmness), hn::Max(p.a[k][k], hn::Zero(d)));
     const auto viscous = hn::Mul(w, hn::Set(d, material.viscous));
     constexpr int rows[6] = {0, 1, 2, 0, 0, 1}, cols[6] = {0, 1, 2, 1, 2, 2};
     for (std::size_t k = 0; k < 6; ++k) {

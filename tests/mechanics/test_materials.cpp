@@ -96,14 +96,12 @@ TEST_CASE("forces and stiffness of a body are those of its own material, also wh
       const Vec3 by = 0.05 * random.direction();
       flown.plastic.push_back(by.asDiagonal());
     }
-    std::vector<double> shown;  // by the first kind of vectors
     for (const auto& target : vector_targets()) {
       use_vector_target(target);
       for (const State* state : {&strained, &flown}) {
         const auto stress = von_mises_stress(mixed, body.nodes, *state), of_first = von_mises_stress(uniform[0], body.nodes, *state), of_second = von_mises_stress(uniform[1], body.nodes, *state);
         for (std::size_t i = 0; i < u.size(); ++i) REQUIRE(stress[i] == (is_second(body, i) ? of_second : of_first)[i]);
-        if (shown.empty()) shown = stress;
-        if (state == &strained) CHECK(stress == shown);
+        CHECK(*std::min_element(stress.begin(), stress.end()) > 0);
       }
       for (const bool second_bar : {false, true}) {
         const Solid& alike = uniform[second_bar];

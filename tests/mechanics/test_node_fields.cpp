@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
@@ -47,4 +48,13 @@ TEST_CASE("Plastic strain carries no stress") {
   plastic(0, 0) = 0.5 * (1.2 * 1.2 - 1);
   state.plastic.assign(solid.points().size(), plastic);
   for (const double s : von_mises_stress(solid, body.nodes, state)) CHECK(s < 1e-6 * solid.materials()[0].young);
+}
+
+TEST_CASE("A body that has turned and is far away has no stress") {
+  const Body body = block_body({2, 1, 1}, 0.1);
+  const Solid solid(body, {});
+  const Mat3 turn = Eigen::AngleAxisd(1.5, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  State state{{}, {}};
+  for (const Vec3& x : body.nodes.position) state.displacement.push_back(Vec3(300, -20, 7) + turn * x - x);
+  for (const double s : von_mises_stress(solid, body.nodes, state)) CHECK(s < 1e-10 * solid.materials()[0].young);
 }

@@ -119,16 +119,20 @@ HWY_INLINE Vector viscous(const ElasticConstants& m, const Matrix<double>& g, co
   return hn::Mul(number(0.5 * m.dt * m.viscosity), square_norm(rate));
 }
 
+// Of points from i on, F times what has relaxed, where given, less 1.
+HWY_INLINE Matrix<double> relaxed_by(const double* const* relaxed, std::size_t i, const Matrix<double>& g) {
+  if (!relaxed) return g;
+  Matrix<double> h = product(with_identity(g), load(relaxed, i));
+  for (int k = 0; k < 3; ++k) h.at[k][k] = hn::Sub(h.at[k][k], number(1));
+  return h;
+}
+
 void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* volume, const double* const* relaxed, const double* const* before,
              double* const* gradient, double* energy, float* const* deformed) {
   const hn::Rebind<float, Tag> d32;
   for (std::size_t i = begin; i < end; i += width<double>) {
-    const Matrix<double> g = load<double>(gradient, i);
-    Matrix<double> h = g, stress;
-    if (relaxed) {
-      h = product(with_identity(g), load(relaxed, i));
-      for (int k = 0; k < 3; ++k) h.at[k][k] = hn::Sub(h.at[k][k], number(1));
-    }
+    const Matrix<double> g = load<double>(gradient, i), h = relaxed_by(relaxed, i, g);
+    Matrix<double> stress;
     if (deformed)
       for (std::size_t c = 0; c < 3; ++c)
         hn::StoreInterleaved4(hn::DemoteTo(d32, h.at[c][0]), hn::DemoteTo(d32, h.at[c][1]), hn::DemoteTo(d32, h.at[c][2]), hn::Zero(d32), d32, deformed[c] + 4 * i);
@@ -149,11 +153,8 @@ void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const
   constexpr std::size_t lanes = width<double>;
   float numbers[2][4 * lanes];
   for (std::size_t i = begin; i < end; i += lanes) {
-    Matrix<double> h = load<double>(gradient, i), pull;
-    if (relaxed) {
-      h = product(with_identity(h), load(relaxed, i));
-      for (int k = 0; k < 3; ++k) h.at[k][k] = hn::Sub(h.at[k][k], number(1));
-    }
+    const Matrix<double> h = relaxed_by(relaxed, i, load<double>(gradient, i));
+    Matrix<double> pull;
     elastic(m, h, pull);
     const Matrix<double> f = with_identity(h), stress = product(pull, transposed(f));
     const auto j = dot3(f.at[0], cofactor(f).at[0]);
@@ -175,6 +176,13 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Elastic);
 HWY_EXPORT(Cauchy);
+namespace {
+
+std::array<const double*, 3> columns(const Columns<double>* c) {
+  return c ? std::array<const double*, 3>{c->column[0].data(), c->column[1].data(), c->column[2].data()} : std::array<const double*, 3>{};
+}
+
+}  // namespace
 
 ElasticConstants elastic_constants(const Material& m, double dt) {
   // What the stable neo-Hookean energy has of its own, so that small strains see Lamé's constants (elasticity.cpp).
@@ -184,9 +192,6 @@ ElasticConstants elastic_constants(const Material& m, double dt) {
 
 void elastic_points(const ElasticConstants& constants, std::size_t begin, std::size_t end, const std::vector<double>& volume, const PointHistory& history,
                     Columns<double>& gradient, std::vector<double>& energy, Columns<float>* deformed) {
-  const auto columns = [](const Columns<double>* c) {
-    return c ? std::array{c->column[0].data(), c->column[1].data(), c->column[2].data()} : std::array<const double*, 3>{};
-  };
   const auto relaxed = columns(history.relaxed), before = columns(history.before);
   double* const to[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
   float* const kept[3] = {deformed ? deformed->column[0].data() : nullptr, deformed ? deformed->column[1].data() : nullptr, deformed ? deformed->column[2].data() : nullptr};
@@ -195,9 +200,8 @@ void elastic_points(const ElasticConstants& constants, std::size_t begin, std::s
 }
 
 void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<double>& gradient, float* own) {
-  const double* const from[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
-  const double* const turned[3] = {relaxed ? relaxed->column[0].data() : nullptr, relaxed ? relaxed->column[1].data() : nullptr, relaxed ? relaxed->column[2].data() : nullptr};
-  HWY_DYNAMIC_DISPATCH(Cauchy)(constants, begin, end, relaxed ? turned : nullptr, from, own);
+  const auto from = columns(&gradient), turned = columns(relaxed);
+  HWY_DYNAMIC_DISPATCH(Cauchy)(constants, begin, end, relaxed ? turned.data() : nullptr, from.data(), own);
 }
 
 }  // namespace geo

@@ -1,4 +1,5 @@
 // Bodies of different materials in one solid: none has to do with another's.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "base/error.h"

@@ -57,7 +57,7 @@ class Mover {
     }
     next = straight(start, m_.to);
     cover(start, next);
-    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
+    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
     std::optional<Carried> carried;
     const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) { return carried && carried->keep_apart(s, t, distance); };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
@@ -90,7 +90,7 @@ class Mover {
   // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     GiveWay couples(surface_.triangles, start, m_.gap);
-    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_);
+    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
     const FailingPairs::KeptApart bound = [&](std::uint32_t s, std::uint32_t t, double) { return couples.bound(s, t); };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     std::size_t many = ~std::size_t(0);

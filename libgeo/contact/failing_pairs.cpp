@@ -11,9 +11,11 @@
 namespace geo {
 
 FailingPairs::FailingPairs(const StandingRows& surface, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided,
-                           const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding)
-    : surface_(surface), triangles_(surface.triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(surface.triangles, start, next),
-      opens_out_(start.size(), 0) {}
+                           const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding, TrianglePlanes& planes)
+    : surface_(surface), triangles_(surface.triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(planes),
+      opens_out_(start.size(), 0) {
+  planes_.place(surface.triangles, start, next);
+}
 
 std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const KeptApart& kept_apart) {
   renew_planes(changed);

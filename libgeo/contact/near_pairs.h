@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/box_tree.h"
+#include "contact/triangle_planes.h"
 
 namespace geo {
 
@@ -22,8 +23,13 @@ class NearPairs {
 
   /// i < j, each once, in an order that depends on the calls alone.
   const std::vector<Pair>& pairs() const { return pairs_; }
+  /// Room for what is asked about them, the caller's to fill: much memory, which is used again step by step.
+  TrianglePlanes& planes() { return planes_; }
+  /// Another step begins: nothing is known of its pairs.
+  void forget() { tree_ = {}, pairs_.clear(); }
 
  private:
+  TrianglePlanes planes_;
   BoxTree tree_;
   std::vector<Pair> pairs_;
 };

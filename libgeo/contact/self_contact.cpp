@@ -213,7 +213,7 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   for (std::size_t v = 0; v < to.size(); ++v)
     if (body.surface.alive(SurfaceVertexId(v))) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
-  begun_ = false, near_ = {}, held_off_.clear();
+  begun_ = false, near_.forget(), held_off_.clear();
   if (told) *told += work;
 }
 

@@ -100,9 +100,10 @@ HWY_EXPORT(not_parted);
 HWY_EXPORT(not_parted_across);
 HWY_EXPORT(ways_left);
 
-TrianglePlanes::TrianglePlanes(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to)
-    : triangles_(triangles), to_(to), planes_(triangles.size()) {
-  parallel_for(planes_.size(), 512, [&](std::size_t begin, std::size_t end) {
+void TrianglePlanes::place(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  triangles_ = triangles, to_ = &to;
+  if (planes_.size() < triangles.size()) planes_ = {}, planes_ = FreshArray<Plane>(triangles.size());
+  parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Plane& p = planes_[t];
       const Vec3 &a = from[triangles_[t][0]], &b = from[triangles_[t][1]], &c = from[triangles_[t][2]];
@@ -122,7 +123,7 @@ TrianglePlanes::TrianglePlanes(std::span<const Triangle> triangles, const std::v
 
 void TrianglePlanes::renew_end(std::size_t i) {
   Plane& p = planes_[i];
-  const Vec3 n(p.normal[0], p.normal[1], p.normal[2]), &a = to_[triangles_[i][0]], &b = to_[triangles_[i][1]], &c = to_[triangles_[i][2]];
+  const Vec3 n(p.normal[0], p.normal[1], p.normal[2]), &a = (*to_)[triangles_[i][0]], &b = (*to_)[triangles_[i][1]], &c = (*to_)[triangles_[i][2]];
   for (int axis = 0; axis < 3; ++axis) p.at[1][axis][0] = a[axis], p.at[1][axis][1] = b[axis], p.at[1][axis][2] = p.at[1][axis][3] = c[axis];
   const double x = n.dot(a), y = n.dot(b), z = n.dot(c);
   p.low[1] = std::min({x, y, z}), p.high[1] = std::max({x, y, z});

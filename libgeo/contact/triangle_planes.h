@@ -15,7 +15,11 @@ namespace geo {
 class TrianglePlanes {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  TrianglePlanes(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to);
+  TrianglePlanes() = default;
+  TrianglePlanes(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to) { place(triangles, from, to); }
+
+  /// Of another motion, in the same memory where there is enough. Refers to triangles and ends.
+  void place(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
   /// After the end of triangle i has changed.
   void renew_end(std::size_t i);
@@ -46,7 +50,7 @@ class TrianglePlanes {
 
  private:
   std::span<const Triangle> triangles_;
-  const std::vector<Vec3>& to_;
+  const std::vector<Vec3>* to_ = nullptr;
   FreshArray<Plane> planes_;
 };
 

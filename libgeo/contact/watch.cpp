@@ -106,7 +106,8 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
     for (const auto v : corners[t]) box.add(m.from[v] - middle);
     return box.grown(0.5 * m.reach);
   }, 0);
-  const TrianglePlanes planes(corners, m.from, m.to);
+  TrianglePlanes& planes = known.planes();
+  planes.place(corners, m.from, m.to);
   constexpr std::size_t stretch = 1024;
   constexpr double sure = 1 + 1e-9;  // so that examine() would say the same
   std::vector<Pairs> some((known.pairs().size() + stretch - 1) / stretch);

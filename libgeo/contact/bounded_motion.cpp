@@ -1,8 +1,10 @@
 #include "contact/bounded_motion.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 
+#include "base/parallel.h"
 #include "contact/affine_motion.h"
 #include "contact/carried.h"
 #include "contact/crossing.h"
@@ -17,8 +19,7 @@ class Mover {
  public:
   Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, const VertexFans& fans, BoundedMotion& report)
       : m_(m), two_sided_(two_sided), near_(near), fans_(fans), report_(report), surface_(m), at_(m.from) {
-    for (const auto& [a, b, c] : surface_.triangles) edge_ += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
-    edge_ /= std::max(1.0, 3 * double(surface_.triangles.size()));
+    edge_ = mean_edge();
     double size = 0;
     for (const auto v : surface_.rows) size = std::max({size, m.from[v].cwiseAbs().maxCoeff(), m.to[v].cwiseAbs().maxCoeff()});
     rounding_ = 1e-14 * size;
@@ -38,6 +39,19 @@ class Mover {
  private:
   static constexpr double spare = 0.05;  // of an edge: so that what is carried further stays in its box
   static constexpr int most_rounds = 8, most_mendings = 240, patience = 6, growths_apart = 10, most_growths = 20;
+
+  // Sums of stretches one after the other, the same for any number of threads.
+  double mean_edge() const {
+    constexpr std::size_t stretch = 2048;
+    std::vector<double> sums((surface_.triangles.size() + stretch - 1) / stretch, 0);
+    parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin * stretch; t < std::min(surface_.triangles.size(), end * stretch); ++t) {
+        const auto& [a, b, c] = surface_.triangles[t];
+        sums[t / stretch] += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
+      }
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0) / std::max(1.0, 3 * double(surface_.triangles.size()));
+  }
 
   bool wanting() const {
     return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });

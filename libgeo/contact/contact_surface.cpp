@@ -1,5 +1,7 @@
 #include "contact/contact_surface.h"
 
+#include "base/parallel.h"
+
 namespace geo {
 
 ContactSurface contact_surface(const Complex& complex) {
@@ -38,14 +40,16 @@ double area_about(const Complex& k, SurfaceVertexId v) {
 
 std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies, const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
-  for (std::size_t v = 0; v < copies.size(); ++v) {
-    if (copies[v].size() == 1) continue;
-    for (const auto one : copies[v])
-      for (const auto& l : fans.about(one)) {
-        const auto& [a, b, c] = surface.triangles[l.triangle];
-        normals[one] += (p[b] - p[a]).cross(p[c] - p[a]);
-      }
-  }
+  parallel_for(copies.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (copies[v].size() == 1) continue;
+      for (const auto one : copies[v])
+        for (const auto& l : fans.about(one)) {
+          const auto& [a, b, c] = surface.triangles[l.triangle];
+          normals[one] += (p[b] - p[a]).cross(p[c] - p[a]);
+        }
+    }
+  });
   return normals;
 }
 

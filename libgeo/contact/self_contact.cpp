@@ -13,16 +13,23 @@
 namespace geo {
 namespace {
 
+constexpr std::size_t vertices_a_task = 1024;
+
 // Copies that are together go to their average.
 std::vector<Vec3> averaged(const std::vector<Vec3>& to, std::span<const std::uint32_t> together, const Copies& copies) {
-  std::vector<Vec3> result = to;
-  for (std::size_t v = 0; v < copies.size(); ++v)
-    if (copies[v].size() > 1) {
+  std::vector<Vec3> result(to.size());
+  parallel_for(to.size(), vertices_a_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto all = copies[together[v]];
+      if (all.size() == 1) {
+        result[v] = to[v];
+        continue;
+      }
       Vec3 sum = Vec3::Zero();
-      for (const auto c : copies[v]) sum += to[c];
-      result[v] = sum / double(copies[v].size());
+      for (const auto c : all) sum += to[c];
+      result[v] = sum / double(all.size());
     }
-  for (std::size_t v = 0; v < copies.size(); ++v) result[v] = result[together[v]];
+  });
   return result;
 }
 
@@ -47,12 +54,23 @@ const VertexFans& SelfContact::fans() {
   return fans_;
 }
 
+const SelfContact::Standing& SelfContact::standing() {
+  if (!standing_) {
+    std::vector<std::uint32_t> together = vertices_together(surface_.site, positions_);
+    Copies copies(together);
+    standing_.emplace(std::move(together), std::move(copies));
+  }
+  return *standing_;
+}
+
 std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>& u) const {
   std::vector<std::uint32_t> all(weights_.size());
   std::iota(all.begin(), all.end(), 0u);
   std::vector<Vec3> result = weights_.at_each(all, u);
-  for (std::size_t v = 0; v < result.size(); ++v)
-    if (const SurfaceVertexId id(v); body.surface.alive(id)) result[v] = body.surface.point(body.surface.site(id)) + result[v];
+  parallel_for(result.size(), vertices_a_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (const SurfaceVertexId id(v); body.surface.alive(id)) result[v] = body.surface.point(body.surface.site(id)) + result[v];
+  });
   return result;
 }
 
@@ -85,13 +103,14 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
     inverse_mass[i] = 1 / solid.mass(NodeId(i)), spacing += body.nodes.spacing[i] / double(n);
     if (fixed.empty() || !fixed[i]) u[i] += dt * state.velocity[i] + dt * dt * gravity;
   }
-  const auto together = vertices_together(surface_.site, positions_);
-  const Copies copies(together);
+  const auto& [together, copies] = standing();
   const std::vector<Vec3>& now = targets_at(body, state.displacement);
   const std::vector<Vec3> free = targets(body, u);
   const std::vector<Vec3> here = averaged(now, together, copies), goal = averaged(free, together, copies);
   held_off_.resize(here.size());
-  std::transform(positions_.begin(), positions_.end(), here.begin(), held_off_.begin(), [](const Vec3& is, const Vec3& wants) { return is - wants; });
+  parallel_for(held_off_.size(), vertices_a_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) held_off_[v] = positions_[v] - here[v];
+  });
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
   touch_.restart({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
   std::vector<double> stiffness;  // per material, 1/s²
@@ -190,8 +209,10 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
 std::vector<Vec3> SelfContact::likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const {
   constexpr double stays = 0.9, negligible = 1e-3;  // a step; of a mean edge
   std::vector<Vec3> result = goal;
-  for (std::size_t v = 0; v < std::min(result.size(), held_off_.size()); ++v)
-    if (const Vec3& off = held_off_[together[v]]; off.norm() > negligible * surface_.edge) result[v] += stays * off;
+  parallel_for(std::min(result.size(), held_off_.size()), vertices_a_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (const Vec3& off = held_off_[together[v]]; off.norm() > negligible * surface_.edge) result[v] += stays * off;
+  });
   return result;
 }
 
@@ -199,16 +220,17 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
                           State& state, ContactWork* told) {
   Stopwatch clock;
   ContactWork work;
-  auto together = vertices_together(surface_.site, positions_);
-  Copies copies(together);
-  work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, together, copies, state);
+  work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, standing().together, standing().copies, state);
   const std::vector<Vec3>& to = targets_at(body, state.displacement);
-  if (work.opened = open_sheets(surface_, fans(), copies, to, options_.gap * surface_.edge, options_.opening * surface_.edge, positions_); work.opened > 0) together = vertices_together(surface_.site, positions_), copies = Copies(together);
+  work.opened = open_sheets(surface_, fans(), standing().copies, to, options_.gap * surface_.edge, options_.opening * surface_.edge, positions_);
+  if (work.opened > 0) standing_.reset();
+  const auto& [together, copies] = standing();
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;
   const std::vector<Vec3> guess = likely(goal, together);
   BoundedMotion bounded;
   positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap, begun_ ? &guess : nullptr}, true, &bounded, &near_, &fans());
+  standing_.reset();
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (std::size_t v = 0; v < to.size(); ++v)
     if (body.surface.alive(SurfaceVertexId(v))) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
@@ -224,7 +246,7 @@ void SelfContact::expect(const Body& body, const Solid& solid, const State& stat
 void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
   if (delta.crack.empty()) return;
   surface_ = std::move(birth_.surface), positions_ = std::move(birth_.positions);
-  fans_ = {};
+  fans_ = {}, standing_.reset();
   const auto stale = weights_.follow(body, solid, delta);
   last_.stale.insert(last_.stale.end(), stale.begin(), stale.end());
 }

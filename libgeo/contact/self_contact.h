@@ -9,6 +9,8 @@
 // along their own normals once Eq. 1 pulls them apart or along each other by more than its own noise.
 #pragma once
 
+#include <optional>
+
 #include "contact/birth.h"
 #include "contact/bounded_motion.h"
 #include "contact/contact_options.h"
@@ -50,6 +52,12 @@ class SelfContact {
                                    std::span<const std::uint32_t> together, const Copies& copies, State& state);
   std::vector<Vec3> likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const;
   const VertexFans& fans();
+  // Which of the vertices are together where they are.
+  struct Standing {
+    std::vector<std::uint32_t> together;
+    Copies copies;
+  };
+  const Standing& standing();
 
   ContactOptions options_;
   ContactSurface surface_;
@@ -58,6 +66,7 @@ class SelfContact {
   TouchPenalty touch_{TouchPenaltyOptions{}};
   NearPairs near_;       // of the step that is worked on
   VertexFans fans_;      // of the surface; empty: not asked for yet
+  std::optional<Standing> standing_;  // empty: not asked for since positions_ changed
   // What targets_at() said last, of which displacements, and the vertices whose weights have changed since.
   struct {
     std::vector<Vec3> targets, of;

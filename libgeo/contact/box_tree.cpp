@@ -222,6 +222,16 @@ void BoxTree::fill() {
   }
 }
 
+double BoxTree::block_sizes() const {
+  double sum = 0;
+  for (std::size_t l = 1; l < std::min<std::size_t>(levels_.size(), 2); ++l)
+    for (const Block& b : levels_[l])
+      for (int axis = 0; axis < 3; ++axis)
+        for (std::uint32_t k = 0; k < width; ++k)
+          if (b.lo[axis][k] <= b.hi[axis][k]) sum += double(b.hi[axis][k]) - double(b.lo[axis][k]);
+  return sum;
+}
+
 BoxTree::Floats BoxTree::local(const Box3& box) const {
   Floats b;
   for (int axis = 0; axis < 3; ++axis) b.lo[axis] = below(box.lo[axis] - middle_[axis]), b.hi[axis] = above(box.hi[axis] - middle_[axis]);

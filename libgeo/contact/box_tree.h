@@ -40,6 +40,9 @@ class BoxTree {
   /// pairs.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
 
+  /// How large the boxes around blocks are together, model units (three edges each): larger when what was near each other has gone apart.
+  double block_sizes() const;
+
   /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].
   const std::vector<std::vector<Block>>& levels() const { return levels_; }
 

@@ -13,7 +13,8 @@ bool within(const Box3& box, const Box3& other) { return (box.lo.array() >= othe
 
 void NearPairs::cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed) {
   constexpr std::size_t most_outside = 4;  // one of so many
-  const bool known = tree_.boxes().size() == triangles.size(), few = known && changed;
+  constexpr double worn = 1.2;             // when triangles that follow each other in the tree have gone so much further apart, they are put into another order
+  const bool known = known_ && tree_.boxes().size() == triangles.size(), few = known && changed;
   std::vector<Box3> boxes(few ? 0 : triangles.size());
   std::vector<std::uint8_t> outside(triangles.size(), 0);
   parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
@@ -27,8 +28,12 @@ void NearPairs::cover(std::span<const Triangle> triangles, const std::function<B
   const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
   if (known && count == 0) return;
   if (!known || (count * most_outside > triangles.size() && !changed)) {
-    if (!known || !tree_.replace(boxes)) tree_ = BoxTree(std::move(boxes), triangles);
-    pairs_ = tree_.pairs();
+    if (!tree_.replace(boxes)) {
+      tree_ = BoxTree(std::move(boxes), triangles), blocks_ = tree_.block_sizes();
+    } else if (!known && tree_.block_sizes() > worn * blocks_) {
+      tree_ = BoxTree(tree_.boxes(), triangles), blocks_ = tree_.block_sizes();
+    }
+    known_ = true, pairs_ = tree_.pairs();
     return;
   }
   for (std::uint32_t t = 0; t < triangles.size(); ++t)

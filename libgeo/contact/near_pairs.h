@@ -21,16 +21,20 @@ class NearPairs {
   /// units, by which what has left its box is given a larger one. All pairs are looked for at the first call and after many have left.
   void cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed = nullptr);
 
-  /// i < j, each once, in an order that depends on the calls alone.
+  /// i < j, each once, in no order that anything should depend on.
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// Room for what is asked about them, the caller's to fill: much memory, which is used again step by step.
   TrianglePlanes& planes() { return planes_; }
-  /// Another step begins: nothing is known of its pairs.
-  void forget() { tree_ = {}, pairs_.clear(); }
+  /// Another step of the same triangles begins: nothing is known of its pairs. Where most triangles have stayed near each other, the tree's order will do again.
+  void forget() { known_ = false, pairs_.clear(); }
+  /// There are other triangles.
+  void forget_triangles() { forget(), tree_ = {}; }
 
  private:
   TrianglePlanes planes_;
   BoxTree tree_;
+  bool known_ = false;    // tree_ has this step's boxes
+  double blocks_ = 0;     // how large its blocks were when their order was found
   std::vector<Pair> pairs_;
 };
 

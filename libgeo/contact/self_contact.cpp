@@ -246,7 +246,7 @@ void SelfContact::expect(const Body& body, const Solid& solid, const State& stat
 void SelfContact::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
   if (delta.crack.empty()) return;
   surface_ = std::move(birth_.surface), positions_ = std::move(birth_.positions);
-  fans_ = {}, standing_.reset();
+  fans_ = {}, standing_.reset(), near_.forget_triangles();
   const auto stale = weights_.follow(body, solid, delta);
   last_.stale.insert(last_.stale.end(), stale.begin(), stale.end());
 }

@@ -10,9 +10,10 @@ namespace geo {
 
 std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m, const Constraint& how) {
   using Key = std::array<std::uint32_t, 6>;
+  using Name = std::pair<Key, Key>;  // of the places; and of the couple that has them, so that it does not depend on the couples' order which of several is taken
   constexpr std::size_t stretch = 256;
-  std::vector<std::pair<std::vector<TouchingPlaces>, std::vector<Key>>> some((watched.size() + stretch - 1) / stretch);
-  const auto look_at = [&](const Watched& w, std::vector<TouchingPlaces>& result, std::vector<Key>& keys) {
+  std::vector<std::pair<std::vector<TouchingPlaces>, std::vector<Name>>> some((watched.size() + stretch - 1) / stretch);
+  const auto look_at = [&](const Watched& w, std::vector<TouchingPlaces>& result, std::vector<Name>& names) {
     if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) return;
     const ClosestPlaces& c = w.closest;
     TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
@@ -33,21 +34,21 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
     std::copy(t.a.vertex, t.a.vertex + t.a.size, key.begin()), std::copy(t.b.vertex, t.b.vertex + t.b.size, key.begin() + 3);
     std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
     if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3)) std::rotate(key.begin(), key.begin() + 3, key.end());
-    keys.push_back(key), result.push_back(t);
+    names.push_back({key, {w.a.v[0], w.a.v[1], w.a.v[2], w.b.v[0], w.b.v[1], w.b.v[2]}}), result.push_back(t);
   };
   parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
       for (std::size_t i = s * stretch; i < std::min(watched.size(), (s + 1) * stretch); ++i) look_at(watched[i], some[s].first, some[s].second);
   });
   std::vector<TouchingPlaces> result;
-  std::vector<Key> keys;
-  for (const auto& [places, named] : some) result.insert(result.end(), places.begin(), places.end()), keys.insert(keys.end(), named.begin(), named.end());
+  std::vector<Name> names;
+  for (const auto& [places, named] : some) result.insert(result.end(), places.begin(), places.end()), names.insert(names.end(), named.begin(), named.end());
   std::vector<std::uint32_t> order(result.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(keys[i], i) < std::tie(keys[j], j); });
+  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(names[i], i) < std::tie(names[j], j); });
   std::vector<TouchingPlaces> once;
   for (std::size_t i = 0; i < order.size(); ++i)
-    if (i == 0 || keys[order[i]] != keys[order[i - 1]]) once.push_back(result[order[i]]);
+    if (i == 0 || names[order[i]].first != names[order[i - 1]].first) once.push_back(result[order[i]]);
   return once;
 }
 

@@ -42,8 +42,9 @@ struct Between {
 Pairs closest_between(const Pairs& pairs, const std::vector<Between>& between, std::span<const std::uint32_t> owner, std::size_t most) {
   struct Entry {
     double left;
+    std::pair<std::uint32_t, std::uint32_t> triangles;
     std::uint32_t pair;
-    bool operator<(const Entry& o) const { return std::tie(left, pair) < std::tie(o.left, o.pair); }
+    bool operator<(const Entry& o) const { return std::tie(left, triangles) < std::tie(o.left, o.triangles); }  // whatever order pairs are in
   };
   struct Closest {
     std::uint32_t other;  // the higher of the two owners
@@ -68,7 +69,7 @@ Pairs closest_between(const Pairs& pairs, const std::vector<Between>& between, s
       std::size_t others = 0;
       for (auto k = first[o]; k < first[o + 1]; ++k) {
         const Between& b = between[order[k]];
-        const Entry entry{b.left, order[k]};
+        const Entry entry{b.left, pairs[order[k]], order[k]};
         std::size_t c = 0;
         while (c < others && closest[c].other != b.high) ++c;
         if (c == others) {

@@ -15,7 +15,8 @@ struct Constraint {
   double reach = 0;  ///< model units: what the motion brings nearer to its gap than that counts, too
 };
 
-/// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once.
+/// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once; the same in whatever order pairs are
+/// watched.
 std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& motion, const Constraint& how);
 
 /// Copies that are together and that their own targets would push through each other: the two sides of a sheet, parted by

@@ -22,8 +22,8 @@ struct Watched {
   double gap;     ///< least distance along the normal that the step may leave, model units
 };
 
-/// Pairs that share no corner. Where the plane of a pair comes closest to what the motion wants, it is the one taken. In an order
-/// that depends on the motion alone. `owner` (per row, or empty): of the pairs of triangles between the surroundings of the same
+/// Pairs that share no corner. Where the plane of a pair comes closest to what the motion wants, it is the one taken. Which they
+/// are depends on the motion alone, their order on what `near` was used for before, too. `owner` (per row, or empty): of the pairs of triangles between the surroundings of the same
 /// two owners no more than `most` (at least 1), by the planes of the triangles those that the motion brings closest. `near`: is left with the pairs that may come together.
 std::vector<Watched> watch(const SurfaceMotion& motion, NearPairs& near, std::span<const std::uint32_t> owner = {}, std::size_t most = 0);
 

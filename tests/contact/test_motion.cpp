@@ -7,6 +7,7 @@
 #include "contact/bounded_motion.h"
 #include "contact/crossing.h"
 #include "contact/straight_motion.h"
+#include "contact/touching.h"
 #include "contact/watch.h"
 #include "geometry/predicates.h"
 #include "surface/shapes.h"
@@ -211,6 +212,35 @@ TEST_CASE("parts that a fixed direction parts at both ends do not meet in betwee
   }
   CHECK(met > 20);
   CHECK(parted_both > 20);
+}
+
+TEST_CASE("what touches does not depend on what the list of near pairs was used for before") {
+  const auto [first, count] = seeds(20);
+  std::size_t found = 0, in_another_order = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const Sheets soup(random);
+    std::vector<std::uint32_t> owner;
+    for (std::size_t v = 0; v < soup.from.size(); ++v) owner.push_back(static_cast<std::uint32_t>(v / 7));
+    NearPairs fresh, used;
+    // The same triangles were elsewhere.
+    std::vector<Vec3> elsewhere;
+    for (const Vec3& p : soup.from) elsewhere.push_back({p.y(), random.uniform(), -p.x()});
+    used.cover(soup.triangles, [&](std::size_t t) { return box_of(elsewhere[soup.triangles[t][0]], elsewhere[soup.triangles[t][1]], elsewhere[soup.triangles[t][2]]); }, 0);
+    used.forget();
+    const SurfaceMotion motion{soup.triangles, soup.together, soup.from, soup.to, 0.05 * Sheets::edge, 0.1 * Sheets::edge};
+    const auto of_fresh = watch(motion, fresh, owner, 2), of_used = watch(motion, used, owner, 2);
+    for (std::size_t i = 0; i < std::min(of_fresh.size(), of_used.size()); ++i) in_another_order += !std::equal(of_fresh[i].a.v, of_fresh[i].a.v + 3, of_used[i].a.v);
+    const auto a = touching_places(of_fresh, motion, {0.01, 0, 0.1 * Sheets::edge}), b = touching_places(of_used, motion, {0.01, 0, 0.1 * Sheets::edge});
+    REQUIRE(a.size() == b.size());
+    found += a.size();
+    const auto same = [](const SurfacePlace& p, const SurfacePlace& q) { return p.size == q.size && std::equal(p.vertex, p.vertex + p.size, q.vertex) && std::equal(p.weight, p.weight + p.size, q.weight); };
+    for (std::size_t i = 0; i < a.size(); ++i)
+      CHECK((same(a[i].a, b[i].a) && same(a[i].b, b[i].b) && a[i].normal == b[i].normal && a[i].depth == b[i].depth && a[i].approach == b[i].approach));
+  }
+  CHECK(found > 200);
+  CHECK(in_another_order > 200);
 }
 
 TEST_CASE("sheets that are pressed into each other while they slide give way by what they lack, without zones") {

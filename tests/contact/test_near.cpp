@@ -32,6 +32,8 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
     NearPairs near;
     std::vector<std::uint8_t> changed(boxes.size(), 1);
     for (int call = 0; call < 8; ++call) {
+      const bool anew = random.below(3) == 0;  // another step
+      if (anew) near.forget();
       const bool told = call > 0 && random.below(2) == 0;
       near.cover(triangles, [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1), told ? &changed : nullptr);
       const std::set<NearPairs::Pair> pairs(near.pairs().begin(), near.pairs().end());
@@ -40,6 +42,7 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
       for (std::uint32_t i = 0; i < boxes.size(); ++i)
         for (std::uint32_t j = i + 1; j < boxes.size(); ++j) missing += boxes[i].meets(boxes[j]) && !neighbours(i, j) && !pairs.contains({i, j});
       CHECK(missing == 0);
+      if (anew) CHECK(std::all_of(pairs.begin(), pairs.end(), [&](const auto& p) { return boxes[p.first].meets(boxes[p.second]); }));
       CHECK(std::none_of(pairs.begin(), pairs.end(), [&](const auto& p) { return neighbours(p.first, p.second); }));
       // Few or many go elsewhere.
       const double share = random.below(3) == 0 ? 0.5 : 0.03;

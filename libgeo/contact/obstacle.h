@@ -38,6 +38,8 @@ class Obstacle : public Potential {
   void begin(const std::vector<Vec3>& u, double from, double to) override;
   std::size_t size() const override { return rows_.size(); }
   std::span<const NodeWeight> row(std::size_t r) const override { return rows_[r].weights; }
+  /// A vertex follows its master's node, that node's neighbours and theirs.
+  bool within_parts() const override { return true; }
   double reach(std::size_t r) const override { return rows_[r].reach; }
   double energy(std::size_t r, const Vec3& way) const override;
   Push push(std::size_t r, const Vec3& way) override { return pushed(rows_[r], way); }

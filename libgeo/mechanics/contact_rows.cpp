@@ -17,21 +17,22 @@ ContactRows::ContactRows(std::span<Potential* const> potentials, const std::vect
   for (Potential* p : potentials)
     for (std::size_t r = 0; r < p->size(); ++r)
       if (const auto entries = p->row(r); !entries.empty()) {
+        if (!p->within_parts()) joining_.push_back(static_cast<std::uint32_t>(rows_.size()));
         rows_.push_back({p, static_cast<std::uint32_t>(r), entries[0].node, p->reach(r)}), entries_.push_back(entries);
       }
-  way_.assign(rows_.size(), Vec3::Zero()), force_ = way_, curvature_.assign(rows_.size(), Mat3::Zero());
+  way_.assign(rows_.size(), Vec3::Zero()), force_ = way_, curvature_.assign(rows_.size(), Curvature::Zero());
   listed_.assign(rows_.size(), 0), idle_ = listed_, pull_.assign(rows_.size(), Eigen::Vector4f::Zero());
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::span<const std::uint32_t> part) const {
   // Those of runs of rows one after another.
   constexpr std::size_t rows_a_run = 512;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> of_run((rows_.size() + rows_a_run - 1) / rows_a_run);
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> of_run((joining_.size() + rows_a_run - 1) / rows_a_run);
   parallel_for(of_run.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      for (std::size_t r = k * rows_a_run; r < std::min(rows_.size(), (k + 1) * rows_a_run); ++r)
-        for (const auto& e : entries_[r])
-          if (const std::pair pair(part[entries_[r][0].node], part[e.node]); pair.first != pair.second && (of_run[k].empty() || pair != of_run[k].back())) of_run[k].push_back(pair);
+      for (std::size_t j = k * rows_a_run; j < std::min(joining_.size(), (k + 1) * rows_a_run); ++j)
+        for (const auto& e : entries_[joining_[j]])
+          if (const std::pair pair(part[entries_[joining_[j]][0].node], part[e.node]); pair.first != pair.second && (of_run[k].empty() || pair != of_run[k].back())) of_run[k].push_back(pair);
   });
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (const auto& some : of_run) pairs.insert(pairs.end(), some.begin(), some.end());
@@ -68,7 +69,7 @@ void ContactRows::push(std::span<const std::uint32_t> part, const std::vector<ch
     for (std::size_t k = begin; k < end; ++k) {
       const auto r = rows[k];
       const auto push = rows_[r].of->push(rows_[r].number, way_[r]);
-      force_[r] = push.force, curvature_[r] = push.curvature;
+      force_[r] = push.force, curvature_[r].topRows<3>() = push.curvature.cast<float>();
     }
   });
   list();
@@ -121,7 +122,8 @@ void ContactRows::multiply(const std::vector<Vec3>& p) {
           for (std::size_t c = 0; c < 4; ++c) some[c] += shares[at + c].weight * single_[shares[at + c].of];
         for (; at < shares.size(); ++at) some[0] += shares[at].weight * single_[shares[at].of];
         const Eigen::Vector4f way = (some[0] + some[1]) + (some[2] + some[3]);
-        pull_[lists.row(k)] << (curvature_[lists.row(k)] * way.head<3>().cast<double>()).cast<float>(), 0;
+        const Curvature& curvature = curvature_[lists.row(k)];
+        pull_[lists.row(k)] = way[0] * curvature.col(0) + way[1] * curvature.col(1) + way[2] * curvature.col(2);
       }
     });
 }
@@ -129,12 +131,15 @@ void ContactRows::multiply(const std::vector<Vec3>& p) {
 void ContactRows::add_blocks(std::vector<Mat3>& out) const {
   constexpr float together = 0.2f;  // of a row's weights, in what solves for a node with its neighbours
   parallel_for(out.size(), few, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n)
+    for (std::size_t n = begin; n < end; ++n) {
+      Curvature sum = Curvature::Zero();
       for (const auto& lists : lists_)
         for (const auto& share : lists.of_node(n)) {
           const float weight = std::abs(share.weight);
-          out[n] += double(weight * std::max(weight, together)) * curvature_[share.of];
+          sum += weight * std::max(weight, together) * curvature_[share.of];
         }
+      out[n] += sum.topRows<3>().cast<double>();
+    }
   });
 }
 

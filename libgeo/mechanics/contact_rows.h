@@ -50,9 +50,11 @@ class ContactRows {
   const std::vector<Vec3>& begun_;
   std::vector<Row> rows_;
   std::vector<std::span<const NodeWeight>> entries_;
+  std::vector<std::uint32_t> joining_;  // rows whose nodes may be of several parts
   std::vector<std::uint8_t> idle_;  // has never done anything, nor could where nodes were at its last evaluation
   std::vector<Vec3> way_, force_;
-  std::vector<Mat3> curvature_;
+  using Curvature = Eigen::Matrix<float, 4, 3>;  // a row of zeros below
+  std::vector<Curvature> curvature_;
   // Rows that do something, or have done so since the step began: those that did when the first list was made, and the few that came since.
   RowLists lists_[2];
   std::vector<std::uint8_t> listed_;  // 1 + of which

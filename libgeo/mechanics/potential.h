@@ -39,6 +39,8 @@ class Potential {
   virtual std::size_t size() const = 0;
   /// A row's nodes, none twice; of none: it does nothing. All can be made to depend on each other by it.
   virtual std::span<const NodeWeight> row(std::size_t r) const = 0;
+  /// True where the nodes of each row hang together by the body's own graph, so that no row joins what nothing else does.
+  virtual bool within_parts() const { return false; }
   /// How far nodes may go from where they were at begin() before a row does anything, model units; 0: it may do so there.
   virtual double reach(std::size_t) const { return 0; }
   /// The energy of a row that has gone so far, J.

@@ -2,7 +2,9 @@
 // the discretisation of that paper, where strain energy is summed.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -39,21 +41,25 @@ class NodeRows {
   std::vector<Row> rows_;
 };
 
-/// Gradients at nodes, each worked out when it is first asked for: for what concerns a few nodes of a large body. Not to be asked
-/// by several threads at once. Refers to rows and displacements.
+/// Gradients at nodes, each worked out when it is first asked for: for what concerns a few nodes of a large body. Several threads
+/// may ask at once. Refers to rows and displacements.
 class NodeGradients {
  public:
-  NodeGradients(const NodeRows& rows, const std::vector<Vec3>& u) : rows_(&rows), u_(&u), gradient_(rows.size()), known_(rows.size(), 0) {}
-  const Mat3& operator[](std::size_t i) const {
-    if (!known_[i]) gradient_[i] = rows_->gradient(i, *u_), known_[i] = 1;
-    return gradient_[i];
+  NodeGradients(const NodeRows& rows, const std::vector<Vec3>& u) : rows_(&rows), u_(&u), gradient_(rows.size()), known_(std::make_unique<std::atomic<Known>[]>(rows.size())) {}
+  Mat3 operator[](std::size_t i) const {
+    if (known_[i].load(std::memory_order_acquire) == Known::yes) return gradient_[i];
+    const Mat3 gradient = rows_->gradient(i, *u_);
+    // Of threads that have worked it out at once, one writes it down.
+    if (Known no = Known::no; known_[i].compare_exchange_strong(no, Known::soon)) gradient_[i] = gradient, known_[i].store(Known::yes, std::memory_order_release);
+    return gradient;
   }
 
  private:
+  enum class Known : std::uint8_t { no, soon, yes };
   const NodeRows* rows_;
   const std::vector<Vec3>* u_;
   mutable std::vector<Mat3> gradient_;
-  mutable std::vector<std::uint8_t> known_;
+  std::unique_ptr<std::atomic<Known>[]> known_;
 };
 
 /// What strains at nodes do not see: ½ α E V_i Σ ŵ_ij |u_j − u_i − ∇u_i x_ij|² / |x_ij|², a quadratic form.

@@ -90,8 +90,9 @@ MutualContact between_bodies(const Body& body, const Solid& solid, const Surface
     std::vector<std::uint8_t> counted;
     for (const auto q : part) counted.push_back(q == p);
     const PointMap map(body, u, gradient, about, std::move(counted));
+    PointMap::Memory memory;
     for (const auto& [v, y] : near) {
-      const PointMap::Place place = map.material(y);
+      const PointMap::Place place = map.material(y, memory);
       Nearest n;
       if (!place.within || !around.nearest(place.material, body.nodes.position[place.anchor.index()], p, options.reach, n)) continue;
       Vec3 at[3];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace geo {
 namespace {
 
@@ -15,16 +17,17 @@ struct Sample {
   EdgePoint point() const { return {at, material, spacing}; }
 };
 
+// Of a part of the edge.
 class Tracer {
  public:
   Tracer(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) : map_(map), body_(body), blade_(blade), pose_(pose) {}
 
-  Sample at(double where) const {
+  Sample at(double where) {
     const std::size_t n = blade_.points.size(), i = std::min(static_cast<std::size_t>(where), n - 1);
     const double t = where - double(i);
     const Vec3 local = t > 0 ? Vec3(blade_.points[i] + t * (blade_.points[(i + 1) % n] - blade_.points[i])) : blade_.points[i];
     Sample s{where, pose_ * local, {}, false, 0, std::numeric_limits<double>::infinity()};
-    const PointMap::Place place = map_.material(s.world);
+    const PointMap::Place place = map_.material(s.world, memory_);
     s.material = place.material, s.within = place.within;
     if (place.anchor.valid()) {
       s.spacing = body_.nodes.spacing[place.anchor.index()];
@@ -34,7 +37,7 @@ class Tracer {
   }
 
   // What is between two samples, both left out, as finely as the mapping asks for.
-  void between(const Sample& a, const Sample& b, int depth, std::vector<Sample>& out) const {
+  void between(const Sample& a, const Sample& b, int depth, std::vector<Sample>& out) {
     if (depth == 0) return;
     const double length = (b.world - a.world).norm(), spacing = std::min(a.spacing, b.spacing);
     if (!a.within && !b.within && std::min(a.gap, b.gap) > length) return;  // nothing can be between
@@ -53,7 +56,26 @@ class Tracer {
   const Body& body_;
   const Blade& blade_;
   const Pose& pose_;
+  PointMap::Memory memory_;
 };
+
+// All samples of an edge. Parts of it are traced for themselves: what a sample says depends on no other.
+std::vector<Sample> trace(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
+  std::vector<std::vector<Sample>> parts(blade.points.size() - 1);  // from each point to the next, which is in it
+  parallel_for(parts.size(), 2, [&](std::size_t begin, std::size_t end) {
+    Tracer tracer(map, body, blade, pose);
+    Sample last = tracer.at(double(begin));
+    if (begin == 0) parts[0].push_back(last);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Sample next = tracer.at(double(i + 1));
+      tracer.between(last, next, 6, parts[i]);
+      parts[i].push_back(next), last = next;
+    }
+  });
+  std::vector<Sample> samples;
+  for (const auto& part : parts) samples.insert(samples.end(), part.begin(), part.end());
+  return samples;
+}
 
 // The mapping tears the edge apart between these.
 bool torn(const Sample& a, const Sample& b) {
@@ -83,13 +105,7 @@ bool follows(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
 }  // namespace
 
 std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
-  const Tracer tracer(map, body, blade, pose);
-  std::vector<Sample> samples{tracer.at(0)};
-  for (std::size_t i = 1; i < blade.points.size(); ++i) {
-    const Sample last = samples.back(), next = tracer.at(double(i));
-    tracer.between(last, next, 6, samples);
-    samples.push_back(next);
-  }
+  const std::vector<Sample> samples = trace(map, body, blade, pose);
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -110,7 +126,7 @@ std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& b
 }
 
 std::vector<EdgePoint> closed_run(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
-  const Tracer tracer(map, body, blade, pose);
+  Tracer tracer(map, body, blade, pose);
   std::vector<EdgePoint> run;
   for (std::size_t i = 0; i < blade.points.size(); ++i) run.push_back(tracer.at(double(i)).point());
   return run;

@@ -26,6 +26,7 @@ double fade(double x, double a, double b) {
 PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about, std::vector<std::uint8_t> counted)
     : body_(body), u_(u), gradient_(gradient), counted_(std::move(counted)), reach_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())), grid_(body.grid.cell()) {
   const Box3 box = about.grown(2 * reach_);
+  world_.reserve(body.nodes.size());
   for (std::size_t i = 0; i < body.nodes.size(); ++i) world_.push_back(body.nodes.position[i] + u[i]);
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
     if (counts(i) && box.meets({world_[i], world_[i]})) grid_.insert(world_, static_cast<std::uint32_t>(i));
@@ -38,23 +39,22 @@ bool PointMap::counts(FaceId f) const {
   return !nodes.empty() && counted_[nodes[0].first.index()];
 }
 
-// The nodes that may count at y in the world, and half their supports about x in the material.
-void PointMap::look_round(const Vec3& y, const Vec3& x) const {
-  if (round_.world == y && (round_.material - x).norm() < 0.5 * reach_) return;
-  round_ = {y, x, {}, {}};
+void PointMap::look(Round& round, const Vec3& x) const {
+  if ((round.material - x).norm() < 0.5 * reach_) return;
+  round.material = x, round.node.clear(), round.share.clear();
   std::vector<std::uint32_t> near;
   body_.grid.within(body_.nodes.position, x, 1.5 * reach_, near);
   for (const auto i : near)
-    if (const double share = fade((y - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0 && counts(i)) round_.node.push_back(i), round_.share.push_back(share);
+    if (const double share = fade((round.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0 && counts(i)) round.node.push_back(i), round.share.push_back(share);
 }
 
-bool PointMap::forward(const Vec3& y, const Vec3& x, Vec3& to, Mat3& slope) const {
-  look_round(y, x);
+bool PointMap::forward(Round& round, const Vec3& x, Vec3& to, Mat3& slope) const {
+  look(round, x);
   double total = 0;
   to.setZero(), slope.setZero();
-  for (std::size_t k = 0; k < round_.node.size(); ++k) {
-    const auto i = round_.node[k];
-    const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * round_.share[k];
+  for (std::size_t k = 0; k < round.node.size(); ++k) {
+    const auto i = round.node[k];
+    const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * round.share[k];
     if (!(w > 0)) continue;
     total += w, slope += w * gradient_[i];
     to += w * (u_[i] + gradient_[i] * (x - body_.nodes.position[i]));
@@ -64,12 +64,12 @@ bool PointMap::forward(const Vec3& y, const Vec3& x, Vec3& to, Mat3& slope) cons
   return true;
 }
 
-Vec3 PointMap::solve(const Vec3& y, Vec3 x, double enough) const {
+Vec3 PointMap::solve(Round& round, Vec3 x, double enough) const {
   Vec3 best = x, to;
   Mat3 slope;
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 24 && forward(y, x, to, slope); ++i) {
-    const Vec3 rest = y - to;
+  for (int i = 0; i < 24 && forward(round, x, to, slope); ++i) {
+    const Vec3 rest = round.world - to;
     if (!(rest.norm() < least)) break;
     least = rest.norm(), best = x;
     if (least <= enough) break;
@@ -78,8 +78,8 @@ Vec3 PointMap::solve(const Vec3& y, Vec3 x, double enough) const {
   return best;
 }
 
-Vec3 PointMap::deformed(SurfaceVertexId v) const {
-  const auto [it, fresh] = deformed_.try_emplace(v.value);
+Vec3 PointMap::deformed(SurfaceVertexId v, Memory& memory) const {
+  const auto [it, fresh] = memory.try_emplace(v.value);
   if (fresh) {
     std::vector<std::pair<NodeId, double>> nodes;
     bound_nodes(body_, v, nodes);
@@ -90,19 +90,20 @@ Vec3 PointMap::deformed(SurfaceVertexId v) const {
 }
 
 // What Eq. 1 and the deformed triangles of the skin near y differ by: the nearest ones say most, and one that holds y all.
-Vec3 PointMap::on_skin(const Vec3& y, const Vec3& x, double reach) const {
+Vec3 PointMap::on_skin(Round& round, const Vec3& x, double reach, Memory& memory) const {
+  const Vec3& y = round.world;
   Vec3 to;
   Mat3 slope;
   std::vector<FaceId> faces;
   body_.surface.near(Box3{x, x}.grown(2 * reach), faces);
-  if (faces.empty() || !forward(y, x, to, slope)) return Vec3::Zero();
+  if (faces.empty() || !forward(round, x, to, slope)) return Vec3::Zero();
   const Mat3 back = inverse_of(slope);
   Vec3 sum = Vec3::Zero();
   double total = 0, least = reach;
   for (const FaceId f : faces) {
     if (body_.surface.face(f).crack != 0 || !counts(f)) continue;
     Vec3 t[3];
-    for (int k = 0; k < 3; ++k) t[k] = deformed(body_.surface.surface_vertex({f, 0}, k));
+    for (int k = 0; k < 3; ++k) t[k] = deformed(body_.surface.surface_vertex({f, 0}, k), memory);
     const Vec3 on = closest_point_on_triangle(y, t[0], t[1], t[2]), b = barycentric(on, t[0], t[1], t[2]);
     const double d = (on - y).norm();
     if (d >= reach) continue;
@@ -114,7 +115,7 @@ Vec3 PointMap::on_skin(const Vec3& y, const Vec3& x, double reach) const {
   return total > 0 ? Vec3(std::pow(1 - least / reach, 2) * sum / total) : Vec3(Vec3::Zero());
 }
 
-PointMap::Place PointMap::material(const Vec3& y) const {
+PointMap::Place PointMap::material(const Vec3& y, Memory& memory) const {
   const auto nearest = grid_.nearest(world_, y, 1, ~0u, [](std::uint32_t) { return true; });
   if (nearest.empty()) return {y, NodeId(), false};
   const std::size_t a = nearest[0];
@@ -134,8 +135,10 @@ PointMap::Place PointMap::material(const Vec3& y) const {
     const double agreed = w * fade((x - guess).norm() / nodes.radius[a], 0.5, 1);
     sum += agreed * x, total += agreed;
   }
-  const Vec3 x = solve(y, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a]);
-  return {x + on_skin(y, x, 0.5 * nodes.spacing[a]), NodeId(a), true};
+  Round round;
+  round.world = y;
+  const Vec3 x = solve(round, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a]);
+  return {x + on_skin(round, x, 0.5 * nodes.spacing[a], memory), NodeId(a), true};
 }
 
 }  // namespace geo

@@ -1,7 +1,9 @@
 // From the world back to the material, and the fronts that blades leave.
 #include <catch2/catch.hpp>
 
+#include "base/parallel.h"
 #include "base/random.h"
+#include "cases.h"
 #include "io/scene_file.h"
 #include "mechanics/deformation.h"
 #include "simulation/point_map.h"
@@ -70,6 +72,39 @@ TEST_CASE("on the skin, the inverse is linear on each deformed triangle") {
       y += weight[k] * b.skin(b.body.surface.surface_vertex({FaceId(f), 0}, k));
     }
     CHECK((map.material(y).material - x).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("where a point was depends neither on what was asked before nor on who asks meanwhile") {
+  const auto [first, count] = seeds(3);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const Bent b;
+    std::vector<Vec3> points;
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 x(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 2));
+      points.push_back(x + b.u[b.body.grid.nearest(b.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; })[0]]);
+    }
+    const Box3 all{Vec3::Constant(-9), Vec3::Constant(9)};
+    const PointMap map(b.body, b.u, b.gradient, all);
+    std::vector<PointMap::Place> found(points.size());
+    set_threads(4);
+    parallel_for(points.size(), 4, [&](std::size_t begin, std::size_t end) {
+      PointMap::Memory memory;
+      for (std::size_t i = begin; i < end; ++i) found[i] = map.material(points[i], memory);
+    });
+    set_threads(0);
+    std::size_t within = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const NodeGradients fresh = b.solid.gradients_when_asked(b.u);
+      const PointMap::Place alone = PointMap(b.body, b.u, fresh, all).material(points[i]);
+      CHECK(found[i].material == alone.material);
+      CHECK(found[i].anchor == alone.anchor);
+      CHECK(found[i].within == alone.within);
+      within += alone.within;
+    }
+    CHECK(within > points.size() / 2);
   }
 }
 

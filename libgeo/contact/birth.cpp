@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -35,13 +36,9 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
 
 class Midwife {
  public:
-  Midwife(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions, const Complex& grown)
-      : body_(body), state_(state), old_(positions), k_(grown), gradient_(solid.gradients_when_asked(state.displacement)), old_side_(2 * grown.face_count(), Triangle{~0u, ~0u, ~0u}) {
-    for (std::size_t t = 0; t < before.triangles.size(); ++t) {
-      const auto& [a, b, c] = before.triangles[t];
-      old_side_[before.side[t]] = before.side[t] % 2 == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
-    }
-    birth_.surface = contact_surface(grown);
+  Midwife(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions, const Complex& grown, const CrackDelta& crack)
+      : body_(body), state_(state), before_(before), old_(positions), k_(grown), gradient_(solid.gradients_when_asked(state.displacement)) {
+    birth_.surface = grown_surface(before, grown, crack);
     birth_.positions = positions;
     birth_.positions.resize(birth_.surface.site.size(), Vec3::Zero());
     like_.resize(birth_.positions.size());
@@ -50,12 +47,15 @@ class Midwife {
   }
 
   Birth run(const CrackDelta& crack, double gap) {
-    for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
-    on_old_sides();
-    on_parts(crack);
-    across(crack);
-    inside(crack);
-    part(crack, gap);
+    at_once([&] { birth_.surface.edge = mean_edge(birth_.surface, k_); },
+            [&] {
+              for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
+              on_old_sides(crack);
+              on_parts(crack);
+              across(crack);
+              inside(crack);
+              part(crack, gap);
+            });
     return std::move(birth_);
   }
 
@@ -64,16 +64,26 @@ class Midwife {
     birth_.positions[v.index()] = at, placed_[v.index()] = 1, like_[v.index()] = like;
   }
 
-  // A side that is still there has its corners where they were.
-  void on_old_sides() {
-    for (const auto s : birth_.surface.side) {
-      const Triangle& at = old_side_[s];
-      if (at[0] == ~0u) continue;
-      for (int c = 0; c < 3; ++c)
-        if (const auto v = k_.surface_vertex({FaceId(s / 2), static_cast<int>(s % 2)}, c); !placed_[v.index()]) {
-          const auto w = at[static_cast<std::size_t>(c)];
-          place(v, old_[w], SurfaceVertexId(w));
-        }
+  // Where the corners of a side were that was there.
+  std::optional<Triangle> old_side(Side side) const {
+    for (auto [row, end] = before_.rows_of(side.face); row < end; ++row)
+      if (const auto& [a, b, c] = before_.triangles[row]; before_.side[row] % 2 == static_cast<std::uint32_t>(side.which)) return side.which == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
+    return {};
+  }
+
+  // A side that is still there has its corners where they were: the lowest one about a new vertex says where it is.
+  void on_old_sides(const CrackDelta& crack) {
+    for (const auto v : crack.new_surface_vertices) {
+      if (!k_.alive(v)) continue;
+      for (const FaceId f : k_.faces_at(k_.site(v)))
+        for (int which = 0; which < 2; ++which)
+          for (int c = 0; c < 3; ++c) {
+            if (placed_[v.index()] || !k_.has({f, which}) || k_.surface_vertex({f, which}, c) != v) continue;
+            if (const auto at = old_side({f, which})) {
+              const auto w = (*at)[static_cast<std::size_t>(c)];
+              place(v, old_[w], SurfaceVertexId(w));
+            }
+          }
     }
   }
 
@@ -105,19 +115,19 @@ class Midwife {
     std::map<VertexId, std::vector<OnEdge>> on_edges;
     for (const auto& [g, f] : part_of)
       for (int which = 0; which < 2; ++which)
-        if (k_.has({f, which}) && old_side_[2 * g.index() + static_cast<std::size_t>(which)][0] != ~0u)
+        if (const auto at = old_side({g, which}); at && k_.has({f, which}))
           for (int c = 0; c < 3; ++c)
-            if (const auto v = k_.surface_vertex({f, which}, c); !placed_[v.index()]) place_on_part(v, k_.face(f).v[static_cast<std::size_t>(c)], {g, which}, common, on_edges);
+            if (const auto v = k_.surface_vertex({f, which}, c); !placed_[v.index()]) place_on_part(v, k_.face(f).v[static_cast<std::size_t>(c)], g, *at, common, on_edges);
   }
 
   struct OnEdge {
     Vec3 ends[2], at;
   };
 
-  void place_on_part(SurfaceVertexId v, VertexId site, Side parent, const std::map<VertexId, std::vector<VertexId>>& common, std::map<VertexId, std::vector<OnEdge>>& on_edges) {
-    const auto corners = k_.corners(parent.face);
-    const Triangle& at = old_side_[2 * parent.face.index() + static_cast<std::size_t>(parent.which)];
-    const auto& own = k_.face(parent.face).v;
+  // `at`: where the parent's corners were.
+  void place_on_part(SurfaceVertexId v, VertexId site, FaceId parent, const Triangle& at, const std::map<VertexId, std::vector<VertexId>>& common, std::map<VertexId, std::vector<OnEdge>>& on_edges) {
+    const auto corners = k_.corners(parent);
+    const auto& own = k_.face(parent).v;
     const auto row = [&](VertexId c) { return static_cast<std::size_t>(std::find(own.begin(), own.end(), c) - own.begin()); };
     if (const auto same = row(site); same < 3) return place(v, old_[at[same]], SurfaceVertexId(at[same]));
     Vec3 to = carried(k_.point(site), corners, {old_[at[0]], old_[at[1]], old_[at[2]]});
@@ -176,48 +186,55 @@ class Midwife {
     std::vector<std::size_t> first;  // of each site, and the end
     for (std::size_t i = 0; i < waiting.size(); ++i)
       if (i == 0 || waiting[i].first != waiting[i - 1].first) first.push_back(i);
-    std::vector<Surroundings> about(first.size());
-    parallel_for(about.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) about[i] = surroundings(VertexId(waiting[first[i]].first), is_new);
+    std::vector<std::pair<Vec3, SurfaceVertexId>> found(first.size());
+    parallel_for(found.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) found[i] = place_inside(VertexId(waiting[first[i]].first), is_new);
     });
     first.push_back(waiting.size());
-    std::vector<Vec3> places(waiting.size());
-    std::vector<SurfaceVertexId> likes(waiting.size());
-    for (std::size_t i = 0; i < about.size(); ++i) {
-      const Vec3& x = k_.point(VertexId(waiting[first[i]].first));
-      Vec3 sum = Vec3::Zero(), at;
-      SurfaceVertexId like;
-      double total = 0, nearest = std::numeric_limits<double>::infinity();
-      for (const Near& n : about[i].near) {
-        const auto nodes = nodes_of(n.like);
-        const double weight = std::pow(n.distance / about[i].reach, -4);
-        sum += weight * (n.now + x - n.rest + displacement(x, nodes) - displacement(n.rest, nodes)), total += weight;
-        if (n.distance < nearest) nearest = n.distance, like = n.like;
-      }
-      at = total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x)));
-      for (auto j = first[i]; j < first[i + 1]; ++j) places[j] = at, likes[j] = like;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (auto j = first[i]; j < first[i + 1]; ++j) place(waiting[j].second, found[i].first, found[i].second);
+  }
+
+  // Where a site inside is, and like which vertex it moves.
+  std::pair<Vec3, SurfaceVertexId> place_inside(VertexId site, const std::vector<std::uint8_t>& is_new) const {
+    const Vec3& x = k_.point(site);
+    const Surroundings about = surroundings(site, is_new);
+    Vec3 sum = Vec3::Zero();
+    SurfaceVertexId like;
+    double total = 0, nearest = std::numeric_limits<double>::infinity();
+    for (const Near& n : about.near) {
+      const auto nodes = nodes_of(n.like);
+      const double weight = std::pow(n.distance / about.reach, -4);
+      sum += weight * (n.now + x - n.rest + displacement(x, nodes) - displacement(n.rest, nodes)), total += weight;
+      if (n.distance < nearest) nearest = n.distance, like = n.like;
     }
-    for (std::size_t i = 0; i < waiting.size(); ++i) place(waiting[i].second, places[i], likes[i]);
+    return {total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x))), like};
   }
 
   std::vector<Near> near(const Vec3& x, double reach, const std::vector<std::uint8_t>& is_new) const {
     std::vector<FaceId> faces;
     k_.near(Box3{x, x}.grown(reach), faces);
     std::erase_if(faces, [&](FaceId f) { return is_new[f.index()]; });
-    std::vector<Near> result;
+    std::vector<std::array<Vec3, 3>> corners;
+    std::vector<Box3> boxes;
     for (const FaceId f : faces) {
-      const auto rest = k_.corners(f);
+      const auto& [a, b, c] = corners.emplace_back(k_.corners(f));
+      boxes.push_back(box_of(a, b, c));
+    }
+    std::vector<Near> result;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const FaceId f = faces[i];
+      const auto& rest = corners[i];
       const Vec3 c = closest_point_on_triangle(x, rest[0], rest[1], rest[2]);
       const double distance = (x - c).norm();
       if (!(distance < reach) || !(distance > 0)) continue;
       const Vec3 almost = x + 0.999 * (c - x);
       Box3 way;
       way.add(x), way.add(almost);
-      if (std::any_of(faces.begin(), faces.end(), [&](FaceId g) {
-            const auto t = k_.corners(g);
-            return g != f && way.meets(box_of(t[0], t[1], t[2])) && segment_meets_triangle(x, almost, t[0], t[1], t[2]);
-          }))
-        continue;
+      const auto is_in_the_way = [&](std::size_t j) { return j != i && way.meets(boxes[j]) && segment_meets_triangle(x, almost, corners[j][0], corners[j][1], corners[j][2]); };
+      bool hidden = false;
+      for (std::size_t j = 0; j < faces.size() && !hidden; ++j) hidden = is_in_the_way(j);
+      if (hidden) continue;
       const Side side{f, k_.face(f).crack > 0 && orient3d(rest[0], rest[1], rest[2], x) > 0 ? 1 : 0};  // material is behind side 0
       const Vec3 w = barycentric(c, rest[0], rest[1], rest[2]);
       Vec3 by = Vec3::Zero();
@@ -229,15 +246,15 @@ class Midwife {
 
   void part(const CrackDelta& crack, double gap) {
     const ContactSurface& s = birth_.surface;
-    std::vector<std::uint8_t> is_new(k_.face_count(), 0), is_crack = is_new, marked, fresh;
-    for (const FaceId f : crack.new_faces) is_new[f.index()] = 1;
-    for (const FaceId f : crack.new_crack_faces) is_crack[f.index()] = 1;
-    for (const auto side : s.side) marked.push_back(is_new[side / 2]), fresh.push_back(is_crack[side / 2]);
-    std::vector<Vec3> rest(s.site.size(), Vec3::Zero());
-    for (std::uint32_t v = 0; v < rest.size(); ++v)
-      if (k_.alive(SurfaceVertexId(v))) rest[v] = k_.point(VertexId(s.site[v]));
+    std::vector<std::uint8_t> marked(s.side.size(), 0), fresh = marked;
+    const auto mark = [&](const std::vector<FaceId>& faces, std::vector<std::uint8_t>& in) {
+      for (const FaceId f : faces)
+        for (auto [row, end] = s.rows_of(f); row < end; ++row) in[row] = 1;
+    };
+    mark(crack.new_faces, marked), mark(crack.new_crack_faces, fresh);
+    const auto rest = [&](std::uint32_t v) { return k_.point(VertexId(s.site[v])); };
     const auto slope = [&](std::uint32_t v) {
-      const auto nodes = like_[v].valid() ? nodes_of(like_[v]) : nodes_near(rest[v]);
+      const auto nodes = like_[v].valid() ? nodes_of(like_[v]) : nodes_near(rest(v));
       return nodes.empty() ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + gradient_[nodes[0].index()]);
     };
     if (!untangle(s, rest, slope, fresh, gap, birth_.positions, marked).empty()) throw GeometryError("the surface would cross itself where the crack begins to open");
@@ -268,10 +285,10 @@ class Midwife {
 
   const Body& body_;
   const State& state_;
+  const ContactSurface& before_;
   const std::vector<Vec3>& old_;
   const Complex& k_;
   NodeGradients gradient_;
-  std::vector<Triangle> old_side_;        // by face and side: where its corners were
   Birth birth_;
   std::vector<SurfaceVertexId> like_;     // the old vertex whose nodes say how the material about a vertex moves
   std::vector<std::uint8_t> placed_;
@@ -281,7 +298,7 @@ class Midwife {
 
 Birth give_birth(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions,
                  const Complex& grown, const CrackDelta& crack, double gap) {
-  return Midwife(body, solid, state, before, positions, grown).run(crack, gap);
+  return Midwife(body, solid, state, before, positions, grown, crack).run(crack, gap);
 }
 
 }  // namespace geo

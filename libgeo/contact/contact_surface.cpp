@@ -1,29 +1,83 @@
 #include "contact/contact_surface.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace geo {
+namespace {
 
-ContactSurface contact_surface(const Complex& complex) {
-  ContactSurface s;
-  double length = 0;
-  for (std::uint32_t f = 0; f < complex.face_count(); ++f)
-    for (int which = 0; which < 2; ++which) {
-      const Side side{FaceId(f), which};
-      if (!complex.has(side)) continue;
-      const auto v = [&](int k) { return complex.surface_vertex(side, k).value; };
-      s.triangles.push_back(which == 0 ? Triangle{v(0), v(1), v(2)} : Triangle{v(0), v(2), v(1)});
-      s.side.push_back(2 * f + static_cast<std::uint32_t>(which));
-      const auto corners = complex.corners(side.face);
-      for (int k = 0; k < 3; ++k) length += (corners[(k + 1) % 3] - corners[k]).norm();
-    }
-  s.edge = s.triangles.empty() ? 0 : length / (3 * double(s.triangles.size()));
+Triangle triangle_of(const Complex& complex, std::uint32_t side) {
+  const auto v = [&](int k) { return complex.surface_vertex({FaceId(side / 2), static_cast<int>(side % 2)}, k).value; };
+  return side % 2 == 0 ? Triangle{v(0), v(1), v(2)} : Triangle{v(0), v(2), v(1)};
+}
+
+void add_sides(const Complex& complex, FaceId f, ContactSurface& s) {
+  for (int which = 0; which < 2; ++which)
+    if (complex.has({f, which})) s.side.push_back(2 * f.value + static_cast<std::uint32_t>(which)), s.triangles.push_back(triangle_of(complex, s.side.back()));
+}
+
+void set_sites(const Complex& complex, ContactSurface& s) {
   s.site.resize(complex.surface_vertex_count());
   for (std::uint32_t v = 0; v < s.site.size(); ++v) {
     const SurfaceVertexId id(v);
     s.site[v] = complex.alive(id) ? complex.site(id).value : complex.vertex_count() + v;
   }
+}
+
+std::vector<FaceId> ascending(std::vector<FaceId> faces) {
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+}  // namespace
+
+std::pair<std::size_t, std::size_t> ContactSurface::rows_of(FaceId f) const {
+  const auto first = std::lower_bound(side.begin(), side.end(), 2 * f.value), last = std::find_if(first, side.end(), [&](auto s) { return s / 2 != f.value; });
+  return {static_cast<std::size_t>(first - side.begin()), static_cast<std::size_t>(last - side.begin())};
+}
+
+ContactSurface contact_surface(const Complex& complex) {
+  ContactSurface s;
+  for (std::uint32_t f = 0; f < complex.face_count(); ++f) add_sides(complex, FaceId(f), s);
+  set_sites(complex, s);
+  s.edge = mean_edge(s, complex);
   return s;
+}
+
+ContactSurface grown_surface(const ContactSurface& before, const Complex& grown, const CrackDelta& crack) {
+  ContactSurface s;
+  s.triangles.reserve(before.triangles.size() + 2 * crack.new_faces.size()), s.side.reserve(s.triangles.capacity());
+  std::size_t next = 0;  // of the rows before, all up to it are copied or gone
+  const auto copy_to = [&](std::size_t row) {
+    const auto from = static_cast<std::ptrdiff_t>(next), to = static_cast<std::ptrdiff_t>(row);
+    s.triangles.insert(s.triangles.end(), before.triangles.begin() + from, before.triangles.begin() + to);
+    s.side.insert(s.side.end(), before.side.begin() + from, before.side.begin() + to);
+  };
+  for (const FaceId f : ascending(crack.removed_faces)) {
+    const auto [row, end] = before.rows_of(f);
+    copy_to(row), next = end;
+  }
+  copy_to(before.side.size());
+  for (const FaceId f : ascending(crack.new_faces)) add_sides(grown, f, s);  // numbers of faces are given in turn
+  // Other faces have other corners only where surface vertices came or got other triangles.
+  for (const auto* vertices : {&crack.new_surface_vertices, &crack.touched_surface_vertices})
+    for (const auto v : *vertices) {
+      if (!grown.alive(v)) continue;
+      for (const FaceId f : grown.faces_at(grown.site(v)))
+        for (auto [row, end] = s.rows_of(f); row < end; ++row) s.triangles[row] = triangle_of(grown, s.side[row]);
+    }
+  set_sites(grown, s);
+  return s;
+}
+
+double mean_edge(const ContactSurface& surface, const Complex& complex) {
+  double length = 0;
+  for (const auto side : surface.side) {
+    const auto corners = complex.corners(FaceId(side / 2));
+    for (int k = 0; k < 3; ++k) length += (corners[(k + 1) % 3] - corners[k]).norm();
+  }
+  return surface.side.empty() ? 0 : length / (3 * double(surface.side.size()));
 }
 
 double area_about(const Complex& k, SurfaceVertexId v) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/copies.h"
@@ -13,13 +14,19 @@ namespace geo {
 
 struct ContactSurface {
   std::vector<Triangle> triangles;   ///< of surface vertex ids
-  std::vector<std::uint32_t> side;   ///< per triangle: 2 · face + which of its two sides
+  std::vector<std::uint32_t> side;   ///< per triangle: 2 · face + which of its two sides; ascending
   std::vector<std::uint32_t> site;   ///< per surface vertex; of dead ones a number that no other has
   double edge = 0;                   ///< mean length of edges, model units, at rest
+  /// The rows of a face's triangles: the first, and after the last.
+  std::pair<std::size_t, std::size_t> rows_of(FaceId f) const;
 };
 
 /// Cost follows the whole surface.
 ContactSurface contact_surface(const Complex& complex);
+/// The same, but for `edge`, of a complex that a crack step has made of the one that `before` is of: what has not changed is copied.
+ContactSurface grown_surface(const ContactSurface& before, const Complex& grown, const CrackDelta& crack);
+/// ContactSurface::edge. Lengths are added up one after another, so that cost follows the whole surface.
+double mean_edge(const ContactSurface& surface, const Complex& complex);
 
 /// A third of the triangles at rest about a vertex of the derived surface, model units².
 double area_about(const Complex& complex, SurfaceVertexId v);

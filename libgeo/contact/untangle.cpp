@@ -32,35 +32,37 @@ bool push(const Tangle& t, std::vector<Vec3>& at, std::vector<std::uint8_t>& mov
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurface& surface, const std::vector<Vec3>& rest,
+std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurface& surface, const std::function<Vec3(std::uint32_t)>& rest,
                                                               const std::function<Mat3(std::uint32_t)>& slope, const std::vector<std::uint8_t>& fresh,
                                                               double gap, std::vector<Vec3>& positions, std::vector<std::uint8_t>& marked) {
   constexpr int most_rounds = 16, most_sweeps = 4;
-  const std::vector<Vec3> start = positions;
   const auto together = vertices_together(surface.site, positions);
-  std::vector<Triangle> triangles = surface.triangles;
-  for (auto& t : triangles)
-    for (auto& v : t) v = together[v];
+  const auto standing = [&](std::size_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    return Triangle{together[a], together[b], together[c]};
+  };
+  std::vector<Vec3> start;  // where vertices were, once some are to be pushed
   std::set<std::pair<std::uint32_t, std::uint32_t>> known;
   std::size_t fewest = ~std::size_t(0);
   std::vector<Tangle> tangles;
-  std::vector<std::uint8_t> moved(positions.size(), 0);
+  std::vector<std::uint8_t> moved;
   for (int round = 0;; ++round) {
     const auto crossings = find_crossings(surface.triangles, positions, together, true, &marked);
     // In vain, too, when half of the rounds have not helped.
     fewest = std::min(fewest, crossings.size());
     if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest)) return crossings;
+    if (start.empty()) start = positions, moved.assign(positions.size(), 0);
     for (const auto& pair : crossings) {
       if (!known.insert(pair).second) continue;
       std::pair<Simplex, Simplex> parts[2];
-      const int count = parts_apart(triangles[pair.first], triangles[pair.second], parts);
+      const int count = parts_apart(standing(pair.first), standing(pair.second), parts);
       for (int i = 0; i < count; ++i) {
         const auto& [a, b] = parts[i];
         const bool there = !fresh[pair.first] && !fresh[pair.second];
-        const std::vector<Vec3>& from = there ? start : rest;
+        const auto from = [&](std::uint32_t v) { return there ? start[v] : rest(v); };
         Vec3 p[3], q[3];
-        for (int k = 0; k < a.size; ++k) p[k] = from[a.v[k]];
-        for (int k = 0; k < b.size; ++k) q[k] = from[b.v[k]];
+        for (int k = 0; k < a.size; ++k) p[k] = from(a.v[k]);
+        for (int k = 0; k < b.size; ++k) q[k] = from(b.v[k]);
         const Vec3 apart = closest_places(p, a.size, q, b.size).apart;
         Vec3 normal = apart;
         if (!there) {
@@ -78,8 +80,10 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurfa
       if (!pushed) break;
     }
     for (std::size_t v = 0; v < positions.size(); ++v) positions[v] = positions[together[v]];
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      if (std::any_of(triangles[t].begin(), triangles[t].end(), [&](auto v) { return moved[v]; })) marked[t] = 1;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const Triangle corners = standing(t);
+      if (std::any_of(corners.begin(), corners.end(), [&](auto v) { return moved[v]; })) marked[t] = 1;
+    }
   }
 }
 

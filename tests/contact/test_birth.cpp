@@ -76,6 +76,11 @@ TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over i
       solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
       bend(known);
       surface.follow(body, solid, delta);
+      const ContactSurface &grown = surface.surface(), made = contact_surface(body.surface);
+      CHECK(grown.triangles == made.triangles);
+      CHECK(grown.side == made.side);
+      CHECK(grown.site == made.site);
+      CHECK(grown.edge == made.edge);
       for (const FaceId f : delta.crack.new_crack_faces)
         for (int c = 0; c < 3; ++c) CHECK(surface.positions()[body.surface.surface_vertex({f, 0}, c).index()] == surface.positions()[body.surface.surface_vertex({f, 1}, c).index()]);
     }

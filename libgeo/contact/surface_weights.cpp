@@ -30,11 +30,15 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
   for (const auto v : delta.rebound) asked[v.index()] = 1;
   for (const auto* some : {&delta.crack.new_surface_vertices, &delta.crack.touched_surface_vertices})
     for (const auto v : *some) asked[v.index()] = 1;
+  parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const SurfaceVertexId master = body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
+      asked[v] = asked[v] || !master.valid() || stale[body.binding.master_node[master.index()].index()];
+    }
+  });
   std::vector<std::uint32_t> vertices;
-  for (std::uint32_t v = 0; v < n; ++v) {
-    const SurfaceVertexId master = body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
-    if (asked[v] || !master.valid() || stale[body.binding.master_node[master.index()].index()]) vertices.push_back(v);
-  }
+  for (std::uint32_t v = 0; v < n; ++v)
+    if (asked[v]) vertices.push_back(v);
   make(body, solid, vertices);
   return vertices;
 }
@@ -51,8 +55,10 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
-    std::vector<double> weight(solid.size(), 0);
-    std::vector<std::uint64_t> used((solid.size() + 63) / 64, 0);  // a bit a node
+    // Of all nodes, zero between rows: each thread keeps its own, as there are few vertices to a range.
+    thread_local std::vector<double> weight;
+    thread_local std::vector<std::uint64_t> used;  // a bit a node
+    weight.resize(std::max(weight.size(), solid.size()), 0), used.resize(std::max(used.size(), (solid.size() + 63) / 64), 0);
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
@@ -65,11 +71,13 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
       double total = 0;
       for (auto& [i, d] : bound) total += d = kernel(d / body.nodes.radius[i.index()], 1.0);
       if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
-      std::size_t low = used.size(), high = 0;
+      std::size_t low = used.size(), high = 0, size = 0;
       const auto add = [&](NodeId j, double w) {
         const std::size_t word = j.index() / 64;
+        const std::uint64_t bit = std::uint64_t(1) << j.index() % 64;
         low = std::min(low, word), high = std::max(high, word);
-        used[word] |= std::uint64_t(1) << j.index() % 64;
+        size += (used[word] & bit) == 0;
+        used[word] |= bit;
         weight[j.index()] += w;
       };
       for (const auto& [i, w] : bound) {
@@ -78,8 +86,6 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
         solid.gradient_row(i, gradient);
         for (const auto& [j, g] : gradient) add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
       }
-      std::size_t size = 0;
-      for (auto word = low; word <= high; ++word) size += static_cast<std::size_t>(std::popcount(used[word]));
       rows_[v].reserve(size);
       for (auto word = low; word <= high; ++word)
         for (auto& bits = used[word]; bits != 0; bits &= bits - 1) {

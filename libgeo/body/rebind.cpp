@@ -85,11 +85,16 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
   const TriangleBvh changed(faces);
   std::vector<std::uint32_t> stale;
   body_.grid.walk([&](int, const Vec3& middle, double half) { return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).row != none; },
-                  [&](int, std::uint32_t i) {
-                    const auto closest = b_.closest[i];
-                    const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
-                    if (changed.closest(x[i], 1.06 * far).row != none) stale.push_back(i);
-                  });
+                  [&](int, std::uint32_t i) { stale.push_back(i); });
+  parallel_for(stale.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto i = stale[s];
+      const auto closest = b_.closest[i];
+      const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
+      if (changed.closest(x[i], 1.06 * far).row == none) stale[s] = none;
+    }
+  });
+  std::erase(stale, none);
   for (std::uint32_t i = first_new.value; i < x.size(); ++i) stale.push_back(i);
   for (const NodeId i : moved) stale.push_back(i.value);
   std::sort(stale.begin(), stale.end());
@@ -134,9 +139,16 @@ void Rebinding::dismiss_stray(SurfaceVertexId v) {
 }
 
 void Rebinding::renew_masters() {
-  for (const auto v : looked_at_) {
+  const std::vector<SurfaceVertexId> vertices(looked_at_.begin(), looked_at_.end());
+  std::vector<NodeId> nodes(vertices.size());
+  parallel_for(vertices.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (k_.alive(vertices[k])) nodes[k] = master_node_of(body_, b_, vertices[k]);
+  });
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const auto v = vertices[k];
     if (k_.alive(v) && b_.master[v.index()].valid() && is_stray(b_.master[v.index()])) dismiss_stray(b_.master[v.index()]);
-    const NodeId node = k_.alive(v) ? master_node_of(body_, b_, v) : NodeId(), before = b_.master_node[v.index()];
+    const NodeId node = nodes[k], before = b_.master_node[v.index()];
     if (node != before) set_node(v, node);
     if (!k_.alive(v) || (before.valid() && !node.valid()))
       orphan(v);

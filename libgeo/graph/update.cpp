@@ -291,8 +291,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     while (next_row != severed.rows.end() && next_row->id < i) ++next_row;
     sides[next_row != severed.rows.end() && next_row->id == i && next_row->above].push_back(i);
   }
-  constexpr std::size_t grain = 1024;
-  if (threads() == 1 || sources.size() <= grain) {
+  constexpr std::size_t grain = 1024, few = 64;
+  if (threads() == 1 || sources.size() <= few) {
     for (const auto& side : sides) find_rows(side, set);
   } else {
     // The graph stays as it is until all are found.

@@ -166,8 +166,7 @@ void Galerkin::note(const Body& body, const BodyDelta& delta, std::span<const Ve
   for (const auto& [i, before] : delta.resized_nodes) supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])});
 }
 
-std::optional<PointChanges> Galerkin::settle(const Body& body, MaterialPoints& points) {
-  if (faces_.empty() && supports_.empty()) return {};
+PointChanges Galerkin::settle(const Body& body, MaterialPoints& points) {
   PointChanges found;
   const auto groups_before = groups_;
   std::vector<std::uint32_t> was(cells_.cells().size());  // per cell: its number before

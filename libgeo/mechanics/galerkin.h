@@ -16,9 +16,11 @@ class Galerkin {
   Galerkin(const Body& body, MaterialPoints& points);
   /// Takes down what a split has changed, for settle(). `old_position`: of moved nodes, before they moved.
   void note(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
+  /// Whether a split has been noted since.
+  bool is_due() const { return !faces_.empty() || !supports_.empty(); }
   /// After splits: new rows for points of which the cell, a node within the support or the sight of one has changed. The
-  /// result is that of a build from scratch, bit for bit. Nothing where no split had been noted.
-  std::optional<PointChanges> settle(const Body& body, MaterialPoints& points);
+  /// result is that of a build from scratch, bit for bit.
+  PointChanges settle(const Body& body, MaterialPoints& points);
 
  private:
   std::span<const QuadratureCell> group(std::size_t b) const { return {&cells_.cells()[groups_[b]], groups_[b + 1] - groups_[b]}; }

@@ -18,50 +18,55 @@ constexpr int deepest = 180;     // nodes closer together than this tells apart 
 
 std::size_t tiles(std::size_t nodes) { return 12 * (nodes * (nodes + 1) / 2); }
 
+using Boxes = std::vector<std::span<std::uint32_t>>;  // the nodes of each
+
 // Halves a box, one axis after another, until `most_inside` nodes are left in each part: what it comes to depends on no node outside.
-template <class Take>
-void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, const Vec3& middle, const Vec3& half, int depth, const Take& take) {
+void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, const Vec3& middle, const Vec3& half, int depth, Boxes& found) {
+  constexpr std::size_t many = 2048;
   if (nodes.empty()) return;
-  if (nodes.size() <= most_inside || depth == deepest) return take(nodes);
+  if (nodes.size() <= most_inside || depth == deepest) return found.push_back(nodes);
   const int axis = depth % 3;
   const auto upper = std::partition(nodes.begin(), nodes.end(), [&](auto i) { return position[i][axis] < middle[axis]; });
   const auto below = static_cast<std::size_t>(upper - nodes.begin());
   Vec3 quarter = half;
   quarter[axis] *= 0.5;
   const Vec3 step = quarter[axis] * Vec3::Unit(axis);
-  divide(position, nodes.first(below), middle - step, quarter, depth + 1, take);
-  divide(position, nodes.subspan(below), middle + step, quarter, depth + 1, take);
+  const auto divide_lower = [&](Boxes& out) { divide(position, nodes.first(below), middle - step, quarter, depth + 1, out); };
+  const auto divide_upper = [&](Boxes& out) { divide(position, nodes.subspan(below), middle + step, quarter, depth + 1, out); };
+  if (nodes.size() < many) return divide_lower(found), divide_upper(found);
+  Boxes above;
+  at_once([&] { divide_lower(found); }, [&] { divide_upper(above); });
+  found.insert(found.end(), above.begin(), above.end());
 }
 
-// The nodes of boxes that hang together.
-std::vector<std::vector<std::uint32_t>> boxes(const std::vector<Vec3>& position, const NodeRows& rows) {
+// Halves of halves of a cube about the origin, which holds all.
+Boxes boxes_of(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes) {
   double farthest = 0;
   for (const Vec3& x : position) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
-  std::vector<std::uint32_t> all(position.size()), box(position.size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<std::span<std::uint32_t>> found;
-  divide(position, all, Vec3::Zero(), Vec3::Constant(std::exp2(std::ceil(std::log2(farthest)) + 1)), 0, [&](std::span<std::uint32_t> nodes) {
-    for (const auto i : nodes) box[i] = static_cast<std::uint32_t>(found.size());
-    found.push_back(nodes);
-  });
-  std::vector<std::vector<std::vector<std::uint32_t>>> parts(found.size());  // of each box
-  std::vector<char> taken(position.size(), 0);
-  parallel_for(found.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      std::sort(found[b].begin(), found[b].end());
-      for (const auto i : found[b]) {
-        if (taken[i]) continue;
-        taken[i] = 1;
-        auto& part = parts[b].emplace_back(1, i);
-        for (std::size_t k = 0; k < part.size(); ++k)
-          for (const auto j : rows[part[k]].to)
-            if (box[j] == b && !std::exchange(taken[j], 1)) part.push_back(j);
-      }
-    }
-  });
-  std::vector<std::vector<std::uint32_t>> all_parts;
-  for (auto& of_box : parts) std::move(of_box.begin(), of_box.end(), std::back_inserter(all_parts));
-  return all_parts;
+  Boxes found;
+  divide(position, nodes, Vec3::Zero(), Vec3::Constant(std::exp2(std::ceil(std::log2(farthest)) + 1)), 0, found);
+  return found;
+}
+
+// What hangs together in a box, each with its neighbours. `nodes`: the box's, ascending; `box`: per node, its number; `taken`: per node, 0 before, 1 then.
+std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t> nodes, const std::vector<std::uint32_t>& box, const NodeRows& rows,
+                                                   const std::vector<double>& spacing, std::vector<char>& taken) {
+  std::vector<std::vector<std::uint32_t>> patches;
+  std::vector<std::uint32_t> own;
+  for (const auto i : nodes) {
+    if (taken[i]) continue;
+    taken[i] = 1, own.assign(1, i);
+    for (std::size_t k = 0; k < own.size(); ++k)
+      for (const auto j : rows[own[k]].to)
+        if (box[j] == box[i] && !std::exchange(taken[j], 1)) own.push_back(j);
+    auto& patch = patches.emplace_back(own);
+    for (const auto o : own)
+      for (std::size_t q = 0; q < rows[o].to.size(); ++q)
+        if (const auto j = rows[o].to[q]; rows[o].x[q].norm() < overlap * std::min(spacing[o], spacing[j])) patch.push_back(j);
+    std::sort(patch.begin(), patch.end());
+    patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
+  }
+  return patches;
 }
 
 }  // namespace
@@ -72,10 +77,10 @@ NodePatches::NodePatches(const std::vector<Vec3>& position, const NodeRows& rows
 }
 
 std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
-                                               const MaterialPoints& points, const PointChanges& changes) {
+                                               const std::vector<char>& other, const MaterialPoints& points, const PointChanges& changes) {
   NodePatches before = std::move(*this);
   *this = NodePatches();
-  list(position, rows, spacing);
+  list(position, rows, spacing, &before, &other);
   std::vector<char> wanted(count(), 1);
   std::vector<std::uint32_t> old(count(), ~0u);
   for (std::size_t p = 0; p < count(); ++p) {
@@ -93,18 +98,40 @@ std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position
   return old;
 }
 
-void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing) {
-  std::vector<std::vector<std::uint32_t>> inside = boxes(position, rows);
-  parallel_for(inside.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const std::vector<std::uint32_t> own = inside[p];
-      for (const auto i : own)
-        for (std::size_t q = 0; q < rows[i].to.size(); ++q)
-          if (const auto j = rows[i].to[q]; rows[i].x[q].norm() < overlap * std::min(spacing[i], spacing[j])) inside[p].push_back(j);
-      std::sort(inside[p].begin(), inside[p].end());
-      inside[p].erase(std::unique(inside[p].begin(), inside[p].end()), inside[p].end());
+void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const NodePatches* before, const std::vector<char>* other) {
+  std::vector<std::uint32_t> all(position.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Boxes boxes = boxes_of(position, all);
+  box_.resize(position.size());
+  for (std::uint32_t b = 0; b < boxes.size(); ++b)
+    for (const auto i : boxes[b]) box_[i] = b;
+  std::vector<std::uint32_t> size_before(before ? before->first_patch_.size() : 0, 0);  // of each box
+  if (before)
+    for (const auto b : before->box_) ++size_before[b];
+  // A box of the same nodes, of which none is another, has the patches that it had.
+  const auto same = [&](std::span<const std::uint32_t> nodes) {
+    if (!before || nodes[0] >= before->box_.size() || size_before[before->box_[nodes[0]]] != nodes.size()) return false;
+    return std::all_of(nodes.begin(), nodes.end(), [&](auto i) { return i < before->box_.size() && before->box_[i] == before->box_[nodes[0]] && !(*other)[i]; });
+  };
+  std::vector<std::vector<std::vector<std::uint32_t>>> patches(boxes.size());  // of each box
+  std::vector<char> taken(position.size(), 0);
+  parallel_for(boxes.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (same(boxes[b])) {
+        const auto was = before->box_[boxes[b][0]];
+        for (auto p = before->first_patch_[was]; p < before->first_patch_[was + 1]; ++p) patches[b].emplace_back(before->nodes(p).begin(), before->nodes(p).end());
+      } else {
+        std::sort(boxes[b].begin(), boxes[b].end());
+        patches[b] = patches_in(boxes[b], box_, rows, spacing, taken);
+      }
     }
   });
+  std::vector<std::vector<std::uint32_t>> inside;  // of each patch
+  for (auto& of_box : patches) {
+    first_patch_.push_back(static_cast<std::uint32_t>(inside.size()));
+    std::move(of_box.begin(), of_box.end(), std::back_inserter(inside));
+  }
+  first_patch_.push_back(static_cast<std::uint32_t>(inside.size()));
   begin_.assign(position.size() + 1, 0);
   for (const auto& nodes : inside) {
     node_.insert(node_.end(), nodes.begin(), nodes.end());

@@ -16,9 +16,11 @@ class NodePatches {
   /// Boxes of half a dozen nodes, which are halves of halves of cubes about the origin; then what hangs together in a box, with
   /// the neighbours of these nodes within 0.9 of both spacings.
   NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points);
-  /// After points have changed: sums anew what they concern. The result is that of a build from scratch, bit for bit. Returns for each
-  /// patch the number of the one that it was before, with the same nodes and sums; ~0u: it was none.
-  std::vector<std::uint32_t> follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points, const PointChanges& changes);
+  /// After nodes and points have changed: lists and sums anew what that concerns. `other`: per node, whether its place, spacing or
+  /// row is another than it was. The result is that of a build from scratch, bit for bit. Returns for each patch the number of the one
+  /// that it was before, with the same nodes and sums; ~0u: it was none.
+  std::vector<std::uint32_t> follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const std::vector<char>& other,
+                                    const MaterialPoints& points, const PointChanges& changes);
 
   struct Incidence {
     std::uint32_t patch, slot;
@@ -39,10 +41,12 @@ class NodePatches {
   friend bool operator==(const NodePatches&, const NodePatches&) = default;
 
  private:
-  void list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing);
+  void list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const NodePatches* before = nullptr, const std::vector<char>* other = nullptr);
   void sum_points(const MaterialPoints& points, const std::vector<char>& wanted);
   std::vector<std::size_t> first_{0};
   std::vector<std::uint32_t> node_, begin_;
+  std::vector<std::uint32_t> box_;          // per node: its box
+  std::vector<std::uint32_t> first_patch_;  // of each box, and their number
   std::vector<Incidence> at_;
   std::vector<std::vector<float>> outer_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> point_;

@@ -109,23 +109,27 @@ Obstacles near_obstacles(const Complex& surface, std::span<const Run> runs) {
       boxes.pop_back(), boxes.back() = both;
     }
   }
-  std::vector<FaceId> ids, near;
+  std::vector<std::vector<FaceId>> near(boxes.size());
+  parallel_for(boxes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) surface.near(boxes[b], near[b]);
+  });
+  std::vector<FaceId> ids;
   std::vector<char> found(surface.face_count(), 0);
-  for (const Box3& box : boxes) {
-    near.clear();
-    surface.near(box, near);
-    for (const FaceId f : near)
+  for (const auto& of_box : near)
+    for (const FaceId f : of_box)
       if (!std::exchange(found[f.index()], 1)) ids.push_back(f);
-  }
   return {surface, ids};
 }
 
 }  // namespace
 
-Obstacles::Obstacles(const Complex& surface, std::span<const FaceId> ids) : fronts(front_edges(surface, ids)) {
-  std::vector<std::array<Vec3, 3>> corners;
-  for (const FaceId f : ids) corners.push_back(surface.corners(f));
-  faces = TriangleBvh(corners);
+Obstacles::Obstacles(const Complex& surface, std::span<const FaceId> ids) {
+  at_once([&] { fronts = front_edges(surface, ids); },
+          [&] {
+            std::vector<std::array<Vec3, 3>> corners;
+            for (const FaceId f : ids) corners.push_back(surface.corners(f));
+            faces = TriangleBvh(corners);
+          });
 }
 
 Obstacles all_obstacles(const Complex& surface) {

@@ -55,16 +55,21 @@ void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
   follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state, !delta.parted.empty());
   if (!galerkin_) return nodal_points(delta.updated_nodes);
   galerkin_->note(body, delta, before);
+  other_.resize(size(), 0);
+  for (const NodeId i : delta.updated_nodes) other_[i.index()] = 1;
 }
 
 void Solid::settle(const Body& body, State& state) {
-  if (!galerkin_) return;
-  const auto changes = galerkin_->settle(body, points_);
-  if (!changes) return;
-  points_.set_materials(materials_);
+  if (!galerkin_ || !galerkin_->is_due()) return;
+  PointChanges changes;
   at_once([&] { groups_ = NodeGroups(position_, rows_, part_, parts_); },
-          [&] { inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, points_, *changes)); });
-  const auto& kept = changes->kept;
+          [&] {
+            changes = galerkin_->settle(body, points_);
+            points_.set_materials(materials_);
+            inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, other_, points_, changes));
+          });
+  other_.clear();
+  const auto& kept = changes.kept;
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < plastic.size(); ++i)

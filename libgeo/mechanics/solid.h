@@ -128,6 +128,7 @@ class Solid {
   NodeRows rows_;
   NodeGroups groups_;
   NodePatches patches_;
+  std::vector<char> other_;             // per node: whether splits have given it another row, or place, since settle()
   mutable PatchInverses inverses_;  // of the last implicit step
   MaterialPoints points_;
   std::optional<Galerkin> galerkin_;

@@ -1,7 +1,9 @@
 // How motion is carried over a cut: to new and moved nodes, with the momentum of every part.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <utility>
 
+#include "base/parallel.h"
 #include "mechanics/solid.h"
 
 namespace geo {
@@ -57,42 +59,56 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
                          std::span<const NodeId> updated, State& state, bool parted) {
   const std::size_t n = nodes.size(), old = first_new.index();
   const bool moving = !state.displacement.empty();
-  // Where each node's mass was, and how it moved: a new node's at its donor.
-  std::vector<Vec3> place, velocity;
-  std::vector<std::uint32_t> changed;
+  // Where the mass of those was that change, and how it moved: a new node's at its donor.
+  struct Was {
+    std::uint32_t node;
+    Vec3 place, velocity;
+  };
+  std::vector<Was> changed;
   if (moving) {
-    for (std::size_t i = 0; i < old; ++i) place.push_back(position_[i] + state.displacement[i]), velocity.push_back(state.velocity[i]);
     for (std::size_t i = old; i < n; ++i) {
       std::size_t d = donors[i - old].index();
       while (d >= old) d = donors[d - old].index();
-      place.push_back(Vec3(place[d])), velocity.push_back(Vec3(velocity[d]));
+      changed.push_back({static_cast<std::uint32_t>(i), position_[d] + state.displacement[d], state.velocity[d]});
       const Vec3 away = nodes.position[i] - position_[d];
       const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
       const Vec3 displaced = u[d] + rows_.gradient(d, u) * away, moved = v[d] + rows_.gradient(d, v) * away;
       state.displacement.push_back(displaced), state.velocity.push_back(moved);
       if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[d]));
-      changed.push_back(static_cast<std::uint32_t>(i));
     }
     // A moved node keeps its place in the deformed field.
     for (const NodeId i : updated)
       if (i.index() < old && position_[i.index()] != nodes.position[i.index()]) {
+        changed.push_back({i.value, position_[i.index()] + state.displacement[i.index()], state.velocity[i.index()]});
         state.displacement[i.index()] += rows_.gradient(i.index(), state.displacement) * (nodes.position[i.index()] - position_[i.index()]);
-        changed.push_back(i.value);
       }
   }
   volume_ = nodes.volume, spacing_ = nodes.spacing, position_ = nodes.position;
   mass_.resize(n);
   for (std::size_t i = old; i < n; ++i) materials_.add(donors[i - old].index());
   for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
-  rows_.update(nodes, graph, updated);
-  if (parted || part_.size() != old) parts_ = graph.components(part_);
-  else number_parts(graph, old);
+  at_once([&] { rows_.update(nodes, graph, updated); },
+          [&] {
+            if (parted || part_.size() != old) parts_ = graph.components(part_);
+            else number_parts(graph, old);
+          });
   if (changed.empty()) return;
   std::vector<char> concerned(parts_, 0);
-  for (const auto i : changed) concerned[part_[i]] = 1;
+  for (const Was& w : changed) concerned[part_[w.node]] = 1;
+  std::sort(changed.begin(), changed.end(), [](const Was& a, const Was& b) { return a.node < b.node; });
   std::vector<PartMotion> was(parts_), now(parts_);
-  for (std::size_t i = 0; i < n; ++i)
-    if (concerned[part_[i]]) was[part_[i]].add(mass_[i], place[i], velocity[i]), now[part_[i]].add(mass_[i], position_[i] + state.displacement[i], state.velocity[i]);
+  std::vector<char> differs(parts_, 0);  // up to a part's first node that changes, both sums are one
+  auto next = changed.begin();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto p = part_[i];
+    if (!concerned[p]) continue;
+    const bool changes = next != changed.end() && next->node == i;
+    if (changes && !std::exchange(differs[p], 1)) was[p] = now[p];
+    const Vec3 place = position_[i] + state.displacement[i];
+    now[p].add(mass_[i], place, state.velocity[i]);
+    if (changes) was[p].add(mass_[i], next->place, next->velocity), ++next;
+    else if (differs[p]) was[p].add(mass_[i], place, state.velocity[i]);
+  }
   std::vector<RigidMotion> by(parts_);
   for (std::uint32_t p = 0; p < parts_; ++p)
     if (concerned[p]) by[p] = correction(was[p], now[p]);

@@ -80,10 +80,12 @@ void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
   cut_ = true;
-  solid_.follow(body_, delta, state_.motion);
-  if (scene_.fracture.on) solid_.settle(body_, state_.motion);
+  at_once([&] { prepare(); },
+          [&] {
+            solid_.follow(body_, delta, state_.motion);
+            if (scene_.fracture.on) solid_.settle(body_, state_.motion);
+          });
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
-  prepare();
   work.mechanics_seconds += watch.lap();
   if (collisions_) collisions_->follow(body_, solid_, delta);
   obstacles_.follow();

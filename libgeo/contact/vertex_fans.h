@@ -23,11 +23,9 @@ class VertexFans {
   std::size_t size() const { return closed_.size(); }
   /// Triangles about vertex v, ascending.
   std::span<const Link> about(std::size_t v) const { return {link_.data() + first_[v], first_[v + 1] - first_[v]}; }
-  /// Whether some direction looks at the front of all triangles around v, which close around it once: then no two of them have
-  /// more in common than corners and edges. `together`: per vertex the row of `at` that says where it is (vertices_together()).
-  /// Floating point, but never true where that is not so.
-  bool open_out(std::uint32_t v, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const;
-  /// The same of each vertex with a triangle marked in `changed`, into opens_out (per vertex). Returns those of them that do not, ascending.
+  /// Of vertices with a triangle marked in `changed`, into opens_out (per vertex): whether some direction looks at the front of all triangles
+  /// around it, which close around it once; then no two of them have more in common than corners and edges. `together`: per vertex the row of `at`
+  /// that says where it is (vertices_together()). Floating point, but never true where that is not so. Returns those of them that do not, ascending.
   std::vector<std::uint32_t> find_shut(const std::vector<std::uint8_t>& changed, std::span<const std::uint32_t> together, const std::vector<Vec3>& at,
                                        std::vector<std::uint8_t>& opens_out) const;
 
@@ -45,6 +43,14 @@ class VertexFans {
   }
 
  private:
+  // What a triangle shows of its front: its normal, as long as twice its area, and the square of its longest edge.
+  struct Front {
+    Vec3 normal;
+    double longest;
+  };
+  bool open_out(std::uint32_t v, const std::vector<Front>& fronts, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const;
+
+  std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> first_;
   std::vector<Link> link_;
   std::vector<std::uint8_t> closed_;  // each end of an edge across is another's beginning, and no beginning is twice there

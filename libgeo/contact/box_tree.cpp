@@ -248,8 +248,7 @@ void BoxTree::enlarge(std::uint32_t row, const Box3& box) {
   }
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::vector<std::uint8_t>* only) const {
-  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+BoxTree::Pairs BoxTree::pairs(const std::vector<std::uint8_t>* only, const std::function<void(Pairs&)>& narrow) const {
   if (levels_.empty()) return {};
   std::vector<std::uint8_t> marked;
   if (only) {
@@ -272,7 +271,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> BoxTree::pairs(const std::v
       std::size_t count = 0;
       for (const auto& [p, q] : some)
         if (const auto i = order_[p], j = order_[q]; boxes_[i].meets(boxes_[j])) some[count++] = {std::min(i, j), std::max(i, j)};
-      found[s].assign(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+      some.resize(count);
+      if (narrow) narrow(some);
+      found[s].assign(some.begin(), some.end());
     }
   });
   std::vector<std::size_t> first(found.size() + 1, 0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,8 +38,9 @@ class BoxTree {
   /// All pairs (i < j) of boxes that meet, each once, neighbours near each other, in an order that depends on the boxes and `only`
   /// alone; after replace() or enlarge() it is still told by the curve of the first boxes, and may not be that of a new tree. Only pairs with a box
   /// marked in `only`, where given; none of two triangles with a corner in common. By all threads; cost follows the boxes that are asked for, and the
-  /// pairs.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(const std::vector<std::uint8_t>* only = nullptr) const;
+  /// pairs. `narrow`, where given, is called for some of them at a time, by any thread, and takes those out that are not wanted.
+  using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  Pairs pairs(const std::vector<std::uint8_t>* only = nullptr, const std::function<void(Pairs&)>& narrow = {}) const;
 
   /// How large the boxes around blocks are together, model units (three edges each): larger when what was near each other has gone apart.
   double block_sizes() const;

@@ -14,21 +14,6 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-// Those that are not clear at once.
-Pairs unclear(const Pairs& pairs, const TriangleSides& sides) {
-  constexpr std::size_t stretch = 1024;
-  std::vector<Pairs> some((pairs.size() + stretch - 1) / stretch);
-  parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      some[k].assign(pairs.begin() + static_cast<std::ptrdiff_t>(k * stretch), pairs.begin() + static_cast<std::ptrdiff_t>(std::min(pairs.size(), (k + 1) * stretch)));
-      sides.keep_unclear(some[k]);
-    }
-  });
-  Pairs result;
-  for (const Pairs& s : some) result.insert(result.end(), s.begin(), s.end());
-  return result;
-}
-
 // Those that cross and share a corner on the surface.
 Pairs about_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, std::span<const std::uint32_t> together, bool two_sided) {
   const VertexFans fans(triangles, positions.size());
@@ -80,12 +65,15 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::v
     for (Box3& b : boxes)
       if (!b.meets(region)) b = Box3();
   }
+  const auto standing = [&](std::uint32_t t) { return Triangle{together[triangles[t][0]], together[triangles[t][1]], together[triangles[t][2]]}; };
   Pairs result;
   if (only) {
     result = find_crossings(close_pairs(std::move(boxes), only), triangles, positions, together, two_sided, only);
   } else {
-    const auto pairs = unclear(BoxTree(std::move(boxes), triangles).pairs(), TriangleSides(triangles, together, positions));
-    result = find_crossings(pairs, triangles, positions, together, two_sided);
+    result = BoxTree(std::move(boxes), triangles).pairs(nullptr, [&](Pairs& pairs) {
+      keep_unclear(triangles, together, positions, pairs);
+      std::erase_if(pairs, [&](const auto& p) { return !triangles_cross(standing(p.first), standing(p.second), positions, two_sided); });
+    });
     const Pairs about = about_vertices(triangles, positions, together, two_sided);
     result.insert(result.end(), about.begin(), about.end());
   }

@@ -60,17 +60,22 @@ HWY_INLINE std::uint32_t sharing(const BoxTree::Corners& block, const BoxTree::C
 void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t first, std::vector<std::uint32_t>& out) {
   constexpr std::uint32_t width = BoxTree::width;
   out.clear();
-  std::pair<std::uint32_t, std::uint32_t> stack[8 * width];  // levels and blocks; 2³² boxes have eight levels
+  struct Place {
+    std::uint32_t level, block;
+  };
+  Place stack[8 * width];  // 2³² boxes have eight levels
   int top = 0;
   stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
   while (top > 0) {
     const auto [level, block] = stack[--top];
     if (level == 0) {
-      if (block >= first) out.push_back(block);
+      out.push_back(block);
       continue;
     }
-    for (auto lanes = meeting(levels[level][block], levels[1][own / width], own % width); lanes != 0; lanes &= lanes - 1)
-      stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
+    auto lanes = meeting(levels[level][block], levels[1][own / width], own % width);
+    const std::uint32_t least = first >> 4 * (level - 1);  // what comes before it ends before `first`
+    if (least > block * width) lanes &= ~0u << (least - block * width);
+    for (; lanes != 0; lanes &= lanes - 1) stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
   }
 }
 
@@ -87,7 +92,7 @@ void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, cons
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), place = own * width + lane;
       auto met = meeting(levels[0][block], levels[0][own], lane);
       if (block == own && !marked) met &= ~((2u << lane) - 1);
-      if (corners && met != 0) met &= ~sharing(corners[block], corners[own], lane);
+      if (corners) met &= ~sharing(corners[block], corners[own], lane);
       for (; met != 0; met &= met - 1)
         if (const auto other = block * width + static_cast<std::uint32_t>(std::countr_zero(met)); !marked || !(marked[other] && other <= place)) out.push_back({place, other});
     }
@@ -102,13 +107,10 @@ namespace geo {
 HWY_EXPORT(pairs_of_block);
 namespace {
 
-// The largest float that is not above x; floats follow each other as their bits do, below zero backwards.
+// A float that is not above x, by some steps of the last place; without branches. What is beyond all floats goes to the last of them, or beyond.
 float below(double x) {
-  const auto f = static_cast<float>(x);
-  const auto bits = std::bit_cast<std::int32_t>(f);
-  constexpr auto least = std::numeric_limits<std::int32_t>::min();
-  const std::int32_t place = (bits < 0 ? least - bits : bits) - (f > x);
-  return std::bit_cast<float>(place < 0 ? least - place : place);
+  const auto f = static_cast<float>(std::min<double>(x, std::numeric_limits<float>::max()));
+  return f - (std::abs(f) * 0x1p-22f + std::numeric_limits<float>::min());
 }
 float above(double x) { return -below(-x); }
 
@@ -156,6 +158,7 @@ BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) :
   const Box3 all = bound();
   if (all.empty()) return;
   Places along;
+  along.reserve(boxes_.size());
   for (std::uint32_t i = 0; i < boxes_.size(); ++i)
     if (!boxes_[i].empty()) along.push_back({0, i});
   const Vec3 scale = 1023 * (all.hi - all.lo).cwiseMax(1e-300).cwiseInverse();
@@ -204,7 +207,8 @@ void BoxTree::fill() {
     for (std::size_t i = begin; i < end; ++i) {
       if (boxes_[order_[i]].empty()) continue;
       const Floats b = local(boxes_[order_[i]]);
-      add(levels_[0][i / width], i % width, b.lo, b.hi);
+      Block& block = levels_[0][i / width];
+      for (int axis = 0; axis < 3; ++axis) block.lo[axis][i % width] = b.lo[axis], block.hi[axis][i % width] = b.hi[axis];
     }
   });
   while (levels_.size() < 2 || levels_.back().size() > 1) {

@@ -14,16 +14,31 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-// Those that cross and share a corner on the surface.
-Pairs about_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, std::span<const std::uint32_t> together, bool two_sided) {
-  const VertexFans fans(triangles, positions.size());
-  std::vector<std::uint8_t> opens_out(fans.size(), 0);
-  const std::vector<std::uint8_t> all(triangles.size(), 1);
-  const auto shut = fans.find_shut(all, together, positions, opens_out);
+std::vector<Box3> boxes_of(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions) {
+  std::vector<Box3> boxes(triangles.size());
+  parallel_for(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) boxes[t] = box_of(positions[triangles[t][0]], positions[triangles[t][1]], positions[triangles[t][2]]);
+  });
+  return boxes;
+}
+
+// Of all pairs; the tree knows which triangles its boxes are of.
+Pairs crossings(const BoxTree& tree, const VertexFans& fans, const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
+                std::span<const std::uint32_t> together, bool two_sided) {
   std::vector<Triangle> standing = triangles;
   for (Triangle& t : standing)
     for (auto& v : t) v = together[v];
-  return crossings_about(fans, shut, opens_out, standing, positions, two_sided, all);
+  Pairs result = tree.pairs(nullptr, [&](Pairs& pairs) {
+    keep_unclear(standing, positions, pairs);
+    std::erase_if(pairs, [&](const auto& p) { return !triangles_cross(standing[p.first], standing[p.second], positions, two_sided); });
+  });
+  std::vector<std::uint8_t> opens_out(fans.size(), 0);
+  const std::vector<std::uint8_t> all(triangles.size(), 1);
+  const auto shut = fans.find_shut(all, together, positions, opens_out);
+  const Pairs about = crossings_about(fans, shut, opens_out, standing, positions, two_sided, all);
+  result.insert(result.end(), about.begin(), about.end());
+  std::sort(result.begin(), result.end());
+  return result;
 }
 
 }  // namespace
@@ -54,29 +69,14 @@ bool triangles_cross(const Triangle& s, const Triangle& t, const std::vector<Vec
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_crossings(const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
                                                                     std::span<const std::uint32_t> together, bool two_sided,
                                                                     const std::vector<std::uint8_t>* only) {
-  std::vector<Box3> boxes(triangles.size());
-  parallel_for(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) boxes[t] = box_of(positions[triangles[t][0]], positions[triangles[t][1]], positions[triangles[t][2]]);
-  });
-  if (only) {
-    Box3 region;
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      if ((*only)[t]) region.add(boxes[t]);
-    for (Box3& b : boxes)
-      if (!b.meets(region)) b = Box3();
-  }
-  const auto standing = [&](std::uint32_t t) { return Triangle{together[triangles[t][0]], together[triangles[t][1]], together[triangles[t][2]]}; };
-  Pairs result;
-  if (only) {
-    result = find_crossings(close_pairs(std::move(boxes), only), triangles, positions, together, two_sided, only);
-  } else {
-    result = BoxTree(std::move(boxes), triangles).pairs(nullptr, [&](Pairs& pairs) {
-      keep_unclear(triangles, together, positions, pairs);
-      std::erase_if(pairs, [&](const auto& p) { return !triangles_cross(standing(p.first), standing(p.second), positions, two_sided); });
-    });
-    const Pairs about = about_vertices(triangles, positions, together, two_sided);
-    result.insert(result.end(), about.begin(), about.end());
-  }
+  std::vector<Box3> boxes = boxes_of(triangles, positions);
+  if (!only) return crossings(BoxTree(std::move(boxes), triangles), VertexFans(triangles, positions.size()), triangles, positions, together, two_sided);
+  Box3 region;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if ((*only)[t]) region.add(boxes[t]);
+  for (Box3& b : boxes)
+    if (!b.meets(region)) b = Box3();
+  Pairs result = find_crossings(close_pairs(std::move(boxes), only), triangles, positions, together, two_sided, only);
   std::sort(result.begin(), result.end());
   return result;
 }
@@ -114,8 +114,14 @@ Pairs crossings_about(const VertexFans& fans, std::span<const std::uint32_t> shu
   return result;
 }
 
-std::size_t count_crossings(const TriangleMesh& surface) {
-  return find_crossings(surface.triangles, surface.vertices, vertices_together(surface.site, surface.vertices), surface.two_sided()).size();
+std::size_t CrossingCounter::count(const TriangleMesh& surface) {
+  std::vector<Box3> boxes = boxes_of(surface.triangles, surface.vertices);
+  const bool known = fans_.size() == surface.vertices.size() && fans_.triangles() == surface.triangles;
+  if (!known) fans_ = VertexFans(surface.triangles, surface.vertices.size());
+  if (!known || !tree_.replace(boxes)) tree_ = BoxTree(std::move(boxes), surface.triangles);
+  return crossings(tree_, fans_, surface.triangles, surface.vertices, vertices_together(surface.site, surface.vertices), surface.two_sided()).size();
 }
+
+std::size_t count_crossings(const TriangleMesh& surface) { return CrossingCounter().count(surface); }
 
 }  // namespace geo

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/box_tree.h"
 #include "contact/vertex_fans.h"
 #include "surface/triangle_mesh.h"
 
@@ -40,7 +41,18 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings_about(const Verte
                                                                      const std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, bool two_sided,
                                                                      const std::vector<std::uint8_t>& changed);
 
-/// How many pairs of triangles of a surface cross: of a frame, or of a plain mesh.
+/// How many pairs of triangles of surfaces cross, one after the other: where one has the same triangles as the one before, what is about its vertices is
+/// known, and which triangles are near each other is looked for in the same order.
+class CrossingCounter {
+ public:
+  std::size_t count(const TriangleMesh& surface);
+
+ private:
+  VertexFans fans_;
+  BoxTree tree_;
+};
+
+/// The same of one surface: of a frame, or of a plain mesh.
 std::size_t count_crossings(const TriangleMesh& surface);
 
 }  // namespace geo

@@ -178,7 +178,7 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 // Those not in `clear`, which is asked about some at a time. The last ones are in the lanes that are left, too.
 template <class Clear>
-void leave_out(std::span<const Triangle> triangles, std::span<const std::uint32_t> together, const std::vector<Vec3>& positions, Pairs& pairs, const Clear& clear) {
+void leave_out(std::span<const Triangle> triangles, const std::vector<Vec3>& positions, Pairs& pairs, const Clear& clear) {
   std::size_t kept = 0;
   PairLanes lanes;
   for (std::size_t first = 0; first < pairs.size(); first += PairLanes::width) {
@@ -187,7 +187,7 @@ void leave_out(std::span<const Triangle> triangles, std::span<const std::uint32_
       const auto [s, t] = pairs[first + std::min(i, count - 1)];
       for (int which = 0; which < 2; ++which)
         for (std::size_t k = 0; k < 3; ++k) {
-          const auto row = together[triangles[which == 0 ? s : t][k]];
+          const auto row = triangles[which == 0 ? s : t][k];
           lanes.row[which][k][i] = row;
           for (int axis = 0; axis < 3; ++axis) lanes.at[which][k][axis][i] = positions[row][axis];
         }
@@ -203,9 +203,9 @@ void leave_out(std::span<const Triangle> triangles, std::span<const std::uint32_
 
 }  // namespace
 
-void keep_unclear(std::span<const Triangle> triangles, std::span<const std::uint32_t> together, const std::vector<Vec3>& positions, Pairs& pairs) {
-  leave_out(triangles, together, positions, pairs, [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_planes)(lanes); });
-  leave_out(triangles, together, positions, pairs, [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_edges)(lanes); });
+void keep_unclear(std::span<const Triangle> triangles, const std::vector<Vec3>& positions, Pairs& pairs) {
+  leave_out(triangles, positions, pairs, [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_planes)(lanes); });
+  leave_out(triangles, positions, pairs, [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_edges)(lanes); });
 }
 
 }  // namespace geo

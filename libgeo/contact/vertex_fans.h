@@ -21,6 +21,7 @@ class VertexFans {
   VertexFans(const std::vector<Triangle>& triangles, std::size_t vertices);
 
   std::size_t size() const { return closed_.size(); }
+  const std::vector<Triangle>& triangles() const { return triangles_; }
   /// Triangles about vertex v, ascending.
   std::span<const Link> about(std::size_t v) const { return {link_.data() + first_[v], first_[v + 1] - first_[v]}; }
   /// Of vertices with a triangle marked in `changed`, into opens_out (per vertex): whether some direction looks at the front of all triangles

@@ -93,6 +93,42 @@ TEST_CASE("crossings of crumpled, torn and doubled surfaces are those that a dou
   }
 }
 
+TEST_CASE("crossings are counted one surface after the other as each for itself, whether triangles, places, sites or the number of vertices have changed") {
+  const auto [first, count] = seeds(100);
+  std::size_t crossed = 0, clean = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    TriangleMesh m = make_sphere(2 + static_cast<int>(random.below(2)));
+    CrossingCounter counter;
+    for (int frame = 0; frame < 8; ++frame) {
+      const std::size_t now = counter.count(m);
+      CHECK(now == count_crossings(m));
+      (now > 0 ? crossed : clean) += 1;
+      const double rough = std::array{0.0, 0.02, 0.3}[random.below(3)];
+      for (Vec3& p : m.vertices) p += rough * random.uniform() * random.direction();
+      const auto some = [&] { return random.below(static_cast<std::uint32_t>(m.triangles.size())); };
+      switch (random.below(6)) {
+        case 0: std::swap(m.triangles[some()], m.triangles[some()]); break;
+        case 1: std::swap(m.triangles[some()][0], m.triangles[some()][0]); break;  // as many triangles, of other vertices
+        case 2: m.vertices.push_back(m.vertices[0]); break;
+        case 3: m.triangles.pop_back(); break;
+        default: break;
+      }
+      m.site.clear();
+      if (random.below(2) == 0) {
+        m.site.resize(m.vertices.size());
+        std::iota(m.site.begin(), m.site.end(), 0u);
+      }
+      std::erase_if(m.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    }
+  }
+  if (count >= 100) {
+    CHECK(crossed > 50);
+    CHECK(clean > 50);
+  }
+}
+
 TEST_CASE("pairs of boxes are those that a double loop finds") {
   const auto [first, count] = seeds(60);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {

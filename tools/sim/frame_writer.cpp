@@ -8,7 +8,6 @@
 #include <iostream>
 
 #include "base/parallel.h"
-#include "contact/crossing.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
 
@@ -90,7 +89,7 @@ void FrameWriter::write(const Frame& frame) {
   if (!frame.obstacles.triangles.empty()) write(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
   write(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
   if (i == 0) return;  // nothing has happened yet
-  const std::string line = line_of(frame.outcome, geo::count_crossings(frame.surface));
+  const std::string line = line_of(frame.outcome, crossings_.count(frame.surface));
   log_ += line + "}\n";
   if (json_) std::cout << line << ",\"seconds\":" << seconds(frame.outcome.work) << "}\n" << std::flush;
 }

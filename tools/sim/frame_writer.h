@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "contact/crossing.h"
 #include "io/run_files.h"
 #include "sim/frame_line.h"
 #include "sim/run_folder.h"
@@ -48,6 +49,7 @@ class FrameWriter {
   RunFolder folder_;
   std::string log_;
   std::vector<std::string> written_;  // since log() was called
+  geo::CrossingCounter crossings_;    // of frames in their order
   bool json_, busy_ = false, ended_ = false;
   std::deque<Frame> waiting_;
   std::exception_ptr error_;

@@ -11,23 +11,21 @@
 namespace geo {
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
-  const auto gradient = solid.gradients(state.displacement);
-  // Eq. 1, as displacement_at() has it; the node itself is at distance zero.
+  const auto gradient = solid.gradient_columns(state.displacement);
+  std::vector<FourNumbers> place(nodes.size()), displacement(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vec3 &x = nodes.position[i], &u = state.displacement[i];
+    place[i] = {x[0], x[1], x[2], 1 / (nodes.radius[i] * nodes.radius[i])}, displacement[i] = {u[0], u[1], u[2], 0};
+  }
+  const MovedNodes all{place.data(), displacement.data(), gradient.data()};
   std::vector<Vec3> moved(nodes.size());
   parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> to;
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3& x = nodes.position[i];
-      Vec3 sum = state.displacement[i];
-      double total = 1;  // of the kernel without its scale
-      for (const auto& n : graph.neighbors(nodes, NodeId(i))) {
-        const std::size_t j = n.to.index();
-        const Vec3 way = x - nodes.position[j];
-        const double left = 1 - way.squaredNorm() / (nodes.radius[j] * nodes.radius[j]);
-        if (!(left > 0)) continue;
-        const double w = left * left * left;
-        total += w, sum += w * (state.displacement[j] + gradient[j] * way);
-      }
-      moved[i] = sum / total;
+      to.clear();
+      for (const auto& n : graph.neighbors(nodes, NodeId(i))) to.push_back(n.to.value);
+      const FourNumbers at = moved_by(to, all, static_cast<std::uint32_t>(i));
+      moved[i] = {at.at[0], at.at[1], at.at[2]};
     }
   });
   return moved;

@@ -60,22 +60,21 @@ Mat3 NodeRows::gradient(std::size_t i, const std::vector<Vec3>& u) const {
   return g;
 }
 
-std::vector<Mat3> NodeRows::gradients(const std::vector<Vec3>& u) const {
-  // As gradient() does it, three coordinates and a zero side by side.
-  std::vector<Eigen::Vector4d> padded(u.size());
-  for (std::size_t i = 0; i < u.size(); ++i) padded[i] << u[i], 0;
-  std::vector<Mat3> g(size());
+std::vector<FourColumns> NodeRows::columns(const std::vector<Vec3>& u) const {
+  std::vector<FourNumbers> padded(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) padded[i] = {u[i][0], u[i][1], u[i][2], 0};
+  std::vector<FourColumns> g(size());
   parallel_for(size(), 128, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Row& row = rows_[i];
-      Eigen::Vector4d column[3] = {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero()};
-      for (std::size_t q = 0; q < row.to.size(); ++q) {
-        const Eigen::Vector4d apart = padded[row.to[q]] - padded[i];
-        for (int c = 0; c < 3; ++c) column[c] += apart * row.g[q][c];
-      }
-      for (int c = 0; c < 3; ++c) g[i].col(c) = column[c].head<3>();
-    }
+    for (std::size_t i = begin; i < end; ++i) g[i] = row_gradient(rows_[i].to, rows_[i].g.data(), padded.data(), static_cast<std::uint32_t>(i));
   });
+  return g;
+}
+
+std::vector<Mat3> NodeRows::gradients(const std::vector<Vec3>& u) const {
+  const auto columns = this->columns(u);
+  std::vector<Mat3> g(columns.size());
+  for (std::size_t i = 0; i < g.size(); ++i)
+    for (int c = 0; c < 3; ++c) g[i].col(c) = Eigen::Map<const Vec3>(columns[i].at[c]);
   return g;
 }
 

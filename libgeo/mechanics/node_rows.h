@@ -11,6 +11,7 @@
 
 #include "graph/visibility_graph.h"
 #include "mechanics/elasticity.h"
+#include "mechanics/node_lanes.h"
 #include "mechanics/shape_functions.h"
 #include "sampling/node_set.h"
 
@@ -25,6 +26,8 @@ class NodeRows {
   Rung rung(std::size_t i) const { return rows_[i].rung; }
   Mat3 gradient(std::size_t i, const std::vector<Vec3>& u) const;
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
+  /// The same, each with a row of zeros below.
+  std::vector<FourColumns> columns(const std::vector<Vec3>& u) const;
   /// The row with the node itself, ascending.
   ShapeRow row(std::size_t i) const;
 

@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "mechanics/bodies.h"
+#include "mechanics/deformation.h"
 #include "mechanics/node_fields.h"
 
 using namespace geo;
@@ -25,6 +26,26 @@ TEST_CASE("Nodes of a linear field move with it and have its stress") {
     const Mat3 f = Mat3::Identity() + slope, cauchy = stress(m, f) * f.transpose() / f.determinant();
     const Mat3 deviator = cauchy - cauchy.trace() / 3 * Mat3::Identity();
     for (const double s : von_mises_stress(solid, body.nodes, state)) CHECK(s == Approx(std::sqrt(1.5) * deviator.norm()).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("Nodes are moved by Eq. 1, whatever they do") {
+  const Body body = block_body({1.5, 1, 0.7}, 0.15);
+  const Solid solid(body, {});
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    INFO("seed " << seed);
+    Random random(seed);
+    State state;
+    for (std::size_t i = 0; i < body.nodes.size(); ++i) state.displacement.push_back(random.uniform(0, 0.3) * random.direction());
+    const auto moved = material_displacement(solid, body.nodes, body.graph, state);
+    const auto gradient = solid.gradients(state.displacement);
+    for (std::uint32_t i = 0; i < moved.size(); ++i) {
+      CHECK((gradient[i] - solid.gradients_when_asked(state.displacement)[i]).norm() < 1e-12);
+      std::vector<std::pair<NodeId, double>> nodes{{NodeId(i), 0.0}};
+      for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i))) nodes.emplace_back(n.to, (body.nodes.position[n.to.index()] - body.nodes.position[i]).norm());
+      std::erase_if(nodes, [&](const auto& n) { return !(n.second < body.nodes.radius[n.first.index()]); });
+      CHECK((moved[i] - displacement_at(body.nodes.position[i], nodes, body.nodes, state.displacement, gradient)).norm() < 1e-12);
+    }
   }
 }
 

@@ -107,10 +107,12 @@ namespace geo {
 HWY_EXPORT(pairs_of_block);
 namespace {
 
-// A float that is not above x, by some steps of the last place; without branches. What is beyond all floats goes to the last of them, or beyond.
+// A float that is not above x, by some steps of the last place; without branches. What is beyond all floats goes to the last of them, never to infinity, where
+// places without a box have their ends.
 float below(double x) {
-  const auto f = static_cast<float>(std::min<double>(x, std::numeric_limits<float>::max()));
-  return f - (std::abs(f) * 0x1p-22f + std::numeric_limits<float>::min());
+  constexpr float last = std::numeric_limits<float>::max();
+  const auto f = static_cast<float>(std::clamp<double>(x, -last, last));
+  return std::max(f - (std::abs(f) * 0x1p-22f + std::numeric_limits<float>::min()), -last);
 }
 float above(double x) { return -below(-x); }
 
@@ -180,6 +182,7 @@ BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) :
     }
   });
   fill();
+  made_ = block_sizes();
 }
 
 bool BoxTree::replace(std::vector<Box3>& boxes) {
@@ -224,6 +227,12 @@ void BoxTree::fill() {
     });
     levels_.push_back(std::move(level));
   }
+}
+
+void BoxTree::put(std::vector<Box3> boxes, std::span<const Triangle> triangles) {
+  constexpr double worn = 1.2;
+  if (!replace(boxes)) *this = BoxTree(std::move(boxes), triangles);
+  else if (block_sizes() > worn * made_) *this = BoxTree(std::move(boxes_), triangles);
 }
 
 double BoxTree::block_sizes() const {

@@ -32,6 +32,10 @@ class BoxTree {
   /// and all is as it was, `boxes` too, where there are not as many as before, or where one that was empty at first no longer is.
   bool replace(std::vector<Box3>& boxes);
 
+  /// Other boxes of the same triangles: by replace(), but where what follows each other on the curve has gone a fifth further apart since it was found, and in a tree
+  /// that has none yet, the curve is found anew.
+  void put(std::vector<Box3> boxes, std::span<const Triangle> triangles);
+
   const std::vector<Box3>& boxes() const { return boxes_; }
   /// Makes a box larger, so that it holds this one, too.
   void enlarge(std::uint32_t row, const Box3& box);
@@ -41,9 +45,6 @@ class BoxTree {
   /// pairs. `narrow`, where given, is called for some of them at a time, by any thread, and takes those out that are not wanted.
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   Pairs pairs(const std::vector<std::uint8_t>* only = nullptr, const std::function<void(Pairs&)>& narrow = {}) const;
-
-  /// How large the boxes around blocks are together, model units (three edges each): larger when what was near each other has gone apart.
-  double block_sizes() const;
 
   /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].
   const std::vector<std::vector<Block>>& levels() const { return levels_; }
@@ -55,10 +56,12 @@ class BoxTree {
   };
   Floats local(const Box3& box) const;
   Box3 bound();
+  double block_sizes() const;  // of the boxes around blocks, three edges each
   void fill();
 
   std::vector<Box3> boxes_;
   Vec3 middle_ = Vec3::Zero();
+  double made_ = 0;  // block_sizes() when the curve was found
   std::vector<std::uint32_t> order_, place_;  // rows in the order of the tree, and where each is
   std::vector<std::vector<Block>> levels_;
   std::vector<Corners> corners_;  // a block each of the lowest level; empty: of none

@@ -117,8 +117,8 @@ Pairs crossings_about(const VertexFans& fans, std::span<const std::uint32_t> shu
 std::size_t CrossingCounter::count(const TriangleMesh& surface) {
   std::vector<Box3> boxes = boxes_of(surface.triangles, surface.vertices);
   const bool known = fans_.size() == surface.vertices.size() && fans_.triangles() == surface.triangles;
-  if (!known) fans_ = VertexFans(surface.triangles, surface.vertices.size());
-  if (!known || !tree_.replace(boxes)) tree_ = BoxTree(std::move(boxes), surface.triangles);
+  if (!known) fans_ = VertexFans(surface.triangles, surface.vertices.size()), tree_ = {};
+  tree_.put(std::move(boxes), surface.triangles);
   return crossings(tree_, fans_, surface.triangles, surface.vertices, vertices_together(surface.site, surface.vertices), surface.two_sided()).size();
 }
 

@@ -13,7 +13,6 @@ bool within(const Box3& box, const Box3& other) { return (box.lo.array() >= othe
 
 void NearPairs::cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed) {
   constexpr std::size_t most_outside = 4;  // one of so many
-  constexpr double worn = 1.2;             // when triangles that follow each other in the tree have gone so much further apart, they are put into another order
   const bool known = known_ && tree_.boxes().size() == triangles.size(), few = known && changed;
   std::vector<Box3> boxes(few ? 0 : triangles.size());
   std::vector<std::uint8_t> outside(triangles.size(), 0);
@@ -28,11 +27,7 @@ void NearPairs::cover(std::span<const Triangle> triangles, const std::function<B
   const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
   if (known && count == 0) return;
   if (!known || (count * most_outside > triangles.size() && !changed)) {
-    if (!tree_.replace(boxes)) {
-      tree_ = BoxTree(std::move(boxes), triangles), blocks_ = tree_.block_sizes();
-    } else if (!known && tree_.block_sizes() > worn * blocks_) {
-      tree_ = BoxTree(tree_.boxes(), triangles), blocks_ = tree_.block_sizes();
-    }
+    tree_.put(std::move(boxes), triangles);
     known_ = true, pairs_ = tree_.pairs();
     return;
   }

@@ -18,7 +18,8 @@ class NearPairs {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
   /// `box`: of triangle t; only those marked in `changed` have another than at the call before, where given. `spare`: model
-  /// units, by which what has left its box is given a larger one. All pairs are looked for at the first call and after many have left.
+  /// units, by which what has left its box is given a larger one. All pairs are looked for at the first call, at the first
+  /// after forget(), and after many have left. Triangles are the same, corner by corner, until forget_triangles(): their pairs with common corners are told by them.
   void cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed = nullptr);
 
   /// i < j, each once, in no order that anything should depend on.
@@ -33,8 +34,7 @@ class NearPairs {
  private:
   TrianglePlanes planes_;
   BoxTree tree_;
-  bool known_ = false;    // tree_ has this step's boxes
-  double blocks_ = 0;     // how large its blocks were when their order was found
+  bool known_ = false;  // tree_ has this step's boxes
   std::vector<Pair> pairs_;
 };
 

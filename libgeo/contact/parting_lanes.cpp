@@ -2,6 +2,7 @@
 // fused with a product, so all give the same.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/parting_lanes.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no structure can hold
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>

@@ -21,6 +21,7 @@ class VertexFans {
   VertexFans(const std::vector<Triangle>& triangles, std::size_t vertices);
 
   std::size_t size() const { return closed_.size(); }
+  /// Those that it was made of.
   const std::vector<Triangle>& triangles() const { return triangles_; }
   /// Triangles about vertex v, ascending.
   std::span<const Link> about(std::size_t v) const { return {link_.data() + first_[v], first_[v + 1] - first_[v]}; }

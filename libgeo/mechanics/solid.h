@@ -80,6 +80,7 @@ class Solid {
 
   /// ∇u at every node, by moving least squares: exact for linear fields where the rung is full.
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const { return rows_.gradients(u); }
+  /// gradients(), each with a row of zeros below.
   std::vector<FourColumns> gradient_columns(const std::vector<Vec3>& u) const { return rows_.columns(u); }
   NodeGradients gradients_when_asked(const std::vector<Vec3>& u) const { return {rows_, u}; }
   /// ∇u at node i is Σ u_j g_jᵀ: appends j and g_j (1/m), the node itself included; the g_j sum to zero.

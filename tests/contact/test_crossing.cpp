@@ -129,6 +129,25 @@ TEST_CASE("crossings are counted one surface after the other as each for itself,
   }
 }
 
+TEST_CASE("what is larger than all floats is counted like anything else") {
+  for (const double scale : {1.0, 0x1p100, 0x1p130, 0x1p198}) {  // exact; floats end before 2¹²⁸
+    INFO(scale);
+    TriangleMesh few;  // each of whose boxes is larger than all floats
+    few.vertices = {{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}, few.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    for (Vec3& p : few.vertices) p *= scale;
+    CHECK(count_crossings(few) == 0);
+    TriangleMesh mesh = make_sphere(2);
+    CHECK(count_crossings(mesh) == 0);
+    const std::size_t first = mesh.vertices.size();
+    for (const Triangle& t : std::vector<Triangle>(mesh.triangles)) mesh.triangles.push_back({t[0] + std::uint32_t(first), t[1] + std::uint32_t(first), t[2] + std::uint32_t(first)});
+    for (std::size_t v = 0; v < first; ++v) mesh.vertices.push_back(mesh.vertices[v] + Vec3(0.3, 0.2, 0.1));
+    const std::size_t here = count_crossings(mesh);
+    for (Vec3& p : mesh.vertices) p *= scale;
+    CHECK(here > 10);
+    CHECK(count_crossings(mesh) == here);
+  }
+}
+
 TEST_CASE("pairs of boxes are those that a double loop finds") {
   const auto [first, count] = seeds(60);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {

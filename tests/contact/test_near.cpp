@@ -34,6 +34,10 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
     for (int call = 0; call < 8; ++call) {
       const bool anew = random.below(3) == 0;  // another step
       if (anew) near.forget();
+      if (random.below(5) == 0) {  // other triangles, as many
+        for (Triangle& t : triangles) std::swap(t[2], triangles[random.below(static_cast<std::uint32_t>(triangles.size()))][2]);
+        near.forget_triangles();
+      }
       const bool told = call > 0 && random.below(2) == 0;
       near.cover(triangles, [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1), told ? &changed : nullptr);
       const std::set<NearPairs::Pair> pairs(near.pairs().begin(), near.pairs().end());

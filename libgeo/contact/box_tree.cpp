@@ -73,7 +73,7 @@ void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::ui
       continue;
     }
     auto lanes = meeting(levels[level][block], levels[1][own / width], own % width);
-    const std::uint32_t least = first >> 4 * (level - 1);  // what comes before it ends before `first`
+    const std::uint32_t least = first >> std::countr_zero(width) * (level - 1);  // what comes before it ends before `first`
     if (least > block * width) lanes &= ~0u << (least - block * width);
     for (; lanes != 0; lanes &= lanes - 1) stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
   }
@@ -236,12 +236,12 @@ void BoxTree::put(std::vector<Box3> boxes, std::span<const Triangle> triangles) 
 }
 
 double BoxTree::block_sizes() const {
+  if (levels_.empty()) return 0;
   double sum = 0;
-  for (std::size_t l = 1; l < std::min<std::size_t>(levels_.size(), 2); ++l)
-    for (const Block& b : levels_[l])
-      for (int axis = 0; axis < 3; ++axis)
-        for (std::uint32_t k = 0; k < width; ++k)
-          if (b.lo[axis][k] <= b.hi[axis][k]) sum += double(b.hi[axis][k]) - double(b.lo[axis][k]);
+  for (const Block& b : levels_[1])
+    for (int axis = 0; axis < 3; ++axis)
+      for (std::uint32_t k = 0; k < width; ++k)
+        if (b.lo[axis][k] <= b.hi[axis][k]) sum += double(b.hi[axis][k]) - double(b.lo[axis][k]);
   return sum;
 }
 

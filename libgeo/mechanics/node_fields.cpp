@@ -7,16 +7,15 @@
 #include "mechanics/elastic_lanes.h"
 #include "mechanics/node_sums.h"
 #include "mechanics/plasticity.h"
+#include "mechanics/row_sums.h"
 
 namespace geo {
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
   const auto gradient = solid.gradient_columns(state.displacement);
-  std::vector<FourNumbers> place(nodes.size()), displacement(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Vec3 &x = nodes.position[i], &u = state.displacement[i];
-    place[i] = {x[0], x[1], x[2], 1 / (nodes.radius[i] * nodes.radius[i])}, displacement[i] = {u[0], u[1], u[2], 0};
-  }
+  const std::vector<FourNumbers> displacement = four_numbers(state.displacement);
+  std::vector<FourNumbers> place = four_numbers(nodes.position);
+  for (std::size_t i = 0; i < place.size(); ++i) place[i].at[3] = 1 / (nodes.radius[i] * nodes.radius[i]);
   const MovedNodes all{place.data(), displacement.data(), gradient.data()};
   std::vector<Vec3> moved(nodes.size());
   parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {

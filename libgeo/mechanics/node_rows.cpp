@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "mechanics/kernel.h"
+#include "mechanics/row_sums.h"
 
 namespace geo {
 namespace {
@@ -61,11 +62,10 @@ Mat3 NodeRows::gradient(std::size_t i, const std::vector<Vec3>& u) const {
 }
 
 std::vector<FourColumns> NodeRows::columns(const std::vector<Vec3>& u) const {
-  std::vector<FourNumbers> padded(u.size());
-  for (std::size_t i = 0; i < u.size(); ++i) padded[i] = {u[i][0], u[i][1], u[i][2], 0};
+  const std::vector<FourNumbers> numbers = four_numbers(u);
   std::vector<FourColumns> g(size());
   parallel_for(size(), 128, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) g[i] = row_gradient(rows_[i].to, rows_[i].g.data(), padded.data(), static_cast<std::uint32_t>(i));
+    for (std::size_t i = begin; i < end; ++i) g[i] = row_gradient(rows_[i].to, rows_[i].g.data(), numbers.data(), static_cast<std::uint32_t>(i));
   });
   return g;
 }

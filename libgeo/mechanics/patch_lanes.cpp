@@ -5,9 +5,9 @@
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>
-#include <cmath>
 
 #include "hwy/highway.h"
+#include "mechanics/matrix_lanes.h"
 #include "mechanics/patch_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -56,36 +56,125 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const No
 using Wide = hn::CappedTag<float, 16>;
 constexpr std::size_t wide = hn::MaxLanes(Wide());
 
-// With ones on the diagonal to begin with. Row k, divided by its pivot, has one more than the pivot's inverse at k while it is
-// taken off the others: what these have there becomes what the inverse has, and no vector is read where a number was just written.
-void InvertPositive(std::size_t size, float* matrix) {
-  const Wide d;
-  const std::size_t row = padded(size);
-  std::vector<float> scale(row, 0.0f), by(size);
-  for (std::size_t i = 0; i < size; ++i) scale[i] = 1 / std::sqrt(matrix[i * row + i]);
-  const auto scale_all = [&]() HWY_ATTR {
-    for (std::size_t i = 0; i < size; ++i)
-      for (std::size_t j = 0; j < row; j += wide) hn::StoreU(hn::Mul(hn::Mul(hn::LoadU(d, &matrix[i * row + j]), hn::LoadU(d, &scale[j])), hn::Set(d, scale[i])), d, &matrix[i * row + j]);
-  };
-  scale_all();
-  for (std::size_t k = 0; k < size; ++k) {
-    float* const own = matrix + k * row;
-    const float inverse = own[k] > 1e-5f ? 1 / own[k] : 0;
-    for (std::size_t i = 0; i < size; ++i) by[i] = matrix[i * row + k];
-    for (std::size_t j = 0; j < row; j += wide) hn::StoreU(hn::Mul(hn::LoadU(d, own + j), hn::Set(d, inverse)), d, own + j);
-    own[k] = 1 + inverse;
-    for (std::size_t j = 0; j < row; j += wide) {
-      const auto of_row = hn::LoadU(d, own + j);
-      const auto take = [&](std::size_t i) HWY_ATTR {
-        float* const to = matrix + i * row + j;
-        hn::StoreU(hn::NegMulAdd(hn::Set(d, by[i]), of_row, hn::LoadU(d, to)), d, to);
-      };
-      for (std::size_t i = 0; i < k; ++i) take(i);
-      for (std::size_t i = k + 1; i < size; ++i) take(i);
+using Vector = V<float>;
+struct Tile {
+  Vector at[3][3];  // [row][column]
+};
+HWY_INLINE Tile load_tile(const float* from) {
+  Tile t;
+  for (std::size_t k = 0; k < 9; ++k) t.at[k / 3][k % 3] = hn::LoadU(Lanes<float>(), from + 8 * k);
+  return t;
+}
+HWY_INLINE void store_tile(const Tile& t, float* to) {
+  for (std::size_t k = 0; k < 9; ++k) hn::StoreU(t.at[k / 3][k % 3], Lanes<float>(), to + 8 * k);
+}
+HWY_INLINE Tile transposed(const Tile& t) {
+  Tile out;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out.at[r][c] = t.at[c][r];
+  return out;
+}
+/// a · b
+HWY_INLINE Tile product(const Tile& a, const Tile& b) {
+  Tile out;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out.at[r][c] = hn::MulAdd(a.at[r][2], b.at[2][c], hn::MulAdd(a.at[r][1], b.at[1][c], hn::Mul(a.at[r][0], b.at[0][c])));
+  return out;
+}
+/// Takes a · bᵀ off another.
+HWY_INLINE void take_off(const Tile& a, const Tile& b, Tile& from) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k) from.at[r][c] = hn::NegMulAdd(a.at[r][k], b.at[c][k], from.at[r][c]);
+}
+constexpr std::size_t tile_at(std::size_t a, std::size_t b) { return 72 * (a * (a + 1) / 2 + b); }
+
+// In place of Σ w g_a g_bᵀ what an isotropic stiffness makes of it: Σ w (shear (g_a · g_b) 1 + shear g_b g_aᵀ + bulk g_a g_bᵀ); and blocks, turned back.
+HWY_INLINE void add_up(EightPatches& p, std::size_t lane) {
+  const Lanes<float> d;
+  const auto shear = hn::LoadU(d, &p.shear[lane]), bulk = hn::LoadU(d, &p.bulk[lane]);
+  const Tile back = load_tile(&p.turn[lane]), turn = transposed(back);
+  for (std::size_t a = 0; a < p.nodes; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      float* const to = &p.tiles[tile_at(a, b) + lane];
+      const Tile outer = load_tile(to);
+      const auto even = hn::Mul(shear, hn::Add(hn::Add(outer.at[0][0], outer.at[1][1]), outer.at[2][2]));
+      Tile k;
+      if (a == b) k = product(product(back, load_tile(&p.blocks[72 * a + lane])), turn);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) {
+          auto sum = hn::MulAdd(bulk, outer.at[r][c], hn::Mul(shear, outer.at[c][r]));
+          if (r == c) sum = hn::Add(sum, even);
+          k.at[r][c] = a == b ? hn::Add(sum, k.at[r][c]) : sum;
+        }
+      store_tile(k, to);
     }
-    own[k] = inverse;
+}
+
+// The inverse of a symmetric tile, row by row; one that has no more than `least` left is taken out.
+HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
+  const auto one = hn::Set(Lanes<float>(), 1.0f);
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const auto over = hn::IfThenElseZero(hn::Gt(t.at[k][k], least[k]), hn::Div(one, t.at[k][k])), by = t.at[i][k], next = t.at[j][k];
+    const auto own = hn::Mul(by, over), other = hn::Mul(next, over);
+    t.at[i][i] = hn::NegMulAdd(by, own, t.at[i][i]), t.at[j][j] = hn::NegMulAdd(next, other, t.at[j][j]);
+    t.at[i][j] = t.at[j][i] = hn::NegMulAdd(by, other, t.at[i][j]);
+    t.at[i][k] = t.at[k][i] = own, t.at[j][k] = t.at[k][j] = other, t.at[k][k] = hn::Neg(over);
   }
-  scale_all();
+  for (auto& row : t.at)
+    for (auto& x : row) x = hn::Neg(x);
+  return t;
+}
+
+// Node by node: K becomes −K⁻¹ of those that were taken, with what they are to the others beside it, and the others keep what is left of
+// them. Symmetric all the way, so that half of the tiles will do.
+HWY_INLINE void sweep(EightPatches& p, std::size_t lane) {
+  const Lanes<float> d;
+  float *const tiles = p.tiles.data() + lane, *const column = p.aside.data() + lane, *const least = column + 72 * p.nodes;
+  for (std::size_t a = 0; a < p.nodes; ++a)
+    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Mul(hn::Set(d, 1e-5f), hn::LoadU(d, tiles + tile_at(a, a) + 32 * c)), d, least + 8 * (3 * a + c));
+  for (std::size_t k = 0; k < p.nodes; ++k) {
+    const Vector lost[3] = {hn::LoadU(d, least + 24 * k), hn::LoadU(d, least + 24 * k + 8), hn::LoadU(d, least + 24 * k + 16)};
+    Tile own = inverse(load_tile(tiles + tile_at(k, k)), lost);
+    for (std::size_t a = 0; a < p.nodes; ++a) {
+      if (a == k) continue;
+      const Tile of_k = a > k ? load_tile(tiles + tile_at(a, k)) : transposed(load_tile(tiles + tile_at(k, a)));
+      store_tile(of_k, column + 72 * a);
+      const Tile by = product(of_k, own);
+      for (std::size_t b = 0; b <= a; ++b) {
+        if (b == k) continue;
+        Tile left = load_tile(tiles + tile_at(a, b));
+        take_off(by, load_tile(column + 72 * b), left);
+        store_tile(left, tiles + tile_at(a, b));
+      }
+      if (a > k)
+        store_tile(by, tiles + tile_at(a, k));
+      else
+        store_tile(transposed(by), tiles + tile_at(k, a));
+    }
+    for (auto& row : own.at)
+      for (auto& x : row) x = hn::Neg(x);
+    store_tile(own, tiles + tile_at(k, k));
+  }
+}
+
+void InvertPositive(EightPatches& p) {
+  const Lanes<float> d;
+  const hn::RebindToUnsigned<Lanes<float>> d32;
+  const hn::Rebind<std::uint16_t, Lanes<float>> d16;
+  for (std::size_t lane = 0; lane < 8; lane += width<float>) {
+    add_up(p, lane);
+    sweep(p, lane);
+    for (std::size_t a = 0; a < p.nodes; ++a)
+      for (std::size_t b = 0; b <= a; ++b) {
+        const auto share = hn::Neg(hn::Mul(hn::LoadU(d, &p.share[8 * a + lane]), hn::LoadU(d, &p.share[8 * b + lane])));
+        for (std::size_t at = tile_at(a, b) + lane, k = 0; k < 9; ++k, at += 8) {
+          const auto bits = hn::BitCast(d32, hn::Mul(share, hn::LoadU(d, &p.tiles[at])));
+          hn::StoreU(hn::TruncateTo(d16, hn::ShiftRight<16>(hn::Add(bits, hn::Set(d32, 0x8000u)))), d16, &p.halves[at]);
+        }
+      }
+  }
 }
 
 void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {
@@ -122,7 +211,12 @@ HWY_EXPORT(MultiplyHalves);
 void add_outer_products(const PointBlock& block, std::span<const std::uint32_t> first, std::span<const NodePatches::Incidence> places, PatchParts& out) {
   HWY_DYNAMIC_DISPATCH(OuterProducts)(block, first.data(), places.data(), out);
 }
-void invert_positive(std::size_t size, float* matrix) { HWY_DYNAMIC_DISPATCH(InvertPositive)(size, matrix); }
+void EightPatches::begin(std::size_t count) {
+  nodes = count;
+  tiles.assign(72 * (count * (count + 1) / 2), 0), blocks.assign(72 * count, 0), share.assign(8 * count, 0), turn.fill(0), shear.fill(0), bulk.fill(0);
+  halves.resize(tiles.size()), aside.resize(96 * count);
+}
+void invert_positive(EightPatches& patches) { HWY_DYNAMIC_DISPATCH(InvertPositive)(patches); }
 void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) { HWY_DYNAMIC_DISPATCH(MultiplyHalves)(size, matrix, x, out); }
 
 }  // namespace geo

@@ -8,6 +8,7 @@
 
 #include "mechanics/node_patches.h"
 #include "mechanics/patch_inverses.h"
+#include "mechanics/patch_lanes.h"
 #include "mechanics/stiffness_lanes.h"
 
 namespace geo {
@@ -30,9 +31,10 @@ class PatchMotion {
   }
 
  private:
-  std::vector<PatchInverses::Besides> besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) const;
+  void besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::vector<PatchInverses::Besides>& all) const;
   const Moduli& moduli_of(std::size_t patch) const { return moduli_[materials_.number(patches_.nodes(patch)[0])]; }
-  void invert(std::size_t patch, std::span<const PatchInverses::Besides> plain, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed);
+  void put(std::size_t patch, bool plain, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::size_t lane, EightPatches& to) const;
+  void take(std::size_t patch, std::size_t lane, const EightPatches& from);
   const NodePatches& patches_;
   const Materials& materials_;
   std::span<const Moduli> moduli_;

@@ -53,8 +53,8 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
       std::vector<float> arm;
       for (const auto j : block.nodes) {
         slot.push_back(static_cast<std::uint16_t>(std::lower_bound(part.groups.begin(), part.groups.end(), groups_.of[j]) - part.groups.begin()));
-        for (int k = 0; k < 3; ++k) arm.push_back(float(arm_[j][k]));
-        arm.push_back(free_[j]);
+        const auto numbers = arm_numbers(arm_[j], free_[j]);
+        arm.insert(arm.end(), numbers.begin(), numbers.end());
       }
       part.tiles.assign(tile * part.groups.size() * (part.groups.size() + 1) / 2, 0);
       rigid_stiffness(block, modes[b], weight[b], moduli, stride, slot, arm.data(), part.tiles.data());
@@ -73,7 +73,7 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
   matrix_ = BandFactor(last);
   each_tile([&](std::size_t s, std::size_t t, const float* at) {
     for (std::size_t m = 0; m < 6; ++m)
-      for (std::size_t k = 0; k < (s == t ? m + 1 : 6); ++k) matrix_.at(6 * t + k, 6 * s + m) += at[8 * m + k];
+      for (std::size_t k = 0; k < (s == t ? m + 1 : 6); ++k) matrix_.at(6 * t + k, 6 * s + m) += at[8 * m + mode_at(k)];
   });
   parallel_for(groups_.count(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {

@@ -4,6 +4,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
+#include <algorithm>
 #include <array>
 
 #include "hwy/highway.h"
@@ -15,48 +16,64 @@ namespace geo::HWY_NAMESPACE {
 
 using Vector = V<float>;
 
-// Cyclic Jacobi on a symmetric matrix, a[j][i] = a[i][j]: eigenvalues on its diagonal, eigenvectors as columns of v. A rotation is left out where
+// Cyclic Jacobi on symmetric matrices, a[j][i] = a[i][j]: eigenvalues on the diagonal, eigenvectors as columns of v. A rotation is left out where
 // what it would take away is less than rounding of the diagonal, so that a sweep in which all are is the last. Numbers' squares are to be finite.
-HWY_INLINE void diagonalise(Vector (&a)[3][3], Matrix<float>& v) {
+// Two sets of matrices by turns: each rotation waits for the one before, and one set's roots and quotients for nothing that the other's need.
+constexpr int sets = 2;
+HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[sets]) {
   const Lanes<float> d;
   const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), two = hn::Set(d, 2.0f), rounding = hn::Set(d, 1e-8f), tiny = hn::Set(d, 1e-18f);
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) v.at[c][r] = c == r ? one : zero;
+  for (auto& v : vectors)
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) v.at[c][r] = c == r ? one : zero;
   bool done = false;
   for (int sweep = 0; sweep < 4 && !done; ++sweep) {
     done = true;
     for (int k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
-      const auto apq = a[p][q], twice = hn::Mul(two, apq), apart = hn::Sub(a[q][q], a[p][p]);
-      const auto turns = hn::Gt(hn::Abs(apq), hn::Max(hn::Mul(rounding, hn::Max(hn::Abs(a[p][p]), hn::Abs(a[q][q]))), tiny));
-      if (hn::AllFalse(d, turns)) continue;
+      const auto is_due = [&](const Vector (&a)[3][3]) HWY_ATTR {
+        return hn::Gt(hn::Abs(a[p][q]), hn::Max(hn::Mul(rounding, hn::Max(hn::Abs(a[p][p]), hn::Abs(a[q][q]))), tiny));
+      };
+      const hn::Mask<Lanes<float>> due[sets] = {is_due(all[0]), is_due(all[1])};
+      if (hn::AllFalse(d, hn::Or(due[0], due[1]))) continue;
       done = false;
-      // tan of the angle: the smaller root of t² + (a_qq − a_pp) / a_pq t − 1 = 0.
-      const auto root = hn::Sqrt(hn::Add(hn::Mul(apart, apart), hn::Mul(twice, twice)));
-      const auto t = hn::IfThenElseZero(turns, hn::Div(hn::CopySign(twice, hn::Xor(twice, apart)), hn::IfThenElse(turns, hn::Add(hn::Abs(apart), root), one)));
-      const auto c = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s = hn::Mul(t, c), step = hn::Mul(t, apq);
-      a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
-      a[p][q] = a[q][p] = hn::IfThenElse(turns, zero, apq);
-      const auto arp = a[r][p], arq = a[r][q];
-      a[r][p] = a[p][r] = hn::Sub(hn::Mul(c, arp), hn::Mul(s, arq));
-      a[r][q] = a[q][r] = hn::Add(hn::Mul(s, arp), hn::Mul(c, arq));
-      for (int i = 0; i < 3; ++i) {
-        const auto vp = v.at[p][i], vq = v.at[q][i];
-        v.at[p][i] = hn::Sub(hn::Mul(c, vp), hn::Mul(s, vq));
-        v.at[q][i] = hn::Add(hn::Mul(s, vp), hn::Mul(c, vq));
+      Vector c[sets], s[sets];
+      for (int m = 0; m < sets; ++m) {
+        auto& a = all[m];
+        const auto turns = due[m];
+        const auto apq = a[p][q], twice = hn::Mul(two, apq), apart = hn::Sub(a[q][q], a[p][p]);
+        // tan of the angle: the smaller root of t² + (a_qq − a_pp) / a_pq t − 1 = 0.
+        const auto root = hn::Sqrt(hn::Add(hn::Mul(apart, apart), hn::Mul(twice, twice)));
+        const auto t = hn::IfThenElseZero(turns, hn::Div(hn::CopySign(twice, hn::Xor(twice, apart)), hn::IfThenElse(turns, hn::Add(hn::Abs(apart), root), one)));
+        const auto step = hn::Mul(t, apq);
+        c[m] = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s[m] = hn::Mul(t, c[m]);
+        a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
+        a[p][q] = a[q][p] = hn::IfThenElse(turns, zero, apq);
+      }
+      for (int m = 0; m < sets; ++m) {
+        auto& a = all[m];
+        const auto arp = a[r][p], arq = a[r][q];
+        a[r][p] = a[p][r] = hn::Sub(hn::Mul(c[m], arp), hn::Mul(s[m], arq));
+        a[r][q] = a[q][r] = hn::Add(hn::Mul(s[m], arp), hn::Mul(c[m], arq));
+        for (int i = 0; i < 3; ++i) {
+          const auto vp = vectors[m].at[p][i], vq = vectors[m].at[q][i];
+          vectors[m].at[p][i] = hn::Sub(hn::Mul(c[m], vp), hn::Mul(s[m], vq));
+          vectors[m].at[q][i] = hn::Add(hn::Mul(s[m], vp), hn::Mul(c[m], vq));
+        }
       }
     }
   }
 }
 
-// F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out.
-HWY_INLINE void decompose(const Matrix<float>& f, Matrix<float>& u, Vector (&sigma)[3], Matrix<float>& v) {
-  const Lanes<float> d;
-  const auto tiny = hn::Set(d, 1e-20f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  Vector s[3][3];
+HWY_INLINE void squares(const Matrix<float>& f, Vector (&s)[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) s[i][j] = dot3(f.at[i], f.at[j]);
-  diagonalise(s, v);
+}
+
+// F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out; v and s as FᵀF diagonalised leaves them.
+HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<float>& u, Vector (&sigma)[3], Matrix<float>& v) {
+  const Lanes<float> d;
+  const auto tiny = hn::Set(d, 1e-20f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
     const int p = k == 1 ? 1 : 0, q = p + 1;
     const auto swap = hn::Lt(s[p][p], s[q][q]);
@@ -137,54 +154,72 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]
   return p;
 }
 
-void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
+// What is written of points from i on. `relaxed`: columns, or null.
+HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_t i, const Matrix<float>& u, Matrix<float>& v, const Principal& p, const Matrix<float>& e,
+                      const float* const* relaxed, const float* weight, StiffnessModes& out) {
   const Lanes<float> d;
   const hn::Rebind<std::int32_t, Lanes<float>> d32;
   const hn::Rebind<std::int16_t, Lanes<float>> d16;
+  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full), firmness = hn::Set(d, firm);
+  // Where plastic strain has made V no rotation, what its numbers are too long by is the stiffness'.
+  Vector longest = one;
+  if (relaxed) {
+    v = product(load(relaxed, i), v);
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) longest = hn::Max(longest, hn::Abs(v.at[c][r]));
+  }
+  std::int16_t* const frame = &out.frame[out.number(i, 18)];
+  const auto put = [&](std::size_t k, Vector x) HWY_ATTR {
+    hn::StoreU(hn::DemoteTo(d16, hn::ConvertTo(d32, hn::Add(x, hn::CopySign(half, x)))), d16, frame + 8 * k);
+  };
+  const auto shorter = hn::Div(full, longest);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t r = 0; r < 3; ++r) put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
+  const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
+  float* const to = &out.stiffness[out.number(i, 12)];
+  Vector kept[3];
+  for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(hn::Mul(w, firmness), hn::Max(p.a[k][k], hn::Zero(d)));
+  const auto viscous = hn::Mul(w, hn::Set(d, material.viscous));
+  constexpr int rows[6] = {0, 1, 2, 0, 0, 1}, cols[6] = {0, 1, 2, 1, 2, 2};
+  for (std::size_t k = 0; k < 6; ++k) {
+    const int r = rows[k], c = cols[k];
+    auto sum = hn::Mul(kept[0], hn::Mul(e.at[0][r], e.at[0][c]));
+    for (int q = 1; q < 3; ++q) sum = hn::Add(sum, hn::Mul(kept[q], hn::Mul(e.at[q][r], e.at[q][c])));
+    hn::StoreU(k < 3 ? hn::Add(sum, viscous) : sum, d, to + 8 * k);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Add(p.same[k], p.turned[k])), viscous)), d, to + 8 * (6 + 2 * k));
+    hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Sub(p.same[k], p.turned[k])), viscous)), d, to + 8 * (7 + 2 * k));
+  }
+}
+
+void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
+  const Lanes<float> d;
   const auto columns_of = [](const Columns<float>& c) { return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()}; };
-  const auto columns = columns_of(gradient);
-  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full);
+  const auto columns = columns_of(gradient), of_relaxed = relaxed ? columns_of(*relaxed) : columns;
   const float firm = material.mu + material.lambda + material.volume;
-  const auto firmness = hn::Set(d, firm), one_over_firmness = hn::Set(d, 1 / firm);
-  for (std::size_t i = begin; i < end; i += width<float>) {
-    Matrix<float> f = load(columns.data(), i), u, v;
-    for (int c = 0; c < 3; ++c) f.at[c][c] = hn::Add(f.at[c][c], one);
-    Vector sigma[3];
-    decompose(f, u, sigma, v);
-    Principal p = principal(material, sigma);
-    Matrix<float> e;
-    for (auto& row : p.a)
-      for (auto& x : row) x = hn::Mul(x, one_over_firmness);
-    diagonalise(p.a, e);
-    // Where plastic strain has made V no rotation, what its numbers are too long by is the stiffness'.
-    Vector longest = one;
-    if (relaxed) {
-      v = product(load(columns_of(*relaxed).data(), i), v);
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) longest = hn::Max(longest, hn::Abs(v.at[c][r]));
+  const auto one = hn::Set(d, 1.0f), one_over_firmness = hn::Set(d, 1 / firm);
+  for (std::size_t i = begin; i < end; i += sets * width<float>) {
+    const std::size_t at[sets] = {i, std::min(i + width<float>, end - width<float>)};  // the last one twice, where they are odd
+    Matrix<float> f[sets], u[sets], v[sets], e[sets];
+    Vector sigma[3], s[sets][3][3], a[sets][3][3];
+    for (int m = 0; m < sets; ++m) {
+      f[m] = load(columns.data(), at[m]);
+      for (int c = 0; c < 3; ++c) f[m].at[c][c] = hn::Add(f[m].at[c][c], one);
+      squares(f[m], s[m]);
     }
-    std::int16_t* const frame = &out.frame[out.number(i, 18)];
-    const auto put = [&](std::size_t k, Vector x) HWY_ATTR {
-      hn::StoreU(hn::DemoteTo(d16, hn::ConvertTo(d32, hn::Add(x, hn::CopySign(half, x)))), d16, frame + 8 * k);
-    };
-    const auto shorter = hn::Div(full, longest);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t r = 0; r < 3; ++r) put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
-    const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
-    float* const to = &out.stiffness[out.number(i, 12)];
-    Vector kept[3];
-    for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(hn::Mul(w, firmness), hn::Max(p.a[k][k], hn::Zero(d)));
-    const auto viscous = hn::Mul(w, hn::Set(d, material.viscous));
-    constexpr int rows[6] = {0, 1, 2, 0, 0, 1}, cols[6] = {0, 1, 2, 1, 2, 2};
-    for (std::size_t k = 0; k < 6; ++k) {
-      const int r = rows[k], c = cols[k];
-      auto sum = hn::Mul(kept[0], hn::Mul(e.at[0][r], e.at[0][c]));
-      for (int q = 1; q < 3; ++q) sum = hn::Add(sum, hn::Mul(kept[q], hn::Mul(e.at[q][r], e.at[q][c])));
-      hn::StoreU(k < 3 ? hn::Add(sum, viscous) : sum, d, to + 8 * k);
+    diagonalise(s, v);
+    Principal p[sets];
+    for (int m = 0; m < sets; ++m) {
+      decompose(f[m], s[m], u[m], sigma, v[m]);
+      p[m] = principal(material, sigma);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) a[m][r][c] = hn::Mul(p[m].a[r][c], one_over_firmness);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-      hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Add(p.same[k], p.turned[k])), viscous)), d, to + 8 * (6 + 2 * k));
-      hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Sub(p.same[k], p.turned[k])), viscous)), d, to + 8 * (7 + 2 * k));
+    diagonalise(a, e);
+    for (int m = 0; m < sets; ++m) {
+      for (int k = 0; k < 3; ++k) p[m].a[k][k] = a[m][k][k];
+      write(material, firm, at[m], u[m], v[m], p[m], e[m], relaxed ? of_relaxed.data() : nullptr, weight, out);
     }
   }
 }

@@ -11,8 +11,8 @@
 
 namespace geo {
 
-/// Boxes in the order of a space-filling curve, sixteen to a block, and boxes around blocks. Blocks hold floats, rounded outwards;
-/// which boxes meet is decided by the boxes themselves.
+/// Boxes in the order of a space-filling curve, sixteen to a block, and boxes around blocks. Blocks hold floats, in a frame where these
+/// are fine: going there is monotone, so boxes that meet still do; which ones meet is decided by the boxes themselves.
 class BoxTree {
  public:
   static constexpr std::uint32_t width = 16;
@@ -22,6 +22,10 @@ class BoxTree {
   /// Corners of the triangles whose boxes are in a block.
   struct Corners {
     alignas(64) std::uint32_t v[3][width];
+  };
+  /// Numbers of the cells of a grid that boxes' middles are in, along each axis.
+  struct Cells {
+    alignas(64) std::uint32_t at[3][width];
   };
 
   BoxTree() = default;
@@ -50,17 +54,11 @@ class BoxTree {
   const std::vector<std::vector<Block>>& levels() const { return levels_; }
 
  private:
-  // In a frame of its own, where floats are fine: going there is monotone, so boxes that meet still do.
-  struct Floats {
-    float lo[3], hi[3];
-  };
-  Floats local(const Box3& box) const;
-  Box3 bound();
   double block_sizes() const;  // of the boxes around blocks, three edges each
   void fill();
 
   std::vector<Box3> boxes_;
-  Vec3 middle_ = Vec3::Zero();
+  Vec3 middle_ = Vec3::Zero();  // of the first boxes; floats are relative to it
   double made_ = 0;  // block_sizes() when the curve was found
   std::vector<std::uint32_t> order_, place_;  // rows in the order of the tree, and where each is
   std::vector<std::vector<Block>> levels_;

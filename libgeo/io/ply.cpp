@@ -1,6 +1,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "io/ply_internal.h"
 #include "io/text_internal.h"
@@ -46,13 +47,18 @@ double decode(const char* bytes, char type, bool swap) {
 template <class T>
 bool fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
   values.resize(places * each);
-  bool finite = true;
-  for (std::size_t i = 0; i < places; ++i)
-    for (std::size_t k = 0; k < each; ++k) {
-      const double x = values[i * each + k] = decode<T>(first + i * apart + k * sizeof(T), swap);
-      finite = finite && std::isfinite(x);
-    }
-  return finite;
+  const auto read = [&](auto swapped) {
+    bool finite = true;
+    double* to = values.data();
+    for (std::size_t i = 0; i < places; ++i)
+      for (const char *from = first + i * apart, *end = from + each * sizeof(T); from != end; from += sizeof(T)) {
+        *to = decode<T>(from, swapped);
+        if constexpr (std::is_floating_point_v<T>) finite &= std::isfinite(*to);
+        ++to;
+      }
+    return finite;
+  };
+  return swap ? read(std::true_type()) : read(std::false_type());
 }
 
 bool fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
@@ -66,6 +72,14 @@ bool fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t plac
     case 'f': return fill<float>(p.values, first, apart, places, each, swap);
     default: return fill<double>(p.values, first, apart, places, each, swap);
   }
+}
+
+// Whether some bytes are the same in all places, at equal distances.
+bool repeats(const char* first, std::size_t size, std::size_t apart, std::size_t places) {
+  for (std::size_t i = 1; i < places; ++i)
+    for (std::size_t k = 0; k < size; ++k)
+      if (first[i * apart + k] != first[k]) return false;
+  return true;
 }
 
 // Reads a binary element whose rows are all as long as the first, as they are in most files, a property at a time. False, with nothing
@@ -87,15 +101,16 @@ bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyEleme
   if (row == 0 || rest.size() / row < element.count) return false;
   for (std::size_t k = 0; k < each.size(); ++k)
     if (const char type = element.properties[k].count_type; type != 0)
-      for (std::size_t i = 1; i < element.count; ++i)
-        if (decode(rest.data() + i * row + first[k] - size_of(type), type, swap) != static_cast<double>(each[k])) return false;
+      if (const char* const count = rest.data() + first[k] - size_of(type); !repeats(count, size_of(type), row, element.count)) return false;
   for (std::size_t k = 0; k < each.size(); ++k) {
     PlyProperty& p = element.properties[k];
     if (!fill(p, rest.data() + first[k], row, element.count, each[k], swap)) {
       for (PlyProperty& other : element.properties) other.values.clear(), other.ends.clear();
       return false;
     }
-    for (std::size_t i = 1; p.count_type != 0 && i <= element.count; ++i) p.ends.push_back(static_cast<std::uint32_t>(i * each[k]));
+    if (p.count_type == 0) continue;
+    p.ends.resize(element.count);
+    for (std::size_t i = 0; i < element.count; ++i) p.ends[i] = static_cast<std::uint32_t>((i + 1) * each[k]);
   }
   at += row * element.count;
   return true;

@@ -105,6 +105,7 @@ std::uint64_t fingerprint(std::string_view bytes) { return XXH3_64bits(bytes.dat
 
 std::string read_all(const std::string& path) {
   int fd = 0;
+  std::string bytes;
   if (path != "-") {
     fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd < 0) throw MissingInputError(path + ": cannot be opened (" + reason(errno) + "); check the name");
@@ -113,9 +114,9 @@ std::string read_all(const std::string& path) {
       ::close(fd);
       throw InputError(path + ": is a folder; give a file");
     }
+    if (S_ISREG(info.st_mode)) bytes.reserve(static_cast<std::size_t>(info.st_size));
   }
   if (path == "-" && ::isatty(0)) throw InputError("-: standard input is a terminal; give a file or a pipe");
-  std::string bytes;
   char chunk[1 << 16];
   for (;;) {
     const auto n = ::read(fd, chunk, sizeof chunk);

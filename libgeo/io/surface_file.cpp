@@ -36,8 +36,6 @@ const char* other_format(const std::string& bytes) {
 
 }  // namespace
 
-std::uint32_t row_of(double x) { return x >= 0 && x < 4294967295.0 && x == std::floor(x) ? static_cast<std::uint32_t>(x) : ~0u; }
-
 std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where) {
   if (polygon.size() < 3) throw InputError(where + "a face has fewer than three vertices");
   for (const auto v : polygon)

@@ -16,7 +16,11 @@ TriangleMesh parse_off(const std::string& bytes, const std::string& name);
 TriangleMesh parse_stl(const std::string& bytes, const std::string& name);
 
 /// A number as a row; ~0u when it is none.
-std::uint32_t row_of(double x);
+inline std::uint32_t row_of(double x) {
+  if (!(x >= 0 && x < 4294967295.0)) return ~0u;
+  const auto row = static_cast<std::uint32_t>(x);
+  return static_cast<double>(row) == x ? row : ~0u;
+}
 
 /// Adds a polygon of n corners as n − 2 triangles: 0, k, k + 1 for k = 1, 2 … unless these fold over, as of one that is not convex.
 /// Returns the corners of each. Throws InputError, `where` first.

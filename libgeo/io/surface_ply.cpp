@@ -70,7 +70,7 @@ class Reader {
   TriangleMesh& mesh() { return file_.mesh; }
 
   std::int32_t whole(double x, const char* property) const {
-    if (!(std::abs(x) <= 2147483647.0) || x != std::floor(x)) throw InputError(name_ + ": a '" + property + "' is not an integer of 32 bits");
+    if (!(std::abs(x) <= 2147483647.0) || x != static_cast<std::int32_t>(x)) throw InputError(name_ + ": a '" + property + "' is not an integer of 32 bits");
     return static_cast<std::int32_t>(x);
   }
 
@@ -86,24 +86,32 @@ class Reader {
     if ((site && site->count_type) || (patch_ && patch_->count_type)) throw InputError(name_ + ": 'site' and 'patch' must not be lists");
     parts_.reserve(face_->count), mesh().triangles.reserve(face_->count);
     std::vector<std::uint32_t> polygon;
+    const auto vertices = static_cast<std::uint32_t>(mesh().vertices.size());
     for (std::uint32_t i = 0; i < face_->count; ++i) {
-      polygon.clear();
-      for (auto j = i ? indices_->ends[i - 1] : 0; j < indices_->ends[i]; ++j) polygon.push_back(row_of(indices_->values[j]));
-      if (polygon.size() == 3 && *std::max_element(polygon.begin(), polygon.end()) < mesh().vertices.size()) {
-        mesh().triangles.push_back({polygon[0], polygon[1], polygon[2]}), parts_.push_back({i, {0, 1, 2}});
-        continue;
+      const auto begin = i ? indices_->ends[i - 1] : 0, end = indices_->ends[i];
+      if (end - begin == 3) {
+        const Triangle t{row_of(indices_->values[begin]), row_of(indices_->values[begin + 1]), row_of(indices_->values[begin + 2])};
+        if (std::max({t[0], t[1], t[2]}) < vertices) {
+          mesh().triangles.push_back(t), parts_.push_back({i, {0, 1, 2}});
+          continue;
+        }
       }
+      polygon.clear();
+      for (auto j = begin; j < end; ++j) polygon.push_back(row_of(indices_->values[j]));
       for (const auto& corner : add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": ")) parts_.push_back({i, corner});
     }
     if (patch_ && site) {
+      mesh().patch.reserve(parts_.size()), mesh().site.reserve(vertices);
       for (const Part& part : parts_) mesh().patch.push_back(whole(patch_->values[part.face], "patch"));
       for (const double s : site->values) {
         if (row_of(s) == ~0u) throw InputError(name_ + ": a site is not an id");
         mesh().site.push_back(row_of(s));
       }
     }
-    if (const auto* source = integers(*face_, "source"))
+    if (const auto* source = integers(*face_, "source")) {
+      mesh().source.reserve(parts_.size());
       for (const Part& part : parts_) mesh().source.push_back(row_of(source->values[part.face]));
+    }
   }
 
   // A corner has what its face's list gives it; without such a list, what its face has (`at_face`), or on a crack

@@ -1,6 +1,8 @@
 #include "io/usd_file.h"
 
 #include <charconv>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -28,16 +30,20 @@ void add_list(std::string& text, std::size_t count, const auto& item) {
 
 template <class Row>
 void add_tuple(std::string& text, const Row& row) {
-  text += '(';
+  char chars[32 * Row::SizeAtCompileTime], *at = chars;
   for (int k = 0; k < row.size(); ++k) {
-    if (k > 0) text += ", ";
-    add(text, float(row[k]));
+    *at++ = k > 0 ? ',' : '(';
+    if (k > 0) *at++ = ' ';
+    at = std::to_chars(at, std::end(chars), float(row[k])).ptr;
   }
-  text += ')';
+  *at++ = ')';
+  text.append(chars, at);
 }
 
 std::string points_of(const TriangleMesh& m) {
+  constexpr std::size_t usual = 40;  // characters
   std::string text;
+  text.reserve(usual * m.vertices.size());
   add_list(text, m.vertices.size(), [&](std::size_t v) { add_tuple(text, m.vertices[v]); });
   return text;
 }
@@ -127,10 +133,17 @@ Frames all_frames(const UsdRun& run) {
 
 bool same_rows(const TriangleMesh& a, const TriangleMesh& b) { return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv; }
 
-void add_subset(std::ostream& out, const std::string& name, const UsdRun& run, const Frames& cut, bool crack) {
+// What same_rows() looks at.
+TriangleMesh rows_of(TriangleMesh&& m) {
+  TriangleMesh rows;
+  rows.triangles = std::move(m.triangles), rows.patch = std::move(m.patch), rows.attributes.uv = std::move(m.attributes.uv);
+  return rows;
+}
+
+void add_subset(std::ostream& out, const std::string& name, const Frames& cut, const auto& rows, bool crack) {
   out << "\n        def GeomSubset \"" << name << "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {\n"
       << "            uniform token elementType = \"face\"\n            uniform token familyName = \"materialBind\"\n            rel material:binding = </run/materials/" << name << ">\n";
-  add_samples(out, "            ", "int[] indices", cut, run.surface, [&](const TriangleMesh& m) { return subset_of(m, crack); });
+  add_samples(out, "            ", "int[] indices", cut, rows, [&](const TriangleMesh& m) { return subset_of(m, crack); });
   out << "        }\n";
 }
 
@@ -152,7 +165,9 @@ void write_usda(std::ostream& out, const UsdRun& run) {
       << "\n    timeCodesPerSecond = " << run.frame_rate << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
+  constexpr std::size_t most_kept = 16;
   Frames cut;  // those with other triangles than the one before
+  std::map<std::size_t, TriangleMesh> kept;  // rows of the first of them, which are not read again
   TriangleMesh last;
   {
     Samples points(out, "        ", "point3f[] points");
@@ -163,10 +178,13 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     };
     each_in_order(all_frames(run), read, [&](std::size_t i, auto made) {
       points.add(i, std::move(made.first));
-      if (i == 0 || !same_rows(made.second, last)) cut.push_back(i), last = std::move(made.second);
+      if (i > 0 && same_rows(made.second, last)) return;
+      cut.push_back(i), last = rows_of(std::move(made.second));
+      if (kept.size() < most_kept) kept.emplace(i, last);
     });
   }
-  const auto body = [&](const std::string& declaration, const auto& text_of) { add_samples(out, "        ", declaration, cut, run.surface, text_of); };
+  const auto rows = [&](std::size_t i) { return kept.contains(i) ? kept.at(i) : run.surface(i); };
+  const auto body = [&](const std::string& declaration, const auto& text_of) { add_samples(out, "        ", declaration, cut, rows, text_of); };
   body("int[] faceVertexCounts", counts_of);
   body("int[] faceVertexIndices", corners_of_triangles);
   out << "        int[] primvars:patch (\n            interpolation = \"uniform\"\n        )\n";
@@ -175,8 +193,8 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     out << "        texCoord2f[] primvars:st (\n            interpolation = \"faceVarying\"\n        )\n";
     body("texCoord2f[] primvars:st", uv_of);
   }
-  add_subset(out, "skin", run, cut, false);
-  add_subset(out, "crack", run, cut, true);
+  add_subset(out, "skin", cut, rows, false);
+  add_subset(out, "crack", cut, rows, true);
   out << "    }\n";
   if (run.frames > 0 && run.obstacles) {
     out << '\n';

@@ -8,8 +8,8 @@
 
 namespace geo {
 
-/// Frames of one rate. Each is asked for once, those with new triangles several times, from any threads; one a thread is in memory, and
-/// one more.
+/// Frames of one rate. Each is asked for once, those with new triangles several times where they are many, from any threads; one a thread is in memory,
+/// and one more, and the triangles of the first few with new ones.
 struct UsdRun {
   std::size_t frames = 0;
   double frame_rate = 24;  ///< frames a second

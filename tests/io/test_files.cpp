@@ -19,6 +19,7 @@
 #include "io/run_files.h"
 #include "io/stream.h"
 #include "io/surface_file.h"
+#include "io/usd_file.h"
 #include "io/volume_file.h"
 #include "sampling/sample.h"
 #include "surface/shapes.h"
@@ -313,4 +314,47 @@ TEST_CASE("a level set is read as a closed surface") {
   std::filesystem::remove(path);
   CHECK(signed_volume(read) == Approx(signed_volume(sphere)).epsilon(0.03));
   CHECK_NOTHROW(Complex::from_skin(read));
+}
+
+TEST_CASE("a run as USD has each frame's triangles where they are others than before, however many frames that is") {
+  const auto [first, count] = seeds(20);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    std::vector<TriangleMesh> frames(1 + random.below(50));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (i == 0 || random.below(2) == 0) {
+        for (std::size_t t = 0, triangles = 1 + random.below(3); t < triangles; ++t) {
+          const auto a = static_cast<std::uint32_t>(random.below(3));
+          frames[i].triangles.push_back({a, (a + 1) % 3, (a + 2) % 3}), frames[i].patch.push_back(static_cast<std::int32_t>(random.below(2)));
+        }
+      } else {
+        frames[i] = frames[i - 1];
+      }
+      frames[i].vertices.assign(3, Vec3(double(i), 0.5, -1e-3));
+    }
+    // What each list says at the frames where the triangles have changed; a sample like the last one is left out, which then is repeated before the next.
+    std::string indices, patches, last[2];
+    std::size_t written[2] = {0, 0};
+    const auto add = [&](int which, std::string& text, std::size_t i, const std::string& list) {
+      if (i > 0 && list == last[which]) return;
+      if (i > written[which] + 1) text += "            " + std::to_string(i - 1) + ": [" + last[which] + "],\n";
+      text += "            " + std::to_string(i) + ": [" + list + "],\n", last[which] = list, written[which] = i;
+    };
+    std::string points;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      std::string corners, patch;
+      for (const Triangle& t : frames[i].triangles)
+        for (const auto v : t) corners += (corners.empty() ? "" : ", ") + std::to_string(v);
+      for (const auto one : frames[i].patch) patch += (patch.empty() ? "" : ", ") + std::to_string(one);
+      add(0, indices, i, corners), add(1, patches, i, patch);
+      const std::string point = "(" + std::to_string(i) + ", 0.5, -0.001)";
+      points += "            " + std::to_string(i) + ": [" + point + ", " + point + ", " + point + "],\n";
+    }
+    const std::string text = bytes_of([&](std::ostream& out) { write_usda(out, {frames.size(), 24, 'Z', [&](std::size_t i) { return frames[i]; }, {}}); });
+    const auto has = [&](const std::string& declaration, const std::string& samples) { return text.find(declaration + ".timeSamples = {\n" + samples + "        }\n") != std::string::npos; };
+    CHECK(has("point3f[] points", points));
+    CHECK(has("int[] faceVertexIndices", indices));
+    CHECK(has("int[] primvars:patch", patches));
+  }
 }

@@ -102,7 +102,8 @@ HWY_EXPORT(ways_left);
 
 void TrianglePlanes::place(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   triangles_ = triangles, to_ = &to;
-  if (planes_.size() < triangles.size()) planes_ = {}, planes_ = FreshArray<Plane>(triangles.size());
+  // Where a surface is cut, triangles become more step by step; the system gives memory where it is written to.
+  if (planes_.size() < triangles.size()) planes_ = {}, planes_ = FreshArray<Plane>(triangles.size() + triangles.size() / 8);
   parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Plane& p = planes_[t];

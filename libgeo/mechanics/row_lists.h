@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/fresh_array.h"
 #include "mechanics/potential.h"
 
 namespace geo {
@@ -31,8 +32,8 @@ class RowLists {
  private:
   std::vector<std::uint32_t> rows_;
   std::vector<std::size_t> first_own_, first_share_;
-  std::vector<Share> own_, shares_;
-  std::vector<double> weights_;
+  FreshArray<Share> own_, shares_;
+  FreshArray<double> weights_;
 };
 
 }  // namespace geo

@@ -86,10 +86,11 @@ class Drawing {
     const view::Subject subject = view::read_subject(w_.paths);
     view::Stage stage = view::stage_of(subject, look_);
     stage.ground = !w_.no_ground;
-    eye_.box = view::frame_of(stage);
+    look_at(stage);
     if (look_.node && w_.zoom > 1) {  // looked at closely: the node in the middle
       const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
       eye_.box = {eye_.box.lo + away, eye_.box.hi + away};
+      for (geo::Vec3& p : eye_.points) p += away;
     }
     geo::report(progress_, "render", 0, 1);
     return view::render(stage, eye_, options_);
@@ -110,7 +111,7 @@ class Drawing {
     const int count = run ? static_cast<int>(files.size()) : w_.frames > 0 ? w_.frames : 72;
     view::Stage stage;
     if (run) look_around(files);
-    else stage = staged(w_.paths), eye_.box = view::frame_of(stage);
+    else stage = staged(w_.paths), look_at(stage), eye_.all_round = true;
     const view::Sequence picture = [&](int i) {
       if (run) return frame(files[static_cast<std::size_t>(i)], static_cast<std::size_t>(i), files.size());
       geo::report(progress_, "render", static_cast<std::size_t>(i), static_cast<std::size_t>(count));
@@ -128,11 +129,18 @@ class Drawing {
     stage.ground = !w_.no_ground;
     return stage;
   }
+  // The eye sees a stage besides what it was to see before.
+  void look_at(const view::Stage& stage) {
+    const geo::Box3 frame = view::frame_of(stage);
+    if (frame.empty()) return;
+    eye_.box.add(frame);
+    view::add_outermost(stage, eye_.box, eye_.points);
+  }
   // One eye and one floor for all frames.
   void look_around(const std::vector<std::string>& files) {
     for (const auto& file : files) {
       const view::Stage stage = staged({file});
-      eye_.box.add(view::frame_of(stage)), all_.add(view::box_of(stage));
+      look_at(stage), all_.add(view::box_of(stage));
     }
   }
   view::Picture frame(const std::string& file, std::size_t i, std::size_t count) const {

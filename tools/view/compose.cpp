@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <numbers>
+#include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "view/compose_parts.h"
 #include "view/pieces.h"
 
@@ -118,6 +122,30 @@ geo::Box3 box_of(const Stage& stage) {
   geo::Box3 box = box_without_obstacles(stage);
   box.add(geo::bounding_box(stage.surface));
   return box;
+}
+
+void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>& points) {
+  constexpr int directions = 256;  // evenly over the sphere: along a spiral
+  std::vector<Vec3> all = points;
+  std::vector<char> taken(stage.surface.vertices.size(), 0);
+  for (const auto& triangle : stage.surface.triangles)
+    for (const auto v : triangle)
+      if (!std::exchange(taken[v], 1)) all.push_back(stage.surface.vertices[v]);
+  for (const auto& s : stage.sticks) all.push_back(s.a), all.push_back(s.b);
+  for (Vec3& p : all) p = p.cwiseMax(frame.lo).cwiseMin(frame.hi);
+  points.assign(directions, Vec3::Zero());
+  geo::parallel_for(directions, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const double height = 1 - (2 * double(k) + 1) / directions, across = std::sqrt(1 - height * height), turn = double(k) * std::numbers::pi * (3 - std::sqrt(5.0));
+      const Vec3 way(across * std::cos(turn), across * std::sin(turn), height);
+      double farthest = -std::numeric_limits<double>::infinity();
+      const auto take = [&](const Vec3& p) {
+        if (const double far = way.dot(p); far > farthest) farthest = far, points[k] = p;
+      };
+      for (const Vec3& p : all) take(p);
+      for (const auto& s : stage.spheres) take((s.center + s.radius * way).cwiseMax(frame.lo).cwiseMin(frame.hi));
+    }
+  });
 }
 
 geo::Box3 frame_of(const Stage& stage) {

@@ -48,5 +48,7 @@ Stage stage_of(const Subject& subject, const Look& look);
 geo::Box3 box_of(const Stage& stage);
 /// What a picture should show: the same without what obstacles have beyond a quarter of its diagonal.
 geo::Box3 frame_of(const Stage& stage);
+/// Adds to `points` those of the stage, brought into `frame`, that are farthest off in one of some hundred directions, and leaves others out.
+void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<geo::Vec3>& points);
 
 }  // namespace view

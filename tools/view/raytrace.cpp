@@ -343,6 +343,44 @@ Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
   return stage;
 }
 
+// What the camera is to see, as placed() puts it; from all sides, where it is to be seen from all.
+std::vector<Vec3> to_be_seen(const Camera& camera, double scale) {
+  if (camera.points.empty()) return {-Vec3::Ones(), Vec3::Ones()};
+  std::vector<Vec3> points;
+  for (const Vec3& p : camera.points) {
+    const Vec3 at = scale * (p - camera.box.center());
+    points.push_back(camera.y_up ? Vec3(at.x(), -at.z(), at.y()) : at);
+  }
+  const std::size_t count = points.size();
+  constexpr int turns = 72;
+  for (int turn = 1; turn < turns && camera.all_round; ++turn)
+    for (std::size_t i = 0; i < count; ++i) points.push_back(Eigen::AngleAxisd(2 * pi * turn / turns, Vec3::UnitZ()) * points[i]);
+  return points;
+}
+
+// How far back the eye has to be to see points along `axis` in a picture that reaches `slope` to either side at a distance of 1, wherever it is along the axis: a
+// point at (a, f) along axis and view is seen from (m, −d) where |a − m| ≤ slope (d + f).
+double distance_to_see(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& forward, double slope) {
+  double most = -1e300, least = 1e300;
+  for (const Vec3& p : points) most = std::max(most, axis.dot(p) - slope * forward.dot(p)), least = std::min(least, axis.dot(p) + slope * forward.dot(p));
+  return (most - least) / (2 * slope);
+}
+
+// Where the eye is to be along `axis`, so far back, for points to be seen as far to the one side as to the other.
+double middle_of_view(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& forward, double distance) {
+  double low = -10, high = 10;  // points are about as far from each other as 1
+  for (int halving = 0; halving < 60; ++halving) {
+    const double m = 0.5 * (low + high);
+    double most = -1e300, least = 1e300;
+    for (const Vec3& p : points) {
+      const double seen = (axis.dot(p) - m) / (distance + forward.dot(p));
+      most = std::max(most, seen), least = std::min(least, seen);
+    }
+    (most + least > 0 ? low : high) = m;
+  }
+  return 0.5 * (low + high);
+}
+
 }  // namespace
 
 Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options) {
@@ -354,8 +392,12 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
   const Vec3 right = Vec3(std::cos(azimuth), -std::sin(azimuth), 0), up = right.cross(forward);
   const double field = std::tan(17 * pi / 180);  // half the vertical angle of view
   const double aspect = double(options.width) / options.height;
-  const double distance = 1.02 / (field * std::min(1.0, aspect)) / camera.zoom;
-  const Vec3 eye = -distance * forward;
+  const double room = 0.84;  // share of the picture that is filled; shadows want some
+  const std::vector<Vec3> points = to_be_seen(camera, 1 / radius);
+  const double wide = distance_to_see(points, right, forward, room * field * aspect), high = distance_to_see(points, up, forward, room * field);
+  const double distance = std::max(wide, high) / camera.zoom;
+  Vec3 eye = -distance * forward;
+  if (camera.zoom <= 1) eye += middle_of_view(points, right, forward, distance) * right + middle_of_view(points, up, forward, distance) * up;
 
   const int samples = options.samples * options.samples, rays = (options.occlusion + samples - 1) / samples;
   Picture picture(options.width, options.height);

@@ -91,6 +91,7 @@ class Drawing {
       const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
       eye_.box = {eye_.box.lo + away, eye_.box.hi + away};
       for (geo::Vec3& p : eye_.points) p += away;
+      eye_.on_box = true;
     }
     geo::report(progress_, "render", 0, 1);
     return view::render(stage, eye_, options_);

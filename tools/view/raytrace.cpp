@@ -397,7 +397,7 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
   const double wide = distance_to_see(points, right, forward, room * field * aspect), high = distance_to_see(points, up, forward, room * field);
   const double distance = std::max(wide, high) / camera.zoom;
   Vec3 eye = -distance * forward;
-  if (camera.zoom <= 1) eye += middle_of_view(points, right, forward, distance) * right + middle_of_view(points, up, forward, distance) * up;
+  if (!camera.on_box) eye += middle_of_view(points, right, forward, distance) * right + middle_of_view(points, up, forward, distance) * up;
 
   const int samples = options.samples * options.samples, rays = (options.occlusion + samples - 1) / samples;
   Picture picture(options.width, options.height);

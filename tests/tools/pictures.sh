@@ -44,6 +44,25 @@ sed 's/^v \([01]\)/v 100000000\1/' cube1.obj >far.obj
 draw far.obj -o far.png
 cmp cube1.png far.png || fail "a cube that is far away looks otherwise"
 
+# Whatever is drawn fills the picture one way or the other, and is in its middle.
+awk '/^v/ { print $1, 9 * $2, $3, $4; next } { print }' cube1.obj >bar.obj
+awk '/^v/ { print $1, $2, $3, 7 * $4; next } { print }' cube1.obj >tower.obj
+awk '/^v/ { print $1, ($2 - $3) * 4, ($2 + $3) * 4, $4; next } { print }' cube1.obj >tilted.obj
+for model in cube1 bar tower tilted; do
+  for camera in 0,0 30,22 -75,-10 140,60; do
+    draw $model.obj --camera "$camera" --no-ground -o seen.png
+    ffmpeg -v error -i seen.png -f rawvideo -pix_fmt rgb24 -y seen.rgb
+    python3 - <<'P' || fail "$model from $camera"
+data = open("seen.rgb", "rb").read()
+here = [(i % 96, i // 96) for i in range(96 * 72) if data[3 * i] > data[3 * i + 2] + 20]
+low, high = [min(p[k] for p in here) for k in (0, 1)], [max(p[k] for p in here) + 1 for k in (0, 1)]
+filled = max((high[0] - low[0]) / 96, (high[1] - low[1]) / 72)
+assert 0.8 < filled < 0.88, filled
+assert abs(low[0] + high[0] - 96) <= 2 and abs(low[1] + high[1] - 72) <= 2, (low, high)
+P
+  done
+done
+
 # A model whose y is up, stood up.
 awk '/^v/ { print $1, $2, $4, -$3; next } { print }' cube1.obj >lying.obj
 draw lying.obj --up y -o standing.png

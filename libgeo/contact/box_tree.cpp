@@ -68,7 +68,7 @@ void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> rows, const V
   const hn::CappedTag<double, width / 2> d;
   const hn::Rebind<float, decltype(d)> f;
   const hn::Rebind<std::int64_t, decltype(d)> number;
-  const auto last = hn::Set(d, std::numeric_limits<float>::max()), none = hn::Set(d, INFINITY);
+  const auto last = hn::Set(d, std::numeric_limits<float>::max());
   for (std::size_t b = begin; b < end; ++b) {
     BoxTree::Block& block = levels[0][b];
     const std::size_t count = std::min(width, rows.size() - b * width);
@@ -85,9 +85,13 @@ void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> rows, const V
       for (int axis = 0; axis < 3; ++axis) {
         const auto origin = hn::Set(d, middle[axis]);
         const auto low = hn::Min(hn::Max(hn::Sub(lo[axis], origin), hn::Neg(last)), last), high = hn::Min(hn::Max(hn::Sub(hi[axis], origin), hn::Neg(last)), last);
-        hn::Store(hn::DemoteTo(f, hn::IfThenElse(full, low, none)), f, block.lo[axis] + at);
-        hn::Store(hn::DemoteTo(f, hn::IfThenElse(full, high, hn::Neg(none))), f, block.hi[axis] + at);
+        hn::Store(hn::DemoteTo(f, low), f, block.lo[axis] + at), hn::Store(hn::DemoteTo(f, high), f, block.hi[axis] + at);
       }
+      if (hn::AllTrue(d, full)) continue;
+      alignas(64) double there[width];
+      hn::Store(hn::IfThenElseZero(full, last), d, there);
+      for (std::size_t k = 0; k < hn::Lanes(d); ++k)
+        for (int axis = 0; axis < 3 && there[k] == 0; ++axis) block.lo[axis][at + k] = INFINITY, block.hi[axis][at + k] = -INFINITY;
     }
     const hn::CappedTag<float, BoxTree::width> all;
     for (int axis = 0; axis < 3; ++axis) {
@@ -284,9 +288,9 @@ void BoxTree::fill() {
 }
 
 void BoxTree::put(std::vector<Box3> boxes, std::span<const Triangle> triangles) {
-  constexpr double worn = 1.2;
+  constexpr double worn = 1.2, flat = 0.2;  // so flat is what has gone so far that floats no longer tell its boxes apart
   if (!replace(boxes)) *this = BoxTree(std::move(boxes), triangles);
-  else if (block_sizes() > worn * made_) *this = BoxTree(std::move(boxes_), triangles);
+  else if (const double size = block_sizes(); size > worn * made_ || size < flat * made_) *this = BoxTree(std::move(boxes_), triangles);
 }
 
 double BoxTree::block_sizes() const {

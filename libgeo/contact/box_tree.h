@@ -36,7 +36,7 @@ class BoxTree {
   /// and all is as it was, `boxes` too, where there are not as many as before, or where one that was empty at first no longer is.
   bool replace(std::vector<Box3>& boxes);
 
-  /// Other boxes of the same triangles: by replace(), but where what follows each other on the curve has gone a fifth further apart since it was found, and in a tree
+  /// Other boxes of the same triangles: by replace(), but where what follows each other on the curve has gone a fifth further apart since it was found, or all of it too far for floats, and in a tree
   /// that has none yet, the curve is found anew.
   void put(std::vector<Box3> boxes, std::span<const Triangle> triangles);
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -114,7 +115,8 @@ std::string read_all(const std::string& path) {
       ::close(fd);
       throw InputError(path + ": is a folder; give a file");
     }
-    if (S_ISREG(info.st_mode)) bytes.reserve(static_cast<std::size_t>(info.st_size));
+    constexpr std::size_t most_at_once = 1u << 30;  // what a file says of its size may not be so
+    if (S_ISREG(info.st_mode)) bytes.reserve(std::min<std::size_t>(static_cast<std::size_t>(info.st_size), most_at_once));
   }
   if (path == "-" && ::isatty(0)) throw InputError("-: standard input is a terminal; give a file or a pipe");
   char chunk[1 << 16];

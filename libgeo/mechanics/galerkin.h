@@ -2,7 +2,6 @@
 // the fronts of cracks too, in blocks that follow cuts.
 #pragma once
 
-
 #include "mechanics/material_points.h"
 #include "mechanics/quadrature.h"
 

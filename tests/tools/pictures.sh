@@ -63,6 +63,16 @@ P
   done
 done
 
+# Zoomed in on what is long, its middle is still seen; what is cut away leaves no empty half.
+for zoom in 2 5 30; do
+  draw bar.obj --camera 60,20 --zoom $zoom --no-ground -o seen.png
+  draw bar.obj --camera 0,0 --cut-away 1,0,0,-0.5 --zoom $((zoom / 3 + 1)) --no-ground -o cut.png
+  for picture in seen cut; do
+    ffmpeg -v error -i $picture.png -f rawvideo -pix_fmt rgb24 -y seen.rgb
+    python3 -c 'data = open("seen.rgb", "rb").read(); at = 3 * (96 * 36 + 48); assert data[at] > data[at + 2] + 20' || fail "$picture at zoom $zoom"
+  done
+done
+
 # A model whose y is up, stood up.
 awk '/^v/ { print $1, $2, $4, -$3; next } { print }' cube1.obj >lying.obj
 draw lying.obj --up y -o standing.png

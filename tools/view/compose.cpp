@@ -127,12 +127,17 @@ geo::Box3 box_of(const Stage& stage) {
 void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>& points) {
   constexpr int directions = 256;  // evenly over the sphere: along a spiral
   std::vector<Vec3> all = points;
+  const auto beyond = [&](const Vec3& p) { return stage.cutaway ? (p - stage.cutaway->point).dot(stage.cutaway->normal) : -1.0; };
   std::vector<char> taken(stage.surface.vertices.size(), 0);
   for (const auto& triangle : stage.surface.triangles)
-    for (const auto v : triangle)
-      if (!std::exchange(taken[v], 1)) all.push_back(stage.surface.vertices[v]);
-  for (const auto& s : stage.sticks) all.push_back(s.a), all.push_back(s.b);
-  for (Vec3& p : all) p = p.cwiseMax(frame.lo).cwiseMin(frame.hi);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &p = stage.surface.vertices[triangle[k]], &next = stage.surface.vertices[triangle[(k + 1) % 3]];
+      const double here = beyond(p), there = beyond(next);
+      if (here <= 0 && !std::exchange(taken[triangle[k]], 1)) all.push_back(p);
+      if ((here < 0 && there > 0) || (here > 0 && there < 0)) all.push_back(p + here / (here - there) * (next - p));
+    }
+  const auto within = [&](const Vec3& p) -> Vec3 { return p.cwiseMax(frame.lo).cwiseMin(frame.hi); };
+  for (Vec3& p : all) p = within(p);
   points.assign(directions, Vec3::Zero());
   geo::parallel_for(directions, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -143,7 +148,8 @@ void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>
         if (const double far = way.dot(p); far > farthest) farthest = far, points[k] = p;
       };
       for (const Vec3& p : all) take(p);
-      for (const auto& s : stage.spheres) take((s.center + s.radius * way).cwiseMax(frame.lo).cwiseMin(frame.hi));
+      for (const auto& s : stage.spheres) take(within(s.center + s.radius * way));
+      for (const auto& s : stage.sticks) take(within(s.a + s.radius * way)), take(within(s.b + s.radius * way));
     }
   });
 }

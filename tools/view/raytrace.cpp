@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -122,19 +123,22 @@ class Tracer {
   Tracer& operator=(const Tracer&) = delete;
 
   Color shade(const Vec3& eye, const Vec3& d, Dice& dice) const {
-    double from = 0;
+    double from = 0, until = 1e30;
     bool at_plane = false;
     if (stage_.cutaway) {
-      // The eye may stand in what is cut away: then the ray begins at the plane, or never.
+      // The eye may stand in what is cut away: then the ray begins at the plane, or never. Else it ends there, if it goes there.
       const double height = (eye - stage_.cutaway->point).dot(stage_.cutaway->normal);
       const double rate = d.dot(stage_.cutaway->normal);
       if (height > 0) {
         from = rate < 0 ? -height / rate : 1e30;
         at_plane = rate < 0;
+      } else if (rate > 0) {
+        until = -height / rate;
       }
     }
     const Hit thing = trace(things_, eye, d, 0);  // whole, where the plane cuts it
     Hit skin = trace(surface_, eye, d, from);
+    if (skin.t > until) skin = {};
     Color behind = thing.t < 1e29 ? lit(thing, d, dice) : background(eye, d, dice);
     if (at_plane && stage_.section && winding(eye + from * d, d) > 0 && from <= thing.t) {
       Hit cap;
@@ -390,12 +394,11 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
   const double azimuth = camera.azimuth * pi / 180, elevation = camera.elevation * pi / 180;
   const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation));
   const Vec3 right = Vec3(std::cos(azimuth), -std::sin(azimuth), 0), up = right.cross(forward);
-  const double field = std::tan(17 * pi / 180);  // half the vertical angle of view
+  const double all = std::tan(17 * pi / 180), field = all / camera.zoom;  // half the vertical angle of view; zoomed in, from where all is seen
   const double aspect = double(options.width) / options.height;
   const double room = 0.84;  // share of the picture that is filled; shadows want some
   const std::vector<Vec3> points = to_be_seen(camera, 1 / radius);
-  const double wide = distance_to_see(points, right, forward, room * field * aspect), high = distance_to_see(points, up, forward, room * field);
-  const double distance = std::max(wide, high) / camera.zoom;
+  const double distance = std::max({distance_to_see(points, right, forward, room * all * aspect), distance_to_see(points, up, forward, room * all), 1e-3});
   Vec3 eye = -distance * forward;
   if (!camera.on_box) eye += middle_of_view(points, right, forward, distance) * right + middle_of_view(points, up, forward, distance) * up;
 

@@ -42,11 +42,11 @@ struct Stage {
 };
 
 /// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 shows `points`, as large as they can be seen from
-/// there, in the middle. With `y_up` all that is seen is stood up first: its y goes to z, its z to −y.
+/// there, in the middle; above it less, from where it stands. With `y_up` all that is seen is stood up first: its y goes to z, its z to −y.
 struct Camera {
   double azimuth = 30, elevation = 22, zoom = 1;
   bool y_up = false;
-  bool all_round = false;         ///< from the same distance for every azimuth
+  bool all_round = false;         ///< from the same distance for every azimuth, to 5°
   bool on_box = false;            ///< the box's middle is in the middle
   std::vector<geo::Vec3> points;  ///< within the box
   geo::Box3 box;

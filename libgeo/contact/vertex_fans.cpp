@@ -31,12 +31,12 @@ VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t verti
   });
 }
 
-bool VertexFans::open_out(std::uint32_t v, const std::vector<Front>& fronts, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const {
+bool VertexFans::open_out(std::uint32_t v, const FreshArray<Front>& fronts, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const {
   if (!closed_[v]) return false;
   // Well beyond the rounding of a product of three vectors, over their lengths.
   constexpr double rounding = 1e-13;
   Vec3 n = Vec3::Zero();
-  for (const Link& l : about(v)) n += fronts[l.triangle].normal;
+  for (const Link& l : about(v)) n += fronts[l.triangle].way();
   const double size = n.lpNorm<1>();
   // All go around n the same way, so each turn leaves the half-space behind `across`, which n is parallel to, to the bit, once: between two
   // corners that n sees further apart than rounding could move them.
@@ -45,7 +45,7 @@ bool VertexFans::open_out(std::uint32_t v, const std::vector<Front>& fronts, std
   int turns = 0;
   for (const Link& l : about(v)) {
     const Front& f = fronts[l.triangle];
-    const double front = n.dot(f.normal);
+    const double front = n.dot(f.way());
     if (!(front > rounding * size * f.longest && front > filter_smallest && front < filter_largest && f.longest > filter_smallest)) return false;
     turns += across.dot(at[together[l.from]] - x) < 0 && across.dot(at[together[l.to]] - x) >= 0;
   }
@@ -58,13 +58,14 @@ std::vector<std::uint32_t> VertexFans::find_shut(const std::vector<std::uint8_t>
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     if (changed[t])
       for (const auto v : triangles_[t]) asked[v] = 1;
-  std::vector<Front> fronts(triangles_.size());
+  FreshArray<Front> fronts(triangles_.size());  // of triangles about a vertex that is asked for
   parallel_for(triangles_.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& [a, b, c] = triangles_[t];
       if (!asked[a] && !asked[b] && !asked[c]) continue;
       const Vec3 p = at[together[a]], u = at[together[b]] - p, v = at[together[c]] - p;
-      fronts[t] = {u.cross(v), std::max({u.squaredNorm(), v.squaredNorm(), (v - u).squaredNorm()})};
+      const Vec3 n = u.cross(v);
+      fronts[t] = {{n.x(), n.y(), n.z()}, std::max({u.squaredNorm(), v.squaredNorm(), (v - u).squaredNorm()})};
     }
   });
   parallel_for(size(), 512, [&](std::size_t begin, std::size_t end) {

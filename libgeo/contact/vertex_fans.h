@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/fresh_array.h"
 #include "base/vec.h"
 
 namespace geo {
@@ -47,10 +48,10 @@ class VertexFans {
  private:
   // What a triangle shows of its front: its normal, as long as twice its area, and the square of its longest edge.
   struct Front {
-    Vec3 normal;
-    double longest;
+    double normal[3], longest;
+    Eigen::Map<const Vec3> way() const { return Eigen::Map<const Vec3>(normal); }
   };
-  bool open_out(std::uint32_t v, const std::vector<Front>& fronts, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const;
+  bool open_out(std::uint32_t v, const FreshArray<Front>& fronts, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const;
 
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> first_;

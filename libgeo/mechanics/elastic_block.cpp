@@ -4,7 +4,7 @@
 
 namespace geo {
 
-ElasticBlock::ElasticBlock(const Materials& materials, double dt) {
+ElasticBlock::ElasticBlock(const BlockStrain& strain, const Materials& materials, double dt) : strain_(strain) {
   for (const Material& m : materials.all()) constants_.push_back(elastic_constants(m, dt));
 }
 
@@ -26,21 +26,16 @@ void ElasticBlock::evaluate_run(const PointBlock& block, const MaterialRun& run,
   }
 }
 
-const std::vector<double>& ElasticBlock::evaluate(const MaterialPoints& points, std::size_t block, const std::vector<Vec3>& u, const PointHistory& history,
-                                                  Columns<float>* deformed, double* pull) {
-  const PointBlock& b = points.blocks[block];
-  points.values(block, u, values_);
-  point_gradients(b, values_.data(), gradient_);
+const std::vector<double>& ElasticBlock::evaluate(std::size_t block, const std::vector<Vec3>& u, const PointHistory& history, Columns<float>* deformed, double* pull) {
+  const PointBlock& b = strain_.points().blocks[block];
+  strain_.gradients(block, u, room_, gradient_);
   volume_.assign((b.points.size() + 7) / 8 * 8, 0);
   for (std::size_t i = 0; i < b.points.size(); ++i)
     if (b.points[i].rung != Rung::rigid) volume_[i] = b.points[i].volume;
   if (deformed) deformed->resize(b.points.size());
   energy_.resize(volume_.size());
   for (const MaterialRun& run : b.runs) evaluate_run(b, run, history, deformed);
-  if (pull) {
-    std::fill_n(pull, 4 * b.nodes.size(), 0.0);
-    point_divergence(b, gradient_, pull);
-  }
+  if (pull) strain_.pull(block, gradient_, room_, pull);
   return energy_;
 }
 

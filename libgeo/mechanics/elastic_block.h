@@ -1,25 +1,26 @@
 // Elastic energy and forces of one block of material points.
 #pragma once
 
+#include "mechanics/block_strain.h"
 #include "mechanics/elastic_lanes.h"
-#include "mechanics/material_points.h"
 
 namespace geo {
 
 /// For block after block: what one leaves is room for the next. A point's material decides which of the history it has.
 class ElasticBlock {
  public:
-  explicit ElasticBlock(const Materials& materials, double dt = 1);
+  explicit ElasticBlock(const BlockStrain& strain, const Materials& materials, double dt = 1);
   /// At nodal displacements u. `deformed`, where given: F of its points, less 1; `pull`, where given: Σ stress · shape gradient, four numbers a node of
   /// the block. Returns each point's energy, J; what follows the last one's is zero.
-  const std::vector<double>& evaluate(const MaterialPoints& points, std::size_t block, const std::vector<Vec3>& u, const PointHistory& history, Columns<float>* deformed,
-                                      double* pull);
+  const std::vector<double>& evaluate(std::size_t block, const std::vector<Vec3>& u, const PointHistory& history, Columns<float>* deformed, double* pull);
 
  private:
   void evaluate_run(const PointBlock& block, const MaterialRun& run, const PointHistory& history, Columns<float>* deformed);
+  const BlockStrain& strain_;
   std::vector<ElasticConstants> constants_;  // per material
+  BlockStrain::Room room_;
   Columns<double> gradient_;
-  std::vector<double> values_, volume_, energy_;
+  std::vector<double> volume_, energy_;
   struct {
     Columns<double> gradient;
     std::vector<double> energy;

@@ -11,6 +11,18 @@
 
 namespace geo {
 
+namespace {
+
+// Of what is nearly incompressible the pressure has what rounding makes of strain many times over, so that is done in double precision as well.
+BlockStrain strain_of(const Materials& materials, const MaterialPoints& points, const std::vector<Vec3>& position, const std::vector<std::uint32_t>& component,
+                      const std::vector<Vec3>& u, double accuracy) {
+  constexpr double loose = 0.005, stiffer = 50;
+  const bool exact = accuracy < loose || materials.any([](const Material& m) { return m.lambda() + m.volume_term > stiffer * m.mu(); });
+  return exact ? BlockStrain(points) : BlockStrain(points, position, component, u);
+}
+
+}  // namespace
+
 // Parts of the graph that contact, or the penalty of mueller04, makes depend on each other.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() const {
   auto pairs = rows_.couples(s_.part_);
@@ -22,7 +34,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() con
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
     : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), rows_(env.contact, state.displacement),
       parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
-      relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
+      strain_(strain_of(solid.materials_, solid.points_, solid.position_, solid.part_, state.displacement, accuracy)), relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
   std::vector<double> keep;  // per material
   for (const Material& m : s_.materials_.all()) {
     keep.push_back(1 / (1 + m.damping * dt));
@@ -42,14 +54,12 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
   const bool viscous = s_.materials_.any([](const Material& m) { return m.viscosity > 0; });
   if (viscous) before_.resize(weight_.size());
   parallel_for(weight_.size(), 4, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> values;
+    BlockStrain::Room room;
     for (std::size_t b = begin; b < end; ++b) {
       const auto& points = s_.points_.blocks[b].points;
       weight_[b].assign((points.size() + 7) / 8 * 8, 0);
       for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
-      if (!viscous) continue;
-      s_.points_.values(b, state.displacement, values);
-      point_gradients(s_.points_.blocks[b], values.data(), before_[b]);
+      if (viscous) strain_.gradients(b, state.displacement, room, before_[b]);
     }
   });
 }
@@ -97,11 +107,11 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()), elastic_.resize(parts_.count());
   std::vector<double> elastic(parts_.count(), 0), contact(parts_.count(), 0);
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    ElasticBlock work(s_.materials_, dt_);
+    ElasticBlock work(strain_, s_.materials_, dt_);
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t b = blocks[at];
       const PointHistory history{relaxed_.empty() ? nullptr : &relaxed_[b], before_.empty() ? nullptr : &before_[b]};
-      const auto& of_point = work.evaluate(points, b, u, history, force ? &gradient_[b] : nullptr, force ? &pull_[4 * points.part(b)] : nullptr);
+      const auto& of_point = work.evaluate(b, u, history, force ? &gradient_[b] : nullptr, force ? &pull_[4 * points.part(b)] : nullptr);
       double* const energy = &energy_[parts_.block_first(b)];
       std::fill_n(energy, parts_.of_block(b).size(), 0.0);
       for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) energy[parts_.slot(b, points.blocks[b], i)] += of_point[i];

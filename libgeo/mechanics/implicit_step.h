@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "mechanics/block_strain.h"
 #include "mechanics/coarse_motion.h"
 #include "mechanics/contact_rows.h"
 #include "mechanics/patch_motion.h"
@@ -58,6 +59,7 @@ class ImplicitStep {
   std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;
   std::vector<Moduli> moduli_;  // per material, of the preconditioner
+  BlockStrain strain_;
   std::vector<Columns<double>> relaxed_;        // per block: of plastic strain, where there is any
   std::vector<Columns<double>> before_;         // per block: ∇u at the start, where there is viscosity
   std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)

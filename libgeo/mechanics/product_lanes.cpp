@@ -166,14 +166,79 @@ void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float
   }
 }
 
+// Of points side by side what columns have one after the other, times their units, on top of what all have; and back.
+HWY_INLINE void to_columns(const float* HWY_RESTRICT numbers, const float* HWY_RESTRICT unit, const double* HWY_RESTRICT carried, std::size_t first, std::size_t count,
+                           double* const* HWY_RESTRICT out) {
+  const Lanes<float> d;
+  HWY_ALIGN float rows[4 * width<float>];
+  for (std::size_t i = 0; i < count; i += width<float>) {
+    const auto by = hn::LoadU(d, unit + first + i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto number = [&](std::size_t r) HWY_ATTR { return hn::Mul(by, hn::LoadU(d, numbers + batch * (3 * c + r) + i)); };
+      hn::StoreInterleaved4(number(0), number(1), number(2), hn::Zero(d), d, rows);
+      double* const to = out[c] + 4 * (first + i);
+      for (std::size_t k = 0; k < width<float>; ++k)
+        for (std::size_t r = 0; r < 4; ++r) to[4 * k + r] = unit[first + i + k] > 0 ? double(rows[4 * k + r]) + carried[4 * c + r] : 0;
+    }
+  }
+}
+HWY_INLINE void from_columns(const double* const* HWY_RESTRICT columns, const float* HWY_RESTRICT unit, std::size_t first, std::size_t count, float* HWY_RESTRICT numbers) {
+  const Lanes<float> d;
+  HWY_ALIGN float rows[4 * width<float>];
+  for (std::size_t i = 0; i < count; i += width<float>) {
+    const auto by = hn::LoadU(d, unit + first + i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 4 * width<float>; ++k) rows[k] = float(columns[c][4 * (first + i) + k]);
+      V<float> x, y, z, none;
+      hn::LoadInterleaved4(d, rows, x, y, z, none);
+      hn::StoreU(hn::Mul(by, x), d, numbers + batch * (3 * c) + i);
+      hn::StoreU(hn::Mul(by, y), d, numbers + batch * (3 * c + 1) + i);
+      hn::StoreU(hn::Mul(by, z), d, numbers + batch * (3 * c + 2) + i);
+    }
+  }
+}
+
+void RoundedGradients(const PointBlock& block, const float* HWY_RESTRICT values, const double* HWY_RESTRICT carried, double* const* HWY_RESTRICT out) {
+  HWY_ALIGN float numbers[9 * batch];
+  for (std::size_t first = 0; first < block.unit.size(); first += batch) {
+    const std::size_t count = std::min(batch, block.unit.size() - first);
+    for (std::size_t i = 0; i < count; i += 4) gradients(block, (first + i) / 4, values, numbers + i);
+    to_columns(numbers, block.unit.data(), carried, first, count, out);
+  }
+}
+
+void RoundedDivergence(const PointBlock& block, const double* const* HWY_RESTRICT stress, float* HWY_RESTRICT out) {
+  HWY_ALIGN float numbers[9 * batch];
+  for (std::size_t first = 0; first < block.unit.size(); first += batch) {
+    const std::size_t count = std::min(batch, block.unit.size() - first);
+    from_columns(stress, block.unit.data(), first, count, numbers);
+    for (std::size_t i = 0; i < count; i += 4) divergence(block, (first + i) / 4, numbers + i, out);
+  }
+}
+
 }  // namespace geo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(Stiffness);
+HWY_EXPORT(RoundedGradients);
+HWY_EXPORT(RoundedDivergence);
 
 void multiply_stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out) { HWY_DYNAMIC_DISPATCH(Stiffness)(block, modes, values, out); }
+
+void rounded_gradients(const PointBlock& block, const float* values, const Mat3& carried, Columns<double>& out) {
+  out.resize(block.points.size());
+  double* const columns[3] = {out.column[0].data(), out.column[1].data(), out.column[2].data()};
+  double four[12] = {};
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) four[4 * c + r] = carried(r, c);
+  HWY_DYNAMIC_DISPATCH(RoundedGradients)(block, values, four, columns);
+}
+void rounded_divergence(const PointBlock& block, const Columns<double>& stress, float* out) {
+  const double* const columns[3] = {stress.column[0].data(), stress.column[1].data(), stress.column[2].data()};
+  HWY_DYNAMIC_DISPATCH(RoundedDivergence)(block, columns, out);
+}
 
 }  // namespace geo
 #endif

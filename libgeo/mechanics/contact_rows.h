@@ -23,6 +23,8 @@ class ContactRows {
   void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen, std::vector<double>& sum);
   /// Takes over what rows of parts that are chosen do, each at the displacements of the last add_energy() that it was chosen in.
   void push(std::span<const std::uint32_t> part, const std::vector<char>& chosen);
+  /// Whether a row of a node does something, or has done so since the step began.
+  bool acts_on(std::size_t node) const { return !lists_[0].of_node(node).empty() || !lists_[1].of_node(node).empty(); }
   /// What a node gets of that, N.
   Vec3 force_at(std::size_t node) const;
   /// ∂²E/∂u² p, by the curvatures of the last push(); then what a node has of it, until push() is called again.

@@ -46,7 +46,7 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     if (!env.load.empty()) load_[i] += env.load[i];
     if (!is_fixed(env, i)) target_[i] += dt * keep[s_.materials_.number(i)] * state.velocity[i];
   }
-  go_on();
+  find_pieces();
   // Drag along the ground: lagged, from where the step began.
   if (env.ground)
     for (std::size_t i = 0; i < n_; ++i)
@@ -61,42 +61,6 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
       for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
       if (viscous) strain_.gradients(b, state.displacement, room, before_[b]);
     }
-  });
-}
-
-// Where Newton begins: nodes go on as they are, and parts whose accelerations are much the same from node to node, as those of what falls or swings, accelerate
-// as in the step before, or, where that is unknown, as they would on their own. Other accelerations are mostly of what trembles, which goes on otherwise.
-void ImplicitStep::go_on() {
-  constexpr double alike = 0.8;  // of squares
-  u_ = target_;
-  const bool known = state_.acceleration.size() == n_;
-  std::vector<Vec3> more(n_, Vec3::Zero());
-  parts_.each_node([&](std::size_t i) {
-    const Vec3 way = dt_ * dt_ * (known ? state_.acceleration[i] : Vec3(load_[i] / s_.mass_[i]));
-    if (!is_fixed(env_, i) && way.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i]) more[i] = way;  // else it is too far from anything
-  });
-  // The squares that the affine field nearest to them has, of all.
-  std::vector<double> mass, squares;
-  std::vector<Vec3> middle, mean;
-  std::vector<Mat3> spread, slope;
-  const auto m = [&](std::size_t i) { return is_fixed(env_, i) ? 0.0 : s_.mass_[i]; };
-  const auto arm = [&](std::size_t i) -> Vec3 { return s_.position_[i] - middle[parts_.of(i)]; };
-  parts_.sums(mass, 0.0, m);
-  parts_.sums(middle, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return m(i) * s_.position_[i]; });
-  parts_.sums(mean, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return m(i) * more[i]; });
-  parts_.sums(squares, 0.0, [&](std::size_t i) { return m(i) * more[i].squaredNorm(); });
-  for (std::size_t p = 0; p < mass.size(); ++p)
-    if (mass[p] > 0) middle[p] /= mass[p], mean[p] /= mass[p];
-  parts_.sums(spread, Mat3(Mat3::Zero()), [&](std::size_t i) -> Mat3 { return m(i) * arm(i) * arm(i).transpose(); });
-  parts_.sums(slope, Mat3(Mat3::Zero()), [&](std::size_t i) -> Mat3 { return m(i) * more[i] * arm(i).transpose(); });
-  std::vector<char> together(mass.size());
-  for (std::size_t p = 0; p < mass.size(); ++p) {
-    const Mat3 firm = spread[p] + 1e-9 * spread[p].trace() * Mat3::Identity();
-    const double affine = spread[p].trace() > 0 ? (slope[p] * firm.inverse()).cwiseProduct(slope[p]).sum() : 0;
-    together[p] = mass[p] * mean[p].squaredNorm() + affine > alike * squares[p];
-  }
-  parts_.each_node([&](std::size_t i) {
-    if (together[parts_.of(i)]) u_[i] += more[i];
   });
 }
 
@@ -148,20 +112,6 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   }
 }
 
-// Internal forces do not change the mean motion of a part that nothing holds: neither must rounding or an unfinished solve.
-// The direction takes such a part to where inertia and loads alone bring its middle.
-void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
-  if (!env_.contact.empty()) return;
-  std::vector<double> held, mass;
-  std::vector<Vec3> mean;
-  parts_.most(held, [&](std::size_t i) { return is_fixed(env_, i) || (env_.ground && (drag_[i] > 0 || depth(env_, i, s_.position_[i] + u_[i]) > 0)) ? 1.0 : 0.0; });
-  parts_.sums(mass, 0.0, [&](std::size_t i) { return s_.mass_[i]; });
-  parts_.sums(mean, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return s_.mass_[i] * (u_[i] + direction[i] - target_[i]) - dt_ * dt_ * load_[i]; });
-  parts_.each_node([&](std::size_t i) {
-    if (const auto p = parts_.of(i); held[p] == 0) direction[i] -= mean[p] / mass[p];
-  });
-}
-
 // Elastic forces at u_, where evaluate() was asked last, become all that acts on nodes; `elastic` keeps them.
 void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic) {
   parts_.each_node([&](std::size_t i) { elastic[i] = force[i]; });
@@ -179,47 +129,13 @@ void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elast
   });
 }
 
-// How much of the way back to where the step began Newton had better go before it begins: after an impact or a cut, or where it is pushed, a part does not go
-// on as before. By a parabola through the potential here, its slope there, and the potential where the step began. That is asked only of parts for which
-// forces say that it could have less there, by how far they pull and what inertia alone has against it.
-std::vector<double> ImplicitStep::way_back(const std::vector<Vec3>& force, const std::vector<double>& value) {
-  constexpr double least = 0.2;  // less is not worth the evaluation
-  std::vector<double> pull, inert, at_start, share(parts_.count(), 0);
-  std::vector<char> asked(parts_.count());
-  const auto back = [&](std::size_t i) -> Vec3 { return state_.displacement[i] - u_[i]; };
-  parts_.sums(pull, 0.0, [&](std::size_t i) { return back(i).dot(force[i]); });
-  parts_.sums(inert, 0.0, [&](std::size_t i) { return 0.5 * s_.mass_[i] / (dt_ * dt_) * back(i).squaredNorm(); });
-  for (std::size_t p = 0; p < asked.size(); ++p) asked[p] = pull[p] > inert[p];
-  parts_.choose(asked);
-  evaluate(state_.displacement, at_start, nullptr);
-  for (std::size_t p = 0; p < asked.size(); ++p) {
-    if (!asked[p]) continue;
-    const double bend = 2 * (at_start[p] - value[p] + pull[p]), best = bend > pull[p] ? pull[p] / bend : 1;
-    if (best > least) share[p] = best > 1 - least ? 1 : best;
-  }
-  return share;
-}
-
 bool ImplicitStep::run(StepReport& report) {
   const std::size_t parts = parts_.count();
   std::vector<Vec3> force(n_), elastic(n_), direction(n_), next(n_), trial;
   std::vector<double> value, tried, moved(parts, 1e300), longest(parts, 0), left(parts, 0), step, more, along;
   std::vector<char> active(parts, 1), wanted;
   const auto any = [](const std::vector<char>& of) { return std::find(of.begin(), of.end(), 1) != of.end(); };
-  evaluate(u_, value, &force);
-  add_forces(force, elastic);
-  const std::vector<double> back = way_back(force, value);
-  wanted.assign(parts, 0);
-  for (std::size_t p = 0; p < parts; ++p) wanted[p] = back[p] > 0;
-  if (any(wanted)) {
-    parts_.choose(wanted);
-    parts_.each_node([&](std::size_t i) {
-      const double share = back[parts_.of(i)];
-      u_[i] = share == 1 ? state_.displacement[i] : Vec3((1 - share) * u_[i] + share * state_.displacement[i]);
-    });
-    evaluate(u_, value, &force);
-    add_forces(force, elastic);
-  }
+  start(value, force, elastic);
   trial = u_;
   for (int newton = 0; newton < 20; ++newton) {
     // The stiffness of points is used again while they have hardly strained since.
@@ -246,11 +162,13 @@ bool ImplicitStep::run(StepReport& report) {
       // solve has left, too, the direction is taken as it is: it changes the potential by too little to tell.
       if (longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_) active[p] = wanted[p] = 0, elastic_[p] += more[p];
     }
-    parts_.each_node([&](std::size_t i) { trial[i] = u_[i] + direction[i]; });
+    const std::vector<RigidMotion> turns = turning_by(direction);
+    const auto go = [&](std::size_t i, double share) { trial[i] = u_[i] + share * direction[i] + turns[piece_of(i)].bend(s_.position_[i] + u_[i], share); };
+    parts_.each_node([&](std::size_t i) { go(i, 1); });
     for (int halvings = 0; any(wanted); ++halvings) {
       parts_.choose(wanted);
       if (halvings == 0) parts_.sums(along, 0.0, [&](std::size_t i) { return force[i].dot(direction[i]); });
-      if (halvings > 0) parts_.each_node([&](std::size_t i) { trial[i] = u_[i] + step[parts_.of(i)] * direction[i]; });
+      if (halvings > 0) parts_.each_node([&](std::size_t i) { go(i, step[parts_.of(i)]); });
       evaluate(trial, tried, &next);
       for (std::size_t p = 0; p < parts; ++p) {
         if (!wanted[p]) continue;

@@ -10,6 +10,7 @@
 #include "mechanics/coarse_motion.h"
 #include "mechanics/contact_rows.h"
 #include "mechanics/patch_motion.h"
+#include "mechanics/rigid_motion.h"
 #include "mechanics/solid.h"
 #include "mechanics/step_parts.h"
 #include "mechanics/stiffness_lanes.h"
@@ -31,8 +32,9 @@ class ImplicitStep {
   void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
   void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
+  void start(std::vector<double>& value, std::vector<Vec3>& force, std::vector<Vec3>& elastic);
   void go_on();
-  std::vector<double> way_back(const std::vector<Vec3>& force, const std::vector<double>& value);
+  void go_back(const std::vector<Vec3>& force, const std::vector<double>& value, std::vector<char>& moved);
   void linearise();
   void precondition();
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature);
@@ -45,6 +47,11 @@ class ImplicitStep {
   void most(const std::vector<Vec3>& moved, std::vector<double>& most) const;
   double squared_in_spacings(const std::vector<Vec3>& moved, std::size_t node) const { return moved[node].squaredNorm() / (s_.spacing_[node] * s_.spacing_[node]); }
   void take_roots(std::vector<double>& squares) const;  // of parts at work
+  // Pieces that nothing holds.
+  void find_pieces();
+  std::uint32_t piece_of(std::size_t node) const { return parts_.piece_of_nodes()[node]; }
+  std::vector<Vec3> gone_round(std::vector<char>& turns) const;
+  std::vector<RigidMotion> turning_by(const std::vector<Vec3>& direction) const;
   void keep_momentum(std::vector<Vec3>& direction) const;
   double trusted() const { return std::min(accuracy_, 0.01); }
   Vec3 tangential(const Vec3& d) const { return d - env_.ground_normal.dot(d) * env_.ground_normal; }
@@ -56,6 +63,12 @@ class ImplicitStep {
   std::size_t n_;
   ContactRows rows_;
   StepParts parts_;
+  struct Piece {
+    std::uint32_t part = 0;
+    double spacing = 1e300;  // the least of its nodes'
+  };
+  std::vector<Piece> pieces_;
+  std::vector<Freedom> freedom_;  // of pieces: what holds or joins them, but for contact
   std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;
   std::vector<Moduli> moduli_;  // per material, of the preconditioner

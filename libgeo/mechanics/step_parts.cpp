@@ -12,9 +12,8 @@ constexpr std::uint32_t most_a_run = 512;
 
 StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
                      std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled)
-    : all_patches_(patches), of_(component.size(), 0), node_(component.size()) {
+    : all_patches_(patches), of_(component.size(), 0), piece_(of_), node_(component.size()) {
   Joined joined(components);
-  for (const auto& [a, b] : coupled) joined.join(a, b);
   std::vector<char> of_one(points.blocks.size());
   parallel_for(of_one.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -29,9 +28,16 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
     for (std::size_t i = 0; i < block.points.size(); ++i)
       for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) joined.join(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
   }
+  // Of each node, the number of what it is joined to, in the order of their first components.
   std::vector<std::uint32_t> number(components, 0);
-  for (std::uint32_t c = 0; c < components; ++c) number[c] = joined[c] == c ? static_cast<std::uint32_t>(count_++) : number[joined[c]];
-  for (std::size_t i = 0; i < of_.size(); ++i) of_[i] = number[component[i]];
+  const auto number_all = [&](std::size_t& count, std::vector<std::uint32_t>& of) {
+    count = 0;
+    for (std::uint32_t c = 0; c < components; ++c) number[c] = joined[c] == c ? static_cast<std::uint32_t>(count++) : number[joined[c]];
+    for (std::size_t i = 0; i < of.size(); ++i) of[i] = number[component[i]];
+  };
+  number_all(pieces_, piece_);
+  for (const auto& [a, b] : coupled) joined.join(a, b);
+  number_all(count_, of_);
   first_.assign(count_ + 1, 0);
   for (const auto p : of_) ++first_[p + 1];
   for (std::size_t p = 0; p < count_; ++p) first_[p + 1] += first_[p];

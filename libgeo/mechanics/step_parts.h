@@ -23,6 +23,9 @@ class StepParts {
   std::uint32_t of(std::size_t node) const { return of_[node]; }
   /// The same of all nodes.
   std::span<const std::uint32_t> of_nodes() const { return of_; }
+  /// What is joined without what `coupled` says: how many of these, and each node's.
+  std::size_t pieces() const { return pieces_; }
+  const std::vector<std::uint32_t>& piece_of_nodes() const { return piece_; }
   /// Parts that a block's points belong to, ascending; empty: it has no nodes.
   std::span<const std::uint32_t> of_block(std::size_t block) const { return {&block_part_[block_first_[block]], block_first_[block + 1] - block_first_[block]}; }
   /// Number of a block's first part in a list of all blocks' parts; that list's length after the last.
@@ -93,8 +96,8 @@ class StepParts {
   }
 
   const NodePatches& all_patches_;
-  std::size_t count_ = 0, nodes_at_work_ = 0;
-  std::vector<std::uint32_t> of_, node_, first_;  // per node; nodes by part; per part and one more: its first there
+  std::size_t count_ = 0, pieces_ = 0, nodes_at_work_ = 0;
+  std::vector<std::uint32_t> of_, piece_, node_, first_;  // per node, its part and piece; nodes by part; per part and one more: its first there
   std::vector<std::uint32_t> block_part_;
   std::vector<std::size_t> block_first_;
   std::vector<char> chosen_;

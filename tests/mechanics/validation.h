@@ -22,6 +22,7 @@ std::vector<Finding> tension(int size);
 std::vector<Finding> cantilever(int size);
 std::vector<Finding> frequency(int size);
 std::vector<Finding> free_fall(int size);
+std::vector<Finding> spin(int size);
 std::vector<Finding> slit_bar(int size);
 std::vector<Finding> notched_bar(int size);
 std::vector<Finding> hertz(int size);

@@ -59,6 +59,8 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
     thread_local std::vector<double> weight;
     thread_local std::vector<std::uint64_t> used;  // a bit a node
     weight.resize(std::max(weight.size(), solid.size()), 0), used.resize(std::max(used.size(), (solid.size() + 63) / 64), 0);
+    if (std::any_of(used.begin(), used.end(), [](auto bits) { return bits != 0; }))  // a row was given up when there was no memory for it
+      std::fill(used.begin(), used.end(), 0), std::fill(weight.begin(), weight.end(), 0.0);
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);

@@ -335,14 +335,16 @@ class Tracer {
   double scale_ = 1, floor_ = 0;
 };
 
+// z is up for rays.
+Vec3 stood_up(const Vec3& v, bool y_up) { return y_up ? Vec3(v.x(), -v.z(), v.y()) : v; }
+
 // Rays are of single precision: what is drawn goes to the origin, and is made about as large as 1.
 Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
-  const auto stand = [&](const Vec3& v) { return y_up ? Vec3(v.x(), -v.z(), v.y()) : v; };
-  const auto place = [&](Vec3& p) { p = stand((p - middle) * scale); };
+  const auto place = [&](Vec3& p) { p = stood_up((p - middle) * scale, y_up); };
   for (Vec3& p : stage.surface.vertices) place(p);
   for (Sphere& s : stage.spheres) place(s.center), s.radius *= scale;
   for (Stick& s : stage.sticks) place(s.a), place(s.b), s.radius *= scale;
-  if (stage.cutaway) place(stage.cutaway->point), stage.cutaway->normal = stand(stage.cutaway->normal);
+  if (stage.cutaway) place(stage.cutaway->point), stage.cutaway->normal = stood_up(stage.cutaway->normal, y_up);
   if (stage.ground_level) *stage.ground_level = (*stage.ground_level - middle[y_up ? 1 : 2]) * scale;
   return stage;
 }
@@ -351,10 +353,7 @@ Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
 std::vector<Vec3> to_be_seen(const Camera& camera, double scale) {
   if (camera.points.empty()) return {-Vec3::Ones(), Vec3::Ones()};
   std::vector<Vec3> points;
-  for (const Vec3& p : camera.points) {
-    const Vec3 at = scale * (p - camera.box.center());
-    points.push_back(camera.y_up ? Vec3(at.x(), -at.z(), at.y()) : at);
-  }
+  for (const Vec3& p : camera.points) points.push_back(stood_up(scale * (p - camera.box.center()), camera.y_up));
   const std::size_t count = points.size();
   constexpr int turns = 72;
   for (int turn = 1; turn < turns && camera.all_round; ++turn)

@@ -42,7 +42,9 @@ void BlockStrain::gradients(std::size_t block, const std::vector<Vec3>& u, Room&
   const PointBlock& b = points_.blocks[block];
   if (!loose(block)) {
     points_.values(block, u, room.values);
-    return point_gradients(b, room.values.data(), out);
+    point_gradients(b, room.values.data(), out);
+    for (auto& column : out.column) std::fill(column.begin() + 4 * std::ptrdiff_t(b.points.size()), column.end(), 0.0);
+    return;
   }
   const Mat3& carried = motion_[block].gradient;
   room.few.resize(std::max(room.few.size(), 4 * b.nodes.size()));

@@ -27,6 +27,7 @@ class BlockStrain {
   BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& first);
 
   const MaterialPoints& points() const { return points_; }
+  /// At the points of a block, in order; what stands beside the last is zero.
   void gradients(std::size_t block, const std::vector<Vec3>& u, Room& room, Columns<double>& out) const;
   /// Σ stress · shape gradient, four numbers a node of the block.
   void pull(std::size_t block, const Columns<double>& stress, Room& room, double* out) const;

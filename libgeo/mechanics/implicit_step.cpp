@@ -71,7 +71,8 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()), elastic_.resize(parts_.count());
   std::vector<double> elastic(parts_.count(), 0), contact(parts_.count(), 0);
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    ElasticBlock work(strain_, s_.materials_, dt_);
+    thread_local ElasticBlock::Room room;  // a hundred bytes a point: too many to ask for, and to clear, block by block
+    ElasticBlock work(room, strain_, s_.materials_, dt_);
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t b = blocks[at];
       const PointHistory history{relaxed_.empty() ? nullptr : &relaxed_[b], before_.empty() ? nullptr : &before_[b]};

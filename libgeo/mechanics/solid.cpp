@@ -127,7 +127,8 @@ double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force
   std::vector<double> energy(points_.blocks.size(), 0), pull(force ? 4 * points_.parts() : 0);
   const BlockStrain strain(points_);
   parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
-    ElasticBlock work(strain, materials_);
+    ElasticBlock::Room room;
+    ElasticBlock work(room, strain, materials_);
     for (std::size_t b = begin; b < end; ++b) {
       const auto& of_point = work.evaluate(b, u, {relaxed.empty() ? nullptr : &relaxed[b], nullptr}, nullptr, force ? &pull[4 * points_.part(b)] : nullptr);
       energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);

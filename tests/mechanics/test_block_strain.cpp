@@ -99,7 +99,8 @@ TEST_CASE("forces in single precision are those of the energies beside them", "[
     const Affine affine = any_affine(random);
     const auto waves = any_waves(random, 0.1), way = any_waves(random, 0.1);
     const BlockStrain loose(points, body.nodes.position, whole, field(body, affine));
-    ElasticBlock block(loose, Materials(steel()));
+    ElasticBlock::Room room;
+    ElasticBlock block(room, loose, Materials(steel()));
     // Two places on either side, and the force between.
     const auto at = [&](double t) { return field(body, [&](const Vec3& x) -> Vec3 { return affine(x) + waves(x) + t * way(x); }); };
     constexpr double step = 1e-3;

@@ -1,6 +1,7 @@
 #include "mechanics/block_strain.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/parallel.h"
 #include "mechanics/product_lanes.h"

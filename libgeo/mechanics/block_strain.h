@@ -1,8 +1,6 @@
 // ∇u at the points of blocks, and what their stresses pull nodes by.
 #pragma once
 
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "mechanics/material_points.h"
@@ -12,7 +10,7 @@ namespace geo {
 
 /// In double precision; or, to a loose accuracy, in single precision from the 16 bits that products take, with half the memory to read and four points
 /// side by side. Then blocks have in double the affine motion that they had at first, and the rest is about that: what has turned has no strain from
-/// rounding, and a strain about it is off by some hundred-thousandths of itself. Energies are still those of the forces.
+/// rounding, and a strain about it is off by some ten-thousandths of itself, at most. Energies are still those of the forces.
 class BlockStrain {
  public:
   /// Of one thread, used block after block.

@@ -14,7 +14,7 @@ bool goes_round(const RigidMotion& motion, double spacing) { return 0.5 * motion
 
 }  // namespace
 
-// The nodal discretisation's points do not all know a rotation from a strain: then pieces keep what was of their turn in potential alone.
+// Where a node of the nodal discretisation sees too little to know a rotation from a strain, its piece turns as the potential has it, and is not told to.
 void ImplicitStep::find_pieces() {
   pieces_.resize(parts_.pieces()), freedom_.assign(parts_.pieces(), Freedom::way_and_turn);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -22,7 +22,7 @@ void ImplicitStep::find_pieces() {
     piece.part = parts_.of(i), piece.spacing = std::min(piece.spacing, s_.spacing_[i]);
     Freedom& freedom = freedom_[piece_of(i)];
     if (is_fixed(env_, i)) freedom = Freedom::none;
-    else if (freedom == Freedom::way_and_turn && !s_.galerkin_ && s_.rows_.rung(i) == Rung::regularised) freedom = Freedom::way;
+    else if (freedom == Freedom::way_and_turn && !s_.galerkin_ && s_.rows_.rung(i) != Rung::full) freedom = Freedom::way;
   }
 }
 

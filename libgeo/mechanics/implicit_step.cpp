@@ -155,16 +155,19 @@ bool ImplicitStep::run(StepReport& report) {
     parts_.sums(more, 0.0, [&](std::size_t i) {
       return direction[i].dot(0.5 * force[i] - elastic[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * direction[i]);
     });
+    const std::vector<RigidMotion> turns = turning_by(direction);
+    std::vector<char> turning(parts, 0);
+    for (std::size_t q = 0; q < turns.size(); ++q)
+      if (!turns[q].turning.isZero(0)) turning[pieces_[q].part] = 1;
     wanted = active, step.assign(parts, 1);
     for (std::size_t p = 0; p < parts; ++p) {
       if (!active[p]) continue;
       if (!std::isfinite(longest[p])) return false;
       // What is left of a direction grows with its square, or with what the stiffness is behind. Where that is less than the accuracy, and what the
-      // solve has left, too, the direction is taken as it is: it changes the potential by too little to tell.
-      if (longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_) active[p] = wanted[p] = 0, elastic_[p] += more[p];
+      // solve has left, too, the direction is taken as it is: it changes the potential by too little to tell. Not so one that turns a piece, of which rounding may strain what is stiff.
+      if (!turning[p] && longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_) active[p] = wanted[p] = 0, elastic_[p] += more[p];
     }
-    const std::vector<RigidMotion> turns = turning_by(direction);
-    const auto go = [&](std::size_t i, double share) { trial[i] = u_[i] + share * direction[i] + turns[piece_of(i)].bend(s_.position_[i] + u_[i], share); };
+    const auto go = [&](std::size_t i, double share) { trial[i] = u_[i] + share * direction[i] + turns[piece_of(i)].bend(s_.position_[i] + u_[i], direction[i], share); };
     parts_.each_node([&](std::size_t i) { go(i, 1); });
     for (int halvings = 0; any(wanted); ++halvings) {
       parts_.choose(wanted);

@@ -43,11 +43,12 @@ RigidMotion motion_of(const Sums& sums, const Vec3& base, Freedom freedom) {
 
 }  // namespace
 
-Vec3 RigidMotion::bend(const Vec3& at, double share) const {
+Vec3 RigidMotion::bend(const Vec3& at, const Vec3& displacement, double share) const {
   const double size = turning.norm(), angle = share * size;
   if (!(size > 0)) return Vec3::Zero();
-  const Vec3 across = turning.cross(at - middle) / size;
-  return (std::sin(angle) - angle) * across + (1 - std::cos(angle)) * turning.cross(across) / size;
+  const Vec3 axis = turning / size;
+  const auto across = [&](const Vec3& arm, double sine) -> Vec3 { return sine * axis.cross(arm) + (1 - std::cos(angle)) * axis.cross(axis.cross(arm)); };
+  return across(at - middle, std::sin(angle) - angle) + across(share * (displacement - straight(at)), std::sin(angle));
 }
 
 std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& piece, const std::vector<Freedom>& freedom, const std::vector<double>& mass,

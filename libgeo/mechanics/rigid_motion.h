@@ -20,8 +20,8 @@ struct RigidMotion {
   Vec3 displacement(const Vec3& at) const { return way + (turn * (at - middle) - (at - middle)); }
   /// by the way and straight on as turning begins,
   Vec3 straight(const Vec3& at) const { return way + turning.cross(at - middle); }
-  /// and what going round by `share` of turning adds to straight on by as much.
-  Vec3 bend(const Vec3& at, double share) const;
+  /// and what going round by `share` of turning adds to a way straight on, that much of a displacement: what it has besides straight() is turned, too.
+  Vec3 bend(const Vec3& at, const Vec3& displacement, double share) const;
 };
 
 /// What is known of a piece's motion.

@@ -8,7 +8,7 @@ if(KERF_SHARED)
   install(TARGETS geo_shared EXPORT kerf-targets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT dev)
 endif()
-install(DIRECTORY libgeo/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf COMPONENT dev FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY libgeo/include/kerf DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.h")
 install(EXPORT kerf-targets NAMESPACE kerf:: DESTINATION ${KERF_CMAKE_DIR} COMPONENT dev)
 configure_package_config_file(cmake/kerf-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/kerf-config.cmake INSTALL_DESTINATION ${KERF_CMAKE_DIR})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/kerf-config-version.cmake COMPATIBILITY SameMinorVersion)

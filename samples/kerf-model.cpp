@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/spelling.h"
-#include "io/front_file.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
-#include "io/volume_file.h"
-#include "surface/shapes.h"
+#include <kerf/error.h>
+#include <kerf/front_file.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
+#include <kerf/shapes.h>
 #include "tool.h"
 
 int main(int argc, char** argv) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mechanics/contact_rows.h"
+#include "mechanics/terms/contact_rows.h"
 
 namespace geo {
 

@@ -2,15 +2,12 @@
 #include <algorithm>
 #include <iostream>
 
-#include "crack/advance.h"
-#include "crack/decimate.h"
-#include "crack/remesh.h"
-#include "crack/roughen.h"
-#include "crack/sheet.h"
-#include "io/front_file.h"
-#include "io/stream.h"
+#include <kerf/crack.h>
+#include <kerf/crack_edits.h>
+#include <kerf/front_file.h>
+#include <kerf/stream.h>
 #include "model.h"
-#include "surface/pieces.h"
+#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace {

@@ -1,10 +1,10 @@
 // kerf-graph: visibility graph, neighbourhoods and binding over nodes and their surface.
 #include <sstream>
 
-#include "body/body.h"
-#include "io/body_file.h"
-#include "io/node_file.h"
-#include "io/stream.h"
+#include <kerf/body.h>
+#include <kerf/body_file.h>
+#include <kerf/node_file.h>
+#include <kerf/stream.h>
 #include "model.h"
 #include "tool.h"
 #include "version.h"

@@ -6,11 +6,11 @@
 #include "info/ask.h"
 #include "info/diff.h"
 #include "info/files.h"
-#include "io/body_file.h"
-#include "io/export.h"
-#include "io/front_file.h"
-#include "io/node_file.h"
-#include "io/stream.h"
+#include <kerf/body_file.h>
+#include <kerf/export.h>
+#include <kerf/front_file.h>
+#include <kerf/node_file.h>
+#include <kerf/stream.h>
 #include "kind.h"
 #include "tool.h"
 

@@ -4,12 +4,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "io/chunk_file.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
+#include <kerf/export.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
 #include "pieces/subject.h"
-#include "surface/chunks.h"
-#include "surface/convex_parts.h"
+#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace {

@@ -1,10 +1,9 @@
 // kerf-repair: a solid from a surface that is nearly one, or a new surface around it.
 #include <iostream>
 
-#include "io/volume_file.h"
+#include <kerf/surface_file.h>
 #include "model.h"
-#include "surface/refine.h"
-#include "surface/repair.h"
+#include <kerf/repair.h>
 #include "tool.h"
 
 namespace {

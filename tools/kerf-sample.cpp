@@ -3,12 +3,12 @@
 #include <iostream>
 #include <map>
 
-#include "base/stopwatch.h"
-#include "io/node_file.h"
-#include "io/stream.h"
-#include "io/volume_file.h"
+#include <kerf/progress.h>
+#include <kerf/node_file.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
 #include "model.h"
-#include "sampling/sample.h"
+#include <kerf/nodes.h>
 #include "tool.h"
 
 namespace {
@@ -69,8 +69,8 @@ int main(int argc, char** argv) {
     if (!(jitter >= 0 && jitter <= 0.4)) throw tool::UsageError("--jitter must be from 0 to 0.4");
     if (!(support >= 1 && support <= 10)) throw tool::UsageError("--support must be from 1 to 10");
     if (across < 0 || across > 100) throw tool::UsageError("--min-across must be from 0 to 100");
-    if (pattern == "blue") options.pattern = geo::Pattern::blue;
-    else if (pattern == "grid") options.pattern = geo::Pattern::grid;
+    if (pattern == "blue") options.pattern = geo::NodePattern::blue;
+    else if (pattern == "grid") options.pattern = geo::NodePattern::grid;
     double percent = 0;
     const auto parse = [](const std::string& name, const std::string& text, std::size_t& used) {
       double value = 0;

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <iostream>
 
-#include "io/front_file.h"
-#include "io/stream.h"
+#include <kerf/front_file.h>
+#include <kerf/stream.h>
 #include "model.h"
-#include "score/score.h"
+#include <kerf/score.h>
 #include "tool.h"
 
 namespace {

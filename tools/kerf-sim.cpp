@@ -7,16 +7,16 @@
 #include <sstream>
 #include <utility>
 
-#include "base/stopwatch.h"
-#include "io/checkpoint_file.h"
-#include "io/scene_file.h"
-#include "io/stream.h"
-#include "mechanics/node_fields.h"
+#include <kerf/progress.h>
+#include <kerf/run_files.h>
+#include <kerf/scene_file.h>
+#include <kerf/stream.h>
+#include <kerf/solid.h>
 #include "model.h"
 #include "sim/frame_writer.h"
 #include "sim/whole_run.h"
-#include "simulation/simulation.h"
-#include "surface/pieces.h"
+#include <kerf/simulation.h>
+#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace {

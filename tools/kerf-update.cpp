@@ -3,9 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "body/body.h"
-#include "io/body_file.h"
-#include "io/stream.h"
+#include <kerf/body.h>
+#include <kerf/body_file.h>
+#include <kerf/stream.h>
 #include "model.h"
 #include "tool.h"
 #include "version.h"

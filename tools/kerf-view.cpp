@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "io/body_file.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
+#include <kerf/body_file.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
 #include "tool.h"
 #include "view/animation.h"
 #include "view/compose.h"

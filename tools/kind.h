@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/kerf_container.h"
+#include <kerf/body_file.h>
 
 namespace tool {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <string>
 
-#include "base/error.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
-#include "surface/check.h"
-#include "surface/complex.h"
+#include <kerf/error.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
+#include <kerf/check.h>
+#include <kerf/complex.h>
 
 namespace tool {
 

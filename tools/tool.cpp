@@ -18,11 +18,10 @@
 #include <set>
 #include <thread>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "base/spelling.h"
+#include <kerf/error.h>
+#include <kerf/parallel.h>
 #include "describe.h"
-#include "io/stream.h"
+#include <kerf/stream.h>
 #include "version.h"
 
 namespace tool {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "base/vec.h"
+#include <kerf/progress.h>
+#include <kerf/vec.h>
 
 namespace tool {
 

@@ -1,4 +1,4 @@
-#include "base/spelling.h"
+#include "kerf/error.h"
 
 #include <algorithm>
 

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "body/binding.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
-#include "surface/pieces.h"
+#include "kerf/pieces.h"
 
 namespace geo {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <functional>
 
-#include "body/body.h"
+#include "kerf/body.h"
 
 namespace geo {
 

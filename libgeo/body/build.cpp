@@ -1,6 +1,6 @@
 #include <numeric>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "body/connect.h"
 #include "body/front_guides.h"
 #include "body/locate.h"

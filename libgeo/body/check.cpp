@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "body/body.h"
+#include "kerf/body.h"
 #include "body/connect.h"
 #include "body/locate.h"
-#include "surface/pieces.h"
+#include "kerf/pieces.h"
 
 namespace geo {
 

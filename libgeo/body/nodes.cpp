@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "base/random.h"
 #include "body/locate.h"
 #include "geometry/distance.h"

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "body/body.h"
+#include "kerf/body.h"
 
 namespace geo {
 

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "body/binding.h"
 #include "body/upkeep.h"
 #include "geometry/bvh.h"

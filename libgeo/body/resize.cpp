@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "body/binding.h"
 #include "body/locate.h"
 #include "body/nodes.h"

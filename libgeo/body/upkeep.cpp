@@ -5,7 +5,7 @@
 
 #include "body/locate.h"
 #include "body/regions.h"
-#include "surface/pieces.h"
+#include "kerf/pieces.h"
 
 namespace geo {
 namespace {

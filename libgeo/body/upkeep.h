@@ -1,7 +1,7 @@
 // What a split keeps for the next one, so that its cost follows the cut: pieces by surface vertex, depths, strays.
 #pragma once
 
-#include "body/body.h"
+#include "kerf/body.h"
 
 namespace geo {
 

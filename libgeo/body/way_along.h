@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "body/body.h"
+#include "kerf/body.h"
 
 namespace geo {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/parallel.h"
-#include "base/stopwatch.h"
-#include "contact/crossing.h"
-#include "contact/open_sheets.h"
-#include "contact/touching.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
+#include "kerf/crossing.h"
+#include "contact/surface/open_sheets.h"
+#include "contact/response/touching.h"
 
 namespace geo {
 namespace {

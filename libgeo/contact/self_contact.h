@@ -11,13 +11,13 @@
 
 #include <optional>
 
-#include "contact/birth.h"
-#include "contact/bounded_motion.h"
-#include "contact/contact_options.h"
-#include "contact/contact_surface.h"
-#include "contact/near_pairs.h"
-#include "contact/surface_weights.h"
-#include "contact/touch_penalty.h"
+#include "contact/birth/birth.h"
+#include "contact/motion/bounded_motion.h"
+#include "kerf/scene.h"
+#include "contact/surface/contact_surface.h"
+#include "contact/detection/near_pairs.h"
+#include "contact/surface/surface_weights.h"
+#include "contact/response/touch_penalty.h"
 
 namespace geo {
 

@@ -1,11 +1,11 @@
 // One step of a crack, as docs/design.md tells it: sweep, meet, split, keep, guard, stitch.
-#include "crack/advance.h"
+#include "kerf/crack.h"
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
-#include "base/stopwatch.h"
+#include "kerf/progress.h"
 #include "crack/insert_internal.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"

@@ -1,4 +1,4 @@
-#include "crack/decimate.h"
+#include "kerf/crack_edits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <queue>
 #include <unordered_map>
 
-#include "base/error.h"
-#include "base/stopwatch.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 #include "crack/place_internal.h"
 
 namespace geo {

@@ -1,9 +1,9 @@
-#include "crack/front.h"
+#include "kerf/crack.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 

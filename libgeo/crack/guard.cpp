@@ -8,7 +8,7 @@
 #include "crack/ring_order.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
-#include "surface/check.h"
+#include "kerf/check.h"
 
 namespace geo {
 namespace {

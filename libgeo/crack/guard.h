@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "surface/complex.h"
+#include "kerf/complex.h"
 
 namespace geo {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
-#include "base/stopwatch.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 #include "crack/guard.h"
 #include "crack/keep_internal.h"
 #include "geometry/predicates.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/predicates.h"
 #include "surface/complex_internal.h"
 

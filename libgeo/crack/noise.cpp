@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "crack/roughen.h"
+#include "kerf/crack_edits.h"
 
 namespace geo {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "crack/advance.h"
+#include "kerf/crack.h"
 #include "crack/local_internal.h"
 
 namespace geo::crack {

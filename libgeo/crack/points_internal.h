@@ -9,8 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/ids.h"
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo::crack {
 

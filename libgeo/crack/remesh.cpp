@@ -1,4 +1,4 @@
-#include "crack/remesh.h"
+#include "kerf/crack_edits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <unordered_set>
 
-#include "base/error.h"
-#include "base/stopwatch.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 #include "crack/place_internal.h"
 #include "geometry/distance.h"
 #include "surface/complex_internal.h"

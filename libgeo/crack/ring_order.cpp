@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "surface/check.h"
+#include "kerf/check.h"
 
 namespace geo {
 namespace {

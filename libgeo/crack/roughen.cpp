@@ -1,12 +1,12 @@
-#include "crack/roughen.h"
+#include "kerf/crack_edits.h"
 
 #include <algorithm>
 #include <queue>
 #include <unordered_map>
 #include <unordered_set>
 
-#include "base/error.h"
-#include "base/stopwatch.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 #include "crack/place_internal.h"
 #include "surface/complex_internal.h"
 

@@ -1,8 +1,8 @@
-#include "crack/sheet.h"
+#include "kerf/crack.h"
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
-#include "base/stopwatch.h"
+#include "kerf/progress.h"
 #include "crack/insert_internal.h"
 
 namespace geo {

@@ -1,7 +1,7 @@
 // Turns an arrangement and the parts to keep into an edit of K (§ 5.2: joining crack and skin along the seam).
 #include <algorithm>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "crack/keep_internal.h"
 
 namespace geo::crack {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "crack/advance.h"
+#include "kerf/crack.h"
 
 namespace geo {
 

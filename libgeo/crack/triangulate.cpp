@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/predicates.h"
 
 namespace geo::crack {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 

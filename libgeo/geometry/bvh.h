@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 #include "geometry/triangle_lanes.h"
 
 namespace geo {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

@@ -1,7 +1,7 @@
 // Closest points, in floating point (distances filter and weigh; they never decide topology).
 #pragma once
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

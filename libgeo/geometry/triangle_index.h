@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

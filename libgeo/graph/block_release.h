@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/vec.h"
-#include "graph/visibility_graph.h"
+#include "kerf/vec.h"
+#include "kerf/graph.h"
 
 namespace geo {
 

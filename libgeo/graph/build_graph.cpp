@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"
 #include "graph/visibility.h"
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 
 namespace geo {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 #include "sampling/node_grid.h"
 
 namespace geo {

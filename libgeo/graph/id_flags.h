@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 
 namespace geo {
 

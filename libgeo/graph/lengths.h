@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 #include "graph/node_tree.h"
-#include "sampling/node_set.h"
+#include "kerf/nodes.h"
 
 namespace geo {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "graph/id_pages.h"
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 
 namespace geo {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/bvh.h"
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 #include "sampling/node_grid.h"
 
 namespace geo {

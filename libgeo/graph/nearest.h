@@ -5,8 +5,7 @@
 #include <span>
 
 #include "base/fresh_array.h"
-#include "base/ids.h"
-#include "base/vec.h"
+#include "kerf/vec.h"
 #include "graph/node_tree.h"
 
 namespace geo {

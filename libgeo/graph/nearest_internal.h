@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "base/ids.h"
+#include "kerf/vec.h"
 #include "graph/node_tree.h"
 
 namespace geo {

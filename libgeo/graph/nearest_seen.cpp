@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "geometry/bvh.h"
 
 namespace geo {

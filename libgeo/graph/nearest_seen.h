@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.h"
+#include "kerf/progress.h"
 #include "sampling/node_grid.h"
-#include "sampling/node_set.h"
+#include "kerf/nodes.h"
 
 namespace geo {
 

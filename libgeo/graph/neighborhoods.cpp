@@ -1,10 +1,10 @@
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 
 #include <algorithm>
 #include <numeric>
 #include <optional>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "graph/block_release.h"
 #include "graph/reference_rows.h"
 #include "graph/row_search.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {

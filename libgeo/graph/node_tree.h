@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/fresh_array.h"
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

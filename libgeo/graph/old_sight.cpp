@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "graph/old_sight.h"
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/predicates.h"
 
 namespace geo {

@@ -7,7 +7,7 @@
 
 #include "graph/guide_set.h"
 #include "sampling/node_grid.h"
-#include "sampling/node_set.h"
+#include "kerf/nodes.h"
 
 namespace geo {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {

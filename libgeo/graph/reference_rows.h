@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 
 namespace geo {
 

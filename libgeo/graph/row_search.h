@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 
 namespace geo {
 

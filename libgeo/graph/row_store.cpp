@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 #include "sampling/node_grid.h"
 
 namespace geo {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "geometry/predicates.h"
 #include "graph/guides.h"
 #include "graph/id_flags.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.h"
-#include "graph/visibility_graph.h"
+#include "kerf/progress.h"
+#include "kerf/graph.h"
 #include "sampling/node_grid.h"
 
 namespace geo {

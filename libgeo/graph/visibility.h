@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "base/ids.h"
+#include "kerf/vec.h"
 #include "geometry/bvh.h"
 
 namespace geo {

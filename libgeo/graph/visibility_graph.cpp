@@ -1,10 +1,10 @@
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {

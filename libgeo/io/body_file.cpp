@@ -1,4 +1,4 @@
-#include "io/body_file.h"
+#include "kerf/body_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "io/checkpoint_file.h"
+#include "kerf/run_files.h"
 
-#include "io/body_file.h"
+#include "kerf/body_file.h"
 #include "io/json_internal.h"
-#include "io/surface_file.h"
+#include "kerf/surface_file.h"
 
 namespace geo {
 namespace {

@@ -1,6 +1,6 @@
 #include <functional>
 
-#include "io/export.h"
+#include "kerf/export.h"
 #include "io/export_internal.h"
 #include "io/kerf_writer.h"
 

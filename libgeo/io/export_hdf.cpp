@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "base/error.h"
-#include "io/export.h"
+#include "kerf/error.h"
+#include "kerf/export.h"
 #include "io/export_internal.h"
 #include "io/kerf_writer.h"
 

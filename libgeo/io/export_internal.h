@@ -1,7 +1,7 @@
 // What every export of the graph shares.
 #pragma once
 
-#include "body/body.h"
+#include "kerf/body.h"
 
 namespace geo {
 

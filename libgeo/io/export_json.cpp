@@ -1,7 +1,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "io/export.h"
+#include "kerf/export.h"
 #include "io/kerf_layout_internal.h"
 #include "io/text_internal.h"
 

@@ -1,9 +1,9 @@
-#include "io/front_file.h"
+#include "kerf/front_file.h"
 
 #include <algorithm>
 #include <map>
 
-#include "io/stream.h"
+#include "kerf/stream.h"
 #include "io/text_internal.h"
 
 namespace geo {

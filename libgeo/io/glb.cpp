@@ -2,9 +2,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
-#include "io/chunk_file.h"
-#include "surface/convex_parts.h"
+#include "kerf/error.h"
+#include "kerf/export.h"
+#include "kerf/pieces.h"
 
 namespace geo {
 namespace {

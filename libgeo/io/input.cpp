@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
-#include "base/error.h"
-#include "io/stream.h"
+#include "kerf/error.h"
+#include "kerf/stream.h"
 
 namespace geo {
 

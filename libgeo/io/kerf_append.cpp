@@ -9,10 +9,10 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "io/kerf_delta_internal.h"
 #include "io/kerf_segment_internal.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 
 namespace geo {
 namespace {

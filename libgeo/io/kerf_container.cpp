@@ -1,4 +1,4 @@
-#include "io/kerf_container.h"
+#include "kerf/body_file.h"
 
 namespace geo {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "io/json_internal.h"
 #include "io/kerf_segment_internal.h"
 #include "io/text_internal.h"

@@ -1,11 +1,11 @@
-#include "io/node_file.h"
+#include "kerf/node_file.h"
 
 #include <array>
 #include <cstring>
 
 #include "io/kerf_reader.h"
 #include "io/ply_internal.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 #include "io/text_internal.h"
 
 namespace geo {

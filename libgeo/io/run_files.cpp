@@ -1,9 +1,9 @@
-#include "io/run_files.h"
+#include "kerf/run_files.h"
 
 #include <array>
 
-#include "base/error.h"
-#include "io/node_file.h"
+#include "kerf/error.h"
+#include "kerf/node_file.h"
 #include "io/ply_internal.h"
 
 namespace geo {

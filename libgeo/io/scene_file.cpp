@@ -1,15 +1,15 @@
-#include "io/scene_file.h"
+#include "kerf/scene_file.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <sstream>
 
-#include "io/front_file.h"
+#include "kerf/front_file.h"
 #include "io/scene_keys_internal.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
-#include "surface/check.h"
+#include "kerf/stream.h"
+#include "kerf/surface_file.h"
+#include "kerf/check.h"
 
 namespace geo {
 namespace {

@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "io/scene_keys_internal.h"
-#include "io/scene_file.h"
+#include "kerf/scene_file.h"
 
 namespace geo {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/toml_table_internal.h"
-#include "simulation/motion.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

@@ -1,4 +1,4 @@
-#include "io/stream.h"
+#include "kerf/stream.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -16,7 +16,7 @@
 #include <set>
 #include <streambuf>
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {

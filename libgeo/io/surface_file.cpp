@@ -1,7 +1,7 @@
-#include "io/surface_file.h"
+#include "kerf/surface_file.h"
 
 #include "io/kerf_reader.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 #include "io/surface_internal.h"
 #include "io/text_internal.h"
 #include "surface/polygon.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "io/surface_file.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/surface_file.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

@@ -8,9 +8,8 @@
 #include <toml++/toml.h>
 #include <vector>
 
-#include "base/error.h"
-#include "base/spelling.h"
-#include "base/vec.h"
+#include "kerf/error.h"
+#include "kerf/vec.h"
 #include "io/text_internal.h"
 
 namespace geo {

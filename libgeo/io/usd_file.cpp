@@ -1,4 +1,4 @@
-#include "io/usd_file.h"
+#include "kerf/run_files.h"
 
 #include <charconv>
 #include <iterator>
@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {

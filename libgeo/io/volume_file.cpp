@@ -1,4 +1,4 @@
-#include "io/volume_file.h"
+#include "kerf/surface_file.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -8,9 +8,9 @@
 
 #include <sstream>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/bvh.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 
 namespace geo {
 namespace {

@@ -1,6 +1,6 @@
 #include "sampling/blue_noise.h"
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "sampling/leaves.h"
 
 namespace geo {

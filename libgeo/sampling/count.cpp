@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
-#include "base/stopwatch.h"
+#include "kerf/progress.h"
 
 namespace geo {
 namespace {

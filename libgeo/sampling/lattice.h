@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

@@ -74,7 +74,7 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
 LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Divisions& divided, const SampleOptions& options, const Progress& progress) {
   return walk<Leaf>(tree, shape.lattice, {{0, 0, 0}, shape.root}, "nodes", progress, [&](const Region& region, std::vector<Leaf>& found) {
     if (region.cell.level > shape.top || (region.cell.level > 0 && is_divided(divided, region.cell))) return true;
-    const double spread = options.pattern == Pattern::grid ? 0 : options.pattern == Pattern::blue ? 0.5 - keep_off : options.jitter;
+    const double spread = options.pattern == NodePattern::grid ? 0 : options.pattern == NodePattern::blue ? 0.5 - keep_off : options.jitter;
     const Leaf leaf = place(tree, shape.lattice, region, spread * random_shift(region.cell, options.seed));
     if (leaf.share > 0) found.push_back(leaf);
     return false;

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "sampling/octree.h"
-#include "sampling/sample.h"
+#include "kerf/nodes.h"
 
 namespace geo {
 

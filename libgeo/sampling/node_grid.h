@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/progress.h"
+#include "kerf/progress.h"
 #include "sampling/thickness.h"
 
 namespace geo {

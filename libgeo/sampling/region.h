@@ -6,7 +6,7 @@
 
 #include "geometry/bvh.h"
 #include "sampling/lattice.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

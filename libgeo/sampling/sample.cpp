@@ -1,10 +1,10 @@
-#include "sampling/sample.h"
+#include "kerf/nodes.h"
 
 #include <cmath>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "base/stopwatch.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "sampling/blue_noise.h"
 #include "sampling/count.h"
 #include "sampling/support.h"
@@ -69,7 +69,7 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double
   });
   const LeafIndex index(std::move(codes), std::move(levels));
   share_volume(nodes, index, lattice, whole, orphans, volume);
-  if (options.pattern == Pattern::blue) push_apart(nodes, index, lattice, whole, progress);
+  if (options.pattern == NodePattern::blue) push_apart(nodes, index, lattice, whole, progress);
   found.node_seconds += clock.lap();
   set_support_radii(nodes, index, options.support, progress);
   found.support_seconds += clock.lap();

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {

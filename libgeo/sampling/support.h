@@ -1,9 +1,9 @@
 // Support radii, from the nodes around.
 #pragma once
 
-#include "base/progress.h"
+#include "kerf/progress.h"
 #include "sampling/leaf_index.h"
-#include "sampling/node_set.h"
+#include "kerf/nodes.h"
 
 namespace geo {
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
-#include "base/progress.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "sampling/region.h"
 
 namespace geo {

@@ -5,11 +5,11 @@
 #include <queue>
 #include <unordered_map>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "crack/roughen.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
+#include "kerf/crack_edits.h"
 #include "geometry/triangle_index.h"
-#include "surface/check.h"
+#include "kerf/check.h"
 
 namespace geo {
 namespace {

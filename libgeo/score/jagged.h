@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/bvh.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

@@ -1,7 +1,7 @@
 // Fewer pieces: walls between small pieces and their neighbours left out.
 #pragma once
 
-#include "surface/pieces.h"
+#include "kerf/pieces.h"
 
 namespace geo {
 

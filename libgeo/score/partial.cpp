@@ -4,9 +4,9 @@
 #include <limits>
 #include <map>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/joined.h"
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geometry/bvh.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

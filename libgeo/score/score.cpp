@@ -1,12 +1,12 @@
-#include "score/score.h"
+#include "kerf/score.h"
 
 #include <cmath>
 
-#include "base/error.h"
-#include "crack/sheet.h"
+#include "kerf/error.h"
+#include "kerf/crack.h"
 #include "score/join.h"
 #include "score/partial.h"
-#include "surface/pieces.h"
+#include "kerf/pieces.h"
 
 namespace geo {
 namespace {

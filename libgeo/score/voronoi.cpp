@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "score/walls.h"
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

@@ -2,9 +2,9 @@
 
 #include <map>
 
-#include "base/error.h"
-#include "crack/sheet.h"
-#include "surface/shapes.h"
+#include "kerf/error.h"
+#include "kerf/crack.h"
+#include "kerf/shapes.h"
 
 namespace geo {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

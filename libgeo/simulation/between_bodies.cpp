@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "contact/contact_surface.h"
+#include "contact/surface/contact_surface.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "simulation/point_map.h"

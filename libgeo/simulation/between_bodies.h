@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/mutual_contact.h"
+#include "contact/response/mutual_contact.h"
 
 namespace geo {
 

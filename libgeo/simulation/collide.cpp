@@ -1,7 +1,7 @@
 #include "simulation/collide.h"
 
-#include "base/error.h"
-#include "base/stopwatch.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 
 namespace geo {
 

@@ -5,7 +5,7 @@
 
 #include "body/agreement.h"
 #include "contact/self_contact.h"
-#include "simulation/scene.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "crack/advance.h"
+#include "kerf/crack.h"
 
 namespace geo {
 

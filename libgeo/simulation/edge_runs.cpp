@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {

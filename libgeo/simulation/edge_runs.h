@@ -5,7 +5,7 @@
 
 #include "simulation/edge_front.h"
 #include "simulation/point_map.h"
-#include "simulation/scene.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

@@ -1,10 +1,10 @@
-#include "simulation/fracture.h"
+#include "kerf/scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "crack/roughen.h"
+#include "kerf/crack_edits.h"
 
 namespace geo {
 

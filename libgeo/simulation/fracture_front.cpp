@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
 

@@ -1,7 +1,7 @@
 // The front of a crack that grows by itself: what is kept at its points, and how it goes on.
 #pragma once
 
-#include "body/body.h"
+#include "kerf/body.h"
 #include "simulation/fracture_tip.h"
 
 namespace geo {

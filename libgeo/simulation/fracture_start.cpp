@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "geometry/distance.h"
-#include "mechanics/node_sums.h"
+#include "mechanics/solver/node_sums.h"
 
 namespace geo {
 namespace {

@@ -1,9 +1,9 @@
 // Where cracks begin.
 #pragma once
 
-#include "body/body.h"
-#include "mechanics/solid.h"
-#include "simulation/fracture.h"
+#include "kerf/body.h"
+#include "kerf/solid.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

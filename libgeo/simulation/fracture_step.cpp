@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "simulation/fracture_rest.h"
 #include "simulation/fracture_start.h"
 #include "simulation/fracture_tip.h"

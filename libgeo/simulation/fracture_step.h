@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "mechanics/solid.h"
-#include "simulation/fracture.h"
+#include "kerf/solid.h"
+#include "kerf/scene.h"
 #include "simulation/fracture_front.h"
 
 namespace geo {

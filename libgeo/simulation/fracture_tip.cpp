@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "body/locate.h"
-#include "mechanics/kernel.h"
+#include "mechanics/discretisation/kernel.h"
 
 namespace geo {
 

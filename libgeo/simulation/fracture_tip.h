@@ -1,8 +1,8 @@
 // The field of stress about a point of a crack's front, from how the nodes around it have moved.
 #pragma once
 
-#include "body/body.h"
-#include "mechanics/materials.h"
+#include "kerf/body.h"
+#include "kerf/material.h"
 
 namespace geo {
 

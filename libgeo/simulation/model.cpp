@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include "base/progress.h"
-#include "body/body.h"
-#include "mechanics/materials.h"
-#include "simulation/scene.h"
+#include "kerf/progress.h"
+#include "kerf/body.h"
+#include "kerf/material.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

@@ -1,4 +1,4 @@
-#include "simulation/motion.h"
+#include "kerf/scene.h"
 
 #include <algorithm>
 #include <numbers>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "simulation/between_bodies.h"
 
 namespace geo {

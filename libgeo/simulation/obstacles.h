@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "contact/mutual_contact.h"
-#include "contact/obstacle.h"
-#include "simulation/scene.h"
-#include "simulation/work.h"
+#include "contact/response/mutual_contact.h"
+#include "contact/response/obstacle.h"
+#include "kerf/scene.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 

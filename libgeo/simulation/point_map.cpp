@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "geometry/distance.h"
-#include "mechanics/deformation.h"
-#include "mechanics/kernel.h"
+#include "mechanics/discretisation/deformation.h"
+#include "mechanics/discretisation/kernel.h"
 
 namespace geo {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "body/body.h"
-#include "mechanics/node_rows.h"
+#include "kerf/body.h"
+#include "mechanics/discretisation/node_rows.h"
 #include "sampling/node_grid.h"
 
 namespace geo {

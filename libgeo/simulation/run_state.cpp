@@ -1,7 +1,7 @@
 #include "simulation/run_state.h"
 
-#include "base/error.h"
-#include "crack/sheet.h"
+#include "kerf/error.h"
+#include "kerf/crack.h"
 
 namespace geo {
 namespace {

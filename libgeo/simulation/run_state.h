@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "body/body.h"
-#include "mechanics/solid.h"
+#include "kerf/body.h"
+#include "kerf/solid.h"
 #include "simulation/edge_front.h"
 #include "simulation/fracture_step.h"
 #include "simulation/model.h"
-#include "simulation/work.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 

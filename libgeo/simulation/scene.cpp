@@ -1,4 +1,4 @@
-#include "simulation/scene.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

@@ -1,13 +1,13 @@
-#include "simulation/simulation.h"
+#include "kerf/simulation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "base/stopwatch.h"
-#include "mechanics/deformation.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
+#include "mechanics/discretisation/deformation.h"
 #include "simulation/edge_runs.h"
 
 namespace geo {

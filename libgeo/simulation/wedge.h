@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "mechanics/potential.h"
-#include "simulation/scene.h"
+#include "mechanics/terms/potential.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

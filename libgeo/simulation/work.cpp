@@ -1,4 +1,4 @@
-#include "simulation/work.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 

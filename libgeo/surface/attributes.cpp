@@ -1,10 +1,9 @@
-#include "surface/attributes.h"
+#include "kerf/mesh.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "base/error.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {

@@ -1,10 +1,10 @@
-#include "surface/check.h"
+#include "kerf/check.h"
 
 #include <algorithm>
 #include <map>
 #include <unordered_map>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/predicates.h"
 #include "surface/complex_internal.h"
 

@@ -1,4 +1,4 @@
-#include "surface/chunks.h"
+#include "kerf/pieces.h"
 
 #include <algorithm>
 #include <map>

@@ -1,9 +1,9 @@
-#include "surface/complex.h"
+#include "kerf/complex.h"
 
 #include <algorithm>
 #include <string>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "surface/complex_internal.h"
 
 namespace geo {

@@ -4,10 +4,10 @@
 #include <map>
 #include <unordered_map>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
-#include "surface/complex.h"
+#include "kerf/complex.h"
 #include "surface/complex_internal.h"
 
 namespace geo {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "surface/complex.h"
+#include "kerf/error.h"
+#include "kerf/complex.h"
 
 namespace geo {
 

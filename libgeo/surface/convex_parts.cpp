@@ -1,4 +1,4 @@
-#include "surface/convex_parts.h"
+#include "kerf/pieces.h"
 
 #include <algorithm>
 #include <map>

@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "surface/complex.h"
+#include "kerf/complex.h"
 
 namespace geo {
 

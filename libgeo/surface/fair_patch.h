@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

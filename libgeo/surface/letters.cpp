@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "base/error.h"
-#include "surface/shapes.h"
+#include "kerf/error.h"
+#include "kerf/shapes.h"
 
 namespace geo {
 namespace {

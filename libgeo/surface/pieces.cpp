@@ -1,4 +1,4 @@
-#include "surface/pieces.h"
+#include "kerf/pieces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "surface/refine.h"
+#include "kerf/repair.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {

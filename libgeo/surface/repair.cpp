@@ -1,4 +1,4 @@
-#include "surface/repair.h"
+#include "kerf/repair.h"
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,7 @@
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_index.h"
-#include "surface/check.h"
+#include "kerf/check.h"
 #include "surface/fair_patch.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"

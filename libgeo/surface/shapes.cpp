@@ -1,4 +1,4 @@
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 #include <cmath>
 #include <iterator>
@@ -6,7 +6,7 @@
 #include <numbers>
 
 
-#include "base/error.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {

@@ -1,4 +1,4 @@
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 #include <Eigen/Geometry>
 

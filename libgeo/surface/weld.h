@@ -1,7 +1,7 @@
 // Seams of a surface that its file has apart.
 #pragma once
 
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

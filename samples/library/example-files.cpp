@@ -3,12 +3,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/error.h"
-#include "body/body.h"
-#include "io/body_file.h"
-#include "io/surface_file.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include <kerf/error.h>
+#include <kerf/body.h>
+#include <kerf/body_file.h>
+#include <kerf/surface_file.h>
+#include <kerf/nodes.h>
+#include <kerf/shapes.h>
 
 int main() {
   const geo::TriangleMesh solid = geo::make_sphere(4);

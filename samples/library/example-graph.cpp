@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "body/body.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include <kerf/body.h>
+#include <kerf/nodes.h>
+#include <kerf/shapes.h>
 
 int main() {
   const geo::TriangleMesh solid = geo::make_pumpkin(12);

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "crack/advance.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include <kerf/crack.h>
+#include <kerf/pieces.h>
+#include <kerf/shapes.h>
 
 int main() {
   geo::Complex complex = geo::Complex::from_skin(geo::make_pumpkin(12));

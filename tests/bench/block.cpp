@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <iostream>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "bench.h"
 #include "../crack/block_cuts.h"
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 namespace bench {
 namespace {

@@ -1,11 +1,11 @@
 // Distances around concave edges, with guides and without, beside the shortest paths; and what guides cost (§ 8).
 #include <cstdio>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "graph.h"
 #include "graph/concave_shapes.h"
 #include "graph/guides.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/place_guides.h"
 #include "graph/update.h"
 

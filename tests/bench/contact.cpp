@@ -2,13 +2,13 @@
 #include <cmath>
 
 #include "bench.h"
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "body/agreement.h"
-#include "contact/crossing.h"
+#include "kerf/crossing.h"
 #include "contact/self_contact.h"
 #include "contact_peers.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 namespace bench {
 

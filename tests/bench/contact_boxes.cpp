@@ -1,7 +1,7 @@
 // Which boxes of a folded sheet's triangles meet: beside CGAL's box intersection (Zomorodian, Edelsbrunner 2002).
 #include <CGAL/box_intersection_d.h>
 
-#include "contact/box_tree.h"
+#include "contact/detection/box_tree.h"
 #include "contact_peers.h"
 
 namespace bench {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/vec.h"
+#include "kerf/vec.h"
 #include "bench.h"
 
 namespace bench {

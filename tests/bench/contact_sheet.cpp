@@ -1,8 +1,8 @@
 // A sheet in folds that are pressed together: what it takes to find which boxes meet, and to move it without crossing.
 #include <cmath>
 
-#include "contact/bounded_motion.h"
-#include "contact/crossing.h"
+#include "contact/motion/bounded_motion.h"
+#include "kerf/crossing.h"
 #include "contact_peers.h"
 
 namespace bench {

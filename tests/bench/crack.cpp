@@ -4,13 +4,12 @@
 #include <map>
 
 #include "bench.h"
-#include "crack/advance.h"
-#include "crack/sheet.h"
+#include "kerf/crack.h"
 #include "crack_peers.h"
-#include "io/surface_file.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/surface_file.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 namespace bench {
 namespace {

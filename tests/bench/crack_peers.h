@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "surface/triangle_mesh.h"
+#include "kerf/mesh.h"
 
 namespace bench {
 

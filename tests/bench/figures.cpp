@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include "base/parallel.h"
-#include "base/stopwatch.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "bench.h"
 
 namespace bench {

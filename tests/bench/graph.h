@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench.h"
-#include "sampling/node_set.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/nodes.h"
+#include "kerf/mesh.h"
 
 namespace bench {
 

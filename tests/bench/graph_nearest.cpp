@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <nanoflann.hpp>
 
-#include "base/parallel.h"
-#include "base/stopwatch.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "graph.h"
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"

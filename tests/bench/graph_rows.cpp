@@ -3,9 +3,9 @@
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <cstdio>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "graph.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/reference_rows.h"
 
 namespace bench {

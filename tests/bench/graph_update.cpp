@@ -2,9 +2,9 @@
 #include <chrono>
 #include <cstdio>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "graph.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/update.h"
 
 namespace bench {

@@ -8,7 +8,7 @@
 
 #include <cstdio>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "geometry/predicates.h"
 #include "graph.h"
 #include "graph/nearest.h"

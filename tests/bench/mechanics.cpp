@@ -2,10 +2,10 @@
 
 #include <cstdio>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "bench.h"
 #include "mechanics/bodies.h"
-#include "mechanics/solid.h"
+#include "kerf/solid.h"
 
 namespace bench {
 namespace {

@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "base/error.h"
-#include "body/body.h"
+#include "kerf/error.h"
+#include "kerf/body.h"
 #include "body/locate.h"
 #include "invariants/cut_bodies.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -3,16 +3,16 @@
 
 #include <numeric>
 
-#include "base/error.h"
-#include "body/body.h"
+#include "kerf/error.h"
+#include "kerf/body.h"
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "cases.h"
 #include "geometry/bvh.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "invariants/cut_bodies.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

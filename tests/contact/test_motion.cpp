@@ -4,13 +4,13 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "contact/bounded_motion.h"
-#include "contact/crossing.h"
-#include "contact/straight_motion.h"
-#include "contact/touching.h"
-#include "contact/watch.h"
+#include "contact/motion/bounded_motion.h"
+#include "kerf/crossing.h"
+#include "contact/motion/straight_motion.h"
+#include "contact/response/touching.h"
+#include "contact/detection/watch.h"
 #include "geometry/predicates.h"
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

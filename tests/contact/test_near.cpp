@@ -7,9 +7,9 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "contact/crossing.h"
-#include "contact/near_pairs.h"
-#include "contact/vertex_fans.h"
+#include "kerf/crossing.h"
+#include "contact/detection/near_pairs.h"
+#include "contact/detection/vertex_fans.h"
 
 using namespace geo;
 

@@ -5,10 +5,10 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "contact/crossing.h"
-#include "contact/parting_lanes.h"
-#include "contact/triangle_planes.h"
-#include "contact/triangle_sides.h"
+#include "kerf/crossing.h"
+#include "contact/detection/parting_lanes.h"
+#include "contact/detection/triangle_planes.h"
+#include "contact/detection/triangle_sides.h"
 #include "vectors.h"
 
 using namespace geo;

@@ -3,10 +3,10 @@
 #include "base/random.h"
 #include "cases.h"
 #include "body/agreement.h"
-#include "contact/crossing.h"
+#include "kerf/crossing.h"
 #include "contact/self_contact.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "crack/remesh.h"
+#include "kerf/crack_edits.h"
 
 /// A front from somewhere on the block's skin, where it begins and after each of four steps.
 inline std::vector<std::vector<geo::Vec3>> block_cut(geo::Random& random) {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
-#include "crack/advance.h"
-#include "io/front_file.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/crack.h"
+#include "kerf/front_file.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 struct GridCrack {
   bool closed = false;

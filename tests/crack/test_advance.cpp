@@ -2,15 +2,14 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "crack/advance.h"
-#include "crack/front.h"
+#include "kerf/crack.h"
 #include "crack/grid_case.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

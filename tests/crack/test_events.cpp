@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/error.h"
-#include "crack/advance.h"
-#include "crack/sheet.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/error.h"
+#include "kerf/crack.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -1,15 +1,15 @@
 // Where a front's line leaves the material.
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "crack/advance.h"
+#include "kerf/crack.h"
 #include "crack/exits.h"
 #include "crack/keep_internal.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/parallel.h"
-#include "base/stopwatch.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "cases.h"
 #include "crack/grid_case.h"
-#include "crack/sheet.h"
+#include "kerf/crack.h"
 #include "crack/shrink.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 
 using namespace geo;
 

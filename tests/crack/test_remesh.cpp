@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
 #include "crack/block_cuts.h"
-#include "crack/decimate.h"
-#include "crack/remesh.h"
-#include "crack/roughen.h"
+#include "kerf/crack_edits.h"
 #include "geometry/distance.h"
-#include "surface/check.h"
+#include "kerf/check.h"
 #include "surface/delta_sum.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -11,8 +11,8 @@
 
 #include "base/random.h"
 #include "graph/place_guides.h"
-#include "sampling/node_set.h"
-#include "surface/triangle_mesh.h"
+#include "kerf/nodes.h"
+#include "kerf/mesh.h"
 
 using Point2 = std::array<double, 2>;
 

@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "graph/guide_set.h"
-#include "sampling/node_set.h"
+#include "kerf/nodes.h"
 
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
 

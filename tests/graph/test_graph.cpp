@@ -2,14 +2,14 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
 #include "geometry/predicates.h"
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 #include "node_cases.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "concave_shapes.h"
 #include "graph/guides.h"
 #include "graph/lane_search.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/place_guides.h"
 #include "node_cases.h"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "clouds.h"
 #include "vectors.h"

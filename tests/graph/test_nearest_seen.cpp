@@ -1,7 +1,7 @@
 // The nearest nodes that are seen, of nodes together and apart, against all triangles one by one.
 #include <catch2/catch.hpp>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "clouds.h"
 #include "geometry/predicates.h"

@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "graph/old_sight.h"
-#include "graph/visibility_graph.h"
+#include "kerf/graph.h"
 #include "vectors.h"
 
 using namespace geo;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/row_store.h"
 #include "node_cases.h"
 

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "geometry/predicates.h"
 #include "graph/lane_search.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/row_search.h"
 #include "node_cases.h"
 

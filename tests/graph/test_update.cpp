@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "graph/guides.h"
-#include "graph/neighborhoods.h"
+#include "kerf/graph.h"
 #include "graph/update.h"
 #include "node_cases.h"
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "clouds.h"
 #include "vectors.h"

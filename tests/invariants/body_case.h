@@ -9,12 +9,12 @@
 #include <string>
 
 #include "base/random.h"
-#include "body/body.h"
-#include "crack/decimate.h"
+#include "kerf/body.h"
+#include "kerf/crack_edits.h"
 #include "crack/grid_case.h"
 #include "crack/shrink.h"
 #include "invariants/models.h"
-#include "sampling/sample.h"
+#include "kerf/nodes.h"
 
 struct BodyCase {
   std::string model = "block";  ///< "block": 4 × 4 × 4, nodes on a regular grid; "pumpkin", or the name of a file

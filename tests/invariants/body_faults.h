@@ -11,8 +11,8 @@
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "body/upkeep.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
 
 namespace body_faults {
 

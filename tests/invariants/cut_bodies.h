@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "body/body.h"
+#include "kerf/body.h"
 #include "invariants/random_cuts.h"
 
 namespace random_cuts {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "base/error.h"
-#include "io/surface_file.h"
-#include "surface/shapes.h"
+#include "kerf/error.h"
+#include "kerf/surface_file.h"
+#include "kerf/shapes.h"
 
 namespace invariants {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/random.h"
-#include "crack/advance.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include "kerf/crack.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
 
 namespace random_cuts {
 

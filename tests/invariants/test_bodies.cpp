@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <map>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "invariants/body_case.h"
 #include "invariants/body_faults.h"
 #include "invariants/random_sweeps.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 #include "vectors.h"
 
 using namespace geo;

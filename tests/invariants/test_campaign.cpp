@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "invariants/models.h"
 #include "invariants/random_sweeps.h"
 

@@ -13,11 +13,11 @@
 #include <map>
 #include <string>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
 #include "io/mutate.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 
 // What sanitizers call, where there are any: a case that they stop is told of, too.
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());

@@ -11,7 +11,7 @@
 
 #include "base/random.h"
 #include "io/kerf_append.h"
-#include "io/stream.h"
+#include "kerf/stream.h"
 
 /// Some of fixed rows, some of rows of any length.
 struct Values {

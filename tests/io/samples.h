@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "body/body.h"
-#include "io/body_file.h"
-#include "io/front_file.h"
-#include "io/node_file.h"
-#include "io/checkpoint_file.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/body.h"
+#include "kerf/body_file.h"
+#include "kerf/front_file.h"
+#include "kerf/node_file.h"
+#include "kerf/run_files.h"
+#include "kerf/stream.h"
+#include "kerf/surface_file.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 template <class Write>
 std::string bytes_of(const Write& write) {

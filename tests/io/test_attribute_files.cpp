@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "crack/advance.h"
-#include "io/surface_file.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/crack.h"
+#include "kerf/surface_file.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

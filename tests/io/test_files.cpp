@@ -7,22 +7,19 @@
 #include <random>
 #include <sstream>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
-#include "body/body.h"
+#include "kerf/body.h"
 #include "cases.h"
-#include "io/body_file.h"
-#include "io/front_file.h"
-#include "io/kerf_container.h"
+#include "kerf/body_file.h"
+#include "kerf/front_file.h"
 #include "io/kerf_layout_internal.h"
-#include "io/node_file.h"
-#include "io/run_files.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
-#include "io/usd_file.h"
-#include "io/volume_file.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/node_file.h"
+#include "kerf/run_files.h"
+#include "kerf/stream.h"
+#include "kerf/surface_file.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

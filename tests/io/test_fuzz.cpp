@@ -4,13 +4,13 @@
 
 #include <memory>
 
-#include "crack/sheet.h"
+#include "kerf/crack.h"
 #include "io/kerf_bytes.h"
-#include "io/kerf_container.h"
+#include "kerf/body_file.h"
 #include "io/samples.h"
-#include "io/scene_file.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include "kerf/scene_file.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
 
 using namespace geo;
 using fuzz::Use;

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "cases.h"
 #include "io/kerf_bytes.h"
 #include "io/kerf_values.h"

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <thread>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "cases.h"
 #include "io/kerf_bytes.h"
 #include "io/kerf_delta_internal.h"

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "base/error.h"
-#include "io/surface_file.h"
-#include "surface/check.h"
-#include "surface/shapes.h"
+#include "kerf/error.h"
+#include "kerf/surface_file.h"
+#include "kerf/check.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <random>
 
-#include "io/node_file.h"
-#include "io/stream.h"
+#include "kerf/node_file.h"
+#include "kerf/stream.h"
 
 TEST_CASE("PCL reads the nodes that are written") {
   geo::NodeSet nodes;

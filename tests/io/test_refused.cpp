@@ -1,11 +1,11 @@
 // Files that were once read wrongly, each refused now in one line.
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
-#include "io/kerf_container.h"
+#include "kerf/error.h"
+#include "kerf/body_file.h"
 #include "io/samples.h"
-#include "io/scene_file.h"
-#include "surface/check.h"
+#include "kerf/scene_file.h"
+#include "kerf/check.h"
 
 using namespace geo;
 

@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "geometry/bvh.h"
-#include "io/volume_file.h"
-#include "sampling/sample.h"
-#include "surface/check.h"
-#include "surface/shapes.h"
+#include "kerf/surface_file.h"
+#include "kerf/nodes.h"
+#include "kerf/check.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -1,9 +1,9 @@
 // Bodies that the tests of mechanics share: blocks, cut by planes.
 #pragma once
 
-#include "body/body.h"
-#include "sampling/sample.h"
-#include "surface/shapes.h"
+#include "kerf/body.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
 
 namespace geo {
 

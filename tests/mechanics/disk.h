@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 namespace geo {
 

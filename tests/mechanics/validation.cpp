@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "mechanics/bodies.h"
-#include "mechanics/solid.h"
+#include "kerf/solid.h"
 
 namespace validation {
 namespace {

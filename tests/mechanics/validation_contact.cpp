@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/obstacle.h"
+#include "contact/response/obstacle.h"
 #include "mechanics/bodies.h"
 #include "mechanics/disk.h"
 #include "mechanics/validation.h"

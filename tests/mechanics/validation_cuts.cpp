@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "mechanics/bodies.h"
-#include "mechanics/solid.h"
+#include "kerf/solid.h"
 #include "mechanics/validation.h"
 
 namespace validation {

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "mechanics/bodies.h"
-#include "mechanics/solid.h"
+#include "kerf/solid.h"
 #include "mechanics/validation.h"
 
 namespace validation {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 namespace solids {
 

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "geometry/bvh.h"
-#include "sampling/sample.h"
+#include "kerf/nodes.h"
 #include "solids.h"
 
 using namespace geo;
@@ -52,7 +52,7 @@ TEST_CASE("nodes are inside and own the whole volume, in as many as asked for") 
 }
 
 TEST_CASE("the same nodes for any number of threads, others for another seed") {
-  for (const Pattern pattern : {Pattern::jitter, Pattern::blue, Pattern::grid}) {
+  for (const NodePattern pattern : {NodePattern::jitter, NodePattern::blue, NodePattern::grid}) {
     SampleOptions options;
     options.count = 3000, options.levels = 3, options.across = 3, options.pattern = pattern;
     const auto mesh = make_polyp(8);
@@ -64,7 +64,7 @@ TEST_CASE("the same nodes for any number of threads, others for another seed") {
     }
     set_threads(0);
     options.seed = 2;
-    CHECK(same(one, sample_nodes(mesh, options)) == (pattern == Pattern::grid));
+    CHECK(same(one, sample_nodes(mesh, options)) == (pattern == NodePattern::grid));
   }
 }
 
@@ -166,11 +166,11 @@ TEST_CASE("blue noise keeps nodes apart") {
   const TriangleMesh mesh = make_pumpkin(8);
   SampleOptions options;
   options.count = 2500;
-  options.pattern = Pattern::blue;
+  options.pattern = NodePattern::blue;
   const NodeSet nodes = sample_nodes(mesh, options);
   require_sound(mesh, nodes);
   const auto [least, mean] = nearest_other(nodes);
-  options.pattern = Pattern::jitter, options.jitter = 0.38;
+  options.pattern = NodePattern::jitter, options.jitter = 0.38;
   const auto [random_least, random_mean] = nearest_other(sample_nodes(mesh, options));
   CAPTURE(least, mean, random_least, random_mean);
   CHECK(least > 0.3);

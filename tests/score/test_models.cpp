@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <iostream>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "cases.h"
-#include "crack/sheet.h"
+#include "kerf/crack.h"
 #include "invariants/models.h"
-#include "score/score.h"
-#include "surface/check.h"
-#include "surface/chunks.h"
+#include "kerf/score.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
 
 using namespace geo;
 

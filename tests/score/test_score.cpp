@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "cases.h"
-#include "crack/sheet.h"
-#include "surface/shapes.h"
-#include "score/score.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include "kerf/crack.h"
+#include "kerf/shapes.h"
+#include "kerf/score.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
 
 using namespace geo;
 

@@ -2,19 +2,19 @@
 #include <map>
 #include <set>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "crack/sheet.h"
+#include "kerf/crack.h"
 #include "geometry/predicates.h"
 #include "score/jagged.h"
 #include "score/join.h"
 #include "score/partial.h"
 #include "score/voronoi.h"
 #include "score/walls.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -4,8 +4,8 @@
 #include <sstream>
 #include <string>
 
-#include "io/checkpoint_file.h"
-#include "simulation/simulation.h"
+#include "kerf/run_files.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 

@@ -1,10 +1,10 @@
 // A block with a flat crack from its left side, and the front of that crack.
 #pragma once
 
-#include "body/body.h"
-#include "sampling/sample.h"
+#include "kerf/body.h"
+#include "kerf/nodes.h"
 #include "simulation/fracture_front.h"
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 struct Notched {
   geo::Body body;

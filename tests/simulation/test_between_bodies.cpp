@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "base/parallel.h"
-#include "io/scene_file.h"
+#include "kerf/parallel.h"
+#include "kerf/scene_file.h"
 #include "simulation/kept_run.h"
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -1,10 +1,10 @@
 // Bodies of a scene with materials of their own.
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
-#include "io/scene_file.h"
+#include "kerf/error.h"
+#include "kerf/scene_file.h"
 #include "simulation/kept_run.h"
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

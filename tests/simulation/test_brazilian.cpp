@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/scene_file.h"
+#include "kerf/scene_file.h"
 #include "mechanics/disk.h"
-#include "simulation/simulation.h"
+#include "kerf/simulation.h"
 
 using namespace geo;
 

@@ -5,9 +5,9 @@
 
 #include "cases.h"
 #include "simulation/notched_block.h"
-#include "simulation/simulation.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include "kerf/simulation.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
 
 using namespace geo;
 

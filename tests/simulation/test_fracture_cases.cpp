@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
 #include "simulation/kept_run.h"
-#include "surface/check.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

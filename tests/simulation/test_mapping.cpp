@@ -1,16 +1,16 @@
 // From the world back to the material, and the fronts that blades leave.
 #include <catch2/catch.hpp>
 
-#include "base/parallel.h"
+#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
-#include "io/scene_file.h"
-#include "mechanics/deformation.h"
+#include "kerf/scene_file.h"
+#include "mechanics/discretisation/deformation.h"
 #include "simulation/point_map.h"
-#include "simulation/simulation.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/simulation.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

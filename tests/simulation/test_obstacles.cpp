@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "io/kerf_reader.h"
-#include "io/scene_file.h"
+#include "kerf/scene_file.h"
 #include "simulation/kept_run.h"
-#include "surface/shapes.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "simulation/simulation.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/simulation.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

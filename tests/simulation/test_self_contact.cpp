@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "contact/crossing.h"
-#include "io/scene_file.h"
+#include "kerf/crossing.h"
+#include "kerf/scene_file.h"
 #include "simulation/collide.h"
-#include "simulation/simulation.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/simulation.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

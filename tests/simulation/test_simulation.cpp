@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
-#include "io/scene_file.h"
-#include "simulation/simulation.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
-#include "surface/shapes.h"
+#include "kerf/error.h"
+#include "kerf/scene_file.h"
+#include "kerf/simulation.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

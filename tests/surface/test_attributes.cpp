@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "invariants/random_cuts.h"
-#include "surface/attributes.h"
-#include "surface/shapes.h"
+#include "kerf/mesh.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 using random_cuts::cases;

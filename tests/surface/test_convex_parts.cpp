@@ -3,9 +3,9 @@
 #include "base/random.h"
 #include "cases.h"
 #include "geometry/bvh.h"
-#include "surface/check.h"
-#include "surface/convex_parts.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

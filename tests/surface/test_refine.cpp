@@ -1,12 +1,12 @@
 // Meshes with shorter edges.
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
+#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "surface/check.h"
-#include "surface/refine.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/repair.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

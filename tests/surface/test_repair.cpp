@@ -3,9 +3,9 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "surface/check.h"
-#include "surface/repair.h"
-#include "surface/shapes.h"
+#include "kerf/check.h"
+#include "kerf/repair.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "base/error.h"
+#include <kerf/error.h>
 #include "geometry/predicates.h"
 #include "tool.h"
 

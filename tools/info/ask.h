@@ -1,7 +1,7 @@
 // What is known of one node, pair of nodes or surface vertex of a body, or one vertex of a surface.
 #pragma once
 
-#include "body/body.h"
+#include <kerf/body.h>
 #include "info/report.h"
 
 namespace info {

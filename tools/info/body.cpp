@@ -3,9 +3,9 @@
 #include <numeric>
 
 #include "info/files.h"
-#include "io/checkpoint_file.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include <kerf/run_files.h>
+#include <kerf/check.h>
+#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace info {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "surface/pieces.h"
+#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace info {

@@ -1,7 +1,7 @@
 // What is different between two bodies, the second of which is as a rule the first after a crack.
 #pragma once
 
-#include "body/body.h"
+#include <kerf/body.h>
 #include "info/report.h"
 
 namespace info {

@@ -1,11 +1,11 @@
 // A report for each kind of file. Each returns what `check` finds wrong first, empty when all is well.
 #pragma once
 
-#include "body/body.h"
-#include "crack/front.h"
+#include <kerf/body.h>
+#include <kerf/crack.h>
 #include "info/report.h"
 #include "io/kerf_reader.h"
-#include "io/surface_file.h"
+#include <kerf/surface_file.h>
 
 namespace info {
 

@@ -2,11 +2,11 @@
 #include <filesystem>
 #include <numeric>
 
-#include "base/error.h"
+#include <kerf/error.h>
 #include "info/files.h"
-#include "io/body_file.h"
-#include "io/scene_file.h"
-#include "io/stream.h"
+#include <kerf/body_file.h>
+#include <kerf/scene_file.h>
+#include <kerf/stream.h>
 #include "model.h"
 #include "tool.h"
 

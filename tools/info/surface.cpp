@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "base/error.h"
+#include <kerf/error.h>
 #include "info/files.h"
-#include "surface/check.h"
-#include "surface/pieces.h"
+#include <kerf/check.h>
+#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace info {

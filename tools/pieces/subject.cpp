@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "io/body_file.h"
+#include <kerf/body_file.h>
 #include "model.h"
 
 namespace pieces {

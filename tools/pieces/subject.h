@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "surface/complex.h"
-#include "surface/triangle_mesh.h"
+#include <kerf/complex.h>
+#include <kerf/mesh.h>
 
 namespace pieces {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "simulation/work.h"
+#include <kerf/simulation.h>
 
 namespace sim {
 

@@ -7,9 +7,9 @@
 
 #include <iostream>
 
-#include "base/parallel.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
+#include <kerf/parallel.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
 
 namespace sim {
 namespace {

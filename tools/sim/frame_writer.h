@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "contact/crossing.h"
-#include "io/run_files.h"
+#include <kerf/crossing.h>
+#include <kerf/run_files.h>
 #include "sim/frame_line.h"
 #include "sim/run_folder.h"
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <ostream>
 
-#include "base/error.h"
-#include "io/stream.h"
+#include <kerf/error.h>
+#include <kerf/stream.h>
 
 namespace sim {
 

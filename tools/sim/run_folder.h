@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "surface/triangle_mesh.h"
+#include <kerf/mesh.h>
 
 namespace sim {
 

@@ -2,10 +2,9 @@
 
 #include <vector>
 
-#include "io/run_files.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
-#include "io/usd_file.h"
+#include <kerf/run_files.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
 
 namespace sim {
 

@@ -12,8 +12,8 @@
 #include <csignal>
 #include <memory>
 
-#include "base/error.h"
-#include "io/stream.h"
+#include <kerf/error.h>
+#include <kerf/stream.h>
 
 extern char** environ;
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include <kerf/error.h>
+#include <kerf/parallel.h>
 #include "view/compose_parts.h"
 #include "view/pieces.h"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <map>
 
-#include "base/error.h"
+#include <kerf/error.h>
 #include "view/compose_parts.h"
 #include "view/cut_edges.h"
 #include "view/fields.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/error.h"
+#include <kerf/error.h>
 
 namespace view {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "body/body.h"
+#include <kerf/body.h>
 
 namespace view {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/error.h"
+#include <kerf/error.h>
 
 namespace view {
 

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "geometry/bvh.h"
-#include "io/run_files.h"
-#include "io/stream.h"
+#include <kerf/run_files.h>
+#include <kerf/stream.h>
 #include "view/pieces.h"
 
 namespace view {

@@ -1,7 +1,7 @@
 // The nodes of a run in each of its frames, made ready for a page: as many rows in each as there are nodes in the end.
 #pragma once
 
-#include "base/progress.h"
+#include <kerf/progress.h>
 #include "view/subject.h"
 
 namespace view {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include <kerf/error.h>
 
 namespace view {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/vec.h"
+#include <kerf/vec.h>
 
 namespace view {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <numeric>
 
-#include "io/surface_file.h"
+#include <kerf/surface_file.h>
 #include "version.h"
 #include "view/cut_edges.h"
 #include "view/fields.h"

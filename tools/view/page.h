@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include <kerf/progress.h>
 #include "view/subject.h"
 
 namespace view {

@@ -8,8 +8,8 @@
 #include <map>
 #include <numbers>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include <kerf/error.h>
+#include <kerf/parallel.h>
 
 namespace view {
 namespace {

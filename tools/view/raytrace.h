@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "surface/triangle_mesh.h"
+#include <kerf/mesh.h>
 #include "view/picture.h"
 
 namespace view {

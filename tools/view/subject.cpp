@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/error.h"
-#include "io/body_file.h"
-#include "io/checkpoint_file.h"
-#include "io/front_file.h"
-#include "io/node_file.h"
-#include "io/stream.h"
-#include "io/surface_file.h"
+#include <kerf/error.h>
+#include <kerf/body_file.h>
+#include <kerf/run_files.h>
+#include <kerf/front_file.h>
+#include <kerf/node_file.h>
+#include <kerf/stream.h>
+#include <kerf/surface_file.h>
 #include "kind.h"
 
 namespace view {

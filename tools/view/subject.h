@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "body/body.h"
-#include "crack/front.h"
-#include "mechanics/solid.h"
-#include "sampling/node_set.h"
+#include <kerf/body.h>
+#include <kerf/crack.h>
+#include <kerf/solid.h>
+#include <kerf/nodes.h>
 
 namespace view {
 

@@ -1,0 +1,34 @@
+# A module of libgeo is an object library of all sources below its folder. kerf::geo joins all modules in one static
+# library, so that a tool links and starts only what it uses.
+add_library(kerf_flags INTERFACE)
+target_compile_options(kerf_flags INTERFACE -Wall -Wextra $<$<CONFIG:Debug>:-O1>)
+# Exact predicates rely on IEEE arithmetic: no contraction into fused operations, no fast-math.
+target_compile_options(kerf_flags INTERFACE -ffp-contract=off)
+# gcc 12 warns of impossible overlaps inside std::string at -O3 (its bug 105329).
+target_compile_options(kerf_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+target_link_options(kerf_flags INTERFACE -Wl,--as-needed)
+if(KERF_WERROR)
+  target_compile_options(kerf_flags INTERFACE -Werror)
+endif()
+if(KERF_SANITIZE)
+  target_compile_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE})
+endif()
+if(KERF_FUZZ)
+  target_compile_options(kerf_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(kerf_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+set(KERF_MODULES base geometry surface sampling graph crack score body mechanics contact simulation io)
+
+function(kerf_module module)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${module}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_library(geo_${module} OBJECT ${sources})
+  target_include_directories(geo_${module} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}> $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>)
+  target_link_libraries(geo_${module} PRIVATE kerf_flags PUBLIC kerf_eigen ${ARGN})
+  kerf_precompile(geo_${module})
+  set_property(TARGET geo_${module} PROPERTY POSITION_INDEPENDENT_CODE ON)
+endfunction()

@@ -1,0 +1,47 @@
+#include "contact/response/touch_penalty.h"
+
+#include <algorithm>
+
+#include "contact/response/friction.h"
+
+namespace geo {
+void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
+  rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness, std::max(0.0, -depth) / spread(row.entries), start, false});
+  entries_.insert(entries_.end(), row.entries.begin(), row.entries.end());
+}
+
+void TouchPenalty::reserve(std::span<const RelativeRow> rows) {
+  std::size_t entries = entries_.size();
+  for (const RelativeRow& row : rows) entries += row.entries.size();
+  entries_.reserve(entries), rows_.reserve(rows_.size() + rows.size());
+}
+
+double TouchPenalty::energy(std::size_t r, const Vec3& way) const {
+  const Row& row = rows_[r];
+  const Vec3 gone = way - row.start;
+  const double along = row.normal.dot(gone), depth = std::max(0.0, row.depth - along);
+  const double normal = 0.5 * row.stiffness * depth * depth;
+  return row.depth > 0 && options_.friction > 0 ? normal + friction_energy(most_friction(row), (gone - along * row.normal).norm(), options_.slow) : normal;
+}
+
+Potential::Push TouchPenalty::push(std::size_t r, const Vec3& way) {
+  Row& row = rows_[r];
+  const Vec3& n = row.normal;
+  const Vec3 gone = way - row.start;
+  const double along = n.dot(gone), depth = std::max(0.0, row.depth - along);
+  Push push;
+  row.pressing = depth > 0;
+  if (row.pressing) push.force = row.stiffness * depth * n, push.curvature = row.stiffness * n * n.transpose();
+  if (row.depth > 0 && options_.friction > 0) {
+    const Vec3 slide = gone - along * n;
+    const double drag = friction_drag(most_friction(row), slide.norm(), options_.slow);
+    push.force -= drag * slide, push.curvature += drag * (Mat3::Identity() - n * n.transpose());
+  }
+  return push;
+}
+
+std::size_t TouchPenalty::pressing() const {
+  return static_cast<std::size_t>(std::count_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.pressing; }));
+}
+
+}  // namespace geo

@@ -1,0 +1,31 @@
+// Procedural models: closed, outward, free of self-intersection, at any resolution. Samples and tests are made of them.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "kerf/mesh.h"
+
+namespace geo {
+
+/// A geodesic sphere of 20·frequency² triangles whose point in unit direction d is at radius(d)·d; frequency ≥ 1.
+/// Star-shaped, hence free of self-intersection, for any positive continuous radius.
+TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& radius);
+
+/// A unit sphere.
+TriangleMesh make_sphere(int frequency);
+/// A pumpkin with nine lobes, flattened poles and a dimple at each, about 2 units across.
+TriangleMesh make_pumpkin(int frequency);
+/// An apple with a deep dimple at the stem and a shallow one below, about 2 units across.
+TriangleMesh make_apple(int frequency);
+/// A polyp: a bulb on a thin stalk that widens into its base; z upwards, about 2 units tall.
+TriangleMesh make_polyp(int frequency);
+
+/// An axis-aligned block [0, size] with faces divided so that no edge along an axis is longer than `edge`.
+TriangleMesh make_block(const Vec3& size, double edge);
+
+/// A capital letter A–Z of height 1, drawn with a pen of width 0.2 and extruded to `depth` along z; cells per unit of
+/// height: `resolution` ≥ 12. Throws InputError for a character that is not in the alphabet.
+TriangleMesh make_letter(char letter, double depth, int resolution);
+
+}  // namespace geo

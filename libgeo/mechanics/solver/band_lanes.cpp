@@ -1,0 +1,89 @@
+// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mechanics/solver/band_lanes.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "hwy/foreach_target.h"
+// After foreach_target.h:
+#include "hwy/highway.h"
+#include "mechanics/solver/band_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace geo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Wide = hn::CappedTag<float, band_room>;
+constexpr std::size_t wide = hn::MaxLanes(Wide());
+
+void EliminateSix(std::size_t n, std::size_t stride, const float* HWY_RESTRICT upper, const float* HWY_RESTRICT inverse, float* HWY_RESTRICT rows) {
+  const Wide d;
+  for (std::size_t j = 0; j < n; j += wide) {
+    hn::Vec<Wide> row[6];
+    for (std::size_t i = 0; i < 6; ++i) {
+      row[i] = hn::LoadU(d, rows + i * stride + j);
+      for (std::size_t k = 0; k < i; ++k) row[i] = hn::Sub(row[i], hn::Mul(hn::Set(d, upper[6 * k + i]), row[k]));
+      row[i] = hn::Mul(row[i], hn::Set(d, inverse[i]));
+      hn::StoreU(row[i], d, rows + i * stride + j);
+    }
+  }
+}
+
+void SubtractSix(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride_of, const float* HWY_RESTRICT of, std::size_t stride, float* HWY_RESTRICT rows) {
+  const Wide d;
+  for (std::size_t j = 0; j < n; j += wide) {
+    hn::Vec<Wide> row[6];
+    for (std::size_t k = 0; k < 6; ++k) row[k] = hn::LoadU(d, of + k * stride_of + j);
+    for (std::size_t i = 0; i < 6; ++i) {
+      auto sum = hn::LoadU(d, rows + i * stride + j);
+      for (std::size_t k = 0; k < 6; ++k) sum = hn::Sub(sum, hn::Mul(hn::Set(d, by[6 * i + k]), row[k]));
+      hn::StoreU(sum, d, rows + i * stride + j);
+    }
+  }
+}
+
+void SubtractRows(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride, const float* HWY_RESTRICT rows, float* HWY_RESTRICT x) {
+  const Wide d;
+  for (std::size_t j = 0; j < n; j += wide) {
+    auto sum = hn::LoadU(d, x + j);
+    for (std::size_t k = 0; k < 6; ++k) sum = hn::Sub(sum, hn::Mul(hn::Set(d, by[k]), hn::LoadU(d, rows + k * stride + j)));
+    hn::StoreU(sum, d, x + j);
+  }
+}
+
+void DotRows(std::size_t n, std::size_t stride, const float* HWY_RESTRICT rows, const float* HWY_RESTRICT x, float* HWY_RESTRICT out) {
+  const Wide d;
+  HWY_ALIGN float sums[6][band_room];
+  for (std::size_t at = 0; at < band_room; at += wide) {
+    hn::Vec<Wide> sum[6];
+    for (auto& s : sum) s = hn::Zero(d);
+    for (std::size_t j = at; j < n + at; j += band_room) {
+      const auto by = hn::LoadU(d, x + j);
+      for (std::size_t k = 0; k < 6; ++k) sum[k] = hn::Add(sum[k], hn::Mul(hn::LoadU(d, rows + k * stride + j), by));
+    }
+    for (std::size_t k = 0; k < 6; ++k) hn::StoreU(sum[k], d, sums[k] + at);
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t half = band_room / 2; half > 0; half /= 2)
+      for (std::size_t i = 0; i < half; ++i) sums[k][i] += sums[k][i + half];
+    out[k] = sums[k][0];
+  }
+}
+
+}  // namespace geo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(EliminateSix);
+HWY_EXPORT(SubtractSix);
+HWY_EXPORT(SubtractRows);
+HWY_EXPORT(DotRows);
+
+void eliminate_six(std::size_t n, std::size_t stride, const float* upper, const float* inverse, float* rows) { HWY_DYNAMIC_DISPATCH(EliminateSix)(n, stride, upper, inverse, rows); }
+void subtract_six(std::size_t n, const float* by, std::size_t stride_of, const float* of, std::size_t stride, float* rows) {
+  HWY_DYNAMIC_DISPATCH(SubtractSix)(n, by, stride_of, of, stride, rows);
+}
+void subtract_rows(std::size_t n, const float* by, std::size_t stride, const float* rows, float* x) { HWY_DYNAMIC_DISPATCH(SubtractRows)(n, by, stride, rows, x); }
+void dot_rows(std::size_t n, std::size_t stride, const float* rows, const float* x, float* out) { HWY_DYNAMIC_DISPATCH(DotRows)(n, stride, rows, x, out); }
+
+}  // namespace geo
+#endif

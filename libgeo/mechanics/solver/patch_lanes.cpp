@@ -1,0 +1,223 @@
+// Compiled once for each kind of vector, like point_lanes.cpp.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mechanics/solver/patch_lanes.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "hwy/foreach_target.h"
+// After foreach_target.h:
+#include <algorithm>
+
+#include "hwy/highway.h"
+#include "mechanics/material/matrix_lanes.h"
+#include "mechanics/solver/patch_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace geo::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void OuterProducts(const PointBlock& block, const std::uint32_t* first, const NodePatches::Incidence* places, PatchParts& out) {
+  using Four = hn::CappedTag<float, 4>;
+  const Four d;
+  constexpr std::size_t step = hn::MaxLanes(Four());
+  struct Entry {
+    std::uint32_t slot;
+    const float* g;
+  };
+  std::vector<std::vector<Entry>> here(out.patches.size());
+  std::vector<std::uint32_t> touched;
+  for (std::size_t i = 0; i < block.points.size(); ++i) {
+    const MaterialPoint& point = block.points[i];
+    if (point.rung == Rung::rigid) continue;
+    const float w = static_cast<float>(point.measured);
+    for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q)
+      for (auto k = first[block.to[q]]; k < first[block.to[q] + 1]; ++k) {
+        auto& list = here[places[k].patch];
+        if (list.empty()) touched.push_back(places[k].patch);
+        list.push_back({places[k].slot, &block.rounded[3 * q]});
+      }
+    for (const auto p : touched) {
+      auto& list = here[p];
+      float* const tiles = &out.outer[out.first[p]];
+      for (std::size_t a = 0; a < list.size(); ++a)
+        for (std::size_t b = 0; b <= a; ++b) {  // entries of a point ascend, and so do slots
+          const std::size_t s = list[a].slot, t = list[b].slot;
+          float* const to = tiles + 12 * (s * (s + 1) / 2 + t);
+          for (std::size_t k = 0; k < 4; k += step) {
+            const auto g = hn::LoadU(d, list[b].g + k);
+            for (std::size_t r = 0; r < 3; ++r) hn::StoreU(hn::MulAdd(hn::Set(d, w * list[a].g[r]), g, hn::LoadU(d, to + 4 * r + k)), d, to + 4 * r + k);
+          }
+        }
+      if (list.size() > out.most[p].count) out.most[p] = {static_cast<std::uint32_t>(list.size()), static_cast<std::uint32_t>(i)};
+      list.clear();
+    }
+    touched.clear();
+  }
+}
+
+using Wide = hn::CappedTag<float, 16>;
+constexpr std::size_t wide = hn::MaxLanes(Wide());
+
+using Vector = V<float>;
+struct Tile {
+  Vector at[3][3];  // [row][column]
+};
+HWY_INLINE Tile load_tile(const float* from) {
+  Tile t;
+  for (std::size_t k = 0; k < 9; ++k) t.at[k / 3][k % 3] = hn::LoadU(Lanes<float>(), from + 8 * k);
+  return t;
+}
+HWY_INLINE void store_tile(const Tile& t, float* to) {
+  for (std::size_t k = 0; k < 9; ++k) hn::StoreU(t.at[k / 3][k % 3], Lanes<float>(), to + 8 * k);
+}
+HWY_INLINE Tile transposed(const Tile& t) {
+  Tile out;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out.at[r][c] = t.at[c][r];
+  return out;
+}
+/// a · b
+HWY_INLINE Tile product(const Tile& a, const Tile& b) {
+  Tile out;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out.at[r][c] = hn::MulAdd(a.at[r][2], b.at[2][c], hn::MulAdd(a.at[r][1], b.at[1][c], hn::Mul(a.at[r][0], b.at[0][c])));
+  return out;
+}
+/// Takes a · bᵀ off another.
+HWY_INLINE void take_off(const Tile& a, const Tile& b, Tile& from) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k) from.at[r][c] = hn::NegMulAdd(a.at[r][k], b.at[c][k], from.at[r][c]);
+}
+constexpr std::size_t tile_at(std::size_t a, std::size_t b) { return 72 * (a * (a + 1) / 2 + b); }
+
+// In place of Σ w g_a g_bᵀ what an isotropic stiffness makes of it: Σ w (shear (g_a · g_b) 1 + shear g_b g_aᵀ + bulk g_a g_bᵀ); and blocks, turned back.
+HWY_INLINE void add_up(EightPatches& p, std::size_t lane) {
+  const Lanes<float> d;
+  const auto shear = hn::LoadU(d, &p.shear[lane]), bulk = hn::LoadU(d, &p.bulk[lane]);
+  const Tile back = load_tile(&p.turn[lane]), turn = transposed(back);
+  for (std::size_t a = 0; a < p.nodes; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      float* const to = &p.tiles[tile_at(a, b) + lane];
+      const Tile outer = load_tile(to);
+      const auto even = hn::Mul(shear, hn::Add(hn::Add(outer.at[0][0], outer.at[1][1]), outer.at[2][2]));
+      Tile k;
+      if (a == b) k = product(product(back, load_tile(&p.blocks[72 * a + lane])), turn);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) {
+          auto sum = hn::MulAdd(bulk, outer.at[r][c], hn::Mul(shear, outer.at[c][r]));
+          if (r == c) sum = hn::Add(sum, even);
+          k.at[r][c] = a == b ? hn::Add(sum, k.at[r][c]) : sum;
+        }
+      store_tile(k, to);
+    }
+}
+
+// The inverse of a symmetric tile, row by row; one that has no more than `least` left is taken out.
+HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
+  const auto one = hn::Set(Lanes<float>(), 1.0f);
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const auto over = hn::IfThenElseZero(hn::Gt(t.at[k][k], least[k]), hn::Div(one, t.at[k][k])), by = t.at[i][k], next = t.at[j][k];
+    const auto own = hn::Mul(by, over), other = hn::Mul(next, over);
+    t.at[i][i] = hn::NegMulAdd(by, own, t.at[i][i]), t.at[j][j] = hn::NegMulAdd(next, other, t.at[j][j]);
+    t.at[i][j] = t.at[j][i] = hn::NegMulAdd(by, other, t.at[i][j]);
+    t.at[i][k] = t.at[k][i] = own, t.at[j][k] = t.at[k][j] = other, t.at[k][k] = hn::Neg(over);
+  }
+  for (auto& row : t.at)
+    for (auto& x : row) x = hn::Neg(x);
+  return t;
+}
+
+// Node by node: K becomes −K⁻¹ of those that were taken, with what they are to the others beside it, and the others keep what is left of
+// them. Symmetric all the way, so that half of the tiles will do.
+HWY_INLINE void sweep(EightPatches& p, std::size_t lane) {
+  const Lanes<float> d;
+  float *const tiles = p.tiles.data() + lane, *const column = p.aside.data() + lane, *const least = column + 72 * p.nodes;
+  for (std::size_t a = 0; a < p.nodes; ++a)
+    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Mul(hn::Set(d, 1e-5f), hn::LoadU(d, tiles + tile_at(a, a) + 32 * c)), d, least + 8 * (3 * a + c));
+  for (std::size_t k = 0; k < p.nodes; ++k) {
+    const Vector lost[3] = {hn::LoadU(d, least + 24 * k), hn::LoadU(d, least + 24 * k + 8), hn::LoadU(d, least + 24 * k + 16)};
+    Tile own = inverse(load_tile(tiles + tile_at(k, k)), lost);
+    for (std::size_t a = 0; a < p.nodes; ++a) {
+      if (a == k) continue;
+      const Tile of_k = a > k ? load_tile(tiles + tile_at(a, k)) : transposed(load_tile(tiles + tile_at(k, a)));
+      store_tile(of_k, column + 72 * a);
+      const Tile by = product(of_k, own);
+      for (std::size_t b = 0; b <= a; ++b) {
+        if (b == k) continue;
+        Tile left = load_tile(tiles + tile_at(a, b));
+        take_off(by, load_tile(column + 72 * b), left);
+        store_tile(left, tiles + tile_at(a, b));
+      }
+      if (a > k)
+        store_tile(by, tiles + tile_at(a, k));
+      else
+        store_tile(transposed(by), tiles + tile_at(k, a));
+    }
+    for (auto& row : own.at)
+      for (auto& x : row) x = hn::Neg(x);
+    store_tile(own, tiles + tile_at(k, k));
+  }
+}
+
+void InvertPositive(EightPatches& p) {
+  const Lanes<float> d;
+  const hn::RebindToUnsigned<Lanes<float>> d32;
+  const hn::Rebind<std::uint16_t, Lanes<float>> d16;
+  for (std::size_t lane = 0; lane < 8; lane += width<float>) {
+    add_up(p, lane);
+    sweep(p, lane);
+    for (std::size_t a = 0; a < p.nodes; ++a)
+      for (std::size_t b = 0; b <= a; ++b) {
+        const auto share = hn::Neg(hn::Mul(hn::LoadU(d, &p.share[8 * a + lane]), hn::LoadU(d, &p.share[8 * b + lane])));
+        for (std::size_t at = tile_at(a, b) + lane, k = 0; k < 9; ++k, at += 8) {
+          const auto bits = hn::BitCast(d32, hn::Mul(share, hn::LoadU(d, &p.tiles[at])));
+          hn::StoreU(hn::TruncateTo(d16, hn::ShiftRight<16>(hn::Add(bits, hn::Set(d32, 0x8000u)))), d16, &p.halves[at]);
+        }
+      }
+  }
+}
+
+void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {
+  const Wide d;
+  const hn::Rebind<std::uint16_t, Wide> d16;
+  const hn::RebindToUnsigned<Wide> d32;
+  const std::size_t row = padded(size);
+  const auto column = [&](std::size_t at) HWY_ATTR { return hn::BitCast(d, hn::ShiftLeft<16>(hn::PromoteTo(d32, hn::LoadU(d16, matrix + at)))); };
+  std::size_t at = 0;
+  for (; at + 2 * wide <= row; at += 2 * wide) {
+    auto sum = hn::Zero(d), next = hn::Zero(d);
+    for (std::size_t j = 0; j < size; ++j) {
+      const auto by = hn::Set(d, x[j]);
+      sum = hn::MulAdd(by, column(j * row + at), sum), next = hn::MulAdd(by, column(j * row + at + wide), next);
+    }
+    hn::StoreU(sum, d, out + at), hn::StoreU(next, d, out + at + wide);
+  }
+  for (; at < row; at += wide) {
+    auto sum = hn::Zero(d);
+    for (std::size_t j = 0; j < size; ++j) sum = hn::MulAdd(hn::Set(d, x[j]), column(j * row + at), sum);
+    hn::StoreU(sum, d, out + at);
+  }
+}
+
+}  // namespace geo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace geo {
+HWY_EXPORT(OuterProducts);
+HWY_EXPORT(InvertPositive);
+HWY_EXPORT(MultiplyHalves);
+
+void add_outer_products(const PointBlock& block, std::span<const std::uint32_t> first, std::span<const NodePatches::Incidence> places, PatchParts& out) {
+  HWY_DYNAMIC_DISPATCH(OuterProducts)(block, first.data(), places.data(), out);
+}
+void EightPatches::begin(std::size_t count) {
+  nodes = count;
+  tiles.assign(72 * (count * (count + 1) / 2), 0), blocks.assign(72 * count, 0), share.assign(8 * count, 0), turn.fill(0), shear.fill(0), bulk.fill(0);
+  halves.resize(tiles.size()), aside.resize(96 * count);
+}
+void invert_positive(EightPatches& patches) { HWY_DYNAMIC_DISPATCH(InvertPositive)(patches); }
+void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) { HWY_DYNAMIC_DISPATCH(MultiplyHalves)(size, matrix, x, out); }
+
+}  // namespace geo
+#endif

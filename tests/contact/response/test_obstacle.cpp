@@ -1,0 +1,179 @@
+#include <catch2/catch.hpp>
+
+#include "acting.h"
+#include "base/random.h"
+#include "cases.h"
+#include "contact/response/obstacle.h"
+#include "contact/response/touch_penalty.h"
+#include "geometry/distance.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+Eigen::Isometry3d at(const Vec3& place, const Vec3& axis = Vec3::UnitZ(), double angle = 0) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), pose.translation() = place;
+  return pose;
+}
+
+struct Block {
+  Body body;
+  Solid solid;
+  SurfaceWeights weights;
+  static Body make(double spacing) {
+    SampleOptions sampling;
+    sampling.spacing = spacing;
+    const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+    return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
+  }
+  explicit Block(double spacing) : body(make(spacing)), solid(body, Material{}) { weights.update(body, solid); }
+};
+
+}  // namespace
+
+TEST_CASE("the field of a mesh: distance and side of random points, its derivatives") {
+  const auto [first, count] = seeds(6);
+  const std::vector<TriangleMesh> models{make_block({1, 0.6, 0.1}, 0.5), make_apple(4), make_letter('K', 0.3, 12), make_pumpkin(5)};
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    for (const TriangleMesh& mesh : models) {
+      const RigidShape shape(mesh);
+      const auto corners = corners_of(mesh);
+      const TriangleBvh bvh(corners);
+      const Box3 box = bvh.box().grown(0.2);
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 x(random.uniform(box.lo.x(), box.hi.x()), random.uniform(box.lo.y(), box.hi.y()), random.uniform(box.lo.z(), box.hi.z()));
+        const auto field = shape.at(x);
+        double least = 1e300;
+        for (const auto& t : corners) least = std::min(least, (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm());
+        CHECK(std::abs(field.distance) == Approx(least).margin(1e-14));
+        CHECK((field.distance < 0) == bvh.inside(x));
+        CHECK(field.normal.norm() == Approx(1));
+        // Where the nearest feature does not change, half the squared distance is a quadratic function.
+        const Vec3 step = 1e-7 * random.direction();
+        const auto other = shape.at(x + step);
+        const double change = 0.5 * (std::pow(other.distance, 2) - std::pow(field.distance, 2));
+        const double second = field.distance * field.normal.dot(step) + 0.5 * step.dot(field.square * step);
+        if ((other.square - field.square).norm() < 1e-12) CHECK(change == Approx(second).margin(1e-15));
+      }
+    }
+  }
+}
+
+TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature that of the force") {
+  const Block block(0.3);
+  Random random(3);
+  const std::size_t n = block.solid.size();
+  const std::vector<std::uint8_t> all(n, 1);
+  for (const bool plane : {true, false}) {
+    const auto shape = std::make_shared<RigidShape>(plane ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
+    const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
+    Obstacle o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
+    std::vector<Vec3> u(n, Vec3::Zero());
+    o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    o.begin(u, 0, 1);
+    REQUIRE(o.depth(u) > 0.01);
+    const std::vector<Vec3> begun = u;
+    Acting acting(o, begun);
+    for (int i = 0; i < 40; ++i) {
+      std::vector<Vec3> way;
+      for (std::size_t k = 0; k < n; ++k) u[k] = 0.01 * random.direction(), way.push_back(random.direction());
+      const auto moved = [&](double h) {
+        std::vector<Vec3> there = u;
+        for (std::size_t k = 0; k < n; ++k) there[k] += h * way[k];
+        return there;
+      };
+      const auto along = [&](const std::vector<Vec3>& f) {
+        double sum = 0;
+        for (std::size_t k = 0; k < n; ++k) sum += f[k].dot(way[k]);
+        return sum;
+      };
+      const double h = 1e-7;
+      const std::vector<Vec3> behind = acting.force(moved(h)), before = acting.force(moved(-h)), force = acting.force(u), turned = acting.product(way);
+      // Central differences; where a vertex passes a ridge of the field between, the derivative jumps.
+      const double slope = (acting.energy(moved(h)) - acting.energy(moved(-h))) / (2 * h);
+      CHECK(-along(force) == Approx(slope).epsilon(1e-4));
+      if (plane) CHECK(along(turned) >= -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
+      CHECK(along(turned) > 0);
+    }
+  }
+}
+
+TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
+  const Block block(0.3);
+  const std::size_t n = block.solid.size();
+  const std::vector<std::uint8_t> all(n, 1);
+  const Vec3 place(0.5, 0.45, -0.5);
+  Obstacle o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
+  std::vector<Vec3> u(n, Vec3::Zero());
+  o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+  o.begin(u, 0, 1);
+  const std::vector<Vec3> force = Acting(o, u).force(u);
+  Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
+  for (std::size_t i = 0; i < n; ++i) sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
+  const auto reaction = o.reaction(u);
+  REQUIRE(sum.norm() > 1);
+  CHECK((reaction.force + sum).norm() < 1e-12 * sum.norm());
+  CHECK((reaction.torque + torque).norm() < 1e-9 * sum.norm());  // weights are exact for linear fields
+}
+
+TEST_CASE("rows that are left out while nodes have not gone far do nothing there: energy and force are those of all rows") {
+  const Block block(0.3);
+  const auto [first, count] = seeds(40);
+  const std::size_t n = block.solid.size();
+  const std::vector<std::uint8_t> all(n, 1);
+  std::size_t skipped = 0, acted = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const auto shape = std::make_shared<RigidShape>(random.below(2) == 0 ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
+    const Vec3 below = shape->extent() == 0 ? Vec3(0.5, 0.5, random.uniform(-0.2, 0.05)) : Vec3(0.5, 0.45, random.uniform(-0.8, -0.4));
+    Obstacle o(shape, {1e4, 0.4}, at(below), at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
+    TouchPenalty touch({0.4, 0.05});
+    std::vector<Vec3> u, part;
+    for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());
+    o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    for (int r = 0; r < 30; ++r) {
+      RelativeRow row;
+      for (int k = 0; k < 4; ++k) row.entries.push_back({static_cast<std::uint32_t>(4 * random.below(static_cast<std::uint32_t>(n / 4)) + static_cast<std::uint32_t>(k)), random.uniform(-1, 1)});
+      touch.add(row, random.direction(), random.uniform(-0.3, 0.1), random.uniform(1, 5), u);
+    }
+    // Of a step's first part, and of one that begins later, where nodes have gone on since.
+    for (const bool later : {false, true}) {
+      std::vector<Vec3> begun = u;
+      for (Vec3& x : begun) x += later ? Vec3(0.05 * random.direction()) : Vec3(Vec3::Zero());
+      for (Potential* p : {static_cast<Potential*>(&o), static_cast<Potential*>(&touch)}) {
+        if (later) p->begin(u, 0, 0.5);
+        p->begin(begun, later ? 0.5 : 0, later ? 1 : random.uniform(0.3, 1));
+        for (const double far : {0.0, 0.003, 0.01, 0.03, 0.1, 0.3}) {
+          std::vector<Vec3> x = begun;
+          const Vec3 together = far * random.direction();
+          const double alike = random.uniform();
+          for (Vec3& y : x) y += alike * together + (1 - alike) * far * random.direction();
+          Acting acting(*p, begun);
+          const double wanted = energy_of(*p, x);
+          CHECK(acting.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));
+          const auto force = acting.force(x), expected = force_of(*p, x);
+          double size = 1e-12, wrong = 0;
+          for (std::size_t i = 0; i < n; ++i) size = std::max(size, expected[i].norm()), wrong = std::max(wrong, (force[i] - expected[i]).norm());
+          CHECK(wrong < 1e-11 * size);
+          acted += wanted > 0;
+          for (std::size_t r = 0; r < p->size(); ++r) skipped += p->reach(r) > far;
+        }
+        // Nor where all of a row's nodes go as far as it says, each the way that counts.
+        for (std::size_t r = 0; r < p->size(); ++r) {
+          if (!(p->reach(r) > 0)) continue;
+          double most = 0;
+          for (int k = 0; k < 20; ++k) most = std::max(most, p->energy(r, weighed(p->row(r), begun) + 0.999 * p->reach(r) * spread(p->row(r)) * random.direction()));
+          CHECK(most == 0);
+        }
+      }
+    }
+  }
+  CHECK(acted > 0);
+  CHECK(skipped > 0);
+}

@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "acting.h"
+#include "base/joined.h"
+#include "base/random.h"
+#include "body/agreement.h"
+#include "cases.h"
+#include "kerf/crossing.h"
+#include "contact/response/mutual_contact.h"
+#include "contact/self_contact.h"
+#include "contact/response/touch_penalty.h"
+#include "contact/detection/triangle_planes.h"
+#include "kerf/nodes.h"
+#include "kerf/shapes.h"
+
+using namespace geo;
+
+namespace {
+
+// A row of these nodes with random weights that sum to zero.
+RelativeRow row_of(const std::vector<std::uint32_t>& nodes, Random& random) {
+  RelativeRow row;
+  double left = 0;
+  for (const auto node : nodes) {
+    const double w = row.entries.size() + 1 < nodes.size() ? random.uniform(-0.5, 0.5) : -left;
+    row.entries.push_back({node, w}), left += w;
+  }
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("the touch penalty's force is the energy's slope, its product the force's, and it moves no middle") {
+  const auto [first, count] = seeds(20);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    constexpr std::size_t n = 9;
+    const auto vectors = [&](double size) {
+      std::vector<Vec3> v;
+      for (std::size_t i = 0; i < n; ++i) v.push_back(size * random.direction());
+      return v;
+    };
+    const std::vector<Vec3> u = vectors(1);
+    TouchPenalty penalty({0.4, 0.05});
+    for (int i = 0; i < 6; ++i) {
+      std::vector<std::uint32_t> all_nodes(n);
+      std::iota(all_nodes.begin(), all_nodes.end(), 0);
+      const RelativeRow row = row_of(all_nodes, random);
+      penalty.add(row, random.direction(), random.uniform(-0.2, 0.5), random.uniform(1, 5), u);
+    }
+    std::vector<Vec3> at = u, way = vectors(1);
+    for (std::size_t i = 0; i < n; ++i) at[i] += 0.2 * random.direction();
+    const auto moved = [&](double s) {
+      std::vector<Vec3> x = at;
+      for (std::size_t i = 0; i < n; ++i) x[i] += s * way[i];
+      return x;
+    };
+    const auto along = [&](const std::vector<Vec3>& f) {
+      double sum = 0;
+      for (std::size_t i = 0; i < n; ++i) sum += f[i].dot(way[i]);
+      return sum;
+    };
+    penalty.begin(u, 0, 1);
+    Acting acting(penalty, u);
+    const std::vector<Vec3> force = acting.force(at), product = acting.product(way);
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& f : force) sum += f;
+    CHECK(sum.norm() < 1e-12);
+    const double step = 1e-6;
+    CHECK((acting.energy(moved(step)) - acting.energy(moved(-step))) / (2 * step) == Approx(-along(force)).epsilon(1e-4).margin(1e-5));
+    CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
+    std::vector<Mat3> blocks(n, Mat3::Zero());
+    acting.rows().add_blocks(blocks);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::vector<Vec3> unit(n, Vec3::Zero());
+      unit[i] = Vec3::UnitY();
+      const std::vector<Vec3> column = acting.product(unit);
+      CHECK(column[i].y() > 0);
+      CHECK(blocks[i](1, 1) >= column[i].y() * (1 - 1e-6));  // no less than the matrix has there
+      CHECK(blocks[i](1, 1) < 20 * column[i].y());
+    }
+  }
+}
+
+TEST_CASE("nodes that a penalty makes depend on each other hang together by the pairs that it tells, and each part has its own energy") {
+  const auto [first, count] = seeds(50);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    constexpr std::uint32_t n = 24;
+    std::vector<Vec3> u, at;
+    for (std::uint32_t i = 0; i < n; ++i) u.push_back(random.direction()), at.push_back(u.back() + 0.3 * random.direction());
+    TouchPenalty touch({0.4, 0.05});
+    MutualContact mutual(0.4, 0.05);
+    for (int r = 0; r < 7; ++r) {
+      std::vector<std::uint32_t> some;
+      for (int k = 0; k < 3; ++k) some.push_back(static_cast<std::uint32_t>(random.below(n)));
+      const RelativeRow row = row_of(some, random);
+      const Vec3 normal = random.direction();
+      touch.add(row, normal, random.uniform(0, 0.5), random.uniform(1, 5), u);
+      mutual.add(row.entries, random.uniform(-0.5, 0) * normal, normal, random.uniform(1, 5));
+    }
+    for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
+      p->begin(u, 0, 1);
+      Acting acting(*p, u);
+      Joined joined(n);
+      std::vector<std::uint32_t> part(n);
+      std::iota(part.begin(), part.end(), 0u);
+      for (const auto& [i, j] : acting.rows().couples(part)) joined.join(i, j);
+      for (std::uint32_t i = 0; i < n; ++i) part[i] = joined[i];
+      const std::vector<Vec3> force = acting.force(at);
+      const std::vector<char> all(n, 1);
+      std::vector<double> energy(n, 0), moved(n, 0);
+      acting.rows().add_energy(at, part, all, energy);
+      CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(acting.energy(at)).epsilon(1e-12));
+      for (std::uint32_t i = 0; i < n; ++i) {
+        std::vector<Vec3> unit(n, Vec3::Zero()), x = at;
+        unit[i] = random.direction(), x[i] += 0.2 * unit[i];
+        const std::vector<Vec3> column = acting.product(unit);
+        moved.assign(n, 0);
+        acting.rows().add_energy(x, part, all, moved);
+        for (std::uint32_t j = 0; j < n; ++j)
+          if (part[j] != part[i]) {
+            CHECK(column[j].isZero(0));
+            CHECK(moved[j] == energy[j]);
+          }
+      }
+    }
+  }
+}
+
+namespace {
+
+// Springs towards way 0 that act once they are woken.
+struct Sleepers : Potential {
+  std::vector<std::vector<NodeWeight>> nodes;
+  std::vector<Mat3> firm;
+  std::vector<char> awake;
+  std::size_t size() const override { return nodes.size(); }
+  std::span<const NodeWeight> row(std::size_t r) const override { return nodes[r]; }
+  double energy(std::size_t r, const Vec3& way) const override { return awake[r] ? 0.5 * way.dot(firm[r] * way) : 0; }
+  Push push(std::size_t r, const Vec3& way) override { return awake[r] ? Push{-firm[r] * way, firm[r]} : Push{}; }
+};
+
+}  // namespace
+
+TEST_CASE("rows that come to act in the middle of a step, or cease to, are in forces and products like those that did from the first") {
+  const auto [first, count] = seeds(30);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const std::size_t n = 40, total = 600;
+    Sleepers sleepers;
+    for (std::size_t r = 0; r < total; ++r) {
+      std::vector<NodeWeight> row;
+      for (std::uint32_t i = static_cast<std::uint32_t>(random.below(8)); i < n && r % 17 != 3; i += 1 + static_cast<std::uint32_t>(random.below(9))) row.push_back({i, random.uniform(-1, 1)});
+      const Vec3 d = random.direction();
+      sleepers.nodes.push_back(row), sleepers.firm.push_back(random.uniform(1, 3) * d * d.transpose()), sleepers.awake.push_back(0);
+    }
+    const std::vector<Vec3> begun(n, Vec3::Zero());
+    Acting acting(sleepers, begun);
+    for (int round = 0; round < 12; ++round) {
+      const double some = std::array{0.0, 0.3, 0.01, 0.002, 0.05, 0.5}[static_cast<std::size_t>(random.below(6))];
+      for (auto& awake : sleepers.awake)
+        if (random.uniform() < some) awake = !awake;
+      std::vector<Vec3> u, p, force(n, Vec3::Zero()), product = force;
+      for (std::size_t i = 0; i < n; ++i) u.push_back(random.direction()), p.push_back(random.direction());
+      double energy = 0;
+      for (std::size_t r = 0; r < total; ++r) {
+        if (!sleepers.awake[r]) continue;
+        const Vec3 way = weighed(sleepers.nodes[r], u), pull = sleepers.firm[r] * weighed(sleepers.nodes[r], p);
+        energy += sleepers.energy(r, way);
+        for (const auto& e : sleepers.nodes[r]) force[e.node] -= e.weight * sleepers.firm[r] * way, product[e.node] += e.weight * pull;
+      }
+      CHECK(acting.energy(u) == Approx(energy).epsilon(1e-12).margin(1e-300));
+      const auto pushed = acting.force(u), multiplied = acting.product(p);
+      for (std::size_t i = 0; i < n; ++i) {
+        CHECK((pushed[i] - force[i]).norm() < 1e-11);
+        CHECK((multiplied[i] - product[i]).norm() < 1e-3);  // in single precision
+      }
+    }
+  }
+}
+
+TEST_CASE("what a triangle's plane parts at both ends does not meet in between") {
+  // Against a slow oracle: the motion in 500 steps, exactly.
+  const auto [first, count] = seeds(300);
+  std::size_t parted = 0, met = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
+    const std::vector<std::uint32_t> together = {0, 1, 2, 3, 4, 5};
+    std::vector<Vec3> from, to;
+    for (int v = 0; v < 6; ++v) from.push_back(Vec3(v < 3 ? 0 : 0.4, 0, 0) + random.uniform(0.2, 0.6) * random.direction());
+    for (int v = 0; v < 6; ++v) to.push_back(from[static_cast<std::size_t>(v)] + random.uniform(0, 0.8) * random.direction());
+    const TrianglePlanes planes(triangles, from, to);
+    bool meets = false;
+    for (int step = 0; step <= 500 && !meets; ++step) {
+      std::vector<Vec3> at;
+      for (std::size_t v = 0; v < 6; ++v) at.push_back(from[v] + step / 500.0 * (to[v] - from[v]));
+      meets = !find_crossings(triangles, at, together, false).empty();
+    }
+    const bool part = planes.part(0, 1, 1e-12, 1e-12);
+    if (meets) CHECK_FALSE(part);
+    met += meets, parted += part;
+    CHECK(planes.part(0, 1, 1e-12, 1e-12) == planes.part(1, 0, 1e-12, 1e-12));
+  }
+  CHECK(met > 20);
+  CHECK(parted > 20);
+}
+
+TEST_CASE("what lies on a cut presses on it and does not sink in") {
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+  SampleOptions sampling;
+  sampling.spacing = 0.25;
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), {26, NeighborMethod::automatic});
+  Material material;
+  material.young = 1e5, material.damping = 2;
+  Solid solid(body.nodes, body.graph, material);
+  State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
+  SelfContact contact(body, solid);
+  auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 0.5, 0.53}, {-0.3, 1.3, 0.52}}, false, 1);
+  const auto delta = split(body, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}}, {}, nullptr,
+                           [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
+  solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
+  contact.follow(body, solid, delta);
+  Environment environment;
+  environment.gravity = {0, 0, -9.81};
+  environment.fixed.assign(solid.size(), 0);
+  for (std::size_t i = 0; i < solid.size(); ++i) environment.fixed[i] = body.nodes.position[i].z() < 0.2;
+  ContactWork last;
+  for (int step = 0; step < 40; ++step) {
+    environment.contact.clear();
+    if (Potential* touch = contact.begin(body, solid, state, 0.02, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
+    const std::vector<Vec3> before = state.displacement;
+    solid.step_implicit(state, 0.02, environment);
+    const std::vector<Vec3> after = state.displacement;
+    last = {};
+    contact.resolve(body, solid, before, 0.02, environment.fixed, state, &last);
+    CHECK(state.displacement == after);  // the nodes have met in the step
+    TriangleMesh surface;
+    surface.vertices = contact.positions(), surface.triangles = contact.surface().triangles, surface.site = contact.surface().site;
+    CHECK(count_crossings(surface) == 0);
+  }
+  CHECK(last.touching > 10);
+  CHECK(last.lag < 0.2 * contact.surface().edge);
+}

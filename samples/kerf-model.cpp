@@ -4,14 +4,15 @@
 
 #include <kerf/error.h>
 #include <kerf/front_file.h>
+#include <kerf/shapes.h>
 #include <kerf/stream.h>
 #include <kerf/surface_file.h>
-#include <kerf/shapes.h>
 #include "tool.h"
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-model", "Makes a sample model, or a front that sweeps through the middle of a model.",
-               "  kerf-model pumpkin --frequency 22 -o pumpkin.ply\n  kerf-model letter --text K -o k.ply\n  kerf-model front --around bear.off --steps 12 -o halve.front");
+               "  kerf-model pumpkin --frequency 22 -o pumpkin.ply\n  kerf-model letter --text K -o k.ply\n  "
+               "kerf-model front --around bear.off --steps 12 -o halve.front");
   std::string kind, text = "K", around;
   int frequency = 22, resolution = 24, steps = 12, points = 24;
   double edge = 0.1, depth = 0.25, bend = 0.06, tilt = 7;
@@ -30,7 +31,8 @@ int main(int argc, char** argv) {
   return t.run(argc, argv, [&] {
     const std::string target = t.target(kind != "front");
     if (kind == "front") {
-      if (around.empty() || steps < 1 || points < 2) throw tool::UsageError("a front needs --around MODEL, --steps of 1 and --points of 2 at least");
+      if (around.empty() || steps < 1 || points < 2)
+        throw tool::UsageError("a front needs --around MODEL, --steps of 1 and --points of 2 at least");
       const auto mesh = geo::read_surface(around).mesh;
       const geo::Box3 box = geo::bounding_box(mesh);
       // Across the longest axis, downwards along the next, a little tilted and bent so that nothing is special.
@@ -40,28 +42,41 @@ int main(int argc, char** argv) {
       const double d = box.diagonal(), angle = tilt * 3.14159265358979 / 180;
       geo::Vec3 normal = geo::Vec3::Zero(), down = geo::Vec3::Zero(), along = geo::Vec3::Zero();
       normal[axis[0]] = 1, down[axis[1]] = -1, along[axis[2]] = 1;
-      const geo::Vec3 n = std::cos(angle) * normal + std::sin(angle) * along, a = std::cos(angle) * along - std::sin(angle) * normal;
+      const geo::Vec3 n = std::cos(angle) * normal + std::sin(angle) * along,
+                      a = std::cos(angle) * along - std::sin(angle) * normal;
       geo::Front front{"halve", false, {}};
       for (int s = 0; s <= steps; ++s) {
         front.steps.emplace_back();
         for (int i = 0; i < points; ++i) {
           const double u = double(s) / steps - 0.5, v = double(i) / (points - 1) - 0.5;
-          front.steps.back().push_back(box.center() + 1.13 * d * (u * down + v * a) + d * (0.0031 + bend * std::sin(4 * u + 1) * std::cos(5 * v + 0.4)) * n);
+          front.steps.back().push_back(box.center() + 1.13 * d * (u * down + v * a) +
+                                       d * (0.0031 + bend * std::sin(4 * u + 1) * std::cos(5 * v + 0.4)) * n);
         }
       }
       geo::write_all(target, [&](std::ostream& out) { geo::write_fronts(out, {front}); });
       return;
     }
     geo::TriangleMesh mesh;
-    if (kind == "pumpkin") mesh = geo::make_pumpkin(frequency);
-    else if (kind == "apple") mesh = geo::make_apple(frequency);
-    else if (kind == "polyp") mesh = geo::make_polyp(frequency);
-    else if (kind == "sphere") mesh = geo::make_sphere(frequency);
-    else if (kind == "block") mesh = geo::make_block({2, 1, 1}, edge);
-    else if (kind == "plate") mesh = geo::make_block({2, 1, 0.12}, edge);
-    else if (kind == "letter" && text.size() == 1) mesh = geo::make_letter(text[0], depth, resolution);
-    else if (kind == "letter") throw tool::UsageError("--text '" + text + "' is no letter from A to Z");
-    else throw tool::UsageError("'" + kind + "' is none of its models" + geo::did_you_mean(kind, {"pumpkin", "apple", "polyp", "sphere", "block", "plate", "letter", "front"}));
+    if (kind == "pumpkin")
+      mesh = geo::make_pumpkin(frequency);
+    else if (kind == "apple")
+      mesh = geo::make_apple(frequency);
+    else if (kind == "polyp")
+      mesh = geo::make_polyp(frequency);
+    else if (kind == "sphere")
+      mesh = geo::make_sphere(frequency);
+    else if (kind == "block")
+      mesh = geo::make_block({2, 1, 1}, edge);
+    else if (kind == "plate")
+      mesh = geo::make_block({2, 1, 0.12}, edge);
+    else if (kind == "letter" && text.size() == 1)
+      mesh = geo::make_letter(text[0], depth, resolution);
+    else if (kind == "letter")
+      throw tool::UsageError("--text '" + text + "' is no letter from A to Z");
+    else
+      throw tool::UsageError(
+          "'" + kind + "' is none of its models" +
+          geo::did_you_mean(kind, {"pumpkin", "apple", "polyp", "sphere", "block", "plate", "letter", "front"}));
     if (target.ends_with(".vdb")) return geo::write_level_set(target, mesh, 0.02 * geo::bounding_box(mesh).diagonal());
     geo::write_all(target, [&](std::ostream& out) { geo::write_ply(out, mesh, {}, "kerf-model " + kind); });
   });

@@ -23,7 +23,8 @@ inline std::vector<Vec3> force_of(Potential& of, const std::vector<Vec3>& u) {
 class Acting {
  public:
   /// After their begin() at displacements u, which outlive it.
-  Acting(std::span<Potential* const> potentials, const std::vector<Vec3>& u) : rows_(potentials, u), part_(u.size(), 0) {}
+  Acting(std::span<Potential* const> potentials, const std::vector<Vec3>& u)
+      : rows_(potentials, u), part_(u.size(), 0) {}
   Acting(Potential& one, const std::vector<Vec3>& u) : Acting(std::vector<Potential*>{&one}, u) {}
   ContactRows& rows() { return rows_; }
 

@@ -9,8 +9,8 @@ class App;
 
 namespace tool {
 
-/// A completion script for "bash" or "zsh", or the tool's manual page ("man", roff; the line @DESCRIPTION@ stands where the
-/// description belongs). Throws UsageError for another word.
+/// A completion script for "bash" or "zsh", or the tool's manual page ("man", roff; the line @DESCRIPTION@ stands where
+/// the description belongs). Throws UsageError for another word.
 std::string describe(const CLI::App& app, const std::string& what);
 
 }  // namespace tool

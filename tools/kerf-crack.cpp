@@ -5,9 +5,9 @@
 #include <kerf/crack.h>
 #include <kerf/crack_edits.h>
 #include <kerf/front_file.h>
+#include <kerf/pieces.h>
 #include <kerf/stream.h>
 #include "model.h"
-#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace {
@@ -20,24 +20,36 @@ struct Wishes {
 };
 
 void check(Wishes& w) {
-  if ((w.model == "-") + std::count(w.fronts.begin(), w.fronts.end(), "-") + std::count(w.sheets.begin(), w.sheets.end(), "-") > 1) throw tool::UsageError("only one file can come from standard input");
-  if (w.fronts.empty() && w.sheets.empty() && !(w.jagged > 0) && !(w.decimate > 0)) throw tool::UsageError("give at least one --front, --sheet, --jagged or --decimate");
+  if ((w.model == "-") + std::count(w.fronts.begin(), w.fronts.end(), "-") +
+          std::count(w.sheets.begin(), w.sheets.end(), "-") >
+      1)
+    throw tool::UsageError("only one file can come from standard input");
+  if (w.fronts.empty() && w.sheets.empty() && !(w.jagged > 0) && !(w.decimate > 0))
+    throw tool::UsageError("give at least one --front, --sheet, --jagged or --decimate");
   if (!w.steps.empty()) {
     unsigned long a = 0, b = 0;
     char rest = 0;
-    if (std::sscanf(w.steps.c_str(), "%lu:%lu%c", &a, &b, &rest) != 2 || a >= b) throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A < B");
+    if (std::sscanf(w.steps.c_str(), "%lu:%lu%c", &a, &b, &rest) != 2 || a >= b)
+      throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A < B");
     w.from = a, w.to = b;
   }
   if (!(w.max_move >= 0)) throw tool::UsageError("--max-move must not be negative");
   if (!(w.remesh >= 0 && w.remesh <= 30)) throw tool::UsageError("--remesh must be an angle between 0 and 30 degrees");
-  if (!(w.jagged >= 0 && w.jagged < 1)) throw tool::UsageError("--jagged must be a fraction of the diagonal, at least 0 and below 1");
+  if (!(w.jagged >= 0 && w.jagged < 1))
+    throw tool::UsageError("--jagged must be a fraction of the diagonal, at least 0 and below 1");
   if (!(w.bumps > 0 && w.bumps <= 1e4)) throw tool::UsageError("--bumps must be positive and at most 10000");
-  if (!(w.decimate >= 0 && w.decimate < 1)) throw tool::UsageError("--decimate must be a fraction of the diagonal, at least 0 and below 1");
+  if (!(w.decimate >= 0 && w.decimate < 1))
+    throw tool::UsageError("--decimate must be a fraction of the diagonal, at least 0 and below 1");
 }
 
 class Cutting {
  public:
-  Cutting(const Wishes& wishes, const tool::Tool& t) : w_(wishes), t_(t), file_(tool::read_solid(w_.model)), complex_(tool::complex_of(file_, w_.model)), states_(file_.fronts) {
+  Cutting(const Wishes& wishes, const tool::Tool& t)
+      : w_(wishes),
+        t_(t),
+        file_(tool::read_solid(w_.model)),
+        complex_(tool::complex_of(file_, w_.model)),
+        states_(file_.fronts) {
     options_.seed = t.seed;
   }
 
@@ -47,13 +59,15 @@ class Cutting {
     options.deviation = w_.decimate;
     geo::DecimateWork work;
     geo::decimate(complex_, held(), options, &work);
-    note("\"decimate\":{\"collapses\":" + std::to_string(work.collapses) + ",\"faces\":" + std::to_string(complex_.live_face_count()) + ",\"seconds\":" + tool::number(work.seconds) + "}");
+    note("\"decimate\":{\"collapses\":" + std::to_string(work.collapses) + ",\"faces\":" +
+         std::to_string(complex_.live_face_count()) + ",\"seconds\":" + tool::number(work.seconds) + "}");
   }
 
   void sweep(const std::vector<geo::Front>& fronts) {
     const auto progress = t_.progress();
     std::size_t done = 0, total = 0;
-    for (const auto& f : fronts) total += f.is_sheet() ? 1 : std::min(w_.to, f.steps.size() - 1) - std::min(w_.from, f.steps.size() - 1);
+    for (const auto& f : fronts)
+      total += f.is_sheet() ? 1 : std::min(w_.to, f.steps.size() - 1) - std::min(w_.from, f.steps.size() - 1);
     for (const auto& front : fronts) {
       if (front.is_sheet()) {
         geo::report(progress, "crack " + front.name, done++, total);
@@ -61,7 +75,9 @@ class Cutting {
         continue;
       }
       const std::size_t last = std::min(w_.to, front.steps.size() - 1);
-      if (w_.from >= last) throw geo::InputError("front '" + front.name + "' has only " + std::to_string(front.steps.size()) + " time steps; change --steps");
+      if (w_.from >= last)
+        throw geo::InputError("front '" + front.name + "' has only " + std::to_string(front.steps.size()) +
+                              " time steps; change --steps");
       const std::size_t row = state_of(front);
       std::size_t made = 0;
       geo::Box3 swept;
@@ -76,7 +92,8 @@ class Cutting {
     geo::report(progress, "done", total, total);
   }
 
-  void insert(const std::string& name, const std::vector<geo::Vec3>& points, const std::vector<geo::Triangle>& triangles) {
+  void insert(const std::string& name, const std::vector<geo::Vec3>& points,
+              const std::vector<geo::Triangle>& triangles) {
     geo::TriangleMesh sheet;
     sheet.vertices = points, sheet.triangles = triangles;
     geo::CrackWork work;
@@ -96,22 +113,28 @@ class Cutting {
     options.amplitude = w_.jagged, options.frequency = w_.bumps, options.seed = t_.seed;
     geo::RoughenWork work;
     geo::roughen(complex_, held(), options, &work);
-    note("\"jagged\":{\"divisions\":" + std::to_string(work.divisions) + ",\"moves\":" + std::to_string(work.moves) + ",\"lowered\":" + std::to_string(work.lowered) + ",\"seconds\":" + tool::number(work.seconds) + "}");
+    note("\"jagged\":{\"divisions\":" + std::to_string(work.divisions) + ",\"moves\":" + std::to_string(work.moves) +
+         ",\"lowered\":" + std::to_string(work.lowered) + ",\"seconds\":" + tool::number(work.seconds) + "}");
   }
 
   void write(const std::string& target) const {
     const auto mesh = cut_surface();
-    geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states_, "kerf-crack"); });
+    geo::write_all(target, [&](std::ostream& out) {
+      target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states_, "kerf-crack");
+    });
     if (t_.json) (target == "-" ? std::cerr : std::cout) << '[' << json_ << "]\n";
     if (!t_.verbose) return;
     const auto cracks = static_cast<std::size_t>(complex_.crack_count());
-    t_.say("kerf-crack: " + tool::counted(geo::find_pieces(complex_).count, "piece") + ", " + tool::counted(cracks, "crack") + ", " + tool::counted(mesh.triangles.size(), "triangle"));
+    t_.say("kerf-crack: " + tool::counted(geo::find_pieces(complex_).count, "piece") + ", " +
+           tool::counted(cracks, "crack") + ", " + tool::counted(mesh.triangles.size(), "triangle"));
   }
 
  private:
   void say_missed(const std::string& what, const geo::Box3& where) const {
     const geo::Box3 model = complex_.extent();
-    t_.say("kerf-crack: " + what + " meets no material; it is within (" + tool::rounded(where.lo) + ") to (" + tool::rounded(where.hi) + "), the model within (" + tool::rounded(model.lo) + ") to (" + tool::rounded(model.hi) + ")");
+    t_.say("kerf-crack: " + what + " meets no material; it is within (" + tool::rounded(where.lo) + ") to (" +
+           tool::rounded(where.hi) + "), the model within (" + tool::rounded(model.lo) + ") to (" +
+           tool::rounded(model.hi) + ")");
   }
   geo::TriangleMesh cut_surface() const {
     geo::TriangleMesh mesh = complex_.two_sided();
@@ -132,7 +155,9 @@ class Cutting {
 
   // A front of this name that stopped where we begin is taken up again, contacts and all.
   std::size_t state_of(const geo::Front& front) {
-    auto state = std::find_if(states_.begin(), states_.end(), [&](const geo::FrontState& s) { return s.name == front.name && s.step == w_.from && w_.from > 0; });
+    auto state = std::find_if(states_.begin(), states_.end(), [&](const geo::FrontState& s) {
+      return s.name == front.name && s.step == w_.from && w_.from > 0;
+    });
     if (state == states_.end()) {
       states_.push_back(geo::begin_front(front.steps[w_.from], front.closed, next_crack()));
       state = states_.end() - 1;
@@ -160,21 +185,28 @@ class Cutting {
       } catch (const geo::GeometryError& e) {
         if (!w_.repro.empty()) {
           geo::write_all(w_.repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, cut_surface(), states_); });
-          geo::write_all(w_.repro + ".front", [&](std::ostream& out) { geo::write_fronts(out, {{front.name, front.closed, {start, next}, {}}}); });
+          geo::write_all(w_.repro + ".front", [&](std::ostream& out) {
+            geo::write_fronts(out, {{front.name, front.closed, {start, next}, {}}});
+          });
         }
         throw geo::GeometryError(w_.model + ": front '" + front.name + "', " + e.what() + "; " +
-                                 (w_.repro.empty() ? "run again with --repro FILE to keep the case" : "the case is in " + w_.repro + ".ply and .front"));
+                                 (w_.repro.empty() ? "run again with --repro FILE to keep the case"
+                                                   : "the case is in " + w_.repro + ".ply and .front"));
       }
     }
     state.step = static_cast<std::uint32_t>(step + 1);
-    note("\"front\":" + tool::quoted(front.name) + ",\"step\":" + std::to_string(step + 1) + "," + figures(work) + remeshed(made));
+    note("\"front\":" + tool::quoted(front.name) + ",\"step\":" + std::to_string(step + 1) + "," + figures(work) +
+         remeshed(made));
     return work.new_crack_faces;
   }
 
   static std::string figures(const geo::CrackWork& work) {
-    return "\"triangles_cut\":" + std::to_string(work.triangles_cut) + ",\"crack_faces\":" + std::to_string(work.new_crack_faces) + ",\"attempts\":" + std::to_string(work.attempts) +
-           ",\"repairs\":" + std::to_string(work.repairs) + ",\"seconds\":{\"near\":" + tool::number(work.near_seconds) + ",\"meet\":" + tool::number(work.meet_seconds) +
-           ",\"split\":" + tool::number(work.split_seconds) + ",\"keep\":" + tool::number(work.keep_seconds) + ",\"stitch\":" + tool::number(work.stitch_seconds) +
+    return "\"triangles_cut\":" + std::to_string(work.triangles_cut) +
+           ",\"crack_faces\":" + std::to_string(work.new_crack_faces) +
+           ",\"attempts\":" + std::to_string(work.attempts) + ",\"repairs\":" + std::to_string(work.repairs) +
+           ",\"seconds\":{\"near\":" + tool::number(work.near_seconds) +
+           ",\"meet\":" + tool::number(work.meet_seconds) + ",\"split\":" + tool::number(work.split_seconds) +
+           ",\"keep\":" + tool::number(work.keep_seconds) + ",\"stitch\":" + tool::number(work.stitch_seconds) +
            ",\"guard\":" + tool::number(work.guard_seconds) + ",\"total\":" + tool::number(work.seconds()) + "}";
   }
 
@@ -184,8 +216,9 @@ class Cutting {
     options.angle = w_.remesh;
     geo::RemeshWork work;
     geo::remesh(complex_, faces, held(), options, &work);
-    return ",\"remesh\":{\"flips\":" + std::to_string(work.flips) + ",\"collapses\":" + std::to_string(work.collapses) + ",\"moves\":" + std::to_string(work.moves) +
-           ",\"divisions\":" + std::to_string(work.divisions) + ",\"seconds\":" + tool::number(work.seconds) + "}";
+    return ",\"remesh\":{\"flips\":" + std::to_string(work.flips) + ",\"collapses\":" + std::to_string(work.collapses) +
+           ",\"moves\":" + std::to_string(work.moves) + ",\"divisions\":" + std::to_string(work.divisions) +
+           ",\"seconds\":" + tool::number(work.seconds) + "}";
   }
 
   const Wishes& w_;
@@ -201,8 +234,10 @@ class Cutting {
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-crack", "Sweeps fronts through a solid and adds the cracks they leave, both sides of each.",
-               "  kerf-crack bear.off --front halve.front -o cut.ply\n  kerf-crack bear.off --front halve.front --steps 0:6 -o half.ply\n  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply\n"
-               "  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply\n  kerf-crack bear.off --sheet plane.obj --jagged 0.01 -o broken.ply");
+               "  kerf-crack bear.off --front halve.front -o cut.ply\n  kerf-crack bear.off --front halve.front "
+               "--steps 0:6 -o half.ply\n  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply\n"
+               "  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply\n  kerf-crack bear.off --sheet "
+               "plane.obj --jagged 0.01 -o broken.ply");
   Wishes w;
   t.argument("MESH", w.model, "A closed surface, or the output of an earlier run to go on with");
   t.option("--front", w.fronts, "Front files, each front or sheet a crack of its own");
@@ -210,7 +245,8 @@ int main(int argc, char** argv) {
   t.option("--steps", w.steps, "Sweep from time step A to B only, as A:B");
   t.option("--max-move", w.max_move, "Divide steps in which a front point moves farther; 0: never");
   t.option("--remesh", w.remesh, "After each step, improve new faces with angles below this, in degrees; 0: never");
-  t.option("--jagged", w.jagged, "At last, roughen the cracks: height of the bumps as a fraction of the model's diagonal");
+  t.option("--jagged", w.jagged,
+           "At last, roughen the cracks: height of the bumps as a fraction of the model's diagonal");
   t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal");
   t.option("--decimate", w.decimate, "First, drop vertices whose surface stays within this fraction of the diagonal");
   t.option("--repro", w.repro, "Where to write model and front when a step fails");

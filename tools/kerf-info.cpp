@@ -3,14 +3,14 @@
 #include <functional>
 #include <iostream>
 
-#include "info/ask.h"
-#include "info/diff.h"
-#include "info/files.h"
 #include <kerf/body_file.h>
 #include <kerf/export.h>
 #include <kerf/front_file.h>
 #include <kerf/node_file.h>
 #include <kerf/stream.h>
+#include "info/ask.h"
+#include "info/diff.h"
+#include "info/files.h"
 #include "kind.h"
 #include "tool.h"
 
@@ -18,11 +18,16 @@ namespace {
 
 using Exporter = std::function<void(std::ostream&, const geo::KerfFile&, const geo::Body&)>;
 Exporter exporter(const std::string& path) {
-  if (path.ends_with(".vtu")) return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_vtu(out, body); };
-  if (path.ends_with(".hdf")) return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_vtkhdf(out, body); };
-  if (path.ends_with(".ply")) return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_graph_ply(out, body); };
-  if (path.ends_with(".npz")) return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_npz(out, file); };
-  if (path.ends_with(".json")) return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_json(out, file); };
+  if (path.ends_with(".vtu"))
+    return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_vtu(out, body); };
+  if (path.ends_with(".hdf"))
+    return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_vtkhdf(out, body); };
+  if (path.ends_with(".ply"))
+    return [](std::ostream& out, const geo::KerfFile&, const geo::Body& body) { geo::write_graph_ply(out, body); };
+  if (path.ends_with(".npz"))
+    return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_npz(out, file); };
+  if (path.ends_with(".json"))
+    return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_json(out, file); };
   throw tool::UsageError("--export writes .vtu, .hdf, .ply, .npz or .json, not '" + path + "'");
 }
 
@@ -36,7 +41,8 @@ struct Command {
 };
 
 std::size_t id_of(const std::string& text) {
-  if (text.empty() || text.size() > 10 || text.find_first_not_of("0123456789") != std::string::npos) throw tool::UsageError("--edge '" + text + "' is not a node's number");
+  if (text.empty() || text.size() > 10 || text.find_first_not_of("0123456789") != std::string::npos)
+    throw tool::UsageError("--edge '" + text + "' is not a node's number");
   return std::stoull(text);
 }
 
@@ -48,21 +54,27 @@ void check(const Command& c, const tool::Tool& t) {
   if (c.node < -1 || c.vertex < -1) throw tool::UsageError("--node and --vertex must not be negative");
   const int actions = c.diff + c.compact + !c.exported.empty() + (c.node >= 0) + (c.vertex >= 0) + !c.edge.empty();
   if (actions > 1) throw tool::UsageError("give one of --diff, --compact, --export, --node, --edge and --vertex");
-  if (actions == 1 && !c.diff && c.paths.size() > 1) throw tool::UsageError("give one file to --compact, --export, --node, --edge and --vertex");
+  if (actions == 1 && !c.diff && c.paths.size() > 1)
+    throw tool::UsageError("give one file to --compact, --export, --node, --edge and --vertex");
 }
 
 void ask(const Command& c, const geo::Body& body, info::Report& report) {
-  if (c.node >= 0) info::ask_node(body, static_cast<std::size_t>(c.node), report);
-  else if (c.vertex >= 0) info::ask_vertex(body, static_cast<std::size_t>(c.vertex), report);
-  else info::ask_edge(body, id_of(c.edge[0]), id_of(c.edge[1]), report);
+  if (c.node >= 0)
+    info::ask_node(body, static_cast<std::size_t>(c.node), report);
+  else if (c.vertex >= 0)
+    info::ask_vertex(body, static_cast<std::size_t>(c.vertex), report);
+  else
+    info::ask_edge(body, id_of(c.edge[0]), id_of(c.edge[1]), report);
 }
 
 // All that is no body.
 std::string report_other(const Command& c, const std::string& path, const std::string& bytes, info::Report& report) {
   const auto kind = tool::kind_of(bytes, path);
-  if (c.asks() && (kind != tool::Kind::surface || c.vertex < 0)) throw geo::InputError(path + ": is no body, which alone has nodes and edges to ask for");
+  if (c.asks() && (kind != tool::Kind::surface || c.vertex < 0))
+    throw geo::InputError(path + ": is no body, which alone has nodes and edges to ask for");
   if (kind == tool::Kind::nodes) return info::report_nodes(geo::parse_nodes(bytes, path), c.wishes, report);
-  if (kind == tool::Kind::fronts) return info::report_fronts(geo::parse_fronts(bytes, path), c.wishes, report), std::string();
+  if (kind == tool::Kind::fronts)
+    return info::report_fronts(geo::parse_fronts(bytes, path), c.wishes, report), std::string();
   const auto file = geo::parse_surface(bytes, path);
   if (c.vertex < 0) return info::report_surface(file, c.wishes, report);
   info::ask_vertex(file.mesh, static_cast<std::size_t>(c.vertex), report);
@@ -73,11 +85,13 @@ std::string report_other(const Command& c, const std::string& path, const std::s
 void write(const Command& c, const tool::Tool& t) {
   const std::string& path = c.paths[0];
   const Exporter put = c.compact ? Exporter() : exporter(c.exported);
-  if (c.compact && path != "-" && (t.output_path.empty() || geo::same_file(path, t.output_path))) return geo::KerfUpdate(path).compact();
+  if (c.compact && path != "-" && (t.output_path.empty() || geo::same_file(path, t.output_path)))
+    return geo::KerfUpdate(path).compact();
   const std::string target = c.compact ? t.target(true) : c.exported;
   geo::require_place(target);
   geo::Input input(path);
-  if (!geo::looks_like_kerf(input.text(0, 16))) throw geo::InputError(path + ": is not a .kerf file, which alone can be compacted or exported");
+  if (!geo::looks_like_kerf(input.text(0, 16)))
+    throw geo::InputError(path + ": is not a .kerf file, which alone can be compacted or exported");
   const geo::KerfFile file(std::move(input));
   if (c.compact) return geo::write_all(target, [&](std::ostream& out) { geo::write_compacted(out, file); });
   const geo::Body body = geo::read_body(file);
@@ -119,8 +133,10 @@ void many(const Command& c, const tool::Tool& t) {
     try {
       const std::string found = inspect(c, path, report);
       if (c.wishes.check && !found.empty()) problem = path + ": " + found;
-      if (t.json) report.print(true);
-      else if (!t.quiet) std::cout << path << ": " << report.headline << '\n';
+      if (t.json)
+        report.print(true);
+      else if (!t.quiet)
+        std::cout << path << ": " << report.headline << '\n';
     } catch (const geo::InputError& e) {
       problem = e.what();
     }
@@ -128,25 +144,36 @@ void many(const Command& c, const tool::Tool& t) {
     std::cerr << "kerf-info: " << problem << '\n';
     ++wrong;
   }
-  if (wrong > 0) throw tool::Failure(std::to_string(wrong) + " of " + std::to_string(c.paths.size()) + " files cannot be read or are not sound");
+  if (wrong > 0)
+    throw tool::Failure(std::to_string(wrong) + " of " + std::to_string(c.paths.size()) +
+                        " files cannot be read or are not sound");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-info", "Says what a surface, node, body, front or scene file or the folder of a run holds; --check verifies every invariant.",
-               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off\n  kerf-info --check pieces/*.ply\n  kerf-info cut.kerf --histogram\n  kerf-info cut.kerf --node 12\n  kerf-info cut.kerf --edge 12 40\n  kerf-info cut.kerf --vertex 7\n"
-               "  kerf-info --diff bear.kerf cut.kerf\n  kerf-info out/halve\n  kerf-info cut.kerf --export cut.vtu\n  kerf-info --compact cut.kerf");
+  tool::Tool t("kerf-info",
+               "Says what a surface, node, body, front or scene file or the folder of a run holds; --check verifies "
+               "every invariant.",
+               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off\n  kerf-info --check "
+               "pieces/*.ply\n  kerf-info cut.kerf --histogram\n  kerf-info cut.kerf --node 12\n  kerf-info cut.kerf "
+               "--edge 12 40\n  kerf-info cut.kerf --vertex 7\n"
+               "  kerf-info --diff bear.kerf cut.kerf\n  kerf-info out/halve\n  kerf-info cut.kerf --export cut.vtu\n  "
+               "kerf-info --compact cut.kerf");
   Command c;
-  t.argument("FILE", c.paths, "Files of Kerf's, folders of runs; - reads standard input; of several a sentence each; two with --diff");
+  t.argument("FILE", c.paths,
+             "Files of Kerf's, folders of runs; - reads standard input; of several a sentence each; two with --diff");
   t.flag("--check", c.wishes.check, "Verify everything; exit code 1 names the first offending ids");
-  t.flag("--histogram", c.wishes.histograms, "Distributions: of radii, edge lengths, neighbours, as far as there are any");
+  t.flag("--histogram", c.wishes.histograms,
+         "Distributions: of radii, edge lengths, neighbours, as far as there are any");
   t.option("--node", c.node, "Say what is known of this node of a body; the first is 0");
   t.option("--edge", c.edge, "Say what is between these two nodes of a body");
-  t.option("--vertex", c.vertex, "Say what is known of this surface vertex of a body, or vertex of a surface; the first is 0");
+  t.option("--vertex", c.vertex,
+           "Say what is known of this surface vertex of a body, or vertex of a surface; the first is 0");
   t.flag("--diff", c.diff, "Say what differs between two bodies; exit code 1 when anything does");
   t.flag("--compact", c.compact, "Fold what updates appended to a body, in the file itself or into that of --output");
-  t.option("--export", c.exported, "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end");
+  t.option("--export", c.exported,
+           "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end");
   t.output("Where --compact writes", {".kerf"});
   return t.run(argc, argv, [&] {
     if (c.paths.empty() && c.edge.size() == 3) c.paths = {c.edge[2]}, c.edge.pop_back();  // --edge I J FILE

@@ -1,9 +1,9 @@
 // kerf-repair: a solid from a surface that is nearly one, or a new surface around it.
 #include <iostream>
 
+#include <kerf/repair.h>
 #include <kerf/surface_file.h>
 #include "model.h"
-#include <kerf/repair.h>
 #include "tool.h"
 
 namespace {
@@ -16,34 +16,50 @@ struct Wishes {
 
 std::string in_words(const geo::Repairs& r) {
   std::string text;
-  const auto counted = [](std::size_t n, const std::string& one, const std::string& many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
+  const auto counted = [](std::size_t n, const std::string& one, const std::string& many) {
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+  };
   const auto add = [&](std::size_t n, const std::string& one, const std::string& many, const std::string& done) {
     if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many) + " " + done;
   };
-  add(r.welded, "vertex", "vertices", "welded"), add(r.dropped, "triangle", "triangles", "dropped"), add(r.turned, "triangle", "triangles", "turned");
-  add(r.holes, "hole", "holes", (r.smooth == 0 ? "" : r.smooth == r.holes ? "smoothly " : "(" + std::to_string(r.smooth) + " smoothly) ") + "closed with " + counted(r.added, "triangle", "triangles")), add(r.hidden, "hidden shell", "hidden shells", "left out");
+  add(r.welded, "vertex", "vertices", "welded"), add(r.dropped, "triangle", "triangles", "dropped"),
+      add(r.turned, "triangle", "triangles", "turned");
+  add(r.holes, "hole", "holes",
+      (r.smooth == 0         ? ""
+       : r.smooth == r.holes ? "smoothly "
+                             : "(" + std::to_string(r.smooth) + " smoothly) ") +
+          "closed with " + counted(r.added, "triangle", "triangles")),
+      add(r.hidden, "hidden shell", "hidden shells", "left out");
   return text.empty() ? "nothing to mend" : text;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-repair", "Makes a solid of a surface: welds, turns triangles the same way, closes holes; or wraps it in a new surface.",
-               "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair scan.ply --smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 -o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
+  tool::Tool t(
+      "kerf-repair",
+      "Makes a solid of a surface: welds, turns triangles the same way, closes holes; or wraps it in a new surface.",
+      "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair scan.ply "
+      "--smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 "
+      "-o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
   Wishes w;
   t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
   t.flag("--smooth", w.smooth, "Close holes by patches that go on from the surface around them, as fine as their rims");
-  t.option("--voxel", w.voxel, "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
+  t.option("--voxel", w.voxel,
+           "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
   t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
     if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
-    if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1)) throw tool::UsageError("--voxel must be from 0.0005 to 0.1, or 0");
-    if (w.edge != 0 && !(w.edge >= 0.0005 && w.edge <= 1)) throw tool::UsageError("--edge must be from 0.0005 to 1, or 0");
+    if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1))
+      throw tool::UsageError("--voxel must be from 0.0005 to 0.1, or 0");
+    if (w.edge != 0 && !(w.edge >= 0.0005 && w.edge <= 1))
+      throw tool::UsageError("--edge must be from 0.0005 to 1, or 0");
     const std::string target = t.target(true);
     geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
-    if (mesh.two_sided()) throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
+    if (mesh.two_sided())
+      throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     const double diagonal = geo::bounding_box(mesh).diagonal();
     const geo::Repairs done = geo::repair(mesh, w.weld * diagonal, w.smooth);
     if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
@@ -53,13 +69,25 @@ int main(int argc, char** argv) {
       geo::require_solid(mesh);
     } catch (const geo::InputError& e) {
       const std::string what = e.what();
-      throw tool::Failure(w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) + (w.voxel > 0 ? "; try another --voxel" : std::string(done.holes > 0 && !w.smooth ? "; try --smooth, or wrap" : "; wrap") + " it in a new surface: --voxel 0.005"));
+      throw tool::Failure(w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) +
+                          (w.voxel > 0
+                               ? "; try another --voxel"
+                               : std::string(done.holes > 0 && !w.smooth ? "; try --smooth, or wrap" : "; wrap") +
+                                     " it in a new surface: --voxel 0.005"));
     }
-    geo::write_all(target, [&](std::ostream& out) { target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair"); });
+    geo::write_all(target, [&](std::ostream& out) {
+      target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
+    });
     if (t.json)
-      (target == "-" ? std::cerr : std::cout) << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned << ",\"holes\":" << done.holes << ",\"smooth\":" << done.smooth << ",\"added\":" << done.added
-                                              << ",\"hidden\":" << done.hidden << ",\"vertices\":" << mesh.vertices.size() << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh)) << "}\n";
+      (target == "-" ? std::cerr : std::cout)
+          << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned
+          << ",\"holes\":" << done.holes << ",\"smooth\":" << done.smooth << ",\"added\":" << done.added
+          << ",\"hidden\":" << done.hidden << ",\"vertices\":" << mesh.vertices.size()
+          << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh))
+          << "}\n";
     else
-      t.say("kerf-repair: " + w.model + ": " + in_words(done) + (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") + (w.edge > 0 ? "; divided into " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
+      t.say("kerf-repair: " + w.model + ": " + in_words(done) +
+            (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") +
+            (w.edge > 0 ? "; divided into " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
   });
 }

@@ -7,16 +7,16 @@
 #include <sstream>
 #include <utility>
 
+#include <kerf/pieces.h>
 #include <kerf/progress.h>
 #include <kerf/run_files.h>
 #include <kerf/scene_file.h>
-#include <kerf/stream.h>
+#include <kerf/simulation.h>
 #include <kerf/solid.h>
+#include <kerf/stream.h>
 #include "model.h"
 #include "sim/frame_writer.h"
 #include "sim/whole_run.h"
-#include <kerf/simulation.h>
-#include <kerf/pieces.h>
 #include "tool.h"
 
 namespace {
@@ -43,7 +43,8 @@ class Forecast {
     double sum = 0;
     for (const double s : last_) sum += s;
     const auto whole = static_cast<long long>(sum / double(last_.size()) * frames + 0.5);
-    return ", " + (whole >= 60 ? std::to_string(whole / 60) + " min " : std::string()) + std::to_string(whole % 60) + " s left";
+    return ", " + (whole >= 60 ? std::to_string(whole / 60) + " min " : std::string()) + std::to_string(whole % 60) +
+           " s left";
   }
 
  private:
@@ -60,7 +61,8 @@ struct Plan {
 geo::Simulation take_up(const Plan& plan, const sim::RunFolder& folder, std::optional<geo::Simulation> run = {}) {
   try {
     geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(folder.checkpoint().string())));
-    if (c.scene != plan.fingerprint) throw geo::InputError("was begun with another scene, model or setting; give the same ones, or another folder");
+    if (c.scene != plan.fingerprint)
+      throw geo::InputError("was begun with another scene, model or setting; give the same ones, or another folder");
     if (!run) return geo::Simulation(plan.scene, std::move(c.body), std::move(c.state));
     run->take_up(std::move(c.body), std::move(c.state));
     return std::move(*run);
@@ -112,14 +114,18 @@ std::string way_of(const std::vector<geo::Blade>& blades) {
     for (const auto& key : blade.motion.keys)
       for (const geo::Vec3& p : blade.at(key.time)) box.add(p);
   }
-  return "by their keys, blades are there from " + tool::rounded(from) + " to " + tool::rounded(to) + " s, within (" + tool::rounded(box.lo) + ") to (" + tool::rounded(box.hi) + ")";
+  return "by their keys, blades are there from " + tool::rounded(from) + " to " + tool::rounded(to) + " s, within (" +
+         tool::rounded(box.lo) + ") to (" + tool::rounded(box.hi) + ")";
 }
 
 // Models in millimetres are mountains in metres.
 void say_large(const Plan& plan, const tool::Tool& t) {
   const double across = geo::bounding_box(plan.model.mesh).diagonal();
-  const bool as_it_is = std::all_of(plan.scene.bodies.begin(), plan.scene.bodies.end(), [](const geo::SceneBody& b) { return b.scale == 1; });
-  if (across >= 100 && as_it_is) t.say("kerf-sim: the bodies are " + tool::rounded(across) + " m across, as units are metres; give them scale = 0.001 if they are in mm");
+  const bool as_it_is = std::all_of(plan.scene.bodies.begin(), plan.scene.bodies.end(),
+                                    [](const geo::SceneBody& b) { return b.scale == 1; });
+  if (across >= 100 && as_it_is)
+    t.say("kerf-sim: the bodies are " + tool::rounded(across) +
+          " m across, as units are metres; give them scale = 0.001 if they are in mm");
 }
 
 // Models from CAD have a few large triangles, which neither bend nor touch but at their corners.
@@ -127,16 +133,20 @@ void say_coarse(const Plan& plan, const geo::Body& body, const tool::Tool& t) {
   const double coarsest = *std::max_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
   for (std::size_t b = 0; b < plan.model.parts.size(); ++b) {
     double longest = 0;
-    for (const auto& [p, q, r] : geo::corners_of(plan.model.parts[b])) longest = std::max({longest, (q - p).norm(), (r - q).norm(), (p - r).norm()});
+    for (const auto& [p, q, r] : geo::corners_of(plan.model.parts[b]))
+      longest = std::max({longest, (q - p).norm(), (r - q).norm(), (p - r).norm()});
     if (longest <= 4 * coarsest) continue;
     char share[16];
     std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(plan.model.parts[b]).diagonal());
-    t.say("kerf-sim: " + fs::path(plan.scene.bodies[b].mesh).filename().string() + " has edges of up to " + tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
+    t.say("kerf-sim: " + fs::path(plan.scene.bodies[b].mesh).filename().string() + " has edges of up to " +
+          tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
           " apart; a surface bends and touches at its vertices: kerf-repair --edge " + share + " gives it more");
   }
 }
 
-std::string in_words(const geo::Vec3& p) { return tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()); }
+std::string in_words(const geo::Vec3& p) {
+  return tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z());
+}
 
 geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
   geo::SceneOverrides overrides;
@@ -146,7 +156,8 @@ geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
     overrides.push_back({s.substr(0, equals), s.substr(equals + 1)});
     // Paths on the command line are relative to where one stands, not to the scene.
     const std::string last = overrides.back().first.substr(overrides.back().first.find_last_of('.') + 1);
-    if (last == "mesh" || last == "motion" || last == "file") overrides.back().second = "\"" + fs::absolute(overrides.back().second).string() + "\"";
+    if (last == "mesh" || last == "motion" || last == "file")
+      overrides.back().second = "\"" + fs::absolute(overrides.back().second).string() + "\"";
   }
   return overrides;
 }
@@ -154,8 +165,11 @@ geo::SceneOverrides overrides_of(const std::vector<std::string>& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-sim", "Runs a scene: bodies deform while blades cut them. Writes numbered frames, a ParaView series, a USD file and checkpoints.",
-               "  kerf-sim samples/scenes/halve.toml -o out/halve\n  kerf-sim halve.toml -o out/soft --set material.young=2e4 --set blade.0.divide=9 --frames 48\n  kerf-sim halve.toml -o out/halve --resume");
+  tool::Tool t("kerf-sim",
+               "Runs a scene: bodies deform while blades cut them. Writes numbered frames, a ParaView series, a USD "
+               "file and checkpoints.",
+               "  kerf-sim samples/scenes/halve.toml -o out/halve\n  kerf-sim halve.toml -o out/soft --set "
+               "material.young=2e4 --set blade.0.divide=9 --frames 48\n  kerf-sim halve.toml -o out/halve --resume");
   std::string path;
   std::vector<std::string> settings;
   int frames = 0;
@@ -193,8 +207,11 @@ int main(int argc, char** argv) {
     if (!begun) say_coarse(plan, run.body(), t);
     const auto& positions = run.body().nodes.position;
     for (const geo::Grip& g : plan.scene.grips)
-      if (!begun && std::none_of(positions.begin(), positions.end(), [&](const geo::Vec3& p) { return (p.array() >= g.lo.array() && p.array() <= g.hi.array()).all(); }))
-        t.say("kerf-sim: no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) + "), which is to hold some; bodies are where their scale, rotation and position put them");
+      if (!begun && std::none_of(positions.begin(), positions.end(), [&](const geo::Vec3& p) {
+            return (p.array() >= g.lo.array() && p.array() <= g.hi.array()).all();
+          }))
+        t.say("kerf-sim: no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) +
+              "), which is to hold some; bodies are where their scale, rotation and position put them");
     const geo::TriangleMesh* carried = plan.model.parts.size() == 1 ? &plan.model.mesh : nullptr;
     sim::FrameWriter writer(folder, folder.read_log(run.state().frame), t.json);
     const auto checkpoint = [&](const std::function<void(std::ostream&)>& write) {
@@ -202,9 +219,11 @@ int main(int argc, char** argv) {
       geo::write_all(folder.checkpoint().string(), write);
     };
     if (!begun) {
-      writer.add({{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)});
+      writer.add(
+          {{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)});
       checkpoint([bytes = std::exchange(first, {})](std::ostream& out) { out << bytes; });
-      folder.require_space(frame_bytes + 28.0 * (last + 1) * double(run.body().nodes.size()) + 4 * double(fs::file_size(folder.checkpoint())));
+      folder.require_space(frame_bytes + 28.0 * (last + 1) * double(run.body().nodes.size()) +
+                           4 * double(fs::file_size(folder.checkpoint())));
     }
     Forecast forecast;
     geo::FrameWork total = run.state().total;
@@ -212,12 +231,18 @@ int main(int argc, char** argv) {
     double waited = 0;  // for files of the frame before
     while (run.state().frame < last) {
       const int frame = run.state().frame + 1;
-      const std::string phase = "frame " + std::to_string(frame) + " of " + std::to_string(last) + forecast.left(last - frame + 1);
+      const std::string phase =
+          "frame " + std::to_string(frame) + " of " + std::to_string(last) + forecast.left(last - frame + 1);
       geo::FrameWork work = run.advance_frame([&](std::string_view, std::size_t step, std::size_t steps) {
-        return !progress || progress(phase, static_cast<std::size_t>(frame - 1) * steps + step, static_cast<std::size_t>(last) * steps);
+        return !progress || progress(phase, static_cast<std::size_t>(frame - 1) * steps + step,
+                                     static_cast<std::size_t>(last) * steps);
       });
       geo::Stopwatch writing;
-      sim::Frame done{{frame, run.state().time, run.body().nodes.size(), run.body().surface.live_face_count(), std::move(work)}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)};
+      sim::Frame done{
+          {frame, run.state().time, run.body().nodes.size(), run.body().surface.live_face_count(), std::move(work)},
+          run.surface(carried),
+          nodes_of(run),
+          geo::place_obstacles(plan.scene, plan.model, run.state().time)};
       done.outcome.work.write_seconds = waited + writing.lap();
       total += done.outcome.work;
       writer.add(std::move(done));
@@ -231,11 +256,19 @@ int main(int argc, char** argv) {
     total.write_seconds += waited;
     geo::report(progress, "done", 1, 1);
     sim::write_whole_run(folder, last, plan.scene.frame_rate, sim::up_axis(plan.scene.gravity));
-    const std::size_t nodes = run.body().nodes.size(), edges = run.body().graph.edge_count(), pieces = geo::find_pieces(run.body().surface).count;
-    const auto of = [](const char* name, std::size_t n) { return std::string(",\"") + name + "\":" + std::to_string(n); };
-    folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) + of("edges", edges) + of("pieces", pieces) + "," + sim::counts(run.state().total) + "}\n");
-    if (!plan.scene.blades.empty() && run.state().total.fronts == 0) t.say("kerf-sim: no blade met the material in " + tool::rounded(run.state().time) + " s; " + way_of(plan.scene.blades));
-    t.say("kerf-sim: " + tool::counted(static_cast<std::size_t>(last), "frame") + ", " + tool::counted(nodes, "node") + ", " + tool::counted(edges, "edge") + ", " +
-          tool::counted(total.split.crack.triangles_cut, "triangle") + " cut, " + tool::counted(pieces, "piece") + sim::seconds_in_words(total));
+    const std::size_t nodes = run.body().nodes.size(), edges = run.body().graph.edge_count(),
+                      pieces = geo::find_pieces(run.body().surface).count;
+    const auto of = [](const char* name, std::size_t n) {
+      return std::string(",\"") + name + "\":" + std::to_string(n);
+    };
+    folder.write_text(folder.path / "summary.json", "{\"frames\":" + std::to_string(last) + of("nodes", nodes) +
+                                                        of("edges", edges) + of("pieces", pieces) + "," +
+                                                        sim::counts(run.state().total) + "}\n");
+    if (!plan.scene.blades.empty() && run.state().total.fronts == 0)
+      t.say("kerf-sim: no blade met the material in " + tool::rounded(run.state().time) + " s; " +
+            way_of(plan.scene.blades));
+    t.say("kerf-sim: " + tool::counted(static_cast<std::size_t>(last), "frame") + ", " + tool::counted(nodes, "node") +
+          ", " + tool::counted(edges, "edge") + ", " + tool::counted(total.split.crack.triangles_cut, "triangle") +
+          " cut, " + tool::counted(pieces, "piece") + sim::seconds_in_words(total));
   });
 }

@@ -45,19 +45,25 @@ struct Wishes {
 };
 
 view::Look checked(const Wishes& w, view::Look look) {
-  if (w.samples < 1 || w.samples > 16 || w.frames < 0 || w.columns < 1) throw tool::UsageError("--samples and --columns must be positive, --frames not negative");
-  if (!(look.opacity >= 0 && look.opacity <= 1) || !(look.explode >= 0) || !(w.zoom > 0)) throw tool::UsageError("--opacity is from 0 to 1, --explode not negative, --zoom positive");
+  if (w.samples < 1 || w.samples > 16 || w.frames < 0 || w.columns < 1)
+    throw tool::UsageError("--samples and --columns must be positive, --frames not negative");
+  if (!(look.opacity >= 0 && look.opacity <= 1) || !(look.explode >= 0) || !(w.zoom > 0))
+    throw tool::UsageError("--opacity is from 0 to 1, --explode not negative, --zoom positive");
   if (!(w.rate > 0 && w.rate <= 1000)) throw tool::UsageError("--rate must be positive and at most 1000");
   if (!(w.megabytes >= 1 && w.megabytes <= 500)) throw tool::UsageError("--megabytes is from 1 to 500");
   if (w.node < -1) throw tool::UsageError("--node must not be negative");
-  look.coloring = w.color == "piece" ? view::Coloring::piece : w.color == "plain" ? view::Coloring::plain : view::Coloring::patch;
+  look.coloring = w.color == "piece"   ? view::Coloring::piece
+                  : w.color == "plain" ? view::Coloring::plain
+                                       : view::Coloring::patch;
   try {
     look.skin = view::parse_color(w.skin);
   } catch (const geo::InputError& e) {
     throw tool::UsageError(e.what());
   }
   char rest = 0;
-  if (!w.steps.empty() && (std::sscanf(w.steps.c_str(), "%zu:%zu%c", &look.first_step, &look.last_step, &rest) != 2 || look.first_step > look.last_step)) throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A up to B");
+  if (!w.steps.empty() && (std::sscanf(w.steps.c_str(), "%zu:%zu%c", &look.first_step, &look.last_step, &rest) != 2 ||
+                           look.first_step > look.last_step))
+    throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A up to B");
   if (w.node >= 0) look.node = static_cast<std::uint32_t>(w.node);
   look.section = !w.hollow && !look.inside();
   if (!w.cutaway.empty()) {
@@ -73,13 +79,15 @@ std::vector<std::string> spread(const std::vector<std::string>& files, int shown
   const int n = static_cast<int>(files.size());
   std::vector<std::string> some;
   shown = shown > 0 ? std::min(shown, n) : n;
-  for (int i = 0; i < shown; ++i) some.push_back(files[static_cast<std::size_t>(shown > 1 ? i * (n - 1) / (shown - 1) : 0)]);
+  for (int i = 0; i < shown; ++i)
+    some.push_back(files[static_cast<std::size_t>(shown > 1 ? i * (n - 1) / (shown - 1) : 0)]);
   return some;
 }
 
 class Drawing {
  public:
-  Drawing(const Wishes& w, const view::Look& look, view::Camera eye, view::RenderOptions options, geo::Progress progress)
+  Drawing(const Wishes& w, const view::Look& look, view::Camera eye, view::RenderOptions options,
+          geo::Progress progress)
       : w_(w), look_(look), eye_(std::move(eye)), options_(options), progress_(std::move(progress)) {}
 
   view::Picture still() {
@@ -111,8 +119,10 @@ class Drawing {
     const bool run = !files.empty();
     const int count = run ? static_cast<int>(files.size()) : w_.frames > 0 ? w_.frames : 72;
     view::Stage stage;
-    if (run) look_around(files);
-    else stage = staged(w_.paths), look_at(stage), eye_.all_round = true;
+    if (run)
+      look_around(files);
+    else
+      stage = staged(w_.paths), look_at(stage), eye_.all_round = true;
     const view::Sequence picture = [&](int i) {
       if (run) return frame(files[static_cast<std::size_t>(i)], static_cast<std::size_t>(i), files.size());
       geo::report(progress_, "render", static_cast<std::size_t>(i), static_cast<std::size_t>(count));
@@ -162,28 +172,39 @@ class Drawing {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-view", "Draws files, or a run's frames: a picture (.png), an animation (.webp, .mp4) or a page for the browser (.html).",
-               "  kerf-view cut.kerf -o cut.html\n  kerf-view out/halve -o halve.html\n  kerf-view cut.ply --explode 0.4 -o cut.png\n  kerf-view cut.kerf --nodes --opacity 0.25 -o nodes.png\n"
-               "  kerf-view bear.kerf --nodes --edges --cut-away 0,-1,0 -o inside.png\n  kerf-view cut.kerf --node 100 --before bear.kerf --cut-edges --opacity 0.2 -o near.png\n"
-               "  kerf-view cut.ply halve.front -o both.png\n  kerf-view out/halve -o sheet.png\n  kerf-view out/halve -o halve.webp");
+  tool::Tool t(
+      "kerf-view",
+      "Draws files, or a run's frames: a picture (.png), an animation (.webp, .mp4) or a page for the browser (.html).",
+      "  kerf-view cut.kerf -o cut.html\n  kerf-view out/halve -o halve.html\n  kerf-view cut.ply --explode 0.4 -o "
+      "cut.png\n  kerf-view cut.kerf --nodes --opacity 0.25 -o nodes.png\n"
+      "  kerf-view bear.kerf --nodes --edges --cut-away 0,-1,0 -o inside.png\n  kerf-view cut.kerf --node 100 --before "
+      "bear.kerf --cut-edges --opacity 0.2 -o near.png\n"
+      "  kerf-view cut.ply halve.front -o both.png\n  kerf-view out/halve -o sheet.png\n  kerf-view out/halve -o "
+      "halve.webp");
   Wishes w;
   view::Look look;
-  t.argument("FILE", w.paths, "Surface, body, node and front files, together in one picture; or the folder of a kerf-sim run");
+  t.argument("FILE", w.paths,
+             "Surface, body, node and front files, together in one picture; or the folder of a kerf-sim run");
   t.option("--size", w.size, "Width x height in pixels (960x720; 480x360 on a sheet and animated)");
   t.option("--camera", w.camera, "Azimuth, elevation in degrees");
   t.option("--zoom", w.zoom, "1 shows everything; above it the node of --node is in the middle");
-  t.choice("--up", w.up, {"auto", "z", "y"}, "Which axis of the model is up, y in most OBJ and glTF files; auto: of a run what gravity says, else z");
+  t.choice("--up", w.up, {"auto", "z", "y"},
+           "Which axis of the model is up, y in most OBJ and glTF files; auto: of a run what gravity says, else z");
   t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
   t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
-  t.choice("--color", w.color, {"patch", "piece", "plain"}, "Colours: of skin and the two sheets of cracks, of pieces, or one");
+  t.choice("--color", w.color, {"patch", "piece", "plain"},
+           "Colours: of skin and the two sheets of cracks, of pieces, or one");
   t.option("--skin", w.skin, "Colour of the skin, #rrggbb");
   t.flag("--nodes", look.nodes, "Draw a body's nodes, coloured by --field");
-  t.option("--field", look.field, "radius, spacing, volume, neighbors, component or debris; of a run strain, displacement, speed");
+  t.option("--field", look.field,
+           "radius, spacing, volume, neighbors, component or debris; of a run strain, displacement, speed");
   t.flag("--edges", look.edges, "Draw a body's visibility edges");
   t.flag("--cut-edges", look.cut_edges, "Draw the edges that cracks have cut, in red");
-  t.option("--before", w.before, "The body before it was cut: cut edges are those it had, nodes whose neighbours changed are red");
+  t.option("--before", w.before,
+           "The body before it was cut: cut edges are those it had, nodes whose neighbours changed are red");
   t.option("--node", w.node, "Draw the neighbourhood of this node, from 0: blue sees it, orange is behind a face");
-  t.flag("--trees", look.trees, "Draw masters (their nodes' links red) and trees of slaves; with --node those of one node");
+  t.flag("--trees", look.trees,
+         "Draw masters (their nodes' links red) and trees of slaves; with --node those of one node");
   t.flag("--seams", look.seams, "Draw where cracks meet the skin, green, and where they end, red");
   t.option("--steps", w.steps, "Draw fronts from time step A to B, as A:B");
   t.flag("--wire", look.wire, "Draw the triangles' edges");
@@ -207,11 +228,14 @@ int main(int argc, char** argv) {
     const bool small = folder || kind == Kind::webp || kind == Kind::mp4;
     options.width = small ? 480 : 960, options.height = small ? 360 : 720, options.samples = w.samples;
     char rest = 0;
-    if (!w.size.empty() && (std::sscanf(w.size.c_str(), "%dx%d%c", &options.width, &options.height, &rest) != 2 || std::min(options.width, options.height) < 8 || std::max(options.width, options.height) > 16384))
+    if (!w.size.empty() &&
+        (std::sscanf(w.size.c_str(), "%dx%d%c", &options.width, &options.height, &rest) != 2 ||
+         std::min(options.width, options.height) < 8 || std::max(options.width, options.height) > 16384))
       throw tool::UsageError("--size '" + w.size + "' is not WIDTHxHEIGHT");
     view::Camera eye;
     const auto angles = numbers(w.camera, 2, 2, "--camera '" + w.camera + "' is not AZIMUTH,ELEVATION");
-    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = w.zoom, eye.y_up = w.up == "y" || (w.up == "auto" && folder && view::find_run(w.paths[0]).y_up);
+    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = w.zoom,
+    eye.y_up = w.up == "y" || (w.up == "auto" && folder && view::find_run(w.paths[0]).y_up);
     const std::string target = t.target(true);
     const auto progress = t.progress();
     std::optional<geo::Body> before;
@@ -219,7 +243,8 @@ int main(int argc, char** argv) {
 
     if (kind == Kind::html) {
       const view::PageOptions page_options{w.megabytes, look.before, w.rate, eye.y_up};
-      const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress) : view::page_of(view::read_subject(w.paths), page_options, progress);
+      const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress)
+                                     : view::page_of(view::read_subject(w.paths), page_options, progress);
       geo::report(progress, "done", 1, 1);
       geo::write_all(target, [&](std::ostream& out) { out << page.html; });
       for (const auto& notice : page.notices) t.say("kerf-view: " + notice);

@@ -13,11 +13,14 @@ enum class Kind { body, nodes, fronts, surface };
 /// surface. `name` settles what the content leaves open: files named .front are fronts.
 inline Kind kind_of(const std::string& bytes, const std::string& name) {
   if (geo::looks_like_kerf(bytes)) return Kind::body;
-  const auto begins = [&](const char* word, std::size_t at = 0) { return bytes.compare(at, std::string(word).size(), word) == 0; };
+  const auto begins = [&](const char* word, std::size_t at = 0) {
+    return bytes.compare(at, std::string(word).size(), word) == 0;
+  };
   if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return Kind::nodes;
   if (begins("ply")) {
     const std::string header = bytes.substr(0, 4096);
-    const bool radius = header.find("property double radius") != std::string::npos || header.find("property float radius") != std::string::npos;
+    const bool radius = header.find("property double radius") != std::string::npos ||
+                        header.find("property float radius") != std::string::npos;
     return radius ? Kind::nodes : Kind::surface;
   }
   bool lines = false, faces = false;
@@ -25,7 +28,8 @@ inline Kind kind_of(const std::string& bytes, const std::string& name) {
     end = std::min(bytes.find('\n', at), bytes.size());
     at = bytes.find_first_not_of(" \t\r", at);
     if (at >= end || bytes[at] == '#') continue;
-    if (begins("front ", at) || begins("front\t", at) || begins("sheet ", at) || begins("sheet\t", at)) return Kind::fronts;
+    if (begins("front ", at) || begins("front\t", at) || begins("sheet ", at) || begins("sheet\t", at))
+      return Kind::fronts;
     if (begins("OFF", at) || begins("COFF", at) || begins("solid", at)) return Kind::surface;
     lines = lines || begins("l ", at);
     faces = begins("f ", at);

@@ -4,21 +4,24 @@
 #include <algorithm>
 #include <string>
 
+#include <kerf/check.h>
+#include <kerf/complex.h>
 #include <kerf/error.h>
 #include <kerf/stream.h>
 #include <kerf/surface_file.h>
-#include <kerf/check.h>
-#include <kerf/complex.h>
 
 namespace tool {
 
-/// Throws InputError unless a surface, read from these bytes, is closed, manifold, oriented outwards, free of self-intersection.
+/// Throws InputError unless a surface, read from these bytes, is closed, manifold, oriented outwards, free of
+/// self-intersection.
 inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path, const std::string& bytes) {
   try {
     geo::require_solid(mesh);
   } catch (const geo::InputError& e) {
     if (!mesh.two_sided() && bytes.find("\ng patch_-") != bytes.npos)
-      throw geo::InputError(path + ": is a cut surface as OBJ, which cannot say how the two sides of a crack belong together; give the PLY of it");
+      throw geo::InputError(path +
+                            ": is a cut surface as OBJ, which cannot say how the two sides of a crack belong together; "
+                            "give the PLY of it");
     throw geo::InputError(path + ": " + e.what() + (mesh.two_sided() ? "" : ", or try kerf-repair"));
   }
 }
@@ -31,10 +34,11 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
-/// Leaves the sites of a surface that was read out, where nothing in it is cut (frames of a run have them from the first on). Throws
-/// InputError, with the file's name and what to do, where something is.
+/// Leaves the sites of a surface that was read out, where nothing in it is cut (frames of a run have them from the
+/// first on). Throws InputError, with the file's name and what to do, where something is.
 inline void require_whole(geo::TriangleMesh& mesh, const std::string& path, const std::string& advice) {
-  if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; })) throw geo::InputError(path + ": is cut already; " + advice);
+  if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
+    throw geo::InputError(path + ": is cut already; " + advice);
   mesh.patch.clear(), mesh.site.clear();
 }
 

@@ -20,8 +20,8 @@
 
 #include <kerf/error.h>
 #include <kerf/parallel.h>
-#include "describe.h"
 #include <kerf/stream.h>
+#include "describe.h"
 #include "version.h"
 
 namespace tool {
@@ -35,8 +35,8 @@ void clear_bar() {
   if (bar_shown.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-// A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a second Ctrl-C comes,
-// it removes what is half written and ends the program.
+// A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a second Ctrl-C
+// comes, it removes what is half written and ends the program.
 void watch_signals(const std::string& name, double patience) {
   sigset_t signals;
   sigemptyset(&signals);
@@ -69,11 +69,15 @@ bool reader_gone() {
 }
 
 // How files end whose format many programs know: what ends so had better be so.
-const std::set<std::string> formats = {".3mf", ".abc", ".avi", ".bmp", ".csv", ".dae", ".exr", ".fbx", ".front", ".gif", ".glb", ".gltf", ".html", ".jpeg", ".jpg", ".json", ".kerf", ".mov", ".mp4", ".obj", ".off", ".pcd", ".pdf",
-                                       ".ply", ".png", ".stl", ".svg", ".tif", ".tiff", ".toml", ".usd", ".usda", ".usdc", ".usdz", ".vdb", ".vtk", ".vtp", ".vtu", ".webm", ".webp", ".xyz", ".zip"};
+const std::set<std::string> formats = {".3mf", ".abc",  ".avi",  ".bmp",  ".csv",  ".dae",  ".exr",  ".fbx",  ".front",
+                                       ".gif", ".glb",  ".gltf", ".html", ".jpeg", ".jpg",  ".json", ".kerf", ".mov",
+                                       ".mp4", ".obj",  ".off",  ".pcd",  ".pdf",  ".ply",  ".png",  ".stl",  ".svg",
+                                       ".tif", ".tiff", ".toml", ".usd",  ".usda", ".usdc", ".usdz", ".vdb",  ".vtk",
+                                       ".vtp", ".vtu",  ".webm", ".webp", ".xyz",  ".zip"};
 
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -85,15 +89,16 @@ std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   const auto end = std::find(words.begin(), words.end(), "--");
   for (auto word = words.begin(); word != end; ++word) {
     const std::string name = word->substr(0, word->find('='));
-    if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end()) throw UsageError("there is no option " + name + geo::did_you_mean(name, known));
+    if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
+      throw UsageError("there is no option " + name + geo::did_you_mean(name, known));
   }
   for (auto word = end == words.end() ? end : end + 1; word != words.end(); ++word)
     if (word->size() > 1 && word->front() == '-') word->insert(0, "./");
   return words;
 }
 
-// The same words where the last one behind an option that takes several ("--front halve.front bear.off") is the file that the tool
-// is about, put first; none where that could be more than one.
+// The same words where the last one behind an option that takes several ("--front halve.front bear.off") is the file
+// that the tool is about, put first; none where that could be more than one.
 std::vector<std::string> file_first(const std::vector<std::string>& words, const CLI::App& app) {
   std::vector<std::size_t> last;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -105,7 +110,8 @@ std::vector<std::string> file_first(const std::vector<std::string>& words, const
   }
   if (last.size() != 1) return {};
   std::vector<std::string> other = words;
-  std::rotate(other.begin(), other.begin() + static_cast<std::ptrdiff_t>(last[0]), other.begin() + static_cast<std::ptrdiff_t>(last[0]) + 1);
+  std::rotate(other.begin(), other.begin() + static_cast<std::ptrdiff_t>(last[0]),
+              other.begin() + static_cast<std::ptrdiff_t>(last[0]) + 1);
   return other;
 }
 
@@ -120,11 +126,14 @@ struct Tool::Parser {
   CLI::App app;
 };
 
-Tool::Tool(std::string name, std::string summary, std::string examples) : parser_(std::make_unique<Parser>()), name_(std::move(name)) {
+Tool::Tool(std::string name, std::string summary, std::string examples)
+    : parser_(std::make_unique<Parser>()), name_(std::move(name)) {
   CLI::App& app = parser_->app;
   app.name(name_);
   app.description(std::move(summary));
-  app.footer("Examples:\n" + examples + "\n\nExit codes: 0 done, 1 a check found something or the processing failed, 2 usage, 65 bad input,\n66 input missing, 70 internal error, 73 output cannot be made, 130 interrupted, 141 closed pipe.");
+  app.footer("Examples:\n" + examples +
+             "\n\nExit codes: 0 done, 1 a check found something or the processing failed, 2 usage, 65 bad input,\n66 "
+             "input missing, 70 internal error, 73 output cannot be made, 130 interrupted, 141 closed pipe.");
   app.set_version_flag("--version", name_ + " (kerf) " KERF_VERSION);
   app.set_config("--config", "", "Read options from this TOML or INI file");
   app.allow_config_extras(false);
@@ -133,7 +142,8 @@ Tool::Tool(std::string name, std::string summary, std::string examples) : parser
   app.add_flag("-q,--quiet", quiet, "No words on standard error but errors");
   app.add_flag("-v,--verbose", verbose, "More words on standard error");
   app.add_flag("--json", json, "Figures as JSON");
-  app.add_option("--progress", progress_, "Progress bar: auto, always, never")->check(CLI::IsMember({"auto", "always", "never"}));
+  app.add_option("--progress", progress_, "Progress bar: auto, always, never")
+      ->check(CLI::IsMember({"auto", "always", "never"}));
 }
 Tool::~Tool() = default;
 
@@ -141,20 +151,32 @@ void Tool::argument(const std::string& name, std::string& value, const std::stri
   auto* option = parser_->app.add_option(name, value, help);
   if (required) option->required();
 }
-void Tool::argument(const std::string& name, std::vector<std::string>& values, const std::string& help) { parser_->app.add_option(name, values, help); }
-void Tool::option(const std::string& names, std::string& value, const std::string& help) { parser_->app.add_option(names, value, help); }
-void Tool::option(const std::string& names, std::vector<std::string>& values, const std::string& help) { parser_->app.add_option(names, values, help); }
+void Tool::argument(const std::string& name, std::vector<std::string>& values, const std::string& help) {
+  parser_->app.add_option(name, values, help);
+}
+void Tool::option(const std::string& names, std::string& value, const std::string& help) {
+  parser_->app.add_option(names, value, help);
+}
+void Tool::option(const std::string& names, std::vector<std::string>& values, const std::string& help) {
+  parser_->app.add_option(names, values, help);
+}
 void Tool::option(const std::string& names, double& value, const std::string& help) {
   parser_->app.add_option(names, value, help)->capture_default_str()->check([](const std::string& text) {
     double x = 0;
-    return CLI::detail::lexical_cast(text, x) && std::isfinite(x) ? std::string() : "'" + text + "' is not a finite number";
+    return CLI::detail::lexical_cast(text, x) && std::isfinite(x) ? std::string()
+                                                                  : "'" + text + "' is not a finite number";
   });
 }
-void Tool::option(const std::string& names, int& value, const std::string& help) { parser_->app.add_option(names, value, help)->capture_default_str(); }
-void Tool::choice(const std::string& names, std::string& value, const std::vector<std::string>& choices, const std::string& help) {
+void Tool::option(const std::string& names, int& value, const std::string& help) {
+  parser_->app.add_option(names, value, help)->capture_default_str();
+}
+void Tool::choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,
+                  const std::string& help) {
   parser_->app.add_option(names, value, help)->capture_default_str()->check(CLI::IsMember(choices));
 }
-void Tool::flag(const std::string& names, bool& value, const std::string& help) { parser_->app.add_flag(names, value, help); }
+void Tool::flag(const std::string& names, bool& value, const std::string& help) {
+  parser_->app.add_flag(names, value, help);
+}
 void Tool::output(const std::string& help, std::vector<std::string> endings) {
   parser_->app.add_option("-o,--output", output_path, help);
   endings_ = std::move(endings);
@@ -228,7 +250,8 @@ int Tool::run(int argc, char** argv, const std::function<void()>& work) {
 
 std::string Tool::target(bool binary) const {
   const std::string path = output_path.empty() ? "-" : output_path;
-  if (path == "-" && binary && ::isatty(1)) throw UsageError("binary output does not go to a terminal: give -o FILE or a pipe");
+  if (path == "-" && binary && ::isatty(1))
+    throw UsageError("binary output does not go to a terminal: give -o FILE or a pipe");
   require_ending();
   geo::require_place(path);
   return path;
@@ -236,7 +259,9 @@ std::string Tool::target(bool binary) const {
 
 void Tool::require_ending() const {
   const std::string ending = std::filesystem::path(output_path).extension().string();
-  if (endings_.empty() || std::find(endings_.begin(), endings_.end(), ending) != endings_.end() || !formats.contains(lower(ending))) return;
+  if (endings_.empty() || std::find(endings_.begin(), endings_.end(), ending) != endings_.end() ||
+      !formats.contains(lower(ending)))
+    return;
   std::string known = endings_[0];
   for (std::size_t i = 1; i < endings_.size(); ++i) known += (i + 1 < endings_.size() ? ", " : " or ") + endings_[i];
   throw UsageError("'" + output_path + "': " + name_ + " writes " + known + ", not " + ending);
@@ -247,7 +272,8 @@ geo::Progress Tool::progress() const {
   return [bar](std::string_view phase, std::size_t done, std::size_t total) {
     if (bar) {
       const int percent = total > 0 ? static_cast<int>(100 * done / total) : 0;
-      std::fprintf(stderr, "\r\033[K%3d %% %.*s%s", percent, static_cast<int>(phase.size()), phase.data(), done == total ? "\r\033[K" : "");
+      std::fprintf(stderr, "\r\033[K%3d %% %.*s%s", percent, static_cast<int>(phase.size()), phase.data(),
+                   done == total ? "\r\033[K" : "");
       bar_shown = done != total;
     }
     return !interrupted;
@@ -279,7 +305,9 @@ std::string rounded(double x) {
 }
 std::string rounded(const geo::Vec3& p) { return rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()); }
 
-std::string counted(std::size_t n, const std::string& noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
+std::string counted(std::size_t n, const std::string& noun) {
+  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+}
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";

@@ -37,23 +37,26 @@ class Tool {
   void option(const std::string& names, double& value, const std::string& help);
   void option(const std::string& names, int& value, const std::string& help);
   /// An option that takes one of `choices`; `value` holds the default.
-  void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices, const std::string& help);
+  void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,
+              const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
-  /// -o/--output; where it is not given, standard output if that is no terminal (`binary`) or in any case (text). A name that ends
-  /// as another format's files do is refused where `endings`, like ".ply", are given.
+  /// -o/--output; where it is not given, standard output if that is no terminal (`binary`) or in any case (text). A
+  /// name that ends as another format's files do is refused where `endings`, like ".ply", are given.
   void output(const std::string& help, std::vector<std::string> endings = {});
 
-  /// Parses (or, for `--describe bash|zsh|man`, prints what describe() makes of the tool), sets threads and signals, calls `work`, turns every outcome into the contract's exit code.
+  /// Parses (or, for `--describe bash|zsh|man`, prints what describe() makes of the tool), sets threads and signals,
+  /// calls `work`, turns every outcome into the contract's exit code.
   int run(int argc, char** argv, const std::function<void()>& work);
 
   bool quiet = false, verbose = false, json = false;
-  /// How long, in seconds, a first Ctrl-C waits for the work to stop by itself (see progress()) before the program ends.
+  /// How long, in seconds, a first Ctrl-C waits for the work to stop by itself (see progress()) before the program
+  /// ends.
   double patience = 0.3;
   std::uint64_t seed = 1;
   std::string output_path;
 
-  /// Where the output goes: the path, or "-". Refuses binary to a terminal (exit 2), and, before any work is done, a place where no
-  /// file can be made (exit 73).
+  /// Where the output goes: the path, or "-". Refuses binary to a terminal (exit 2), and, before any work is done, a
+  /// place where no file can be made (exit 73).
   std::string target(bool binary) const;
   /// Refuses an output that ends as another format's files do (exit 2), see output().
   void require_ending() const;
@@ -70,7 +73,8 @@ class Tool {
   int threads_ = 0;
 };
 
-/// "name xxh3:…" of an input, for a file's provenance: the name without its folder, so that moving files changes nothing.
+/// "name xxh3:…" of an input, for a file's provenance: the name without its folder, so that moving files changes
+/// nothing.
 std::string named_hash(const std::string& path, std::uint64_t fingerprint);
 /// A number in the shortest form that reads back the same.
 std::string number(double x);

@@ -9,20 +9,25 @@
 
 namespace geo {
 
-/// Asks the system for large pages where memory spans many of them: it has fewer to give, and addresses are looked up faster.
+/// Asks the system for large pages where memory spans many of them: it has fewer to give, and addresses are looked up
+/// faster.
 void give_in_large_pages(void* at, std::size_t bytes);
 
-/// An array of fixed size whose elements hold anything until they are written. The system gives memory where it is first
-/// touched, which takes as long as filling it; this way all threads that fill it share that.
+/// An array of fixed size whose elements hold anything until they are written. The system gives memory where it is
+/// first touched, which takes as long as filling it; this way all threads that fill it share that.
 template <class T>
 class FreshArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
-  static constexpr std::align_val_t alignment{alignof(T) > alignof(std::max_align_t) ? alignof(T) : alignof(std::max_align_t)};
+  static constexpr std::align_val_t alignment{alignof(T) > alignof(std::max_align_t) ? alignof(T)
+                                                                                     : alignof(std::max_align_t)};
 
  public:
   FreshArray() = default;
-  explicit FreshArray(std::size_t size) : at_(static_cast<T*>(::operator new(size * sizeof(T), alignment))), size_(size) { give_in_large_pages(data(), size * sizeof(T)); }
+  explicit FreshArray(std::size_t size)
+      : at_(static_cast<T*>(::operator new(size * sizeof(T), alignment))), size_(size) {
+    give_in_large_pages(data(), size * sizeof(T));
+  }
   std::size_t size() const { return size_; }
   T* data() { return at_.get(); }
   const T* data() const { return at_.get(); }

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "body/binding.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
+#include "kerf/parallel.h"
 #include "kerf/pieces.h"
 
 namespace geo {
@@ -116,7 +116,8 @@ Binding build_binding(const Body& body) {
   Binding b;
   b.closest.resize(body.nodes.size());
   parallel_for(body.nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) b.closest[i] = closest_vertex(k, body.nodes.position[i], body.nodes.radius[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      b.closest[i] = closest_vertex(k, body.nodes.position[i], body.nodes.radius[i]);
   });
   const std::size_t n = k.surface_vertex_count();
   b.master_node.assign(n, NodeId());
@@ -149,9 +150,12 @@ Binding build_binding(const Body& body) {
   for (std::uint32_t v = 0; v < n; ++v)
     if (b.master_node[v].valid()) b.master[v] = b.parent[v] = SurfaceVertexId(v), level.push_back(SurfaceVertexId(v));
   spread();
-  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece, else the nearest of all.
+  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece, else the nearest of
+  // all.
   Pieces pieces;
-  const auto piece_before = [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; };
+  const auto piece_before = [&](Side s) {
+    return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
+  };
   constexpr std::int32_t not_asked = -2;
   std::vector<std::int32_t> piece_of_node;
   for (std::uint32_t v = 0; v < n; ++v) {

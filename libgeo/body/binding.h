@@ -20,12 +20,14 @@ SurfaceVertexId closest_vertex(const Complex& complex, const Vec3& p, double rea
 /// Of the nodes whose closest vertex v is, the nearest (ties: the lowest); invalid when v is no master.
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v);
 
-/// The node that carries a shell that no node looks at, v being its lowest vertex: the nearest one that is accepted, of its
-/// piece; invalid when there is none.
+/// The node that carries a shell that no node looks at, v being its lowest vertex: the nearest one that is accepted, of
+/// its piece; invalid when there is none.
 NodeId stray_node_of(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept);
 
 /// Brings body.binding up to date after a step, equal to build_binding() bit for bit, at a cost that follows what has
-/// changed. `moved`: old nodes that stand elsewhere now, or have another radius. Returns the surface vertices that another node carries now, ascending.
-std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved);
+/// changed. `moved`: old nodes that stand elsewhere now, or have another radius. Returns the surface vertices that
+/// another node carries now, ascending.
+std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
+                                    const std::vector<NodeId>& moved);
 
 }  // namespace geo

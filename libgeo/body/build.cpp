@@ -1,11 +1,11 @@
 #include <numeric>
 
-#include "kerf/error.h"
 #include "body/connect.h"
 #include "body/front_guides.h"
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "graph/guides.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {
@@ -15,7 +15,8 @@ void require_inside(const Body& body, const std::vector<std::uint32_t>& componen
   std::uint32_t asked = 0;  // components are numbered by their lowest nodes
   for (std::size_t i = 0; i < component.size(); ++i)
     if (component[i] == asked && ++asked > 0 && !is_inside(body.surface, body.nodes.position[i]))
-      throw InputError("node " + std::to_string(i) + " is not inside the surface; sample the same model that the body is made of");
+      throw InputError("node " + std::to_string(i) +
+                       " is not inside the surface; sample the same model that the body is made of");
 }
 
 }  // namespace
@@ -23,7 +24,8 @@ void require_inside(const Body& body, const std::vector<std::uint32_t>& componen
 Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, const Progress& progress) {
   if (nodes.size() == 0) throw InputError("there are no nodes; make some with kerf-sample");
   if (options.k < 3 || options.k > 1000) throw InputError("k must be from 3 to 1000");
-  if (options.guides != 0 && !(options.guides >= 0.05 && options.guides <= 10)) throw InputError("guides must be 0 or from 0.05 to 10");
+  if (options.guides != 0 && !(options.guides >= 0.05 && options.guides <= 10))
+    throw InputError("guides must be 0 or from 0.05 to 10");
   Body body;
   body.surface = std::move(surface);
   body.nodes = std::move(nodes);

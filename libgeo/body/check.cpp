@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "kerf/body.h"
 #include "body/connect.h"
 #include "body/locate.h"
+#include "kerf/body.h"
 #include "kerf/pieces.h"
 
 namespace geo {
@@ -18,7 +18,9 @@ BodyReport check_body(const Body& body) {
   report.graph_components = body.graph.components(component);
   const Pieces pieces = find_pieces(k);
   report.pieces = pieces.count;
-  const auto piece_before = [&](Side s) { return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)]; };
+  const auto piece_before = [&](Side s) {
+    return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
+  };
   std::vector<std::int32_t> piece_of(report.graph_components, -1);
   std::vector<std::uint32_t> component_of(pieces.count, ~0u);
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -32,7 +34,8 @@ BodyReport check_body(const Body& body) {
     if (known >= 0 && known != piece) note("node " + std::to_string(i) + " is connected to another piece");
     known = piece;
     auto& part = component_of[static_cast<std::size_t>(piece)];
-    if (part != ~0u && part != component[i]) note("node " + std::to_string(i) + " is not connected to others of its piece");
+    if (part != ~0u && part != component[i])
+      note("node " + std::to_string(i) + " is not connected to others of its piece");
     part = component[i];
     for (const NodeId j : body.graph.edges(NodeId(i)))
       if (j.value > i && is_blocked(k, body.nodes.position[i], body.nodes.position[j.index()])) {
@@ -58,7 +61,8 @@ BodyReport check_body(const Body& body) {
     auto& part = component_of[static_cast<std::size_t>(piece)];
     if (part != ~0u) continue;
     part = 0, ++report.crumbs;
-    if (room_in(k, SurfaceVertexId(v), body.grid.cell(), piece_before)) note("the piece of surface vertex " + std::to_string(v) + " has no node");
+    if (room_in(k, SurfaceVertexId(v), body.grid.cell(), piece_before))
+      note("the piece of surface vertex " + std::to_string(v) + " has no node");
   }
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)

@@ -9,9 +9,8 @@ namespace {
 // The nearest older node that is accepted; invalid when there is none.
 template <class Accept>
 NodeId nearest_old(const Body& body, const Vec3& x, NodeId first_new, const Accept& accept) {
-  const auto near = body.grid.nearest(body.nodes.position, x, 1, ~0u, [&](std::uint32_t i) {
-    return i < first_new.value && accept(NodeId(i));
-  });
+  const auto near = body.grid.nearest(body.nodes.position, x, 1, ~0u,
+                                      [&](std::uint32_t i) { return i < first_new.value && accept(NodeId(i)); });
   return near.empty() ? NodeId() : NodeId(near[0]);
 }
 
@@ -22,21 +21,27 @@ void look_at(Regions& components, std::int32_t piece, NodeId i, Disagreement& fo
   components.seed(i.value), components.seed(other.value);
   if (components.joined(other.value, i.value)) return;
   for (const auto& [a, b] : found.apart)
-    if ((a == other && components.joined(b.value, i.value)) || (b == other && components.joined(a.value, i.value))) return;
+    if ((a == other && components.joined(b.value, i.value)) || (b == other && components.joined(a.value, i.value)))
+      return;
   found.apart.push_back({std::min(i, other), std::max(i, other)});
 }
 
-// Rounding the parts of a face may take the node of a thin piece out of it, though nothing was cut off. Else some of what carries
-// the vertices of a piece's surface is in it, mostly of the first that are asked.
+// Rounding the parts of a face may take the node of a thin piece out of it, though nothing was cut off. Else some of
+// what carries the vertices of a piece's surface is in it, mostly of the first that are asked.
 void look_for_emptied(const Body& body, std::span<const SurfaceVertexId> touched, Disagreement& found) {
   std::map<std::int32_t, std::vector<SurfaceVertexId>> of;
   for (const auto v : touched)
-    if (const auto piece = body.upkeep.piece[v.index()]; piece >= 0 && !found.known.count(piece) && !body.upkeep.bare.count(piece)) of[piece].push_back(v);
+    if (const auto piece = body.upkeep.piece[v.index()];
+        piece >= 0 && !found.known.count(piece) && !body.upkeep.bare.count(piece))
+      of[piece].push_back(v);
   const Binding& b = body.binding;
   for (const auto& [piece, vertices] : of) {
     std::set<NodeId> asked;
     const auto holds = [&](NodeId i) { return asked.insert(i).second && piece_of(body, i) == piece; };
-    const auto carried = [&](SurfaceVertexId v) { return v.index() < b.master.size() && b.master[v.index()].valid() && holds(b.master_node[b.master[v.index()].index()]); };
+    const auto carried = [&](SurfaceVertexId v) {
+      return v.index() < b.master.size() && b.master[v.index()].valid() &&
+             holds(b.master_node[b.master[v.index()].index()]);
+    };
     if (std::any_of(vertices.begin(), vertices.end(), carried)) continue;
     std::set<SurfaceVertexId> seen(vertices.begin(), vertices.end());
     std::vector<SurfaceVertexId> shell(vertices), around;
@@ -51,8 +56,13 @@ void look_for_emptied(const Body& body, std::span<const SurfaceVertexId> touched
         if (seen.insert(w).second) shell.push_back(w);
     }
     if (!held)
-      body.grid.walk([&](int, const Vec3& middle, double half) { return !held && box.grown(half).meets(Box3{middle, middle}); },
-                     [&](int, std::uint32_t i) { held = held || (box.meets(Box3{body.nodes.position[i], body.nodes.position[i]}) && holds(NodeId(i))); });
+      body.grid.walk(
+          [&](int, const Vec3& middle, double half) {
+            return !held && box.grown(half).meets(Box3{middle, middle});
+          },
+          [&](int, std::uint32_t i) {
+            held = held || (box.meets(Box3{body.nodes.position[i], body.nodes.position[i]}) && holds(NodeId(i)));
+          });
     if (held) continue;
     found.empty.push_back(vertices[0]);
     found.known.emplace(piece, NodeId());  // until it has one
@@ -117,10 +127,12 @@ Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, 
       if (at->second >= 0) divided.insert(origin_of(at->second)), look_at(components, at->second, i, found);
     }
   }
-  // Rounding the parts of a face may take them past a node that stands some last places before it: it is alone in a piece that
-  // nothing was cut off from.
+  // Rounding the parts of a face may take them past a node that stands some last places before it: it is alone in a
+  // piece that nothing was cut off from.
   for (const auto& [part, piece] : piece_of_part) {
-    if (piece < 0 || !components.whole(part) || std::any_of(offcuts.begin(), offcuts.end(), [&](const Offcut& o) { return o.from == origin_of(piece); })) continue;
+    if (piece < 0 || !components.whole(part) ||
+        std::any_of(offcuts.begin(), offcuts.end(), [&](const Offcut& o) { return o.from == origin_of(piece); }))
+      continue;
     auto inside = components.inside(part);
     std::sort(inside.begin(), inside.end());
     const NodeId other = nearest_old(body, body.nodes.position[part], first_new, [&](NodeId i) {
@@ -143,7 +155,8 @@ Disagreement find_disagreement(const Body& body, std::span<const NodePair> cut, 
   for (std::uint32_t i = first_new.value; i < body.nodes.size() && !offcuts.empty(); ++i) {
     while (components.lowest(i) >= first_new.value && !components.whole(i)) components.grow(i);
     if (components.lowest(i) == i)
-      if (const auto piece = piece_of(body, NodeId(i)); divided.count(origin_of(piece))) found.known.try_emplace(piece, NodeId(i));
+      if (const auto piece = piece_of(body, NodeId(i)); divided.count(origin_of(piece)))
+        found.known.try_emplace(piece, NodeId(i));
   }
   pair_new_nodes(body, components, first_new, found);
   for (const Offcut& o : offcuts)
@@ -163,13 +176,16 @@ void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Dis
     if (components.lowest(i) != i) continue;
     const auto piece = piece_of(body, NodeId(i));
     if (!found.known.count(piece))
-      if (const NodeId old = nearest_old(body, body.nodes.position[i], first_new, [&](NodeId n) { return piece_of(body, n) == piece; }); old.valid())
+      if (const NodeId old = nearest_old(body, body.nodes.position[i], first_new,
+                                         [&](NodeId n) { return piece_of(body, n) == piece; });
+          old.valid())
         found.known.emplace(piece, old);
     look_at(components, piece, NodeId(i), found);
   }
 }
 
-std::vector<std::vector<NodeId>> parted_nodes(const Body& body, std::span<const Offcut> offcuts, const Disagreement& found) {
+std::vector<std::vector<NodeId>> parted_nodes(const Body& body, std::span<const Offcut> offcuts,
+                                              const Disagreement& found) {
   std::map<std::int32_t, std::set<std::int32_t>> families;
   for (const Offcut& o : offcuts)
     for (const SurfaceVertexId v : {o.at, o.rest}) families[o.from].insert(body.upkeep.piece[v.index()]);
@@ -185,7 +201,8 @@ std::vector<std::vector<NodeId>> parted_nodes(const Body& body, std::span<const 
       if (!largest.valid()) largest = other;
       if (components.joined(largest.value, other.value)) continue;
       const bool smaller = components.whole(other.value) &&
-                           (!components.whole(largest.value) || components.inside(other.value).size() <= components.inside(largest.value).size());
+                           (!components.whole(largest.value) ||
+                            components.inside(other.value).size() <= components.inside(largest.value).size());
       if (!smaller) std::swap(largest, other);
       std::vector<NodeId> nodes;
       for (const auto i : components.inside(other.value)) nodes.push_back(NodeId(i));

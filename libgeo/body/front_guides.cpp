@@ -30,7 +30,8 @@ std::vector<SurfaceEdge> edges_at(const Complex& complex, const std::vector<Face
       if (!complex.has(side)) continue;
       for (int k = 0; k < 3; ++k) {
         const Side across = complex.neighbor(side, k);
-        if (side < across || !std::binary_search(faces.begin(), faces.end(), across.face)) edges.push_back(edge_of(complex, side, k, across));
+        if (side < across || !std::binary_search(faces.begin(), faces.end(), across.face))
+          edges.push_back(edge_of(complex, side, k, across));
       }
     }
   return edges;
@@ -68,7 +69,8 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
     for (const auto g : near) {
       const Vec3& p = guides.position(g);
       if (guides.retired(g)) continue;
-      const bool reached = fresh && (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm() <= guides.radius(g) / 64;
+      const bool reached =
+          fresh && (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm() <= guides.radius(g) / 64;
       (reached ? change.retired : others).push_back(VisibilityGraph::first_guide + g);
     }
   }

@@ -35,7 +35,8 @@ bool SightIn::blocked(const Vec3& p, const Vec3& q) const {
   Box3 segment{p, p};
   segment.add(q);
   for (std::size_t k = 0; k < triangles_.size(); ++k)
-    if (boxes_[k].meets(segment) && segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2])) return true;
+    if (boxes_[k].meets(segment) && segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2]))
+      return true;
   return false;
 }
 
@@ -52,7 +53,8 @@ std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::func
   bool up = true;
   for (int i = 0; i < 3; ++i)
     for (const bool above : {true, false})
-      if (const double way = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; way < shortest) shortest = way, axis = i, up = above;
+      if (const double way = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; way < shortest)
+        shortest = way, axis = i, up = above;
   Box3 line{p, p};
   const double beyond = std::max(shortest, 0.0) + extent.diagonal();
   (up ? line.hi : line.lo)[axis] += up ? beyond : -beyond;

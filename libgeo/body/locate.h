@@ -31,9 +31,10 @@ class SightIn {
 /// then p is in the material before that side. The face itself is left out because its own point is rounded.
 bool stands_before(const Complex& complex, Side s, const Vec3& base, const Vec3& p);
 
-/// The piece that p is in, −1: none. `piece` numbers the sides with material. Decided by topology: p is where a piece's whole
-/// boundary winds around it, counted along a line from p out of the complex by exact predicates, with ties broken
-/// symbolically. So a crumb whose sheets rounding has exchanged holds no point, and hides from none which piece it is in.
+/// The piece that p is in, −1: none. `piece` numbers the sides with material. Decided by topology: p is where a piece's
+/// whole boundary winds around it, counted along a line from p out of the complex by exact predicates, with ties broken
+/// symbolically. So a crumb whose sheets rounding has exchanged holds no point, and hides from none which piece it is
+/// in.
 std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::function<std::int32_t(Side)>& piece);
 
 /// True when p is strictly inside the material.

@@ -6,11 +6,11 @@
 #include <map>
 #include <numbers>
 
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
+#include "kerf/parallel.h"
 #include "sampling/resample.h"
 
 namespace geo {
@@ -41,8 +41,9 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   const auto all = [](std::uint32_t) { return true; };
   std::vector<std::array<Vec3, 3>> soup;
   for (const FaceId f : faces) soup.push_back(body.surface.corners(f));
-  // A crack is a boundary, and an octree's leaves halve at most from one to the next: half of what the nearest node to each cell of
-  // a lattice has, which is as fine as nodes usually are. Of the nodes that the body was built of: else each step would halve anew.
+  // A crack is a boundary, and an octree's leaves halve at most from one to the next: half of what the nearest node to
+  // each cell of a lattice has, which is as fine as nodes usually are. Of the nodes that the body was built of: else
+  // each step would halve anew.
   const double cell = body.grid.cell();
   std::map<std::array<double, 3>, double> found;
   const auto spacing_at = [&](const Vec3& x) {
@@ -50,7 +51,9 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
     const std::array<double, 3> at{std::floor(x[0] / cell), std::floor(x[1] / cell), std::floor(x[2] / cell)};
     const auto [place, fresh] = found.try_emplace(at, 0);
     if (fresh) {
-      const double there = body.nodes.spacing[body.grid.nearest(body.nodes.position, cell * (Vec3(at.data()) + Vec3::Constant(0.5)), 1, ~0u, [&](std::uint32_t i) { return i < body.sampled; })[0]];
+      const double there =
+          body.nodes.spacing[body.grid.nearest(body.nodes.position, cell * (Vec3(at.data()) + Vec3::Constant(0.5)), 1,
+                                               ~0u, [&](std::uint32_t i) { return i < body.sampled; })[0]];
       place->second = std::min(there, std::max(body.finest, 0.5 * there));
     }
     return place->second;
@@ -89,17 +92,20 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
 
 namespace {
 
-// The direction whose least part along all of `normals` is about the greatest: between two faces half way, in a corner along its axis.
+// The direction whose least part along all of `normals` is about the greatest: between two faces half way, in a corner
+// along its axis.
 Vec3 away_from(const std::vector<Vec3>& normals) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& n : normals) sum += n;
   for (int i = 0; normals.size() > 1 && i < 64; ++i)
-    sum += *std::min_element(normals.begin(), normals.end(), [&](const Vec3& a, const Vec3& b) { return a.dot(sum) < b.dot(sum); });
+    sum += *std::min_element(normals.begin(), normals.end(),
+                             [&](const Vec3& a, const Vec3& b) { return a.dot(sum) < b.dot(sum); });
   const double length = sum.norm();
   return length > 0 ? Vec3(sum / length) : normals[0];
 }
 
-// A better place for the node that rounding or a cut has put on or very near some of the faces around it: where it is, if there is none.
+// A better place for the node that rounding or a cut has put on or very near some of the faces around it: where it is,
+// if there is none.
 Vec3 place_off(const Complex& surface, std::uint32_t node, const Vec3& x, double spacing) {
   const double close = 0.02 * spacing, most = 0.1 * spacing;
   std::vector<FaceId> around;
@@ -108,7 +114,8 @@ Vec3 place_off(const Complex& surface, std::uint32_t node, const Vec3& x, double
     const auto t = surface.corners(f);
     return (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm();
   };
-  // Away from all that are close at once: what goes straight away from one may pass another. On a face either side will do.
+  // Away from all that are close at once: what goes straight away from one may pass another. On a face either side will
+  // do.
   std::array<std::vector<Vec3>, 2> normals;
   double clear = most;
   for (const FaceId f : around) {
@@ -157,7 +164,8 @@ std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces) {
         },
         [&](int, std::uint32_t i) {
           const Vec3& x = body.nodes.position[i];
-          if ((closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() <= 0.02 * body.nodes.spacing[i]) near.push_back(i);
+          if ((closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() <= 0.02 * body.nodes.spacing[i])
+            near.push_back(i);
         });
   }
   std::sort(near.begin(), near.end());

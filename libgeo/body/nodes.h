@@ -16,13 +16,13 @@ void set_sampled(Body& body, std::uint32_t count);
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
 
 /// § 6.4: nodes on both sides of the faces, inside, seen from the face, not too close to nodes that see them. Returns
-/// how many. `spacing`: wanted distance between them, 0: half of what nodes are apart there, no finer than body.finest, with
-/// support radii in proportion; at most `limit` are inserted.
+/// how many. `spacing`: wanted distance between them, 0: half of what nodes are apart there, no finer than body.finest,
+/// with support radii in proportion; at most `limit` are inserted.
 std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spacing, std::uint64_t seed,
                         std::size_t limit = std::size_t(-1));
 
-/// Moves nodes that are on or very near one of the faces off it, and off all others that are near them: each at most once, past no face
-/// that it is not on. Returns them, ascending.
+/// Moves nodes that are on or very near one of the faces off it, and off all others that are near them: each at most
+/// once, past no face that it is not on. Returns them, ascending.
 std::vector<NodeId> move_off(Body& body, const std::vector<FaceId>& faces);
 
 /// Neighbours spread less in one direction than this share of what they do in another: the smallest over the largest

@@ -14,7 +14,8 @@ namespace geo {
 namespace {
 
 // Nodes along the surface from where i looks at it to where j does: what the material joins is joined beside its
-// boundary, however narrow it is. False, and no nodes, when the two see different shells only or doubles are too coarse.
+// boundary, however narrow it is. False, and no nodes, when the two see different shells only or doubles are too
+// coarse.
 bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
   const Complex& k = body.surface;
   const auto way = way_along(k, body.nodes.position[i.index()], body.nodes.position[j.index()], spacing);
@@ -40,9 +41,12 @@ bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<No
 }
 
 NodeId insert_into(Body& body, SurfaceVertexId v) {
-  const auto nearest = [&](const Vec3& x) { return NodeId(body.grid.nearest(body.nodes.position, x, 1, ~0u, [](auto) { return true; })[0]); };
+  const auto nearest = [&](const Vec3& x) {
+    return NodeId(body.grid.nearest(body.nodes.position, x, 1, ~0u, [](auto) { return true; })[0]);
+  };
   const double spacing = body.nodes.spacing[nearest(body.surface.point(body.surface.site(v))).index()];
-  const auto x = room_in(body.surface, v, spacing, [&](Side s) { return body.upkeep.piece[body.surface.surface_vertex(s, 0).index()]; });
+  const auto x = room_in(body.surface, v, spacing,
+                         [&](Side s) { return body.upkeep.piece[body.surface.surface_vertex(s, 0).index()]; });
   return x ? insert_node(body, *x, nearest(*x), spacing) : NodeId();
 }
 
@@ -53,9 +57,10 @@ class Neighborhood {
   /// The nodes nearest to i in its piece, without those of `part` (ascending) and without nodes inserted since.
   std::vector<std::uint32_t> nearest(NodeId i, std::size_t count, const std::vector<std::uint32_t>& part) {
     const auto piece = of(i.value);
-    return body_.grid.nearest(body_.nodes.position, body_.nodes.position[i.index()], count, i.value, [&](std::uint32_t n) {
-      return n < count_ && !std::binary_search(part.begin(), part.end(), n) && of(n) == piece;
-    });
+    return body_.grid.nearest(body_.nodes.position, body_.nodes.position[i.index()], count, i.value,
+                              [&](std::uint32_t n) {
+                                return n < count_ && !std::binary_search(part.begin(), part.end(), n) && of(n) == piece;
+                              });
   }
 
  private:
@@ -70,12 +75,15 @@ class Neighborhood {
 
 // An edge between a part of G and another part of the same piece, not longer than edges are anyway: what is hidden
 // from its k nearest nodes may see others. At most 16 of the part's nodes are asked.
-bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std::uint32_t>& part, std::vector<NodePair>& joins) {
+bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std::uint32_t>& part,
+                   std::vector<NodePair>& joins) {
   for (std::size_t n = 0; n < part.size(); n += 1 + part.size() / 16)
     for (const auto other : pieces.nearest(NodeId(part[n]), 8, part)) {
       const Vec3 &p = body.nodes.position[part[n]], &q = body.nodes.position[other];
       const auto [low, high] = std::minmax(part[n], other);
-      if ((p - q).norm() > body.graph.plain_unit() * 0x1p26 || is_blocked(body.surface, body.nodes.position[low], body.nodes.position[high])) continue;
+      if ((p - q).norm() > body.graph.plain_unit() * 0x1p26 ||
+          is_blocked(body.surface, body.nodes.position[low], body.nodes.position[high]))
+        continue;
       joins.push_back({NodeId(low), NodeId(high)});
       return true;
     }
@@ -83,7 +91,8 @@ bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std
 }
 
 // Needles have faces so narrow that their normals lead astray: of points between corners the clearest.
-std::optional<Vec3> room_between(const Complex& k, const std::vector<std::pair<double, Side>>& sides, const std::function<std::int32_t(Side)>& piece, std::int32_t wanted) {
+std::optional<Vec3> room_between(const Complex& k, const std::vector<std::pair<double, Side>>& sides,
+                                 const std::function<std::int32_t(Side)>& piece, std::int32_t wanted) {
   constexpr std::size_t most_sides = 64;
   constexpr int most_tries = 256;
   if (sides.size() > most_sides) return {};  // no crumb
@@ -100,7 +109,9 @@ std::optional<Vec3> room_between(const Complex& k, const std::vector<std::pair<d
   std::optional<Vec3> best;
   double clear = 0;
   for (int i = 0; i < most_tries; ++i) {
-    const auto corner = [&]() -> const Vec3& { return corners[random.below(static_cast<std::uint32_t>(corners.size()))]; };
+    const auto corner = [&]() -> const Vec3& {
+      return corners[random.below(static_cast<std::uint32_t>(corners.size()))];
+    };
     const double u = random.uniform(), v = random.uniform(), w = random.uniform();
     const Vec3 &a = corner(), &b = corner(), &c = corner(), &d = corner();
     const Vec3 x = (1 - u) * a + u * ((1 - v) * b + v * ((1 - w) * c + w * d));
@@ -112,7 +123,8 @@ std::optional<Vec3> room_between(const Complex& k, const std::vector<std::pair<d
 
 }  // namespace
 
-std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, const std::function<std::int32_t(Side)>& piece) {
+std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach,
+                            const std::function<std::int32_t(Side)>& piece) {
   const auto wanted = piece(k.corner_of(v).first);
   std::vector<SurfaceVertexId> shell{v}, around;
   std::set<SurfaceVertexId> seen{v};
@@ -139,7 +151,9 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, c
     const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
     for (double step = reach; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
       const Vec3 x = middle + 0.5 * step * inwards;
-      if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) && !is_blocked(k, x, x) && piece_around(k, x, piece) == wanted) return x;
+      if (stands_before(k, s, middle, middle + step * inwards) && stands_before(k, s, middle, x) &&
+          !is_blocked(k, x, x) && piece_around(k, x, piece) == wanted)
+        return x;
     }
   }
   return room_between(k, sides, piece, wanted);
@@ -147,7 +161,8 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach, c
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
-  // For a way, once, though later rounds look a little nearer: one that is not found takes longest, and few are found at a second try.
+  // For a way, once, though later rounds look a little nearer: one that is not found takes longest, and few are found
+  // at a second try.
   std::set<std::pair<NodeId, NodeId>> asked;
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
@@ -173,11 +188,15 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
       if (join_by_sight(body, pieces, part, joins)) continue;
       if (round == 0)
         for (const auto n : part)
-          body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
+          body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]),
+                            narrow);
       else
         for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
           const auto near = pieces.nearest(from, 4, part);
-          const auto finds_way = [&](auto to) { return asked.insert({from, NodeId(to)}).second && insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins); };
+          const auto finds_way = [&](auto to) {
+            return asked.insert({from, NodeId(to)}).second &&
+                   insert_along(body, from, NodeId(to), scale * body.grid.cell(), joins);
+          };
           if (std::any_of(near.begin(), near.end(), finds_way)) break;
         }
     }

@@ -6,10 +6,10 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "kerf/parallel.h"
 #include "body/binding.h"
 #include "body/upkeep.h"
 #include "geometry/bvh.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -84,13 +84,17 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
   for (const FaceId f : delta.new_faces) faces.push_back(k_.corners(f));
   const TriangleBvh changed(faces);
   std::vector<std::uint32_t> stale;
-  body_.grid.walk([&](int, const Vec3& middle, double half) { return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).row != none; },
-                  [&](int, std::uint32_t i) { stale.push_back(i); });
+  body_.grid.walk(
+      [&](int, const Vec3& middle, double half) {
+        return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).row != none;
+      },
+      [&](int, std::uint32_t i) { stale.push_back(i); });
   parallel_for(stale.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const auto i = stale[s];
       const auto closest = b_.closest[i];
-      const double far = closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
+      const double far =
+          closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
       if (changed.closest(x[i], 1.06 * far).row == none) stale[s] = none;
     }
   });
@@ -105,7 +109,8 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
   });
   for (std::size_t s = 0; s < stale.size(); ++s) {
     auto& closest = b_.closest[stale[s]];
-    const bool elsewhere = stale[s] >= first_new.value || std::binary_search(moved.begin(), moved.end(), NodeId(stale[s]));
+    const bool elsewhere =
+        stale[s] >= first_new.value || std::binary_search(moved.begin(), moved.end(), NodeId(stale[s]));
     if (closest == now[s] && !elsewhere) continue;
     for (const auto v : {closest, now[s]})
       if (v.valid()) looked_at_.insert(v);
@@ -124,8 +129,10 @@ void Rebinding::renew_strays(NodeId first_new, const std::vector<NodeId>& moved)
       const Vec3& q = k_.point(k_.site(v));
       const double d = (body_.nodes.position[node.index()] - q).squaredNorm();
       const auto rivals = [&](NodeId i) { return (body_.nodes.position[i.index()] - q).squaredNorm() <= d; };
-      stays = !std::binary_search(moved.begin(), moved.end(), node) && std::none_of(moved.begin(), moved.end(), rivals) &&
-              (body_.upkeep.bare.count(body_.upkeep.piece[v.index()]) || piece_of(body_, node) == body_.upkeep.piece[v.index()]);
+      stays = !std::binary_search(moved.begin(), moved.end(), node) &&
+              std::none_of(moved.begin(), moved.end(), rivals) &&
+              (body_.upkeep.bare.count(body_.upkeep.piece[v.index()]) ||
+               piece_of(body_, node) == body_.upkeep.piece[v.index()]);
       for (std::uint32_t i = first_new.value; i < body_.nodes.size() && stays; ++i) stays = !rivals(NodeId(i));
     }
     if (!stays) dismiss_stray(v);
@@ -147,7 +154,8 @@ void Rebinding::renew_masters() {
   });
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const auto v = vertices[k];
-    if (k_.alive(v) && b_.master[v.index()].valid() && is_stray(b_.master[v.index()])) dismiss_stray(b_.master[v.index()]);
+    if (k_.alive(v) && b_.master[v.index()].valid() && is_stray(b_.master[v.index()]))
+      dismiss_stray(b_.master[v.index()]);
     const NodeId node = nodes[k], before = b_.master_node[v.index()];
     if (node != before) set_node(v, node);
     if (!k_.alive(v) || (before.valid() && !node.valid()))
@@ -203,7 +211,9 @@ void Rebinding::renew_edges(const CrackDelta& delta) {
 
 // From the rim inwards, nearest to a master first; then masters down the trees whose roots changed.
 void Rebinding::grow() {
-  std::priority_queue<std::pair<std::uint32_t, SurfaceVertexId>, std::vector<std::pair<std::uint32_t, SurfaceVertexId>>, std::greater<>> changed;
+  std::priority_queue<std::pair<std::uint32_t, SurfaceVertexId>, std::vector<std::pair<std::uint32_t, SurfaceVertexId>>,
+                      std::greater<>>
+      changed;
   while (!queue_.empty()) {
     const auto [depth, parent, v] = queue_.top();
     queue_.pop();
@@ -229,7 +239,8 @@ void Rebinding::adopt_strays() {
     if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
     const auto piece = body_.upkeep.piece[v.index()];
     NodeId node;
-    if (!body_.upkeep.bare.count(piece)) node = stray_node_of(body_, v, [&](NodeId i) { return piece_of(body_, i) == piece; });
+    if (!body_.upkeep.bare.count(piece))
+      node = stray_node_of(body_, v, [&](NodeId i) { return piece_of(body_, i) == piece; });
     if (!node.valid()) {
       body_.upkeep.bare.insert(piece);
       node = stray_node_of(body_, v, [](NodeId) { return true; });
@@ -265,7 +276,8 @@ std::vector<SurfaceVertexId> Rebinding::rebound() {
 
 }  // namespace
 
-std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
+std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
+                                    const std::vector<NodeId>& moved) {
   Rebinding r(body);
   r.renew_closest(delta, first_new, moved);
   r.renew_strays(first_new, moved);

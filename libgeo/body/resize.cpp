@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <string>
 
-#include "kerf/error.h"
 #include "body/binding.h"
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "body/upkeep.h"
+#include "kerf/error.h"
 
 namespace geo {
 
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii) {
   for (const auto& [i, radius] : radii)
-    if (!(radius > 0)) throw InputError("node " + std::to_string(i.index()) + " cannot have a support radius of " + std::to_string(radius));
+    if (!(radius > 0))
+      throw InputError("node " + std::to_string(i.index()) + " cannot have a support radius of " +
+                       std::to_string(radius));
   begin_upkeep(body);
   BodyDelta delta;
   delta.first_new_node = NodeId(body.nodes.size());
@@ -26,8 +28,12 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
     now = radius;
   }
   if (resized.empty()) return delta;
-  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) { triangles_near(body.surface, box, out); };
-  delta.updated_nodes = update_graph(body.nodes, delta.first_new_node, {}, {}, near, body.k, body.grid, body.graph, {}, {}, {}, resized).updated_nodes;
+  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
+    triangles_near(body.surface, box, out);
+  };
+  delta.updated_nodes =
+      update_graph(body.nodes, delta.first_new_node, {}, {}, near, body.k, body.grid, body.graph, {}, {}, {}, resized)
+          .updated_nodes;
   mark_debris(body, delta.updated_nodes);
   // How far a node looks for its closest vertex is its radius.
   delta.rebound = rebind(body, {}, delta.first_new_node, resized);

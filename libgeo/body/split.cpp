@@ -46,11 +46,12 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work, const Prog
   const auto offcuts = part_pieces(body, delta.crack, recounted);
   std::vector<std::uint32_t> component;
   if (recounted) body.graph.components(component);
-  auto found = recounted ? find_disagreement(body, component) : find_disagreement(body, update.cut_edges, offcuts, delta.crack.touched_surface_vertices, delta.first_new_node);
+  auto found = recounted ? find_disagreement(body, component)
+                         : find_disagreement(body, update.cut_edges, offcuts, delta.crack.touched_surface_vertices,
+                                             delta.first_new_node);
   const std::size_t sampled = body.nodes.size();
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
-    const auto more =
-        update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, joins);
+    const auto more = update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, joins);
     updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
   });
   delta.parted = parted_nodes(body, offcuts, found);
@@ -80,8 +81,8 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
   return follow_delta(body, advance(body.surface, front, next, options, work ? &work->crack : nullptr), work);
 }
 
-BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options, SplitWork* work,
-                const Agreement& agree) {
+BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
+                SplitWork* work, const Agreement& agree) {
   if (!agree) return split(body, front, next, options, work);
   begin_upkeep(body);
   FrontState moved = front;

@@ -11,11 +11,12 @@ namespace geo {
 namespace {
 
 Regions shells_of(const Complex& k) {
-  return Regions([&k, around = std::vector<SurfaceVertexId>()](std::uint32_t v, std::vector<std::uint32_t>& out) mutable {
-    around.clear();
-    k.surface_neighbors(SurfaceVertexId(v), around);
-    for (const auto w : around) out.push_back(w.value);
-  });
+  return Regions(
+      [&k, around = std::vector<SurfaceVertexId>()](std::uint32_t v, std::vector<std::uint32_t>& out) mutable {
+        around.clear();
+        k.surface_neighbors(SurfaceVertexId(v), around);
+        for (const auto w : around) out.push_back(w.value);
+      });
 }
 
 // The surface vertices without a piece that hang together with v take the piece beside them, or the one given; returns
@@ -53,8 +54,8 @@ void place_inner(Body& body) {
   body.upkeep.inner_shells = true;
 }
 
-// True when vertices of several pieces hang together: where rounding had exchanged the sheets of a crumb, a later crack may
-// join it to what is beside it.
+// True when vertices of several pieces hang together: where rounding had exchanged the sheets of a crumb, a later crack
+// may join it to what is beside it.
 bool have_joined(const Body& body, const CrackDelta& delta) {
   const auto& of = body.upkeep.piece;
   std::vector<SurfaceVertexId> around;
@@ -62,7 +63,8 @@ bool have_joined(const Body& body, const CrackDelta& delta) {
     for (const auto v : *vertices) {
       around.clear();
       body.surface.surface_neighbors(v, around);
-      if (std::any_of(around.begin(), around.end(), [&](SurfaceVertexId w) { return of[w.index()] != of[v.index()]; })) return true;
+      if (std::any_of(around.begin(), around.end(), [&](SurfaceVertexId w) { return of[w.index()] != of[v.index()]; }))
+        return true;
     }
   return false;
 }
@@ -99,19 +101,20 @@ void begin_upkeep(Body& body) {
   for (std::uint32_t v = 0; v < n; ++v) {
     if (!b.master[v].valid()) continue;
     SurfaceVertexId at(v);
-    for (way.clear(); keep.depth[at.index()] == ~0u && b.parent[at.index()] != at; at = b.parent[at.index()]) way.push_back(at);
+    for (way.clear(); keep.depth[at.index()] == ~0u && b.parent[at.index()] != at; at = b.parent[at.index()])
+      way.push_back(at);
     if (b.parent[at.index()] == at) keep.depth[at.index()] = 0;
-    for (std::uint32_t depth = keep.depth[at.index()]; !way.empty(); way.pop_back()) keep.depth[way.back().index()] = ++depth;
+    for (std::uint32_t depth = keep.depth[at.index()]; !way.empty(); way.pop_back())
+      keep.depth[way.back().index()] = ++depth;
     if (b.parent[v].value == v && !looked_at[v]) keep.strays.push_back(SurfaceVertexId(v));
   }
 }
 
-std::int32_t piece_of(const Body& body, NodeId i) {
-  return piece_at(body, body.nodes.position[i.index()]);
-}
+std::int32_t piece_of(const Body& body, NodeId i) { return piece_at(body, body.nodes.position[i.index()]); }
 
 std::int32_t piece_at(const Body& body, const Vec3& p) {
-  return piece_around(body.surface, p, [&](Side s) { return body.upkeep.piece[body.surface.surface_vertex(s, 0).index()]; });
+  return piece_around(body.surface, p,
+                      [&](Side s) { return body.upkeep.piece[body.surface.surface_vertex(s, 0).index()]; });
 }
 
 std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recounted) {
@@ -119,14 +122,16 @@ std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recou
   auto& of = body.upkeep.piece;
   of.resize(k.surface_vertex_count(), -1);
   for (std::size_t i = 0; i < delta.new_surface_vertices.size(); ++i)
-    if (const auto old = delta.copied_from[i]; old.valid()) of[delta.new_surface_vertices[i].index()] = std::int32_t(of[old.index()]);
+    if (const auto old = delta.copied_from[i]; old.valid())
+      of[delta.new_surface_vertices[i].index()] = std::int32_t(of[old.index()]);
   for (const auto v : delta.removed_surface_vertices) of[v.index()] = -1;
   bool unknown = false;
   for (const auto v : delta.new_surface_vertices)
     if (of[v.index()] == -1) unknown |= !fill(body, v, -1);
 
   std::vector<std::array<SurfaceVertexId, 2>> across;  // the two sides of each crack face where there was material
-  for (const FaceId f : delta.new_crack_faces) across.push_back({k.surface_vertex({f, 0}, 0), k.surface_vertex({f, 1}, 0)});
+  for (const FaceId f : delta.new_crack_faces)
+    across.push_back({k.surface_vertex({f, 0}, 0), k.surface_vertex({f, 1}, 0)});
   // A piece of new surface vertices alone was a part of what is across its faces.
   const auto fill_across = [&] {
     for (bool more = unknown; more;) {
@@ -143,7 +148,8 @@ std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recou
 
   const bool joined = have_joined(body, delta);
   Regions shells = shells_of(k);
-  std::erase_if(across, [&](const auto& sides) { return sides[0] == sides[1] || of[sides[0].index()] != of[sides[1].index()]; });
+  std::erase_if(
+      across, [&](const auto& sides) { return sides[0] == sides[1] || of[sides[0].index()] != of[sides[1].index()]; });
   for (const auto& sides : across)
     for (const auto v : sides) shells.seed(v.value);
   shells.grow_seeds();
@@ -152,13 +158,16 @@ std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recou
     if (shells.joined(a.value, b.value)) continue;
     auto& known = parts[of[a.index()]];
     for (const auto v : {a, b})
-      if (std::none_of(known.begin(), known.end(), [&](SurfaceVertexId w) { return shells.joined(v.value, w.value); })) known.push_back(v);
+      if (std::none_of(known.begin(), known.end(), [&](SurfaceVertexId w) { return shells.joined(v.value, w.value); }))
+        known.push_back(v);
   }
   std::vector<Offcut> offcuts;
   for (const auto& [from, known] : parts) {
     SurfaceVertexId rest = known[0];  // keeps the number
     for (const auto v : known)
-      if (shells.whole(rest.value) && (!shells.whole(v.value) || shells.inside(v.value).size() > shells.inside(rest.value).size())) rest = v;
+      if (shells.whole(rest.value) &&
+          (!shells.whole(v.value) || shells.inside(v.value).size() > shells.inside(rest.value).size()))
+        rest = v;
     for (const auto v : known) {
       if (v == rest) continue;
       offcuts.push_back({body.upkeep.pieces++, from, v, rest});

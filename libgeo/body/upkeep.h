@@ -21,10 +21,10 @@ struct Offcut {
   SurfaceVertexId at, rest;  ///< a surface vertex of it, and one of the part that keeps the number
 };
 
-/// Brings the pieces of surface vertices up to date after a step: only what new crack faces can have separated is looked
-/// at, and of two parts the one with less surface. A crack face parts material exactly when its sides are on different
-/// shells. `recounted` is set when that was not enough: a piece that may have inner shells came apart, or a crumb was joined to
-/// something, and all pieces were counted (and numbered) anew.
+/// Brings the pieces of surface vertices up to date after a step: only what new crack faces can have separated is
+/// looked at, and of two parts the one with less surface. A crack face parts material exactly when its sides are on
+/// different shells. `recounted` is set when that was not enough: a piece that may have inner shells came apart, or a
+/// crumb was joined to something, and all pieces were counted (and numbered) anew.
 std::vector<Offcut> part_pieces(Body& body, const CrackDelta& delta, bool& recounted);
 
 }  // namespace geo

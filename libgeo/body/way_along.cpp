@@ -1,5 +1,5 @@
-// Over the sides from one point's sight to the other's, across edges at points pulled tight, low enough above both to meet
-// nothing. What is found is only what exact predicates let through; all the rest here is where to look.
+// Over the sides from one point's sight to the other's, across edges at points pulled tight, low enough above both to
+// meet nothing. What is found is only what exact predicates let through; all the rest here is where to look.
 #include "body/way_along.h"
 
 #include <algorithm>
@@ -27,8 +27,8 @@ class Sight {
   int left_ = 100000;
 };
 
-// Where one looks at each of the sides that are seen along the axes and at the middles of near faces. One point may see several
-// shells.
+// Where one looks at each of the sides that are seen along the axes and at the middles of near faces. One point may see
+// several shells.
 std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) {
   std::map<Side, Vec3> sights;
   std::vector<FaceId> faces;
@@ -51,7 +51,8 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
       const auto t = k.corners(f);
       const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
       const double along = n.dot(to - x), at = along != 0 ? n.dot(t[0] - x) / along : 2;
-      if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2])) first = at, side = {f, along < 0 ? 1 : 0};
+      if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2]))
+        first = at, side = {f, along < 0 ? 1 : 0};
     }
     if (side.face.valid()) add(side, x + first * (to - x));
   };
@@ -69,8 +70,8 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
   return sights;
 }
 
-// Over the fewest sides from one of `starts` to one of `ends`, not by `closed` steps; empty when there is no such way. The last
-// step's edge says nothing.
+// Over the fewest sides from one of `starts` to one of `ends`, not by `closed` steps; empty when there is no such way.
+// The last step's edge says nothing.
 std::vector<Step> sides_between(const Complex& k, const std::map<Side, Vec3>& starts, const std::map<Side, Vec3>& ends,
                                 const std::set<Step>& closed) {
   std::map<Side, Step> before;
@@ -126,7 +127,8 @@ std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, c
 }
 
 // Where a way pulled tight crosses the edges of a path over sides, at least the share `clear` of each from its ends.
-std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end, double clear) {
+std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end,
+                            double clear) {
   const std::size_t n = path.size() - 1;
   std::vector<std::array<Vec3, 2>> edges(n);
   std::vector<Vec3> at(n);
@@ -137,7 +139,8 @@ std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, con
   }
   for (int round = 0; round < 16; ++round)
     for (std::size_t s = 0; s < n; ++s) {
-      const Vec3 &p = edges[s][0], d = edges[s][1] - p, a = (s ? at[s - 1] : start) - p, b = (s + 1 < n ? at[s + 1] : end) - p;
+      const Vec3 &p = edges[s][0], d = edges[s][1] - p, a = (s ? at[s - 1] : start) - p,
+                 b = (s + 1 < n ? at[s + 1] : end) - p;
       const double ta = a.dot(d) / d.squaredNorm(), tb = b.dot(d) / d.squaredNorm();
       const double ha = (a - ta * d).norm(), hb = (b - tb * d).norm();
       const double t = ha + hb > 0 ? (ta * hb + tb * ha) / (ha + hb) : 0.5 * (ta + tb);
@@ -147,8 +150,9 @@ std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, con
 }
 
 // The way over such a path; where there is none, `blocked` is a step of the path that did not go.
-std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Step>& path, const Vec3& from, const Vec3& start,
-                           const Vec3& to, const Vec3& end, double reach, double clear, std::size_t& blocked) {
+std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Step>& path, const Vec3& from,
+                           const Vec3& start, const Vec3& to, const Vec3& end, double reach, double clear,
+                           std::size_t& blocked) {
   const double least = 1e-16 * k.extent().diagonal();
   std::vector<Hold> holds{{start, {(from - start).normalized()}, std::min(0.25 * reach, (from - start).norm())}};
   const auto at = crossings(k, path, start, end, clear);
@@ -157,8 +161,10 @@ std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Ste
     std::size_t last = s;
     while (last + 1 < at.size() && (at[last + 1] - at[s]).norm() < 1e-9 * reach) ++last;
     const auto t = k.corners(path[s].first.face);
-    holds.push_back({at[s], around_edge(k, path[s].first, path[last + 1].first, t[static_cast<std::size_t>(path[s].second)],
-                                        t[static_cast<std::size_t>((path[s].second + 1) % 3)]), 0.25 * reach, last});
+    holds.push_back({at[s],
+                     around_edge(k, path[s].first, path[last + 1].first, t[static_cast<std::size_t>(path[s].second)],
+                                 t[static_cast<std::size_t>((path[s].second + 1) % 3)]),
+                     0.25 * reach, last});
     s = last + 1;
   }
   holds.push_back({end, {(to - end).normalized()}, std::min(0.25 * reach, (to - end).norm()), at.size()});
@@ -167,8 +173,10 @@ std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Ste
   for (std::size_t h = 0; h < holds.size() && !sight.spent();) {
     // What is blocked is held lower, at its higher end; then what comes before is asked again.
     bool open = true;
-    for (std::size_t i = 0; i + 1 < holds[h].off.size() && open; ++i) open = !sight.blocked(holds[h].point(i), holds[h].point(i + 1));
-    if (open && (h + 1 == holds.size() || !sight.blocked(holds[h].point(holds[h].off.size() - 1), holds[h + 1].point(0)))) {
+    for (std::size_t i = 0; i + 1 < holds[h].off.size() && open; ++i)
+      open = !sight.blocked(holds[h].point(i), holds[h].point(i + 1));
+    if (open &&
+        (h + 1 == holds.size() || !sight.blocked(holds[h].point(holds[h].off.size() - 1), holds[h + 1].point(0)))) {
       ++h;
       continue;
     }
@@ -181,7 +189,8 @@ std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Ste
       }
       // Where no point has room a link may have: what is between two points is finer than doubles.
       for (Hold* hold : {&holds[h], open ? &holds[h + 1] : &holds[h]})
-        hold->at = hold->aim + 4 * least * random.uniform() * random.direction(), hold->height = least * std::exp2(8 * random.uniform());
+        hold->at = hold->aim + 4 * least * random.uniform() * random.direction(),
+        hold->height = least * std::exp2(8 * random.uniform());
     }
     h -= h > 0;
   }
@@ -208,7 +217,8 @@ std::vector<Vec3> way_along(const Complex& k, const Vec3& from, const Vec3& to, 
     if (path.empty()) return {};
     std::size_t blocked = 0;
     for (const double clear : {1.0 / 16, 1.0 / 4, 1.0 / 2}) {
-      auto way = way_over(k, sight, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach, clear, blocked);
+      auto way = way_over(k, sight, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach,
+                          clear, blocked);
       if (!way.empty()) return way;
     }
     if (path.size() == 1) return {};

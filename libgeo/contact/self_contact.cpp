@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "contact/response/touching.h"
+#include "contact/surface/open_sheets.h"
+#include "kerf/crossing.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
-#include "kerf/crossing.h"
-#include "contact/surface/open_sheets.h"
-#include "contact/response/touching.h"
 
 namespace geo {
 namespace {
@@ -33,7 +33,8 @@ std::vector<Vec3> averaged(const std::vector<Vec3>& to, std::span<const std::uin
   return result;
 }
 
-constexpr std::size_t most_between = 4;  // couples of places between two nodes' surroundings: three keep planes from meeting
+constexpr std::size_t most_between =
+    4;  // couples of places between two nodes' surroundings: three keep planes from meeting
 
 }  // namespace
 
@@ -43,10 +44,12 @@ ContactWork& ContactWork::operator+=(const ContactWork& o) {
   return *this;
 }
 
-SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOptions& options, std::vector<Vec3> positions)
+SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOptions& options,
+                         std::vector<Vec3> positions)
     : options_(options), surface_(contact_surface(body.surface)), positions_(std::move(positions)) {
   weights_.update(body, solid);
-  if (positions_.size() != surface_.site.size()) positions_ = targets(body, std::vector<Vec3>(solid.size(), Vec3::Zero()));
+  if (positions_.size() != surface_.site.size())
+    positions_ = targets(body, std::vector<Vec3>(solid.size(), Vec3::Zero()));
 }
 
 const VertexFans& SelfContact::fans() {
@@ -69,7 +72,8 @@ std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>
   std::vector<Vec3> result = weights_.at_each(all, u);
   parallel_for(result.size(), vertices_a_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (const SurfaceVertexId id(v); body.surface.alive(id)) result[v] = body.surface.point(body.surface.site(id)) + result[v];
+      if (const SurfaceVertexId id(v); body.surface.alive(id))
+        result[v] = body.surface.point(body.surface.site(id)) + result[v];
   });
   return result;
 }
@@ -81,7 +85,8 @@ const std::vector<Vec3>& SelfContact::targets_at(const Body& body, const std::ve
     const auto moved = weights_.at_each(last_.stale, u);
     for (std::size_t i = 0; i < moved.size(); ++i) {
       const SurfaceVertexId v(last_.stale[i]);
-      last_.targets[v.index()] = body.surface.alive(v) ? Vec3(body.surface.point(body.surface.site(v)) + moved[i]) : Vec3(Vec3::Zero());
+      last_.targets[v.index()] =
+          body.surface.alive(v) ? Vec3(body.surface.point(body.surface.site(v)) + moved[i]) : Vec3(Vec3::Zero());
     }
   } else {
     last_.targets = targets(body, u);
@@ -90,10 +95,13 @@ const std::vector<Vec3>& SelfContact::targets_at(const Body& body, const std::ve
   return last_.targets;
 }
 
-Potential* SelfContact::begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
-  constexpr double clear = 0.02, watched_from = 0.05;  // of a mean edge: what places are kept apart, and from where on they are looked at
-  constexpr double recovered = 0.5;                    // share of what they lack that a step is to make good
-  constexpr double firmness = 4;                       // of a couple, beside that of the material about it
+Potential* SelfContact::begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
+                              const std::vector<std::uint8_t>& fixed) {
+  constexpr double clear = 0.02,
+                   watched_from =
+                       0.05;         // of a mean edge: what places are kept apart, and from where on they are looked at
+  constexpr double recovered = 0.5;  // share of what they lack that a step is to make good
+  constexpr double firmness = 4;     // of a couple, beside that of the material about it
   const std::size_t n = solid.size();
   const double gap = options_.gap * surface_.edge, reach = watched_from * surface_.edge;
   std::vector<double> inverse_mass(n);
@@ -114,7 +122,8 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, reach};
   touch_.restart({options_.friction, 1e-2 * dt * dt * gravity.norm() + 1e-9 * surface_.edge});
   std::vector<double> stiffness;  // per material, 1/s²
-  for (const Material& m : solid.materials().all()) stiffness.push_back(firmness * m.young / (m.density * spacing * spacing) + 1 / (dt * dt));
+  for (const Material& m : solid.materials().all())
+    stiffness.push_back(firmness * m.young / (m.density * spacing * spacing) + 1 / (dt * dt));
   const auto stiffness_at = [&](const SurfacePlace& p) {
     const auto node = weights_.heaviest()[p.vertex[0]];
     return stiffness[node == ~0u ? 0 : solid.materials().number(node)];
@@ -131,9 +140,11 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
       for (int k = 0; k < p.size; ++k) sum += p.weight[k] * body.surface.point(VertexId(surface_.site[p.vertex[k]]));
       return sum;
     };
-    return (at_rest(t.a) - at_rest(t.b)).norm() * t.normal.dot((place(t.a, positions_) - place(t.b, positions_)).normalized());
+    return (at_rest(t.a) - at_rest(t.b)).norm() *
+           t.normal.dot((place(t.a, positions_) - place(t.b, positions_)).normalized());
   };
-  const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for, const std::vector<Vec3>& at, double distance) {
+  const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for,
+                       const std::vector<Vec3>& at, double distance) {
     const std::vector<RelativeRow> rows = relative_rows(weights_, touching, stands_for, inverse_mass);
     std::vector<double> depth(rows.size());
     std::vector<Vec3> start(rows.size());
@@ -146,11 +157,15 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
     });
     touch_.reserve(rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double alone = rows[i].of_a + rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
+      const double alone =
+          rows[i].of_a +
+          rows[i].of_b;  // as if they had no nodes in common: else near a front couples would be too firm
       if (alone > 0) touch_.add(rows[i], touching[i].normal, depth[i], firm(touching[i], rows[i]), start[i]);
     }
   };
-  add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}), weights_, most_between), copies, here, gap + clear * surface_.edge);
+  add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}),
+              weights_, most_between),
+      copies, here, gap + clear * surface_.edge);
   std::vector<TouchingPlaces> sides;
   touching_copies(copies, free, vertex_normals(surface_, fans(), copies, positions_), -reach, {dt}, sides);
   add(deepest(sides, weights_, most_between), Copies::each_alone(copies.size()), now, 0);
@@ -159,8 +174,10 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
 }
 
 // For steps whose forces know nothing of contact: returns how many places touched.
-std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
-                                              std::span<const std::uint32_t> together, const Copies& copies, State& state) {
+std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before,
+                                              double dt, const std::vector<std::uint8_t>& fixed,
+                                              std::span<const std::uint32_t> together, const Copies& copies,
+                                              State& state) {
   const std::size_t n = solid.size();
   const double gap = options_.gap * surface_.edge;
   std::vector<double> inverse_mass(n);
@@ -205,7 +222,8 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
   return touching;
 }
 
-// What kept places from where nodes would have them when the step began is likely to do so at its end. Where it does not, they come back by and by.
+// What kept places from where nodes would have them when the step began is likely to do so at its end. Where it does
+// not, they come back by and by.
 std::vector<Vec3> SelfContact::likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const {
   constexpr double stays = 0.9, negligible = 1e-3;  // a step; of a mean edge
   std::vector<Vec3> result = goal;
@@ -216,20 +234,25 @@ std::vector<Vec3> SelfContact::likely(const std::vector<Vec3>& goal, std::span<c
   return result;
 }
 
-void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const std::vector<std::uint8_t>& fixed,
-                          State& state, ContactWork* told) {
+void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
+                          const std::vector<std::uint8_t>& fixed, State& state, ContactWork* told) {
   Stopwatch clock;
   ContactWork work;
-  work.touching = begun_ ? touch_.pressing() : apply_impulses_after(body, solid, before, dt, fixed, standing().together, standing().copies, state);
+  work.touching =
+      begun_ ? touch_.pressing()
+             : apply_impulses_after(body, solid, before, dt, fixed, standing().together, standing().copies, state);
   const std::vector<Vec3>& to = targets_at(body, state.displacement);
-  work.opened = open_sheets(surface_, fans(), standing().copies, to, options_.gap * surface_.edge, options_.opening * surface_.edge, positions_);
+  work.opened = open_sheets(surface_, fans(), standing().copies, to, options_.gap * surface_.edge,
+                            options_.opening * surface_.edge, positions_);
   if (work.opened > 0) standing_.reset();
   const auto& [together, copies] = standing();
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;
   const std::vector<Vec3> guess = likely(goal, together);
   BoundedMotion bounded;
-  positions_ = move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap, begun_ ? &guess : nullptr}, true, &bounded, &near_, &fans());
+  positions_ =
+      move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap, begun_ ? &guess : nullptr},
+                            true, &bounded, &near_, &fans());
   standing_.reset();
   work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (std::size_t v = 0; v < to.size(); ++v)
@@ -239,7 +262,8 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   if (told) *told += work;
 }
 
-void SelfContact::expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack) {
+void SelfContact::expect(const Body& body, const Solid& solid, const State& state, const Complex& grown,
+                         const CrackDelta& crack) {
   birth_ = give_birth(body, solid, state, surface_, positions_, grown, crack, options_.gap * surface_.edge);
 }
 

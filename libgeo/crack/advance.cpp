@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "kerf/error.h"
 #include "base/random.h"
-#include "kerf/progress.h"
 #include "crack/insert_internal.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 
 namespace geo {
 namespace {
@@ -57,12 +57,14 @@ void follow_front(FrontState& front, const Complex& complex, const Strip& strip,
   std::vector<std::vector<std::vector<crack::Local>>> rows(count);
   for (std::uint32_t t = 0; t < arrangement.strip_size; ++t)
     for (int k = 0; k < 3; ++k)
-      if (const int s = strip.triangles[t].segment[k]; s >= 0) rows[static_cast<std::size_t>(s)].push_back(arrangement.along_edge(t, k));
+      if (const int s = strip.triangles[t].segment[k]; s >= 0)
+        rows[static_cast<std::size_t>(s)].push_back(arrangement.along_edge(t, k));
   std::vector<FrontState::Point> points;
   for (const Vec3& p : strip.next) points.push_back({p, VertexId()});
   for (std::size_t s = 0; s < count; ++s) {
     const Vec3 &p = strip.next[s], &q = strip.next[(s + 1) % n];
-    if (rows[s].empty() && front.points[s].position == p && front.points[(s + 1) % n].position == q) continue;  // stood still
+    if (rows[s].empty() && front.points[s].position == p && front.points[(s + 1) % n].position == q)
+      continue;  // stood still
     // Chained from p on; each row either way round.
     std::vector<crack::Local> chain;
     Vec3 end = p;
@@ -70,7 +72,8 @@ void follow_front(FrontState& front, const Complex& complex, const Strip& strip,
       found = false;
       for (auto& row : rows[s]) {
         if (row.empty()) continue;
-        if (arrangement.points()[row.front()] != end && arrangement.points()[row.back()] == end) std::reverse(row.begin(), row.end());
+        if (arrangement.points()[row.front()] != end && arrangement.points()[row.back()] == end)
+          std::reverse(row.begin(), row.end());
         if (arrangement.points()[row.front()] != end) continue;
         chain.insert(chain.end(), row.begin() + (chain.empty() ? 0 : 1), row.end());
         end = arrangement.points()[row.back()];
@@ -93,8 +96,8 @@ void follow_front(FrontState& front, const Complex& complex, const Strip& strip,
   front.points = std::move(points);
 }
 
-// A point beside a face of K, neither on it nor clear of it, would make needles that cannot be rounded: it is moved clear,
-// to the side that it is on. Points that are exactly on K stay.
+// A point beside a face of K, neither on it nor clear of it, would make needles that cannot be rounded: it is moved
+// clear, to the side that it is on. Points that are exactly on K stay.
 Vec3 clear_of_faces(const Complex& complex, Vec3 p, double distance) {
   const double reach = 0.01 * distance;
   if (!Box3{p, p}.grown(reach).meets(complex.extent())) return p;
@@ -118,7 +121,8 @@ struct Step {
   FrontState front;
 };
 
-Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance, CrackWork& work) {
+Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance,
+              CrackWork& work) {
   Stopwatch watch;
   Step result{{}, front};
   Strip strip = sweep(front, next);
@@ -162,9 +166,11 @@ FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t c
   return front;
 }
 
-CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options, CrackWork* work) {
+CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options,
+                   CrackWork* work) {
   if (next.size() != front.points.size())
-    throw InputError("the front has " + std::to_string(front.points.size()) + " points and its next position " + std::to_string(next.size()));
+    throw InputError("the front has " + std::to_string(front.points.size()) + " points and its next position " +
+                     std::to_string(next.size()));
   for (const Vec3& p : next)
     if (!p.allFinite()) throw InputError("a front point has a coordinate that is not a finite number");
   const double size = complex.extent().diagonal();
@@ -189,7 +195,9 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
     std::vector<Vec3> target = wanted;
     FrontState from = old;
     if (attempt > 0) {
-      const auto moved = [&](const Vec3& p) { return Vec3(p + random.uniform(0.2, 1.0) * allowed.jitter * random.direction()); };
+      const auto moved = [&](const Vec3& p) {
+        return Vec3(p + random.uniform(0.2, 1.0) * allowed.jitter * random.direction());
+      };
       for (std::size_t i = 0; i < target.size(); ++i)
         if (target[i] != old.points[i].position || front.step == 0) target[i] = moved(target[i]);
       if (front.step == 0)

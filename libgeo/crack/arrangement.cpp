@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "kerf/error.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 
 namespace geo::crack {
 namespace {
@@ -20,7 +20,8 @@ int side_of(const Vec3 (&t)[3], const Vec3& p) {
 
 }  // namespace
 
-Arrangement::Arrangement(const Complex& complex, const Strip& strip) : complex_(complex), strip_(strip), triangulator_(points_) {
+Arrangement::Arrangement(const Complex& complex, const Strip& strip)
+    : complex_(complex), strip_(strip), triangulator_(points_) {
   points_.reserve(strip.points.size() * 8 + 64);
   for (const Vec3& p : strip.points) {
     const Local l = points_.add(p);
@@ -50,7 +51,8 @@ Local Arrangement::local_of(VertexId v) {
 void Arrangement::meet(CrackWork& work) {
   shared_.reserve(8 * strip_size);
   std::vector<Box3> boxes;
-  for (const auto& t : strip_.triangles) boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
+  for (const auto& t : strip_.triangles)
+    boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
   for (std::uint32_t s = 0; s < strip_size; ++s) {
     const auto near = this->near(s);
     work.faces_near += near.size();
@@ -82,7 +84,9 @@ void Arrangement::meet(CrackWork& work) {
   const std::size_t before = shared_.size();
   std::vector<std::uint32_t> order(strip_size);
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return boxes[i].lo.x() != boxes[j].lo.x() ? boxes[i].lo.x() < boxes[j].lo.x() : i < j; });
+  std::sort(order.begin(), order.end(), [&](auto i, auto j) {
+    return boxes[i].lo.x() != boxes[j].lo.x() ? boxes[i].lo.x() < boxes[j].lo.x() : i < j;
+  });
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lo.x() <= boxes[order[i]].hi.x(); ++j) {
       if (!boxes[order[i]].meets(boxes[order[j]])) continue;
@@ -124,9 +128,12 @@ Arrangement::Key Arrangement::edge_edge(Local a, Local b, Local c, Local d) {
 Local Arrangement::crossing(std::uint32_t edge_of, int edge, std::uint32_t other, int other_edge) {
   const auto &c = elements[edge_of].corner, &o = elements[other].corner;
   const Local a = c[edge], b = c[(edge + 1) % 3];
-  Local& row = by_key_[other_edge < 0 ? Key{edge_key(a, b), other} : edge_edge(a, b, o[other_edge], o[(other_edge + 1) % 3])];
+  Local& row =
+      by_key_[other_edge < 0 ? Key{edge_key(a, b), other} : edge_edge(a, b, o[other_edge], o[(other_edge + 1) % 3])];
   // From the lower end to the higher one, so that the double is the same whoever asks.
-  if (row == no_local) row = points_.add_crossing(points_[std::min(a, b)], points_[std::max(a, b)], points_[o[0]], points_[o[1]], points_[o[2]]);
+  if (row == no_local)
+    row = points_.add_crossing(points_[std::min(a, b)], points_[std::max(a, b)], points_[o[0]], points_[o[1]],
+                               points_[o[2]]);
   return row;
 }
 
@@ -271,7 +278,10 @@ void Arrangement::split() {
   if (meets_itself_) unify();
   // By element; a point that several name once, on all the edges that they say.
   std::stable_sort(shared_.begin(), shared_.end(), [](const Shared& x, const Shared& y) {
-    return x.element != y.element ? x.element < y.element : (x.b == no_local) != (y.b == no_local) ? x.b == no_local : x.b == no_local ? x.a < y.a : false;
+    return x.element != y.element                   ? x.element < y.element
+           : (x.b == no_local) != (y.b == no_local) ? x.b == no_local
+           : x.b == no_local                        ? x.a < y.a
+                                                    : false;
   });
   mark_begin_.assign(elements.size() + 1, 0);
   Triangulator::Known known;
@@ -297,7 +307,8 @@ void Arrangement::split() {
     e.first = static_cast<std::uint32_t>(children.size());
     e.cut = marks_.size() > mark_begin_[i];
     if (e.cut)
-      triangulator_.triangulate(e.corner, {marks_.data() + mark_begin_[i], marks_.size() - mark_begin_[i]}, constraints, known, children);
+      triangulator_.triangulate(e.corner, {marks_.data() + mark_begin_[i], marks_.size() - mark_begin_[i]}, constraints,
+                                known, children);
     else
       children.push_back({e.corner, {0, 1, 2}});
     e.end = static_cast<std::uint32_t>(children.size());

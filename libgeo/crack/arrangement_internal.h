@@ -14,9 +14,9 @@ namespace geo::crack {
 /// A triangle of the strip or a face of K.
 struct Element {
   std::array<Local, 3> corner;
-  FaceId face;                      ///< invalid: of the strip
-  bool cut = false;                 ///< divided into more than itself
-  std::uint32_t first = 0, end = 0; ///< its children: children[first..end)
+  FaceId face;                       ///< invalid: of the strip
+  bool cut = false;                  ///< divided into more than itself
+  std::uint32_t first = 0, end = 0;  ///< its children: children[first..end)
 };
 
 /// Points that edges and faces define are named by them, so that one place has one row; only where the strip meets
@@ -62,7 +62,9 @@ class Arrangement {
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct KeyHash {
-    std::size_t operator()(const Key& k) const { return Spread()(k.edge ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull); }
+    std::size_t operator()(const Key& k) const {
+      return Spread()(k.edge ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull);
+    }
   };
   Local local_of(VertexId v);
   static Key edge_edge(Local a, Local b, Local c, Local d);
@@ -94,7 +96,7 @@ class Arrangement {
     std::uint8_t edges;
   };
   std::vector<Shared> shared_;
-  std::vector<Mark> marks_;              ///< by element, see mark_begin_
+  std::vector<Mark> marks_;  ///< by element, see mark_begin_
   std::vector<std::uint32_t> mark_begin_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> flat_pairs_;  ///< elements that overlap in an area, strip first
   bool meets_itself_ = false;

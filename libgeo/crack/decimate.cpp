@@ -6,9 +6,9 @@
 #include <queue>
 #include <unordered_map>
 
+#include "crack/place_internal.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
-#include "crack/place_internal.h"
 
 namespace geo {
 namespace {
@@ -66,7 +66,8 @@ class Decimator {
     for (const auto& f : local->edit.new_faces)
       for (const VertexId v : f.v)
         if (v != a) moved_now.push_back({v, moved(v) + off});
-    if (std::any_of(moved_now.begin(), moved_now.end(), [&](const auto& m) { return m.second > allowed_; })) return false;
+    if (std::any_of(moved_now.begin(), moved_now.end(), [&](const auto& m) { return m.second > allowed_; }))
+      return false;
     const auto delta = crack::carry_out(k_, *local, delta_);
     if (!delta) return ++work_.refused, false;
     for (const FaceId f : delta->new_faces) queue(f);
@@ -88,9 +89,12 @@ class Decimator {
 
 }  // namespace
 
-CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateWork* work) {
-  if (!(options.deviation >= 0) || !(options.crease >= 0 && options.crease <= 180) || !(options.angle > 0 && options.angle < 60))
-    throw InputError("decimation needs a deviation of 0 or more, a crease between 0 and 180 and an angle between 0 and 60 degrees");
+CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options,
+                    DecimateWork* work) {
+  if (!(options.deviation >= 0) || !(options.crease >= 0 && options.crease <= 180) ||
+      !(options.angle > 0 && options.angle < 60))
+    throw InputError(
+        "decimation needs a deviation of 0 or more, a crease between 0 and 180 and an angle between 0 and 60 degrees");
   DecimateWork done;
   Stopwatch watch;
   CrackDelta delta = Decimator(complex, fronts, options, done).run();

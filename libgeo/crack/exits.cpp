@@ -13,7 +13,8 @@ constexpr std::size_t few = 1 << 14;  // pairs of exits and faces that are asked
 
 class Surroundings {
  public:
-  Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const Exit> exits) : complex_(complex), edit_(edit), removed_(edit.removed_faces) {
+  Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const Exit> exits)
+      : complex_(complex), edit_(edit), removed_(edit.removed_faces) {
     std::sort(removed_.begin(), removed_.end());
     std::vector<VertexId> ends;
     for (const Exit& e : exits) {
@@ -36,7 +37,8 @@ class Surroundings {
   /// New faces at a vertex.
   std::vector<std::uint32_t> new_faces(VertexId v) const {
     std::vector<std::uint32_t> faces;
-    for (auto i = std::lower_bound(at_.begin(), at_.end(), std::pair(v, 0u)); i != at_.end() && i->first == v; ++i) faces.push_back(i->second);
+    for (auto i = std::lower_bound(at_.begin(), at_.end(), std::pair(v, 0u)); i != at_.end() && i->first == v; ++i)
+      faces.push_back(i->second);
     return faces;
   }
 
@@ -66,7 +68,8 @@ class Surroundings {
     };
     if (!index_)
       return std::any_of(skin_.begin(), skin_.end(), [&](auto i) { return met(edit_.new_faces[i].v); }) ||
-             std::any_of(exit.near.begin(), exit.near.end(), [&](FaceId f) { return stays(f) && met(complex_.face(f).v); });
+             std::any_of(exit.near.begin(), exit.near.end(),
+                         [&](FaceId f) { return stays(f) && met(complex_.face(f).v); });
     std::vector<std::uint32_t> near;
     index_->near(box, near);
     std::vector<FaceId> old;
@@ -79,15 +82,19 @@ class Surroundings {
   Vec3 end(const Exit& exit) const { return exit.at.valid() ? point(exit.at) : exit.to; }
 
  private:
-  std::array<Vec3, 3> corners_of(const std::array<VertexId, 3>& v) const { return {point(v[0]), point(v[1]), point(v[2])}; }
-  bool stays(FaceId f) const { return complex_.face(f).crack == 0 && !std::binary_search(removed_.begin(), removed_.end(), f); }
+  std::array<Vec3, 3> corners_of(const std::array<VertexId, 3>& v) const {
+    return {point(v[0]), point(v[1]), point(v[2])};
+  }
+  bool stays(FaceId f) const {
+    return complex_.face(f).crack == 0 && !std::binary_search(removed_.begin(), removed_.end(), f);
+  }
 
   const Complex& complex_;
   const ComplexEdit& edit_;
   std::vector<FaceId> removed_;
-  std::vector<std::uint32_t> skin_;                        // new faces of it
-  std::vector<std::pair<VertexId, std::uint32_t>> at_;     // new faces by the exits' ends
-  std::optional<TriangleBvh> index_;                       // of skin_, where these and the exits are many
+  std::vector<std::uint32_t> skin_;                     // new faces of it
+  std::vector<std::pair<VertexId, std::uint32_t>> at_;  // new faces by the exits' ends
+  std::optional<TriangleBvh> index_;                    // of skin_, where these and the exits are many
 };
 
 }  // namespace
@@ -103,12 +110,15 @@ bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3
   for (const auto chosen : largest)
     for (const double share : {0.5, 0.375, 0.6875}) {
       const Vec3 w = fan[chosen][1] + share * (fan[chosen][2] - fan[chosen][1]);
-      const int start = orient3d(u, fan[chosen][1], fan[chosen][2], q), end = orient3d(u, fan[chosen][1], fan[chosen][2], w);
+      const int start = orient3d(u, fan[chosen][1], fan[chosen][2], q),
+                end = orient3d(u, fan[chosen][1], fan[chosen][2], w);
       bool inside = (end != 0 ? end : start) < 0, sure = end != 0 || start != 0;
       for (std::size_t i = 0; i < fan.size() && sure; ++i) {
         const Vec3 &a = fan[i][1], &b = fan[i][2];
-        const int from = orient3d(u, a, b, q), to = orient3d(u, a, b, w), of_a = orient3d(u, q, w, a), of_b = orient3d(u, q, w, b);
-        if (from == 0 && of_a != of_b && (q - u).dot((a - u).normalized() + (b - u).normalized()) > 0) return false;  // along it
+        const int from = orient3d(u, a, b, q), to = orient3d(u, a, b, w), of_a = orient3d(u, q, w, a),
+                  of_b = orient3d(u, q, w, b);
+        if (from == 0 && of_a != of_b && (q - u).dot((a - u).normalized() + (b - u).normalized()) > 0)
+          return false;         // along it
         if (to == 0) continue;  // w alone is in its plane, and in the chosen face
         sure = of_a != 0 && of_b != 0;
         inside ^= from * to < 0 && of_a * of_b < 0 && of_a == to;
@@ -123,7 +133,8 @@ Fault find_return(const Complex& complex, const ComplexEdit& edit, std::span<con
   const Surroundings about(complex, edit, exits);
   for (const Exit& exit : exits) {
     const Vec3 from = about.point(exit.from), to = about.end(exit);
-    if (!about.inside_at(exit.from, to) && !(exit.at.valid() && about.inside_at(exit.at, from)) && !about.meets(exit)) continue;
+    if (!about.inside_at(exit.from, to) && !(exit.at.valid() && about.inside_at(exit.at, from)) && !about.meets(exit))
+      continue;
     Fault fault{"rounding would bring the front back into the material where it leaves", about.new_faces(exit.from)};
     if (exit.at.valid())
       for (const auto i : about.new_faces(exit.at)) fault.faces.push_back(i);

@@ -12,7 +12,8 @@ std::vector<Vec3> correspond(const std::vector<Vec3>& previous, const std::vecto
   // Same fraction of arc length on both polylines.
   const auto lengths = [&](const std::vector<Vec3>& line) {
     std::vector<double> sum{0};
-    for (std::size_t i = 1; i < line.size() + (closed ? 1 : 0); ++i) sum.push_back(sum.back() + (line[i % line.size()] - line[i - 1]).norm());
+    for (std::size_t i = 1; i < line.size() + (closed ? 1 : 0); ++i)
+      sum.push_back(sum.back() + (line[i % line.size()] - line[i - 1]).norm());
     return sum;
   };
   const auto from = lengths(previous), to = lengths(next);
@@ -33,7 +34,8 @@ std::vector<Vec3> correspond(const std::vector<Vec3>& previous, const std::vecto
 int substeps(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit) {
   if (!(limit > 0)) throw InputError("the largest motion of a front point must be positive");
   double most = 0;
-  for (std::size_t i = 0; i < std::min(previous.size(), next.size()); ++i) most = std::max(most, (next[i] - previous[i]).norm());
+  for (std::size_t i = 0; i < std::min(previous.size(), next.size()); ++i)
+    most = std::max(most, (next[i] - previous[i]).norm());
   return std::max(1, static_cast<int>(std::min(1e6, std::ceil(most / limit * (1 - 1e-12)))));
 }
 

@@ -20,12 +20,16 @@ struct Plane {
   double margin;  // a height of `clearance`, times the normal's length
 
   Plane(const std::array<Vec3, 3>& t, const Box3& box, double clearance)
-      : normal((t[1] - t[0]).cross(t[2] - t[0])), at(t[0]), size((box.hi - box.lo).maxCoeff()), margin(clearance > 0 ? clearance * normal.norm() : 0) {}
+      : normal((t[1] - t[0]).cross(t[2] - t[0])),
+        at(t[0]),
+        size((box.hi - box.lo).maxCoeff()),
+        margin(clearance > 0 ? clearance * normal.norm() : 0) {}
 
   // True when those corners of the other that the two do not share are all on one side, for certain, and farther than
   // the clearance: the two then have nothing else in common. Each entry of the normal is off by 8 roundings of size² at
   // most, an offset by one; boxes meet, so that no offset is longer than both sizes.
-  bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& rows, const std::array<Vec3, 3>& corners, double other_size) const {
+  bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& rows,
+              const std::array<Vec3, 3>& corners, double other_size) const {
     const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume + margin;
     if (!(volume > filter_smallest && volume < filter_largest)) return false;
     int side = 0, shared = 0;
@@ -43,16 +47,20 @@ struct Plane {
 };
 
 double height(const std::array<Vec3, 3>& t) {
-  const double longest = std::max({(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
+  const double longest =
+      std::max({(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() / std::sqrt(longest);
 }
 
 // True when corners or edges of two triangles that do not touch by id are nearer to each other than `clearance`.
 bool too_near(const Plane& of_f, const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const Plane& of_g,
               const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q, double clearance) {
-  const auto in = [](std::uint32_t v, const std::array<std::uint32_t, 3>& t) { return v == t[0] || v == t[1] || v == t[2]; };
+  const auto in = [](std::uint32_t v, const std::array<std::uint32_t, 3>& t) {
+    return v == t[0] || v == t[1] || v == t[2];
+  };
   const auto near = [&](const Vec3& x, const Plane& plane, const std::array<Vec3, 3>& t) {
-    return std::abs(plane.normal.dot(x - plane.at)) <= plane.margin && (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() < clearance;
+    return std::abs(plane.normal.dot(x - plane.at)) <= plane.margin &&
+           (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() < clearance;
   };
   for (int i = 0; i < 3; ++i) {
     if ((!in(f[i], g) && near(p[i], of_g, q)) || (!in(g[i], f) && near(q[i], of_f, p))) return true;
@@ -73,18 +81,26 @@ bool too_near(const Plane& of_f, const std::array<std::uint32_t, 3>& f, const st
 // An edit with all that the questions about it need.
 class Inspection {
  public:
-  Inspection(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance)
-      : complex_(complex), edit_(edit), families_(families), moved_(moved), clearance_(clearance), count_(static_cast<std::uint32_t>(edit.new_faces.size())) {
+  Inspection(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
+             std::span<const std::uint8_t> moved, double clearance)
+      : complex_(complex),
+        edit_(edit),
+        families_(families),
+        moved_(moved),
+        clearance_(clearance),
+        count_(static_cast<std::uint32_t>(edit.new_faces.size())) {
     faces_.reserve(count_);
     for (const auto& f : edit.new_faces) {
       std::array<Vec3, 3> corners;
       std::array<std::uint32_t, 3> rows;
       bool rounded = moved.empty();
-      for (int k = 0; k < 3; ++k) corners[k] = point(f.v[k]), rows[k] = f.v[k].value, rounded = rounded || is_moved(f.v[k]);
+      for (int k = 0; k < 3; ++k)
+        corners[k] = point(f.v[k]), rows[k] = f.v[k].value, rounded = rounded || is_moved(f.v[k]);
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
       const double apart = f.crack > 0 ? clearance : 0;
       // An exact face of a crack may still come too near to what an earlier step has rounded.
-      faces_.push_back({corners, rows, box.grown(apart), Plane(corners, box, apart), ~0u, rounded, rounded || apart > 0, f.crack > 0});
+      faces_.push_back({corners, rows, box.grown(apart), Plane(corners, box, apart), ~0u, rounded, rounded || apart > 0,
+                        f.crack > 0});
     }
     for (const Family& family : families)
       for (auto i = family.first; i < family.end; ++i)
@@ -100,7 +116,8 @@ class Inspection {
         const int is = orient2d(c[0], c[1], c[2], axis);
         if (is == 0) return {"rounding would leave a face without area", {i}};
         if (was != is) return {"rounding would turn a face over", {i}};
-        if (clearance_ > 0 && faces_[i].rounded && faces_[i].cracked && height(c) < clearance_) return {"rounding would leave a face that is too thin", {i}};
+        if (clearance_ > 0 && faces_[i].rounded && faces_[i].cracked && height(c) < clearance_)
+          return {"rounding would leave a face that is too thin", {i}};
       }
     }
     return {};
@@ -124,7 +141,9 @@ class Inspection {
       }
     std::sort(sorted.begin(), sorted.end());
     const double close = std::max(clearance_, 0x1p-48 * complex_.extent().diagonal());
-    const double reach = 2 * close + 0x1p-50 * (complex_.extent().lo.cwiseAbs().cwiseMax(complex_.extent().hi.cwiseAbs()).sum());  // and rounding
+    const double reach =
+        2 * close +
+        0x1p-50 * (complex_.extent().lo.cwiseAbs().cwiseMax(complex_.extent().hi.cwiseAbs()).sum());  // and rounding
     for (std::size_t i = 0; i < sorted.size(); ++i)
       for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first <= sorted[i].first + reach; ++j) {
         const VertexId p = sorted[i].second, q = sorted[j].second;
@@ -146,7 +165,8 @@ class Inspection {
     for (std::size_t at = 0, next; at < families_.size(); at = next) {
       // Families that are to look at the same faces look together.
       const Family& family = families_[at];
-      for (next = at + 1; next < families_.size() && !family.near.empty() && families_[next].near.data() == family.near.data() &&
+      for (next = at + 1; next < families_.size() && !family.near.empty() &&
+                          families_[next].near.data() == family.near.data() &&
                           families_[next].first == families_[next - 1].end;)
         ++next;
       const auto end = families_[next - 1].end;
@@ -168,8 +188,10 @@ class Inspection {
           const std::array<std::uint32_t, 3> rows{v[0].value, v[1].value, v[2].value};
           if (face.plane.clears(face.rows, rows, corners, size)) continue;
           const bool cracked = complex_.face(f).crack > 0;
-          const New old{corners, rows, there, Plane(corners, there, cracked ? clearance_ : 0), ~0u, false, false, cracked};
-          if (const char* what = fault_between(face, old)) return {std::string(what) + " face " + std::to_string(f.value), {i}};
+          const New old{corners, rows,  there, Plane(corners, there, cracked ? clearance_ : 0),
+                        ~0u,     false, false, cracked};
+          if (const char* what = fault_between(face, old))
+            return {std::string(what) + " face " + std::to_string(f.value), {i}};
         }
       }
     }
@@ -194,7 +216,8 @@ class Inspection {
         if (!a.box.meets(b.box) || !(a.asked || b.asked)) continue;
         // All children of a triangle, none turned over: they cover it once, as before rounding.
         if (a.family != ~0u && a.family == b.family) continue;
-        if (const char* what = fault_between(a, b)) return {std::string(what) + " another new face", {order[i].second, order[j].second}};
+        if (const char* what = fault_between(a, b))
+          return {std::string(what) + " another new face", {order[i].second, order[j].second}};
       }
     }
     return {};
@@ -213,11 +236,17 @@ class Inspection {
   };
 
   const Vec3& point(VertexId v) const { return point_after(complex_, edit_, v); }
-  bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
+  bool is_moved(VertexId v) const {
+    return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]);
+  }
   const char* fault_between(const New& f, const New& g) const {
-    if (f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) || g.plane.clears(g.rows, f.rows, f.corners, f.plane.size)) return nullptr;
+    if (f.plane.clears(f.rows, g.rows, g.corners, g.plane.size) ||
+        g.plane.clears(g.rows, f.rows, f.corners, f.plane.size))
+      return nullptr;
     if (faces_cross(f.rows, f.corners, g.rows, g.corners)) return "rounding would make a new face cross";
-    if (clearance_ > 0 && f.cracked && g.cracked && too_near(f.plane, f.rows, f.corners, g.plane, g.rows, g.corners, clearance_)) return "rounding would leave a new face too near to";
+    if (clearance_ > 0 && f.cracked && g.cracked &&
+        too_near(f.plane, f.rows, f.corners, g.plane, g.rows, g.corners, clearance_))
+      return "rounding would leave a new face too near to";
     return nullptr;
   }
 
@@ -232,8 +261,8 @@ class Inspection {
 
 }  // namespace
 
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families, std::span<const std::uint8_t> moved, double clearance,
-                 std::span<const Exit> exits) {
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
+                 std::span<const std::uint8_t> moved, double clearance, std::span<const Exit> exits) {
   const Inspection inspection(complex, edit, families, moved, clearance);
   Fault fault = inspection.turned();
   if (!fault) fault = inspection.coincident();
@@ -248,7 +277,9 @@ Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> 
              std::span<const std::uint8_t> moved, double clearance, std::span<const Exit> exits, std::size_t& repairs) {
   Fault fault = find_fault(complex, edit, families, moved, clearance, exits);
   if (!fault) return fault;
-  const double last_place = 0x1p-52 * (complex.extent().diagonal() + complex.extent().lo.cwiseAbs().cwiseMax(complex.extent().hi.cwiseAbs()).maxCoeff());
+  const double last_place =
+      0x1p-52 * (complex.extent().diagonal() +
+                 complex.extent().lo.cwiseAbs().cwiseMax(complex.extent().hi.cwiseAbs()).maxCoeff());
   std::vector<Family> rest(families.begin(), families.end());  // what is left out does not follow the points
   for (Family& family : rest) family.whole = family.whole && edit.new_faces[family.first].parent.valid();
   Random random(edit.new_faces.size() * 0x9e3779b97f4a7c15ull + edit.new_vertices.size());

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/error.h"
-#include "kerf/progress.h"
 #include "crack/guard.h"
 #include "crack/keep_internal.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 
 namespace geo::crack {
 namespace {
@@ -39,9 +39,10 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
   return families;
 }
 
-// Where the new front's line runs outside, from a new vertex of K or to one: what is neither an edge of the strip's kept parts nor on K.
-std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement, const EdgeTable& edges, std::span<const Part> parts,
-                           std::span<const VertexId> vertex) {
+// Where the new front's line runs outside, from a new vertex of K or to one: what is neither an edge of the strip's
+// kept parts nor on K.
+std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement,
+                           const EdgeTable& edges, std::span<const Part> parts, std::span<const VertexId> vertex) {
   const auto fresh = [&](VertexId v) { return v.valid() && v.value >= complex.vertex_count(); };
   std::vector<Use> on_k;
   std::vector<Exit> exits;
@@ -51,7 +52,8 @@ std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arr
       if (strip.triangles[t].segment[k] < 0) continue;
       const auto chain = arrangement.along_edge(t, k);
       kept.clear();
-      for (auto part = std::lower_bound(parts.begin(), parts.end(), t, [](const Part& p, std::uint32_t e) { return p.element < e; });
+      for (auto part = std::lower_bound(parts.begin(), parts.end(), t,
+                                        [](const Part&p, std::uint32_t e) { return p.element < e; });
            part != parts.end() && part->element == t; ++part) {
         const Child& child = arrangement.children[part->child];
         for (std::size_t e = 0; e < 3; ++e)
@@ -73,7 +75,8 @@ std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arr
 }  // namespace
 
 Attempt attempt_at(int number, const CrackOptions& options, double size) {
-  return {number == 0 ? 0 : options.jitter * size * std::pow(8.0, std::min(number - 1, 4)), 2 * number <= options.attempts ? options.clearance * size : 0};
+  return {number == 0 ? 0 : options.jitter * size * std::pow(8.0, std::min(number - 1, 4)),
+          2 * number <= options.attempts ? options.clearance * size : 0};
 }
 
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
@@ -111,7 +114,8 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
       moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
   std::vector<Exit> exits;
   if (clearance > 0) exits = exits_of(complex, strip, arrangement, edges, parts, vertex);
-  if (const Fault fault = repair(complex, edit, families, moved, clearance, exits, work.repairs)) throw GeometryError(fault.what);
+  if (const Fault fault = repair(complex, edit, families, moved, clearance, exits, work.repairs))
+    throw GeometryError(fault.what);
   work.guard_seconds += watch.lap();
   CrackDelta delta = complex.apply(edit);
   work.triangles_cut += edit.removed_faces.size();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "kerf/error.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 
 namespace geo::crack {
 
@@ -62,7 +62,8 @@ EdgeTable edges_of_complex(const Arrangement& a) {
 namespace {
 
 // The wedge of K in which a part stands at one of K's edges: material?
-bool in_material(const Arrangement& a, const Complex& complex, Local u, Local v, const Member& part, const std::vector<Use>& at) {
+bool in_material(const Arrangement& a, const Complex& complex, Local u, Local v, const Member& part,
+                 const std::vector<Use>& at) {
   const Use* last = nullptr;
   Member last_member{};
   for (const Use& use : at) {

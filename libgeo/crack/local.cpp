@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "kerf/error.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 #include "surface/complex_internal.h"
 
 namespace geo::crack {
@@ -119,13 +119,16 @@ std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
   const FaceId g = ring[0] == f ? ring[1] : ring[0];
   const auto& other = k.face(g);
   const int at = corner_at(other, b);
-  if (other.crack != face.crack || (face.crack == 0 && other.source != face.source) || other.v[(at + 1) % 3] != a) return {};
+  if (other.crack != face.crack || (face.crack == 0 && other.source != face.source) || other.v[(at + 1) % 3] != a)
+    return {};
   const VertexId d = other.v[(at + 2) % 3];
   if (c == d || !k.around(c, d).empty()) return {};
   for (const FaceId old : {f, g}) {  // the new ones are oriented like both
     const auto t = k.corners(old);
     const auto [axis, turn] = view_axis(t[0], t[1], t[2]);
-    if (orient2d(k.point(a), k.point(d), k.point(c), axis) != turn || orient2d(k.point(d), k.point(b), k.point(c), axis) != turn) return {};
+    if (orient2d(k.point(a), k.point(d), k.point(c), axis) != turn ||
+        orient2d(k.point(d), k.point(b), k.point(c), axis) != turn)
+      return {};
   }
   Maker maker(k);
   maker.remove(f);
@@ -164,7 +167,8 @@ LocalEdit relocate(const Complex& k, VertexId v, const Vec3& p) {
     maker.remove(f);
     maker.replace(f, v, now);
     const int at = corner_at(k.face(f), v);
-    maker.local.swept.push_back({k.point(v), p, k.point(k.face(f).v[(at + 1) % 3]), k.point(k.face(f).v[(at + 2) % 3])});
+    maker.local.swept.push_back(
+        {k.point(v), p, k.point(k.face(f).v[(at + 1) % 3]), k.point(k.face(f).v[(at + 2) % 3])});
   }
   for (const VertexId x : neighbors_of(k, v)) maker.order(now, x, maker.inherited(directed(k, v, x)));
   return std::move(maker.local);
@@ -183,8 +187,8 @@ bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, std::span<c
     for (const Vec3& p : k.corners(f)) {
       if (p == t[0] || p == t[1] || p == t[2] || p == t[3]) continue;
       if (!Box3{p, p}.meets(box)) continue;
-      if (orient3d(t[0], t[1], t[2], p) != -side && orient3d(t[0], t[3], t[1], p) != -side && orient3d(t[1], t[3], t[2], p) != -side &&
-          orient3d(t[2], t[3], t[0], p) != -side)
+      if (orient3d(t[0], t[1], t[2], p) != -side && orient3d(t[0], t[3], t[1], p) != -side &&
+          orient3d(t[1], t[3], t[2], p) != -side && orient3d(t[2], t[3], t[0], p) != -side)
         return true;
     }
   }
@@ -206,7 +210,8 @@ bool is_sound(const Complex& k, LocalEdit& local) {
   for (Family& family : local.families) family.near = near;
   const bool faulty = static_cast<bool>(find_fault(k, local.edit, local.families, {}));
   for (Family& family : local.families) family.near = {};
-  return !faulty && std::none_of(local.swept.begin(), local.swept.end(), [&](const auto& t) { return holds_something(k, t, near); });
+  return !faulty && std::none_of(local.swept.begin(), local.swept.end(),
+                                 [&](const auto& t) { return holds_something(k, t, near); });
 }
 
 std::optional<CrackDelta> carry_out(Complex& k, LocalEdit& local, DeltaSum& sum) {

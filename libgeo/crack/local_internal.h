@@ -1,7 +1,7 @@
 // Small edits of K that keep its topology: an edge collapsed, flipped or divided, a vertex moved.
 //
-// The radial order around the edges that change follows from the orders that were there, by combinatorics alone; whether
-// the new faces may be where they are is the guard's question.
+// The radial order around the edges that change follows from the orders that were there, by combinatorics alone;
+// whether the new faces may be where they are is the guard's question.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@ namespace geo::crack {
 
 struct LocalEdit {
   ComplexEdit edit;
-  std::vector<Family> families;               ///< one a new face: the face that it replaces
-  std::vector<std::array<Vec3, 4>> swept;     ///< tetrahedra that faces pass through; nothing else may be in them
+  std::vector<Family> families;            ///< one a new face: the face that it replaces
+  std::vector<std::array<Vec3, 4>> swept;  ///< tetrahedra that faces pass through; nothing else may be in them
 };
 
 /// Moves b into a, its neighbour: the faces that have both go. Empty where that would change the topology (the links of

@@ -13,7 +13,9 @@ std::uint64_t mixed(std::uint64_t x) {
 
 // One of sixteen slopes towards the middles of a cube's edges, at a corner of the lattice.
 double slope(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed, const Vec3& d) {
-  const auto bits = mixed(seed ^ mixed(static_cast<std::uint64_t>(x) ^ mixed(static_cast<std::uint64_t>(y) ^ mixed(static_cast<std::uint64_t>(z))))) & 15;
+  const auto bits = mixed(seed ^ mixed(static_cast<std::uint64_t>(x) ^
+                                       mixed(static_cast<std::uint64_t>(y) ^ mixed(static_cast<std::uint64_t>(z))))) &
+                    15;
   const double u = bits < 8 ? d.x() : d.y(), v = bits < 4 ? d.y() : bits == 12 || bits == 14 ? d.x() : d.z();
   return (bits & 1 ? -u : u) + (bits & 2 ? -v : v);
 }

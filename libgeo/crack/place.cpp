@@ -63,7 +63,8 @@ Place place_of(const Complex& k, VertexId v, const PlaceRules& rules) {
   std::sort(spokes.begin(), spokes.end());
   for (std::size_t i = 0, end; i < spokes.size(); i = end) {
     for (end = i + 1; end < spokes.size() && spokes[end].first == spokes[i].first;) ++end;
-    if (end != i + 2 || is_feature_between(k, spokes[i].second, spokes[i + 1].second, v, spokes[i].first, rules)) place.features.push_back(spokes[i].first);
+    if (end != i + 2 || is_feature_between(k, spokes[i].second, spokes[i + 1].second, v, spokes[i].first, rules))
+      place.features.push_back(spokes[i].first);
   }
   return place;
 }
@@ -99,7 +100,9 @@ bool Contacts::may_leave_out(VertexId b, VertexId a) const {
   for (const FrontState* front : fronts_)
     for (const auto& segment : front->segments)
       for (std::size_t i = 0; i < segment.size(); ++i)
-        if (segment[i].id == b && (i == 0 || i + 1 == segment.size() || (segment[i - 1].id != a && segment[i + 1].id != a))) return false;
+        if (segment[i].id == b &&
+            (i == 0 || i + 1 == segment.size() || (segment[i - 1].id != a && segment[i + 1].id != a)))
+          return false;
   return true;
 }
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "kerf/crack.h"
 #include "crack/local_internal.h"
+#include "kerf/crack.h"
 
 namespace geo::crack {
 
@@ -16,8 +16,9 @@ namespace geo::crack {
 double badness(const std::array<Vec3, 3>& t);
 
 struct PlaceRules {
-  double crease = 0.94;     ///< cosine: edges that are bent more are features
-  bool skin_keeps = true;   ///< vertices stay on the triangles of the input that they lie on; else the skin is as a crack
+  double crease = 0.94;  ///< cosine: edges that are bent more are features
+  bool skin_keeps =
+      true;  ///< vertices stay on the triangles of the input that they lie on; else the skin is as a crack
 };
 
 struct Place {
@@ -33,8 +34,8 @@ Place place_of(const Complex& complex, VertexId v, const PlaceRules& rules);
 bool lies_within(const Place& some, const Place& all);
 /// Where a line of features through a vertex goes on, coming from a; empty where it ends, branches or does not pass.
 std::optional<VertexId> opposite(const Place& place, VertexId a);
-/// How far b, which is at `place`, would be from its line of features if it went into a; 0 where no line passes it, empty
-/// where lines end or branch at it.
+/// How far b, which is at `place`, would be from its line of features if it went into a; 0 where no line passes it,
+/// empty where lines end or branch at it.
 std::optional<double> distance_off_line(const Complex& complex, const Place& place, VertexId b, VertexId a);
 
 /// The contacts of fronts, which local edits must keep.

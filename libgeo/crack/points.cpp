@@ -134,7 +134,8 @@ Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   const Local l = append(x, error);
   definition_[l] = static_cast<std::uint32_t>(definitions_.size());
   definitions_.push_back({l, {a, b, p, q, r}});
-  if (!(error <= 8 * last) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest)) round(l);
+  if (!(error <= 8 * last) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest))
+    round(l);
   return l;
 }
 
@@ -187,12 +188,14 @@ const Points::Exact& Points::exact(Local l) const {
 }
 
 int Points::orient3d(Local a, Local b, Local c, Local d) const {
-  const Vec3 &pd = near_[d];
+  const Vec3& pd = near_[d];
   const Vec3 u = near_[a] - pd, v = near_[b] - pd, w = near_[c] - pd;
   const double error = std::max({error_[a], error_[b], error_[c]}) + error_[d];
-  const double x = v.y() * w.z(), x2 = v.z() * w.y(), y = v.z() * w.x(), y2 = v.x() * w.z(), z = v.x() * w.y(), z2 = v.y() * w.x();
+  const double x = v.y() * w.z(), x2 = v.z() * w.y(), y = v.z() * w.x(), y2 = v.x() * w.z(), z = v.x() * w.y(),
+               z2 = v.y() * w.x();
   const double value = u.x() * (x - x2) + u.y() * (y - y2) + u.z() * (z - z2);
-  const double permanent = std::abs(u.x()) * (std::abs(x) + std::abs(x2)) + std::abs(u.y()) * (std::abs(y) + std::abs(y2)) +
+  const double permanent = std::abs(u.x()) * (std::abs(x) + std::abs(x2)) +
+                           std::abs(u.y()) * (std::abs(y) + std::abs(y2)) +
                            std::abs(u.z()) * (std::abs(z) + std::abs(z2));
   double bound = 7.9e-16 * permanent;
   if (error > 0) {

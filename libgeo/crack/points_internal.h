@@ -32,7 +32,9 @@ class Points {
   /// Where the lines ab and cd, which lie in one plane that is not parallel to `axis`, cross.
   Local add_crossing_in_plane(Local a, Local b, Local c, Local d, int axis);
 
-  void reserve(std::size_t count) { near_.reserve(count), error_.reserve(count), definition_.reserve(count), definitions_.reserve(count); }
+  void reserve(std::size_t count) {
+    near_.reserve(count), error_.reserve(count), definition_.reserve(count), definitions_.reserve(count);
+  }
   std::size_t size() const { return near_.size(); }
   const Vec3& operator[](Local l) const { return near_[l]; }  ///< the double that stands for it
   double error(Local l) const { return error_[l]; }           ///< of each of its coordinates; 0: it is that double

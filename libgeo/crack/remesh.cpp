@@ -7,10 +7,10 @@
 #include <numbers>
 #include <unordered_set>
 
-#include "kerf/error.h"
-#include "kerf/progress.h"
 #include "crack/place_internal.h"
 #include "geometry/distance.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 #include "surface/complex_internal.h"
 
 namespace geo {
@@ -48,8 +48,12 @@ class Remesher {
     if (k_.alive(f) && crack::badness(k_.corners(f)) > limit_ && waiting_.insert(f).second) todo_.push_back(f);
   }
 
-  bool improves(const LocalEdit& local, double factor) const { return crack::worst_new(k_, local) < factor * crack::worst_old(k_, local); }
-  bool stays_close(const LocalEdit& local, const Vec3& p) const { return crack::distance_left(k_, local, p, rules_) <= options_.deviation * size_; }
+  bool improves(const LocalEdit& local, double factor) const {
+    return crack::worst_new(k_, local) < factor * crack::worst_old(k_, local);
+  }
+  bool stays_close(const LocalEdit& local, const Vec3& p) const {
+    return crack::distance_left(k_, local, p, rules_) <= options_.deviation * size_;
+  }
 
   // Carries an edit out if the guard lets it.
   bool apply(LocalEdit& local) {
@@ -67,7 +71,9 @@ class Remesher {
   template <class Before>
   static std::array<int, 3> edges_by_length(const std::array<Vec3, 3>& c, const Before& before) {
     std::array<int, 3> edges{0, 1, 2};
-    std::sort(edges.begin(), edges.end(), [&](int i, int j) { return before((c[(i + 1) % 3] - c[i]).squaredNorm(), (c[(j + 1) % 3] - c[j]).squaredNorm()); });
+    std::sort(edges.begin(), edges.end(), [&](int i, int j) {
+      return before((c[(i + 1) % 3] - c[i]).squaredNorm(), (c[(j + 1) % 3] - c[j]).squaredNorm());
+    });
     return edges;
   }
 
@@ -193,11 +199,17 @@ class Remesher {
 
 }  // namespace
 
-double smallest_angle(const std::array<Vec3, 3>& t) { return std::atan2(1.0, crack::badness(t)) * 180 / std::numbers::pi; }
+double smallest_angle(const std::array<Vec3, 3>& t) {
+  return std::atan2(1.0, crack::badness(t)) * 180 / std::numbers::pi;
+}
 
-CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshWork* work) {
-  if (!(options.angle > 0 && options.angle <= 30) || !(options.deviation >= 0) || !(options.shortest > 0) || !(options.crease > 0 && options.crease <= 180))
-    throw InputError("remeshing needs an angle of 0 to 30 degrees, a deviation of 0 or more, a shortest edge above 0 and a crease of 0 to 180 degrees");
+CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
+                  const RemeshOptions& options, RemeshWork* work) {
+  if (!(options.angle > 0 && options.angle <= 30) || !(options.deviation >= 0) || !(options.shortest > 0) ||
+      !(options.crease > 0 && options.crease <= 180))
+    throw InputError(
+        "remeshing needs an angle of 0 to 30 degrees, a deviation of 0 or more, a shortest edge above 0 and a crease "
+        "of 0 to 180 degrees");
   RemeshWork done;
   Stopwatch watch;
   CrackDelta delta = Remesher(complex, fronts, options, done).run(region);

@@ -11,7 +11,8 @@ using Edge = std::pair<VertexId, VertexId>;  ///< first < second
 
 class RingOrder {
  public:
-  RingOrder(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved) : complex_(complex), edit_(edit), moved_(moved) {}
+  RingOrder(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved)
+      : complex_(complex), edit_(edit), moved_(moved) {}
 
   Fault first_fault() const {
     std::vector<Edge> given;
@@ -27,7 +28,8 @@ class RingOrder {
       if (!f.parent.valid()) continue;
       for (std::size_t e = 0; e < 3; ++e) {
         const Edge edge = std::minmax(f.v[e], f.v[(e + 1) % 3]);
-        if (edge.second.value < complex_.vertex_count() && complex_.around(edge.first, edge.second).size() > 2 && !std::binary_search(given.begin(), given.end(), edge))
+        if (edge.second.value < complex_.vertex_count() && complex_.around(edge.first, edge.second).size() > 2 &&
+            !std::binary_search(given.begin(), given.end(), edge))
           parts.push_back({edge, i});
       }
     }
@@ -48,7 +50,9 @@ class RingOrder {
 
  private:
   const Vec3& point(VertexId v) const { return point_after(complex_, edit_, v); }
-  bool is_moved(VertexId v) const { return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]); }
+  bool is_moved(VertexId v) const {
+    return v.value >= complex_.vertex_count() && (moved_.empty() || moved_[v.value - complex_.vertex_count()]);
+  }
 
   // Faces listed counter-clockwise about a→b.
   Fault fault_around(VertexId a, VertexId b, const std::vector<FaceId>& ring) const {

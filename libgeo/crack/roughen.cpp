@@ -5,9 +5,9 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "crack/place_internal.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
-#include "crack/place_internal.h"
 #include "surface/complex_internal.h"
 
 namespace geo {
@@ -31,7 +31,8 @@ class Roughener {
  private:
   bool is_chosen(FaceId f) const {
     const auto crack = k_.face(f).crack;
-    return k_.alive(f) && crack > 0 && (options_.cracks.empty() || std::count(options_.cracks.begin(), options_.cracks.end(), crack) > 0);
+    return k_.alive(f) && crack > 0 &&
+           (options_.cracks.empty() || std::count(options_.cracks.begin(), options_.cracks.end(), crack) > 0);
   }
   // Inside one crack, or at its tip where no front holds that.
   bool may_divide(VertexId a, VertexId b) const {
@@ -39,7 +40,9 @@ class Roughener {
     const auto ring = k_.around(a, b);
     return ring.size() <= 2 && is_chosen(ring[0]) && is_chosen(ring[ring.size() - 1]);
   }
-  double length_of(FaceId f, int e) const { return (k_.point(k_.face(f).v[(e + 1) % 3]) - k_.point(k_.face(f).v[e])).norm(); }
+  double length_of(FaceId f, int e) const {
+    return (k_.point(k_.face(f).v[(e + 1) % 3]) - k_.point(k_.face(f).v[e])).norm();
+  }
   int longest_edge(FaceId f) const {
     int best = 0;
     for (int e = 1; e < 3; ++e)
@@ -53,8 +56,8 @@ class Roughener {
     return delta.has_value();
   }
 
-  // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so that faces stay about as
-  // round as they were. Where the way there ends at an edge that must stay, the faces before it stay as large.
+  // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so that faces stay about
+  // as round as they were. Where the way there ends at an edge that must stay, the faces before it stay as large.
   void divide(double longest) {
     std::vector<FaceId> todo;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
@@ -86,7 +89,8 @@ class Roughener {
   }
 
   // Ways along edges from what stays as it is, as far as the noise fades.
-  std::unordered_map<VertexId, double> distances(const std::vector<VertexId>& vertices, const std::unordered_set<VertexId>& free, double reach) const {
+  std::unordered_map<VertexId, double> distances(const std::vector<VertexId>& vertices,
+                                                 const std::unordered_set<VertexId>& free, double reach) const {
     using Way = std::pair<double, VertexId>;
     std::priority_queue<Way, std::vector<Way>, std::greater<>> queue;
     std::unordered_map<VertexId, double> distance;
@@ -112,7 +116,8 @@ class Roughener {
   void displace() {
     std::vector<VertexId> vertices;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
-      if (is_chosen(FaceId(f))) vertices.insert(vertices.end(), k_.face(FaceId(f)).v.begin(), k_.face(FaceId(f)).v.end());
+      if (is_chosen(FaceId(f)))
+        vertices.insert(vertices.end(), k_.face(FaceId(f)).v.begin(), k_.face(FaceId(f)).v.end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::unordered_set<VertexId> free;
@@ -142,7 +147,9 @@ class Roughener {
       if (!(length > 0)) continue;
       double sum = 0, high = 1, fine = options_.frequency / size_;
       for (int octave = 0; octave < options_.octaves; ++octave, high *= 0.6, fine *= 2)
-        sum += high * noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(crack) * 64 + static_cast<std::uint64_t>(octave));
+        sum += high * noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull +
+                                                                       static_cast<std::uint64_t>(crack) * 64 +
+                                                                       static_cast<std::uint64_t>(octave));
       const auto d = distance.find(v);
       const double near = d == distance.end() ? 1 : std::min(1.0, d->second / fade);
       moves.push_back({v, k_.point(v) + height * near * sum / length * normal});
@@ -177,9 +184,10 @@ class Roughener {
 
 }  // namespace
 
-CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenWork* work) {
-  if (!(options.amplitude >= 0 && options.amplitude < 1) || !(options.frequency > 0 && options.frequency < 1e6) || options.octaves < 1 || options.octaves > 16 ||
-      !(options.edge >= 0))
+CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options,
+                   RoughenWork* work) {
+  if (!(options.amplitude >= 0 && options.amplitude < 1) || !(options.frequency > 0 && options.frequency < 1e6) ||
+      options.octaves < 1 || options.octaves > 16 || !(options.edge >= 0))
     throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive, its octaves 1 to 16");
   RoughenWork done;
   Stopwatch watch;

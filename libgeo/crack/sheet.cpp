@@ -1,19 +1,21 @@
 #include "kerf/crack.h"
 
-#include "kerf/error.h"
 #include "base/random.h"
-#include "kerf/progress.h"
 #include "crack/insert_internal.h"
+#include "kerf/error.h"
+#include "kerf/progress.h"
 
 namespace geo {
 
-CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options, CrackWork* work) {
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
+                        CrackWork* work) {
   if (crack < 1) throw InputError("cracks are numbered from 1");
   for (const Vec3& p : sheet.vertices)
     if (!p.allFinite()) throw InputError("the sheet has a coordinate that is not a finite number");
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
     for (const auto v : sheet.triangles[t])
-      if (v >= sheet.vertices.size()) throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
+      if (v >= sheet.vertices.size())
+        throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
   const double size = complex.extent().diagonal();
   Random random(options.seed * 0x9e3779b97f4a7c15ull);
   CrackWork done;

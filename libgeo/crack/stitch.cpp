@@ -1,8 +1,8 @@
 // Turns an arrangement and the parts to keep into an edit of K (§ 5.2: joining crack and skin along the seam).
 #include <algorithm>
 
-#include "kerf/error.h"
 #include "crack/keep_internal.h"
+#include "kerf/error.h"
 
 namespace geo::crack {
 namespace {
@@ -126,7 +126,8 @@ class Stitcher {
     if (order.size() != at_.size()) throw GeometryError("a face around a met edge was not met");
     std::vector<Place> sorted;
     for (const FaceId f : order) {
-      const auto found = std::find_if(at_.begin(), at_.end(), [&](const Use& use) { return a_.elements[use.element].face == f; });
+      const auto found =
+          std::find_if(at_.begin(), at_.end(), [&](const Use& use) { return a_.elements[use.element].face == f; });
       if (found == at_.end()) throw GeometryError("a face around a met edge was not met");
       sorted.push_back(ring_[static_cast<std::size_t>(found - at_.begin())]);
     }

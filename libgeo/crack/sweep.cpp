@@ -20,7 +20,8 @@ class Builder {
 
   std::uint32_t point(const Vec3& p, bool carried) {
     std::uint32_t& row = rows_[p];
-    if (row == ~0u) row = static_cast<std::uint32_t>(strip.points.size()), strip.points.push_back(p), strip.carried.push_back(false);
+    if (row == ~0u)
+      row = static_cast<std::uint32_t>(strip.points.size()), strip.points.push_back(p), strip.carried.push_back(false);
     if (carried) strip.carried[row] = true;
     return row;
   }
@@ -52,10 +53,12 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
     if (stands_p && stands_q) continue;
     if (stands_p) {
       // A fan around q; its first side is the new front.
-      for (std::size_t k = 0; k + 1 < old.size(); ++k) builder.triangle(old[k], old[k + 1], q, {-1, -1, k == 0 ? s : -1});
+      for (std::size_t k = 0; k + 1 < old.size(); ++k)
+        builder.triangle(old[k], old[k + 1], q, {-1, -1, k == 0 ? s : -1});
       continue;
     }
-    // A fan around p, closed by the triangle that holds the new front (nothing when q stands still: the fan's last side).
+    // A fan around p, closed by the triangle that holds the new front (nothing when q stands still: the fan's last
+    // side).
     for (std::size_t k = 0; k + 1 < old.size(); ++k)
       builder.triangle(old[k], old[k + 1], p, {-1, stands_q && k + 2 == old.size() ? s : -1, -1});
     if (!stands_q) builder.triangle(old.back(), q, p, {-1, s, -1});
@@ -160,7 +163,9 @@ std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach)
       const Vec3 &p0 = strip.points[tri.p[0]], &p1 = strip.points[tri.p[1]], &p2 = strip.points[tri.p[2]];
       const Vec3 n = (p1 - p0).cross(p2 - p0);
       if (std::abs(n.dot(q - p0)) > reach * n.norm()) continue;
-      if ((p1 - p0).cross(q - p0).dot(n) <= 0 || (p2 - p1).cross(q - p1).dot(n) <= 0 || (p0 - p2).cross(q - p2).dot(n) <= 0) continue;
+      if ((p1 - p0).cross(q - p0).dot(n) <= 0 || (p2 - p1).cross(q - p1).dot(n) <= 0 ||
+          (p0 - p2).cross(q - p2).dot(n) <= 0)
+        continue;
       const auto row = add_point();
       for (int k = 0; k < 3; ++k) {
         const Strip::Triangle part{{tri.p[k], tri.p[(k + 1) % 3], row}, {tri.segment[k], -1, -1}};

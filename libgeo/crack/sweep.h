@@ -18,7 +18,7 @@ struct Strip {
   std::vector<Vec3> points;
   std::vector<bool> carried;  ///< per point: it is on the old front and may not be moved
   std::vector<Triangle> triangles;
-  std::vector<Vec3> next;     ///< the new front's points, as snapped
+  std::vector<Vec3> next;  ///< the new front's points, as snapped
   /// Faces of K near triangle t: near[near_begin[t]..near_begin[t + 1]); filled by find_near().
   std::vector<FaceId> near;
   std::vector<std::uint32_t> near_begin;
@@ -35,8 +35,8 @@ Strip strip_of(std::span<const Vec3> points, std::span<const geo::Triangle> tria
 void find_near(Strip& strip, const Complex& complex, double reach);
 
 /// Moves what the strip can move onto vertices of K that are closer than `reach`: its new points to the vertex; where a
-/// vertex is nearly on an edge or inside of a triangle, the strip is divided there. Returns how many were snapped. Leaves
-/// `near` filled.
+/// vertex is nearly on an edge or inside of a triangle, the strip is divided there. Returns how many were snapped.
+/// Leaves `near` filled.
 std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach);
 
 }  // namespace geo

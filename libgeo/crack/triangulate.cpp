@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/error.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 
 namespace geo::crack {
 
@@ -72,7 +72,9 @@ void Triangulator::split_edge(int t, int edge, int p) {
   }
   if (u < 0) return;
   int j = 0;
-  while (tri_[static_cast<std::size_t>(u)].n[j] != t || tri_[static_cast<std::size_t>(u)].v[(j + 1) % 3] != tri_[static_cast<std::size_t>(t)].v[0]) ++j;
+  while (tri_[static_cast<std::size_t>(u)].n[j] != t ||
+         tri_[static_cast<std::size_t>(u)].v[(j + 1) % 3] != tri_[static_cast<std::size_t>(t)].v[0])
+    ++j;
   turn_to(u, j);
   Tri &x = tri_[static_cast<std::size_t>(u)], &y = tri_[static_cast<std::size_t>(u2)];  // x: b, a, d
   const int b = x.v[0], d = x.v[2];
@@ -132,8 +134,8 @@ bool Triangulator::may_flip(int t, int edge, int& other, int& apex) {
   return turn(a, apex, c) > 0 && turn(apex, b, c) > 0;
 }
 
-// Calls with each triangle at a and a's corner there, one way around until a side of the face is met, then the other way;
-// ends when `visit` says true.
+// Calls with each triangle at a and a's corner there, one way around until a side of the face is met, then the other
+// way; ends when `visit` says true.
 template <class Visit>
 void Triangulator::around(int a, const Visit& visit) const {
   const int start = at_[static_cast<std::size_t>(a)];
@@ -217,7 +219,8 @@ void Triangulator::constrain(int a, int b, const Known& known) {
         if (s != 0) continue;
         // On the line: ahead when it lies on b's side of a.
         int along = 0;
-        const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)], lv = local_[static_cast<std::size_t>(v)];
+        const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)],
+                   lv = local_[static_cast<std::size_t>(v)];
         (points_[lb] - points_[la]).cwiseAbs().maxCoeff(&along);
         for (int i = 0; i < 3 && points_.compare(lb, la, along) == 0; ++i) along = (along + 1) % 3;
         if (points_.compare(lb, la, along) == points_.compare(lv, la, along)) ahead = v;
@@ -240,8 +243,9 @@ void Triangulator::constrain(int a, int b, const Known& known) {
       if (x.e[k] != edge_diagonal) {
         // Another constraint in the way: both are divided where they cross.
         if (!known || x.n[k] < 0) throw GeometryError("constraints of a face cross");
-        const Local made = points_.add_crossing_in_plane(local_[static_cast<std::size_t>(a)], local_[static_cast<std::size_t>(b)],
-                                                         local_[static_cast<std::size_t>(r)], local_[static_cast<std::size_t>(l)], axis_);
+        const Local made = points_.add_crossing_in_plane(
+            local_[static_cast<std::size_t>(a)], local_[static_cast<std::size_t>(b)],
+            local_[static_cast<std::size_t>(r)], local_[static_cast<std::size_t>(l)], axis_);
         const Local place = known(made);
         if (row_.size() < points_.size()) row_.resize(points_.size(), -1);
         if (row_[place] >= 0) throw GeometryError("constraints cross at a vertex that is not on them");
@@ -284,7 +288,8 @@ void Triangulator::constrain(int a, int b, const Known& known) {
         continue;
       }
       flip(t, k);
-      const int s1 = mine == a || mine == end ? 0 : turn(a, end, mine), s2 = apex == a || apex == end ? 0 : turn(a, end, apex);
+      const int s1 = mine == a || mine == end ? 0 : turn(a, end, mine),
+                s2 = apex == a || apex == end ? 0 : turn(a, end, apex);
       if (s1 * s2 < 0) crossed.push_back(s1 < 0 ? std::pair{mine, apex} : std::pair{apex, mine});
     }
     constrain(a, end, known);
@@ -317,7 +322,8 @@ void Triangulator::improve() {
       if (v != a && v != b) d = v;
     if (!(cotangent(c, a, b) + cotangent(d, a, b) < -1e-6) || !may_flip(t, k, other, d)) continue;
     flip(t, k);
-    for (const auto& [x, y] : {std::pair{a, d}, {d, b}, {b, c}, {c, a}}) todo.push_back({std::min(x, y), std::max(x, y)});
+    for (const auto& [x, y] : {std::pair{a, d}, {d, b}, {b, c}, {c, a}})
+      todo.push_back({std::min(x, y), std::max(x, y)});
   }
 }
 
@@ -338,7 +344,8 @@ void Triangulator::straighten() {
 }
 
 void Triangulator::triangulate(const std::array<Local, 3>& corner, std::span<const Mark> marks,
-                               std::span<const std::pair<Local, Local>> constraints, const Known& known, std::vector<Child>& out) {
+                               std::span<const std::pair<Local, Local>> constraints, const Known& known,
+                               std::vector<Child>& out) {
   std::tie(axis_, sign_) = view_of(points_, corner);
   if (sign_ == 0) throw GeometryError("a triangle without area was met");
   local_.clear(), edges_.clear(), at_.clear(), tri_.clear();
@@ -357,7 +364,8 @@ void Triangulator::triangulate(const std::array<Local, 3>& corner, std::span<con
       int along = 0;
       (points_[to] - points_[from]).cwiseAbs().maxCoeff(&along);
       const int up = points_.compare(to, from, along);
-      std::sort(chain.begin(), chain.end(), [&](Local a, Local b) { return a != b && points_.compare(a, b, along) == -up; });
+      std::sort(chain.begin(), chain.end(),
+                [&](Local a, Local b) { return a != b && points_.compare(a, b, along) == -up; });
     }
     int last = k;
     for (const Local l : chain) {

@@ -13,7 +13,7 @@ namespace geo::crack {
 enum EdgeKind : std::uint8_t { edge_constraint = 3, edge_diagonal = 4 };
 
 struct Child {
-  std::array<Local, 3> v;  ///< oriented as the face is
+  std::array<Local, 3> v;            ///< oriented as the face is
   std::array<std::uint8_t, 3> edge;  ///< kind of the edge from v[k] to v[k+1]
 };
 

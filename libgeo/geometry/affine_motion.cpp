@@ -39,7 +39,8 @@ struct Spreads {
   void operator+=(const Spreads& o) { product += o.product, spread += o.spread; }
 };
 
-void map_rows(const std::vector<std::uint32_t>& rows, const Middles& m, const Mat3& map, const std::vector<Vec3>& from, std::vector<Vec3>& at) {
+void map_rows(const std::vector<std::uint32_t>& rows, const Middles& m, const Mat3& map, const std::vector<Vec3>& from,
+              std::vector<Vec3>& at) {
   parallel_for(rows.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) at[rows[k]] = m.to + map * (from[rows[k]] - m.from);
   });
@@ -47,7 +48,8 @@ void map_rows(const std::vector<std::uint32_t>& rows, const Middles& m, const Ma
 
 }  // namespace
 
-void move_rigidly(const std::vector<std::uint32_t>& rows, const std::vector<Vec3>& from, const std::vector<Vec3>& to, std::vector<Vec3>& at) {
+void move_rigidly(const std::vector<std::uint32_t>& rows, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                  std::vector<Vec3>& at) {
   const Middles m = middles(rows, from, to);
   Mat3 product = Mat3::Zero();
   for (const auto v : rows) product += (to[v] - m.to) * (from[v] - m.from).transpose();
@@ -57,7 +59,8 @@ void move_rigidly(const std::vector<std::uint32_t>& rows, const std::vector<Vec3
   map_rows(rows, m, turn, from, at);
 }
 
-void move_affinely(const std::vector<std::uint32_t>& rows, const std::vector<Vec3>& from, const std::vector<Vec3>& to, std::vector<Vec3>& at) {
+void move_affinely(const std::vector<std::uint32_t>& rows, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                   std::vector<Vec3>& at) {
   const Middles m = middles(rows, from, to);
   const auto sums = summed<Spreads>(rows, [&](Spreads& sum, std::uint32_t v) {
     const Vec3 arm = from[v] - m.from;

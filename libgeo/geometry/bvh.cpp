@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "kerf/parallel.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -29,7 +29,8 @@ struct TriangleBvh::Builder {
   std::vector<std::uint32_t>& order;
 
   // Grows `nodes` from the job's; ranges below `least` are left for later where there is a list for them.
-  void grow(const Job& root, std::vector<Node>& nodes, std::uint32_t least = 0, std::vector<Job>* later = nullptr) const {
+  void grow(const Job& root, std::vector<Node>& nodes, std::uint32_t least = 0,
+            std::vector<Job>* later = nullptr) const {
     std::vector<Job> jobs{root};
     while (!jobs.empty()) {
       const Job job = jobs.back();
@@ -66,7 +67,8 @@ struct TriangleBvh::Builder {
   }
 };
 
-TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles) : corners_(triangles.begin(), triangles.end()) {
+TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles)
+    : corners_(triangles.begin(), triangles.end()) {
   const auto n = static_cast<std::uint32_t>(corners_.size());
   if (n == 0) return;
   Builder builder{std::vector<Box3>(n), std::vector<Vec3>(n), order_};
@@ -84,7 +86,8 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles) : corne
   builder.grow({0, 0, n}, nodes_, std::max(many, n) / shares, n < many ? nullptr : &later);
   std::vector<std::vector<Node>> below(later.size());
   parallel_for(later.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) below[k].emplace_back(), builder.grow({0, later[k].begin, later[k].end}, below[k]);
+    for (std::size_t k = begin; k < end; ++k)
+      below[k].emplace_back(), builder.grow({0, later[k].begin, later[k].end}, below[k]);
   });
   for (std::size_t k = 0; k < later.size(); ++k) {
     const auto offset = static_cast<std::uint32_t>(nodes_.size() - 1);
@@ -144,7 +147,8 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
       const auto& t = corners_[order_[i]];
       const Vec3 c = closest_point_on_triangle(p, t[0], t[1], t[2]);
       const double d = (c - p).squaredNorm();
-      if (d < reach || (d == reach && (best.row == ~0u || order_[i] < best.row))) reach = d, best = {order_[i], c, std::sqrt(d)};
+      if (d < reach || (d == reach && (best.row == ~0u || order_[i] < best.row)))
+        reach = d, best = {order_[i], c, std::sqrt(d)};
     }
   }
   return best;
@@ -153,9 +157,9 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
 bool TriangleBvh::inside(const Vec3& p) const {
   if (nodes_.empty() || !Box3{p, p}.meets(box_)) return false;
   // Rays to points far outside in fixed generic directions; one that touches an edge, a vertex or a plane is dropped.
-  static constexpr double directions[][3] = {{0.5377, 0.2713, 0.7981}, {-0.3319, 0.8511, 0.4069}, {0.7129, -0.6133, 0.3403},
-                                             {-0.2731, -0.4817, -0.8329}, {0.9137, 0.1871, -0.3607}, {-0.6469, 0.3539, -0.6757},
-                                             {0.1213, -0.9187, -0.3761}, {0.3967, 0.5669, -0.7219}};
+  static constexpr double directions[][3] = {
+      {0.5377, 0.2713, 0.7981},  {-0.3319, 0.8511, 0.4069},  {0.7129, -0.6133, 0.3403},  {-0.2731, -0.4817, -0.8329},
+      {0.9137, 0.1871, -0.3607}, {-0.6469, 0.3539, -0.6757}, {0.1213, -0.9187, -0.3761}, {0.3967, 0.5669, -0.7219}};
   const double reach = 2 * box_.diagonal() + 1e-300;
   std::vector<std::uint32_t> rows;
   for (const auto& d : directions) {
@@ -172,7 +176,8 @@ bool TriangleBvh::inside(const Vec3& p) const {
       double from = 0, to = 1;
       const double margin = 1e-12 * reach;
       for (int k = 0; k < 3; ++k) {
-        const double step = q[k] - p[k], a = (node.box.lo[k] - margin - p[k]) / step, b = (node.box.hi[k] + margin - p[k]) / step;
+        const double step = q[k] - p[k], a = (node.box.lo[k] - margin - p[k]) / step,
+                     b = (node.box.hi[k] + margin - p[k]) / step;
         from = std::max(from, std::min(a, b));
         to = std::min(to, std::max(a, b));
       }

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "geometry/triangle_lanes.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -22,9 +22,11 @@ class TriangleBvh {
 
   /// True when the closed segment pq touches any triangle: exact.
   bool blocks(const Vec3& p, const Vec3& q) const;
-  /// The same for many segments from p, all at once: 1 in `result` where the one to `ends[i]` is blocked. Fast where the
-  /// ends are near p and each other.
-  void blocks(const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const { lanes_.blocked(corners_, order_, p, ends, result); }
+  /// The same for many segments from p, all at once: 1 in `result` where the one to `ends[i]` is blocked. Fast where
+  /// the ends are near p and each other.
+  void blocks(const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const {
+    lanes_.blocked(corners_, order_, p, ends, result);
+  }
   /// Appends the rows of all triangles whose boxes meet `box`, in no particular order.
   void near(const Box3& box, std::vector<std::uint32_t>& rows) const;
 

@@ -23,13 +23,15 @@ class Hull {
     const auto& [a, b, c] = base;  // seen from below: the top is behind it
     std::vector<std::uint32_t> all(points.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    for (const Triangle& t : {Triangle{a, b, c}, Triangle{b, a, top}, Triangle{c, b, top}, Triangle{a, c, top}}) facets_.push_back(make(t));
+    for (const Triangle& t : {Triangle{a, b, c}, Triangle{b, a, top}, Triangle{c, b, top}, Triangle{a, c, top}})
+      facets_.push_back(make(t));
     hand_out(all, 0);
   }
 
   // Adds the point that is farthest out. False when there is none.
   bool grow() {
-    const auto worst = std::max_element(facets_.begin(), facets_.end(), [](const Facet& f, const Facet& g) { return f.distance < g.distance; });
+    const auto worst = std::max_element(facets_.begin(), facets_.end(),
+                                        [](const Facet& f, const Facet& g) { return f.distance < g.distance; });
     if (worst->farthest == ~0u) {
       // Outside by less than distances can tell.
       const auto any = std::find_if(facets_.begin(), facets_.end(), [](const Facet& f) { return !f.outside.empty(); });
@@ -51,7 +53,9 @@ class Hull {
     const Vec3 &a = points_[v[0]], &b = points_[v[1]], &c = points_[v[2]];
     return {v, (b - a).cross(c - a).normalized(), {}, ~0u, 0};
   }
-  bool sees(const Facet& f, std::uint32_t p) const { return orient3d(points_[f.v[0]], points_[f.v[1]], points_[f.v[2]], points_[p]) > 0; }
+  bool sees(const Facet& f, std::uint32_t p) const {
+    return orient3d(points_[f.v[0]], points_[f.v[1]], points_[f.v[2]], points_[p]) > 0;
+  }
 
   void hand_out(const std::vector<std::uint32_t>& points, std::size_t first) {
     for (const auto p : points)
@@ -66,7 +70,8 @@ class Hull {
   }
 
   void add(std::uint32_t p) {
-    const auto seen = std::stable_partition(facets_.begin(), facets_.end(), [&](const Facet& f) { return !sees(f, p); });
+    const auto seen =
+        std::stable_partition(facets_.begin(), facets_.end(), [&](const Facet& f) { return !sees(f, p); });
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> edges;
     std::vector<std::uint32_t> loose;
     for (auto f = seen; f != facets_.end(); ++f) {

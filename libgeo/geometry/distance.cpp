@@ -31,7 +31,8 @@ OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
 
 Ball ball_around(const std::array<Vec3, 3>& t) {
   const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-  return {middle, std::sqrt(std::max({(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}))};
+  return {middle, std::sqrt(std::max(
+                      {(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}))};
 }
 
 double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {

@@ -5,14 +5,16 @@
 
 namespace geo {
 
-/// The point of triangle abc that is closest to p (Ericson, Real-Time Collision Detection, § 5.1.5), and what it is on: the
-/// inside, −1, corner k of abc, k, or the edge from corner k to the next, 3 + k.
+/// The point of triangle abc that is closest to p (Ericson, Real-Time Collision Detection, § 5.1.5), and what it is on:
+/// the inside, −1, corner k of abc, k, or the edge from corner k to the next, 3 + k.
 struct OnTriangle {
   Vec3 point;
   int feature;
 };
 OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-inline Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) { return closest_on_triangle(p, a, b, c).point; }
+inline Vec3 closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return closest_on_triangle(p, a, b, c).point;
+}
 
 /// A ball about the middle of a triangle that holds it.
 struct Ball {

@@ -40,7 +40,8 @@ int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const int sign = orient2d_quick(a, b, c, axis), i = (axis + 1) % 3, j = (axis + 2) % 3;
   if (sign != 2) return sign;
-  return static_cast<int>(CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
+  return static_cast<int>(
+      CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
 }
 
 std::pair<int, int> view_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -76,7 +77,8 @@ bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
     for (int k = 0; k < 3; ++k) {
       const Vec3 &a = x[k], &b = x[(k + 1) % 3];
       bool beyond = true;
-      for (int j = 0; j < 3 && beyond; ++j) beyond = y[j] == a || y[j] == b || orient2d_quick(a, b, y[j], axis) == -turn;
+      for (int j = 0; j < 3 && beyond; ++j)
+        beyond = y[j] == a || y[j] == b || orient2d_quick(a, b, y[j], axis) == -turn;
       if (beyond) return true;
     }
     return false;
@@ -90,7 +92,8 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const V
     if (sp == sq) return false;
     // p and q are strictly on opposite sides (hence abc has an area): the line's side of each edge decides.
     const int s0 = orient3d_quick(p, q, a, b), s1 = orient3d_quick(p, q, b, c), s2 = orient3d_quick(p, q, c, a);
-    if ((s0 != 2 && s1 != 2 && s0 != s1) || (s1 != 2 && s2 != 2 && s1 != s2) || (s0 != 2 && s2 != 2 && s0 != s2)) return false;
+    if ((s0 != 2 && s1 != 2 && s0 != s1) || (s1 != 2 && s2 != 2 && s1 != s2) || (s0 != 2 && s2 != 2 && s0 != s2))
+      return false;
     if (s0 != 2 && s1 != 2 && s2 != 2) return true;
     const int e0 = orient3d(p, q, a, b), e1 = orient3d(p, q, b, c), e2 = orient3d(p, q, c, a);
     return (e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0);
@@ -117,7 +120,7 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
   if (clear) {
     // Each goes through the other's plane along one line: do the two stretches overlap? With the lone corner of each
     // first and on the positive side, two orientations say (Guigue and Devillers 2003).
-    const auto arrange = [](const Vec3(&x)[3], const int (&of)[3], const Vec3* (&corner)[3]) {
+    const auto arrange = [](const Vec3(&x)[3], const int(&of)[3], const Vec3*(&corner)[3]) {
       int lone = of[0] == of[1] ? 2 : of[0] == of[2] ? 1 : 0;
       for (int k = 0; k < 3; ++k) corner[k] = &x[(lone + k) % 3];
       return of[lone] > 0;
@@ -139,7 +142,8 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
     const auto [u, v] = as_segment(t[0], t[1], t[2]);
     return segment_meets_triangle(u, v, s[0], s[1], s[2]);
   }
-  return CGAL::do_intersect(Kernel::Triangle_3(pt(s[0]), pt(s[1]), pt(s[2])), Kernel::Triangle_3(pt(t[0]), pt(t[1]), pt(t[2])));
+  return CGAL::do_intersect(Kernel::Triangle_3(pt(s[0]), pt(s[1]), pt(s[2])),
+                            Kernel::Triangle_3(pt(t[0]), pt(t[1]), pt(t[2])));
 }
 
 int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a, const Vec3& b) {

@@ -19,7 +19,8 @@ constexpr double filter_smallest = 1e-270, filter_largest = 1e300;
   const double cdx = c.x() - d.x(), cdy = c.y() - d.y(), cdz = c.z() - d.z();
   const double bc = bdx * cdy, cb = cdx * bdy, ca = cdx * ady, ac = adx * cdy, ab = adx * bdy, ba = bdx * ady;
   const double det = adz * (bc - cb) + bdz * (ca - ac) + cdz * (ab - ba);
-  const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(adz) + (std::abs(ca) + std::abs(ac)) * std::abs(bdz) +
+  const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(adz) +
+                           (std::abs(ca) + std::abs(ac)) * std::abs(bdz) +
                            (std::abs(ab) + std::abs(ba)) * std::abs(cdz);
   const double bound = 7.771561172376103e-16 * permanent;
   if (!(permanent > filter_smallest && permanent < filter_largest)) return 2;

@@ -1,5 +1,5 @@
-// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time. No sum is
-// fused with a product, so that error bounds hold.
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
+// No sum is fused with a product, so that error bounds hold.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/side_lanes.cpp"
 #include <hwy/foreach_target.h>
@@ -28,7 +28,8 @@ HWY_INLINE std::uint64_t bits_of(const Mask& mask) {
 }  // namespace
 
 // The determinant of orient3d_quick() with its bound, but taken relative to the triangle's first corner.
-void Sides(const double* corner, const double* normal, const double* terms, const double* const* at, std::size_t words, std::uint64_t* above, std::uint64_t* below) {
+void Sides(const double* corner, const double* normal, const double* terms, const double* const* at, std::size_t words,
+           std::uint64_t* above, std::uint64_t* below) {
   constexpr double bound_of_permanent = 7.771561172376103e-16;  // Shewchuk's A-stage, as there
   const Doubles d;
   for (std::size_t word = 0; word < words; ++word) {
@@ -37,11 +38,14 @@ void Sides(const double* corner, const double* normal, const double* terms, cons
       auto det = hn::Zero(d), permanent = det;
       for (int axis = 0; axis < 3; ++axis) {
         const auto x = hn::Sub(hn::LoadU(d, at[axis] + 64 * word + k), hn::Set(d, corner[axis]));
-        det = hn::Add(det, hn::Mul(x, hn::Set(d, normal[axis]))), permanent = hn::Add(permanent, hn::Mul(hn::Abs(x), hn::Set(d, terms[axis])));
+        det = hn::Add(det, hn::Mul(x, hn::Set(d, normal[axis]))),
+        permanent = hn::Add(permanent, hn::Mul(hn::Abs(x), hn::Set(d, terms[axis])));
       }
       const auto bound = hn::Mul(hn::Set(d, bound_of_permanent), permanent);
-      const auto sure = hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
-      over |= bits_of(hn::And(sure, hn::Gt(det, bound))) << k, under |= bits_of(hn::And(sure, hn::Lt(det, hn::Neg(bound)))) << k;
+      const auto sure =
+          hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
+      over |= bits_of(hn::And(sure, hn::Gt(det, bound))) << k,
+          under |= bits_of(hn::And(sure, hn::Lt(det, hn::Neg(bound)))) << k;
     }
     above[word] = over, below[word] = under;
   }
@@ -55,7 +59,8 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Sides);
 
-void clear_sides(const std::array<Vec3, 3>& triangle, const double* const* at, std::size_t words, std::uint64_t* above, std::uint64_t* below) {
+void clear_sides(const std::array<Vec3, 3>& triangle, const double* const* at, std::size_t words, std::uint64_t* above,
+                 std::uint64_t* below) {
   const Vec3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
   double normal[3], terms[3];
   for (int i = 0; i < 3; ++i) {

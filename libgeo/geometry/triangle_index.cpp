@@ -10,7 +10,9 @@ namespace {
 // From cells to blocks.
 constexpr int block_shift = 2;
 
-unsigned cell_in_block(const std::int64_t (&at)[3]) { return static_cast<unsigned>((at[0] & 3) | (at[1] & 3) << 2 | (at[2] & 3) << 4); }
+unsigned cell_in_block(const std::int64_t (&at)[3]) {
+  return static_cast<unsigned>((at[0] & 3) | (at[1] & 3) << 2 | (at[2] & 3) << 4);
+}
 
 // The floor, clamped so that a far query does not overflow.
 std::int64_t lower_integer(double x) {
@@ -30,10 +32,12 @@ void each_place(const Range& r, const Visit& visit) {
 // The cells of the block at a place that lie in a range, as bits.
 template <class Range>
 std::uint64_t cells_in_range(const std::int64_t (&at)[3], const Range& cells) {
-  constexpr std::uint64_t every[3] = {0x1111111111111111ull, 0x000f000f000f000full, 0xffffull};  // one layer across an axis
+  constexpr std::uint64_t every[3] = {0x1111111111111111ull, 0x000f000f000f000full,
+                                      0xffffull};  // one layer across an axis
   std::uint64_t inside = ~0ull;
   for (int i = 0; i < 3; ++i) {
-    const std::int64_t from = std::max<std::int64_t>(cells.lo[i] - 4 * at[i], 0), to = std::min<std::int64_t>(cells.hi[i] - 4 * at[i], 3);
+    const std::int64_t from = std::max<std::int64_t>(cells.lo[i] - 4 * at[i], 0),
+                       to = std::min<std::int64_t>(cells.hi[i] - 4 * at[i], 3);
     std::uint64_t layers = 0;
     for (auto layer = from; layer <= to; ++layer) layers |= every[i] << (layer << 2 * i);
     inside &= layers;
@@ -92,7 +96,8 @@ std::size_t TriangleIndex::Level::slot_of(const std::int64_t (&at)[3]) const {
   const std::size_t mask = slots.size() - 1;
   std::uint64_t h = 0;
   for (const std::int64_t x : at) {
-    h = (h ^ static_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15ull;  // the low bits of a product know nothing of the high ones
+    h = (h ^ static_cast<std::uint64_t>(x)) *
+        0x9e3779b97f4a7c15ull;  // the low bits of a product know nothing of the high ones
     h ^= h >> 32;
   }
   std::size_t slot = static_cast<std::size_t>(h) & mask;
@@ -130,7 +135,9 @@ int exponent_of(const Box3& box) {
 
 }  // namespace
 
-std::size_t TriangleIndex::level_of(const Box3& box) const { return static_cast<std::size_t>(exponent_of(box) - levels_.front().exponent) / 2; }
+std::size_t TriangleIndex::level_of(const Box3& box) const {
+  return static_cast<std::size_t>(exponent_of(box) - levels_.front().exponent) / 2;
+}
 
 // Sees to it that there is a level, and all between it and those there are.
 void TriangleIndex::make_levels(int exponent) {
@@ -172,7 +179,9 @@ void TriangleIndex::forget_above(std::size_t level, const std::int64_t (&at)[3])
 TriangleIndex::Part TriangleIndex::Level::part_of(const Box3& box, const std::int64_t (&at)[3]) const {
   Part part;
   for (int i = 0; i < 3; ++i) {
-    const auto place = [&](double x) { return static_cast<std::uint8_t>(std::clamp(256 * (x / cell - static_cast<double>(at[i])), 0.0, 255.0)); };
+    const auto place = [&](double x) {
+      return static_cast<std::uint8_t>(std::clamp(256 * (x / cell - static_cast<double>(at[i])), 0.0, 255.0));
+    };
     part.lo[i] = place(box.lo[i]), part.hi[i] = place(box.hi[i]);
   }
   return part;
@@ -247,17 +256,20 @@ void TriangleIndex::erase(std::uint32_t id) {
 
 // What a block and those below it hold where it may meet the box and the plane.
 template <class Take>
-void TriangleIndex::visit(std::size_t at_level, const std::int64_t (&at)[3], const Box3& box, const Plane* plane, const Take& take) const {
+void TriangleIndex::visit(std::size_t at_level, const std::int64_t (&at)[3], const Box3& box, const Plane* plane,
+                          const Take& take) const {
   const Level& level = levels_[at_level];
   const auto found = level.block_at(at);
   if (found == none) return;
   const Block& block = level.blocks[found];
   if (block.empty()) return;
-  for (std::uint64_t cells = (block.filled | block.below) & cells_in_range(at, level.cells_of(box)); cells; cells &= cells - 1) {
+  for (std::uint64_t cells = (block.filled | block.below) & cells_in_range(at, level.cells_of(box)); cells;
+       cells &= cells - 1) {
     const int cell = std::countr_zero(cells);
     const std::int64_t place[3]{at[0] * side + (cell & 3), at[1] * side + (cell >> 2 & 3), at[2] * side + (cell >> 4)};
     if (plane) {
-      const Vec3 middle = level.cell * Vec3(static_cast<double>(place[0]) + 0.5, static_cast<double>(place[1]) + 0.5, static_cast<double>(place[2]) + 0.5);
+      const Vec3 middle = level.cell * Vec3(static_cast<double>(place[0]) + 0.5, static_cast<double>(place[1]) + 0.5,
+                                            static_cast<double>(place[2]) + 0.5);
       if (plane->clear_of(middle, Vec3::Constant(0.5 * level.cell))) continue;
     }
     if (block.filled >> cell & 1) {
@@ -274,7 +286,8 @@ void TriangleIndex::visit(std::size_t at_level, const std::int64_t (&at)[3], con
 
 // From the coarsest level down. Each is appended once, in ascending order.
 template <class Take>
-void TriangleIndex::search(const Box3& box, const Plane* plane, const Take& take, std::vector<std::uint32_t>& out) const {
+void TriangleIndex::search(const Box3& box, const Plane* plane, const Take& take,
+                           std::vector<std::uint32_t>& out) const {
   if (levels_.empty()) return;
   const std::size_t first = out.size(), top = levels_.size() - 1;
   const Level& level = levels_[top];
@@ -296,19 +309,27 @@ void TriangleIndex::search(const Box3& box, const Plane* plane, const Take& take
 
 void TriangleIndex::find(const Box3& box, std::vector<std::uint32_t>& out) const {
   if (box.empty()) return;
-  search(box, nullptr, [&](std::uint32_t id) {
-    if (boxes_[id].meets(box)) out.push_back(id);
-  }, out);
+  search(
+      box, nullptr,
+      [&](std::uint32_t id) {
+        if (boxes_[id].meets(box)) out.push_back(id);
+      },
+      out);
 }
 
-void TriangleIndex::find_near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<std::uint32_t>& out) const {
+void TriangleIndex::find_near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach,
+                                       std::vector<std::uint32_t>& out) const {
   const Box3 box = box_of(a, b, c).grown(reach);
   const Plane plane(a, b, c, box, reach);
   if (!plane.known()) return find(box, out);
-  search(box, &plane, [&](std::uint32_t id) {
-    const Box3& other = boxes_[id];
-    if (other.meets(box) && !plane.clear_of(0.5 * (other.lo + other.hi), 0.5 * (other.hi - other.lo))) out.push_back(id);
-  }, out);
+  search(
+      box, &plane,
+      [&](std::uint32_t id) {
+        const Box3& other = boxes_[id];
+        if (other.meets(box) && !plane.clear_of(0.5 * (other.lo + other.hi), 0.5 * (other.hi - other.lo)))
+          out.push_back(id);
+      },
+      out);
 }
 
 bool TriangleIndex::contains(std::uint32_t id) const { return id < boxes_.size() && !boxes_[id].empty(); }

@@ -18,9 +18,10 @@ class TriangleIndex {
   void erase(std::uint32_t id);
   /// Appends to `out`, ascending and each once, the ids whose boxes meet `box`.
   void find(const Box3& box, std::vector<std::uint32_t>& out) const;
-  /// As find() for the box of a triangle, grown by `reach`, without those whose boxes are clear of its plane: cost follows
-  /// the triangle's area, not its box's volume.
-  void find_near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<std::uint32_t>& out) const;
+  /// As find() for the box of a triangle, grown by `reach`, without those whose boxes are clear of its plane: cost
+  /// follows the triangle's area, not its box's volume.
+  void find_near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach,
+                          std::vector<std::uint32_t>& out) const;
   /// Makes room for ids below `count` in all.
   void reserve(std::size_t count);
   bool contains(std::uint32_t id) const;
@@ -32,7 +33,9 @@ class TriangleIndex {
   static constexpr int side = 4;  // cells along a block
   struct Range {
     std::int64_t lo[3], hi[3];
-    Range shifted(int bits) const { return {{lo[0] >> bits, lo[1] >> bits, lo[2] >> bits}, {hi[0] >> bits, hi[1] >> bits, hi[2] >> bits}}; }
+    Range shifted(int bits) const {
+      return {{lo[0] >> bits, lo[1] >> bits, lo[2] >> bits}, {hi[0] >> bits, hi[1] >> bits, hi[2] >> bits}};
+    }
     double count() const { return double(hi[0] - lo[0] + 1) * double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1); }
   };
   struct Slot {
@@ -50,7 +53,8 @@ class TriangleIndex {
   struct Part {
     std::uint8_t lo[3], hi[3];
     bool meets(const Part& b) const {
-      return (lo[0] <= b.hi[0]) & (b.lo[0] <= hi[0]) & (lo[1] <= b.hi[1]) & (b.lo[1] <= hi[1]) & (lo[2] <= b.hi[2]) & (b.lo[2] <= hi[2]);
+      return (lo[0] <= b.hi[0]) & (b.lo[0] <= hi[0]) & (lo[1] <= b.hi[1]) & (b.lo[1] <= hi[1]) & (lo[2] <= b.hi[2]) &
+             (b.lo[2] <= hi[2]);
     }
   };
   /// Some triangles of a cell, one cache line. Only the first of a cell's bunches has free places, at its end.
@@ -79,7 +83,8 @@ class TriangleIndex {
   void tell_above(std::size_t level, const std::int64_t (&block)[3]);
   void forget_above(std::size_t level, const std::int64_t (&block)[3]);
   template <class Take>
-  void visit(std::size_t level, const std::int64_t (&block)[3], const Box3& box, const Plane* plane, const Take& take) const;
+  void visit(std::size_t level, const std::int64_t (&block)[3], const Box3& box, const Plane* plane,
+             const Take& take) const;
   template <class Take>
   void search(const Box3& box, const Plane* plane, const Take& take, std::vector<std::uint32_t>& out) const;
 

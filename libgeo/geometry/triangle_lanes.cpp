@@ -28,7 +28,8 @@ struct Packet {
   bool near = true;  // within twice the frame, where slabs are valid
 };
 
-// The plane through a point and two others: the sign of an orientation of all three and a fourth, by Shewchuk's A-stage.
+// The plane through a point and two others: the sign of an orientation of all three and a fourth, by Shewchuk's
+// A-stage.
 struct Plane {
   Plane(const Vec3& origin, const Vec3& a, const Vec3& b) : origin(origin) {
     const Vec3 u = a - origin, v = b - origin;
@@ -94,16 +95,21 @@ std::uint32_t meeting(const Packet& packet, const TriangleLanes::Boxes& boxes, s
   return bits;
 }
 
-// Which of a packet's segments may touch a triangle, of those that `boxes` (its own) meet: its slab does not tell them apart.
+// Which of a packet's segments may touch a triangle, of those that `boxes` (its own) meet: its slab does not tell them
+// apart.
 std::uint32_t within_slab(const Packet& packet, const TriangleLanes::Slabs& slabs, std::uint32_t lane) {
   const Floats d;
-  const auto x = hn::Set(d, slabs.normal[0][lane]), y = hn::Set(d, slabs.normal[1][lane]), z = hn::Set(d, slabs.normal[2][lane]);
-  const auto along = [&](const auto& px, const auto& py, const auto& pz) { return hn::Add(hn::Mul(x, px), hn::Add(hn::Mul(y, py), hn::Mul(z, pz))); };
+  const auto x = hn::Set(d, slabs.normal[0][lane]), y = hn::Set(d, slabs.normal[1][lane]),
+             z = hn::Set(d, slabs.normal[2][lane]);
+  const auto along = [&](const auto& px, const auto& py, const auto& pz) {
+    return hn::Add(hn::Mul(x, px), hn::Add(hn::Mul(y, py), hn::Mul(z, pz)));
+  };
   const auto p = along(hn::Set(d, packet.p[0]), hn::Set(d, packet.p[1]), hn::Set(d, packet.p[2]));
   const auto from = hn::Set(d, slabs.from[lane]), to = hn::Set(d, slabs.to[lane]);
   std::uint32_t apart = 0;
   for (std::size_t at = 0; at < packet.count; at += hn::Lanes(d)) {
-    const auto q = along(hn::Load(d, packet.end[0] + at), hn::Load(d, packet.end[1] + at), hn::Load(d, packet.end[2] + at));
+    const auto q =
+        along(hn::Load(d, packet.end[0] + at), hn::Load(d, packet.end[1] + at), hn::Load(d, packet.end[2] + at));
     apart |= bits_of(hn::Or(hn::Gt(hn::Min(p, q), to), hn::Lt(hn::Max(p, q), from))) << at;
   }
   return ~apart;
@@ -113,7 +119,8 @@ std::uint32_t within_slab(const Packet& packet, const TriangleLanes::Slabs& slab
 void fill(const TriangleLanes& tree, const Vec3& p, const Vec3* ends, Packet& packet) {
   const hn::CappedTag<double, TriangleLanes::width> dd;
   const hn::Rebind<float, decltype(dd)> df;
-  const std::size_t lanes = hn::Lanes(dd), whole = (packet.count + TriangleLanes::width - 1) / TriangleLanes::width * TriangleLanes::width;
+  const std::size_t lanes = hn::Lanes(dd),
+                    whole = (packet.count + TriangleLanes::width - 1) / TriangleLanes::width * TriangleLanes::width;
   auto& at = packet.exact_end;
   for (std::size_t s = 0; s < whole; ++s) {
     const double* const end = s < packet.count ? ends[s].data() : p.data();
@@ -125,14 +132,16 @@ void fill(const TriangleLanes& tree, const Vec3& p, const Vec3* ends, Packet& pa
     const auto from = hn::Set(df, packet.p[axis]);
     auto all_lo = from, all_hi = from;
     for (std::size_t s = 0; s < whole; s += lanes) {
-      const auto to = hn::DemoteTo(df, hn::Mul(hn::Sub(hn::Load(dd, at[axis] + s), hn::Set(dd, tree.middle()[axis])), hn::Set(dd, tree.scale())));
+      const auto to = hn::DemoteTo(df, hn::Mul(hn::Sub(hn::Load(dd, at[axis] + s), hn::Set(dd, tree.middle()[axis])),
+                                               hn::Set(dd, tree.scale())));
       const auto lo = hn::Min(from, to), hi = hn::Max(from, to);
       hn::Store(to, df, packet.end[axis] + s);
       hn::Store(lo, df, packet.lo[axis] + s);
       hn::Store(hi, df, packet.hi[axis] + s);
       all_lo = hn::Min(all_lo, lo), all_hi = hn::Max(all_hi, hi);
     }
-    packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo)), packet.all_hi[axis] = hn::GetLane(hn::MaxOfLanes(df, all_hi));
+    packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo)),
+    packet.all_hi[axis] = hn::GetLane(hn::MaxOfLanes(df, all_hi));
     packet.near = packet.near && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
   }
 }
@@ -145,13 +154,15 @@ using Doubles = hn::CappedTag<double, 8>;
 template <class V>
 Sides sides(const Plane& plane, const V& x, const V& y, const V& z) {
   const Doubles d;
-  const auto u = hn::Sub(x, hn::Set(d, plane.origin.x())), v = hn::Sub(y, hn::Set(d, plane.origin.y())), w = hn::Sub(z, hn::Set(d, plane.origin.z()));
+  const auto u = hn::Sub(x, hn::Set(d, plane.origin.x())), v = hn::Sub(y, hn::Set(d, plane.origin.y())),
+             w = hn::Sub(z, hn::Set(d, plane.origin.z()));
   const auto sum = [&](const double* n, const auto& a, const auto& b, const auto& c) {
     return hn::Add(hn::Add(hn::Mul(hn::Set(d, n[0]), a), hn::Mul(hn::Set(d, n[1]), b)), hn::Mul(hn::Set(d, n[2]), c));
   };
   const auto value = sum(plane.normal, u, v, w), permanent = sum(plane.terms, hn::Abs(u), hn::Abs(v), hn::Abs(w));
   const auto bound = hn::Mul(permanent, hn::Set(d, orientation_error));
-  const auto valid = hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
+  const auto valid =
+      hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
   const auto bits = [&](const auto& mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, hn::And(mask, valid), bytes);
@@ -172,19 +183,23 @@ Crossing crossing(const Packet& packet, const Vec3& p, const std::array<Vec3, 3>
   Crossing result{0, 0};
   for (std::size_t at = 0; at < packet.count; at += hn::Lanes(d)) {
     if ((segments >> at & ((1u << hn::Lanes(d)) - 1)) == 0) continue;
-    const auto x = hn::Load(d, packet.exact_end[0] + at), y = hn::Load(d, packet.exact_end[1] + at), z = hn::Load(d, packet.exact_end[2] + at);
+    const auto x = hn::Load(d, packet.exact_end[0] + at), y = hn::Load(d, packet.exact_end[1] + at),
+               z = hn::Load(d, packet.exact_end[2] + at);
     const Sides end = sides(own, x, y, z);
     const Sides around[3] = {sides(edges[0], x, y, z), sides(edges[1], x, y, z), sides(edges[2], x, y, z)};
     const auto across = side > 0 ? end.negative : end.positive, beside = side > 0 ? end.positive : end.negative;
-    const auto all_positive = around[0].positive & around[1].positive & around[2].positive, all_negative = around[0].negative & around[1].negative & around[2].negative;
-    const auto any_positive = around[0].positive | around[1].positive | around[2].positive, any_negative = around[0].negative | around[1].negative | around[2].negative;
+    const auto all_positive = around[0].positive & around[1].positive & around[2].positive,
+               all_negative = around[0].negative & around[1].negative & around[2].negative;
+    const auto any_positive = around[0].positive | around[1].positive | around[2].positive,
+               any_negative = around[0].negative | around[1].negative | around[2].negative;
     result.through |= (across & (all_positive | all_negative)) << at;
     result.apart |= (beside | (across & any_positive & any_negative)) << at;
   }
   return {result.through & segments, result.apart & segments};
 }
 
-void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) {
+void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
+                    std::uint8_t* result) {
   Packet packet;
   packet.count = ends.size();
   fill(tree, p, ends.data(), packet);
@@ -200,12 +215,14 @@ void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, con
     const auto [level, block] = stack[--top];
     const auto& boxes = levels[level][block];
     for (auto lanes = meeting(boxes, packet.all_lo, packet.all_hi); lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), child = block * TriangleLanes::width + lane;
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)),
+                 child = block * TriangleLanes::width + lane;
       if (level > 1) {
         stack[top++] = {level - 1, child};
         continue;
       }
-      for (auto triangles = meeting(levels[0][child], packet.all_lo, packet.all_hi); triangles != 0 && open != 0; triangles &= triangles - 1) {
+      for (auto triangles = meeting(levels[0][child], packet.all_lo, packet.all_hi); triangles != 0 && open != 0;
+           triangles &= triangles - 1) {
         const auto k = static_cast<std::uint32_t>(std::countr_zero(triangles));
         auto asked = meeting(packet, levels[0][child], k) & open;
         if (asked != 0 && packet.near) asked &= within_slab(packet, tree.slabs()[child], k);
@@ -242,12 +259,13 @@ TriangleLanes::TriangleLanes(Corners corners, Order order) {
   const auto start = [](std::size_t count) {
     Boxes none;
     for (int axis = 0; axis < 3; ++axis)
-      for (std::uint32_t lane = 0; lane < width; ++lane) none.lo[axis][lane] = INFINITY, none.hi[axis][lane] = -INFINITY;
+      for (std::uint32_t lane = 0; lane < width; ++lane)
+        none.lo[axis][lane] = INFINITY, none.hi[axis][lane] = -INFINITY;
     return std::vector<Boxes>((count + width - 1) / width, none);
   };
   // Coordinates in the frame, at most 2, are off by 2⁻²³ (1 + 2⁻²⁸); the product of one with a direction of length 1 by
-  // that times √3, and by 3 · 2⁻²⁴ · 2 √3 from its own rounding: together below 15 · 2⁻²⁴. Rounding `from` and `to` adds
-  // 2⁻²³ at most.
+  // that times √3, and by 3 · 2⁻²⁴ · 2 √3 from its own rounding: together below 15 · 2⁻²⁴. Rounding `from` and `to`
+  // adds 2⁻²³ at most.
   constexpr double margin = 0x1p-19;
   levels_.push_back(start(order.size()));
   slabs_.resize(levels_[0].size());
@@ -282,11 +300,13 @@ TriangleLanes::TriangleLanes(Corners corners, Order order) {
   }
 }
 
-void TriangleLanes::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const {
+void TriangleLanes::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
+                            std::uint8_t* result) const {
   std::fill_n(result, ends.size(), std::uint8_t(0));
   if (levels_.empty()) return;
   for (std::size_t first = 0; first < ends.size(); first += most_segments)
-    HWY_DYNAMIC_DISPATCH(blocked_packet)(*this, corners, order, p, ends.subspan(first, std::min(most_segments, ends.size() - first)), result + first);
+    HWY_DYNAMIC_DISPATCH(blocked_packet)
+    (*this, corners, order, p, ends.subspan(first, std::min(most_segments, ends.size() - first)), result + first);
 }
 
 }  // namespace geo

@@ -10,8 +10,8 @@
 namespace geo {
 
 /// A tree of boxes, sixteen to a block, over triangles in an order that keeps neighbours together. All is in floats, in
-/// a frame in which the triangles' coordinates are at most 1 in magnitude. Going to that frame is monotone, rounding and
-/// all, so boxes that meet still meet there; nothing is lost, and what may touch is left to exact predicates.
+/// a frame in which the triangles' coordinates are at most 1 in magnitude. Going to that frame is monotone, rounding
+/// and all, so boxes that meet still meet there; nothing is lost, and what may touch is left to exact predicates.
 class TriangleLanes {
  public:
   static constexpr std::uint32_t width = 16;
@@ -26,13 +26,14 @@ class TriangleLanes {
   };
 
   TriangleLanes() = default;
-  /// `order`: all rows of `corners`. Sixteen consecutive ones make a block, sixteen consecutive blocks the next, and so on.
+  /// `order`: all rows of `corners`. Sixteen consecutive ones make a block, sixteen consecutive blocks the next, and so
+  /// on.
   TriangleLanes(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order);
 
   /// For each closed segment from p to a point of `ends`: 1 where it touches a triangle, else 0. Exact. `corners` and
   /// `order` are those that the tree was made of.
-  void blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p, std::span<const Vec3> ends,
-               std::uint8_t* result) const;
+  void blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p,
+               std::span<const Vec3> ends, std::uint8_t* result) const;
 
   /// The frame: a coordinate's place in it is its difference from middle(), times scale(), as a float.
   const Vec3& middle() const { return middle_; }

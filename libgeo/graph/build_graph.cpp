@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"
 #include "graph/visibility.h"
 #include "kerf/graph.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -49,7 +49,8 @@ Pairs candidates(const NodeSet& nodes, std::size_t k, const Progress& progress) 
 
 }  // namespace
 
-VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& obstacles, int k, const Progress& progress) {
+VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& obstacles, int k,
+                                       const Progress& progress) {
   const std::size_t n = nodes.size();
   VisibilityGraph graph;
   graph.resize(n);
@@ -85,7 +86,8 @@ VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& 
       std::sort(row.begin(), row.end());
       bits.clear();
       for (const auto j : row)
-        bits.push_back(VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(warped_length(nodes, i, j)));
+        bits.push_back(VisibilityGraph::edge_bit | VisibilityGraph::path_bit |
+                       VisibilityGraph::bits_of_bound(warped_length(nodes, i, j)));
       rows.set(i, {row, bits, {}});
     }
   });

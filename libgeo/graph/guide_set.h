@@ -14,8 +14,8 @@ namespace geo {
 /// is bound to it.
 struct Guide {
   Vec3 position;
-  double radius = 0;  ///< it has edges to what it sees within this distance; its support radius in warped lengths. Model units.
-                      ///< 0: retired, sees nothing
+  double radius = 0;  ///< it has edges to what it sees within this distance; its support radius in warped lengths.
+                      ///< Model units. 0: retired, sees nothing
 };
 
 /// What a step does to the guides of a graph.
@@ -46,8 +46,12 @@ class GuideSet {
   /// Over the positions of all, retired ones too.
   const NodeGrid& grid() const { return grid_; }
   /// What they take in memory.
-  std::size_t bytes() const { return position_.capacity() * sizeof(Vec3) + radius_.capacity() * sizeof(double) + grid_.bytes(); }
-  friend bool operator==(const GuideSet& a, const GuideSet& b) { return a.position_ == b.position_ && a.radius_ == b.radius_; }
+  std::size_t bytes() const {
+    return position_.capacity() * sizeof(Vec3) + radius_.capacity() * sizeof(double) + grid_.bytes();
+  }
+  friend bool operator==(const GuideSet& a, const GuideSet& b) {
+    return a.position_ == b.position_ && a.radius_ == b.radius_;
+  }
 
  private:
   std::vector<Vec3> position_;

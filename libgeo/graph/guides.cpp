@@ -13,7 +13,8 @@ constexpr double more = 1 + 1e-9;  // grids are asked for so much more: in_reach
 
 }  // namespace
 
-void near_guide(const NodeSet& nodes, const NodeGrid& grid, const VisibilityGraph& graph, std::uint32_t guide, std::vector<std::uint32_t>& ids) {
+void near_guide(const NodeSet& nodes, const NodeGrid& grid, const VisibilityGraph& graph, std::uint32_t guide,
+                std::vector<std::uint32_t>& ids) {
   const Vec3& p = graph.position(nodes, guide);
   const double radius = graph.radius(nodes, guide);
   std::vector<std::uint32_t> found;
@@ -24,16 +25,20 @@ void near_guide(const NodeSet& nodes, const NodeGrid& grid, const VisibilityGrap
   graph.guides().within(p, more * graph.guides().largest_radius(), found);
   for (const auto g : found) {
     const auto id = VisibilityGraph::first_guide + g;
-    if (id < guide && !graph.guides().retired(g) && in_reach(p, graph.guides().position(g), std::max(radius, graph.guides().radius(g)))) ids.push_back(id);
+    if (id < guide && !graph.guides().retired(g) &&
+        in_reach(p, graph.guides().position(g), std::max(radius, graph.guides().radius(g))))
+      ids.push_back(id);
   }
 }
 
-void guides_near(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t node, std::vector<std::uint32_t>& ids) {
+void guides_near(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t node,
+                 std::vector<std::uint32_t>& ids) {
   const Vec3& p = nodes.position[node];
   std::vector<std::uint32_t> found;
   graph.guides().within(p, more * graph.guides().largest_radius(), found);
   for (const auto g : found)
-    if (!graph.guides().retired(g) && in_reach(p, graph.guides().position(g), graph.guides().radius(g))) ids.push_back(VisibilityGraph::first_guide + g);
+    if (!graph.guides().retired(g) && in_reach(p, graph.guides().position(g), graph.guides().radius(g)))
+      ids.push_back(VisibilityGraph::first_guide + g);
 }
 
 void join_guides(const NodeSet& nodes, std::span<const std::vector<std::uint32_t>> seen, VisibilityGraph& graph) {
@@ -47,7 +52,8 @@ void join_guides(const NodeSet& nodes, std::span<const std::vector<std::uint32_t
   graph.append_guide_edges(nodes, edges);
 }
 
-void add_guides(const NodeSet& nodes, const NodeGrid& grid, const TriangleBvh& obstacles, std::span<const Guide> guides, VisibilityGraph& graph) {
+void add_guides(const NodeSet& nodes, const NodeGrid& grid, const TriangleBvh& obstacles, std::span<const Guide> guides,
+                VisibilityGraph& graph) {
   const auto first = VisibilityGraph::first_guide + graph.guides().size();
   for (const Guide& guide : guides) graph.add_guide(guide);
   std::vector<std::vector<std::uint32_t>> seen(guides.size());
@@ -55,7 +61,9 @@ void add_guides(const NodeSet& nodes, const NodeGrid& grid, const TriangleBvh& o
     for (std::size_t g = begin; g < end; ++g) {
       const auto id = static_cast<std::uint32_t>(first + g);
       near_guide(nodes, grid, graph, id, seen[g]);
-      std::erase_if(seen[g], [&](std::uint32_t other) { return obstacles.blocks(graph.position(nodes, other), graph.position(nodes, id)); });
+      std::erase_if(seen[g], [&](std::uint32_t other) {
+        return obstacles.blocks(graph.position(nodes, other), graph.position(nodes, id));
+      });
     }
   });
   join_guides(nodes, seen, graph);

@@ -11,8 +11,8 @@
 
 namespace geo {
 
-/// Faster than a hash table where ids are near each other. Memory is a kilobyte for each run of 256 ids of which one came, and four
-/// bytes for each run of the graph.
+/// Faster than a hash table where ids are near each other. Memory is a kilobyte for each run of 256 ids of which one
+/// came, and four bytes for each run of the graph.
 class IdPages {
  public:
   /// Forgets all ids.
@@ -52,8 +52,8 @@ class IdPages {
     used_.push_back({run, pages[at] = page});
   }
 
-  std::vector<std::uint32_t> tables_[2];  // of nodes and of guides: the page of each run, or none
-  std::vector<Page> pages_;               // numbers
+  std::vector<std::uint32_t> tables_[2];                       // of nodes and of guides: the page of each run, or none
+  std::vector<Page> pages_;                                    // numbers
   std::vector<std::pair<std::uint32_t, std::uint32_t>> used_;  // runs and their pages
   std::uint32_t size_ = 0;
 };

@@ -21,13 +21,15 @@ void Lengths(const double* squared, const double* radius, std::size_t count, std
   const auto least = hn::Set(d, 1.0), most = hn::Set(d, double(longest_length)), unit = hn::Set(d, double(unit_radius));
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const auto length = hn::Ceil(hn::Mul(hn::Div(hn::Sqrt(hn::LoadU(d, squared + k)), hn::LoadU(d, radius + k)), unit));
-    hn::StoreU(hn::DemoteTo(di, hn::Min(hn::Max(length, least), most)), di, reinterpret_cast<std::int32_t*>(lengths) + k);
+    hn::StoreU(hn::DemoteTo(di, hn::Min(hn::Max(length, least), most)), di,
+               reinterpret_cast<std::int32_t*>(lengths) + k);
   }
 }
 
-// Of the entries of which `part` of the bits is not `refused`. Whole vectors only: the last of them begins so early that it ends
-// with the row, without the entries that were taken.
-std::size_t LeadOn(const RowView& row, std::uint32_t part, std::uint32_t refused, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+// Of the entries of which `part` of the bits is not `refused`. Whole vectors only: the last of them begins so early
+// that it ends with the row, without the entries that were taken.
+std::size_t LeadOn(const RowView& row, std::uint32_t part, std::uint32_t refused, std::uint32_t reach,
+                   std::uint32_t* targets, std::uint32_t* lengths) {
   const std::uint32_t* const to = row.to.data();
   const std::uint16_t* const bits = row.bits.data();
   const std::size_t count = row.to.size();
@@ -44,7 +46,8 @@ std::size_t LeadOn(const RowView& row, std::uint32_t part, std::uint32_t refused
     for (std::size_t k = 0; k < count; ++k) take(k);
     return found;
   }
-  const auto asked = hn::Set(d, part), not_these = hn::Set(d, refused), bound = hn::Set(d, std::uint32_t(VisibilityGraph::bound_bits));
+  const auto asked = hn::Set(d, part), not_these = hn::Set(d, refused),
+             bound = hn::Set(d, std::uint32_t(VisibilityGraph::bound_bits));
   const auto from = hn::Set(d, reach), radius = hn::Set(d, unit_radius);
   for (std::size_t k = 0; k < count; k += lanes) {
     const auto at = std::min(k, count - lanes);
@@ -109,9 +112,14 @@ template <class D, class V>
 void Transpose(D d, V* v) {
   const hn::Repartition<std::uint64_t, D> dw;
   V pairs[16];
-  for (int k = 0; k < 16; k += 2) pairs[k] = hn::InterleaveLower(d, v[k], v[k + 1]), pairs[k + 1] = hn::InterleaveUpper(d, v[k], v[k + 1]);
-  const auto low = [&](V a, V b) { return hn::BitCast(d, hn::InterleaveLower(dw, hn::BitCast(dw, a), hn::BitCast(dw, b))); };
-  const auto high = [&](V a, V b) { return hn::BitCast(d, hn::InterleaveUpper(dw, hn::BitCast(dw, a), hn::BitCast(dw, b))); };
+  for (int k = 0; k < 16; k += 2)
+    pairs[k] = hn::InterleaveLower(d, v[k], v[k + 1]), pairs[k + 1] = hn::InterleaveUpper(d, v[k], v[k + 1]);
+  const auto low = [&](V a, V b) {
+    return hn::BitCast(d, hn::InterleaveLower(dw, hn::BitCast(dw, a), hn::BitCast(dw, b)));
+  };
+  const auto high = [&](V a, V b) {
+    return hn::BitCast(d, hn::InterleaveUpper(dw, hn::BitCast(dw, a), hn::BitCast(dw, b)));
+  };
   for (int k = 0; k < 16; k += 4) {
     v[k] = low(pairs[k], pairs[k + 2]), v[k + 1] = high(pairs[k], pairs[k + 2]);
     v[k + 2] = low(pairs[k + 1], pairs[k + 3]), v[k + 3] = high(pairs[k + 1], pairs[k + 3]);
@@ -132,7 +140,8 @@ void Transpose(D d, V* v) {
 void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
   constexpr std::size_t all = LaneSearch::lanes;
   std::uint32_t *node_end[all], *id_end[all], *distance_end[all];
-  for (std::size_t k = 0; k < all; ++k) node_end[k] = w.rows[k].node.data(), id_end[k] = w.rows[k].id.data(), distance_end[k] = w.rows[k].distance.data();
+  for (std::size_t k = 0; k < all; ++k)
+    node_end[k] = w.rows[k].node.data(), id_end[k] = w.rows[k].id.data(), distance_end[k] = w.rows[k].distance.data();
   // The queue is empty, so that there is room for a list.
   std::uint32_t* const nodes = w.queue.data();
   std::size_t count = 0;
@@ -140,12 +149,14 @@ void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
   const hn::CappedTag<std::uint8_t, 64> bytes;
   for (std::size_t first = 0; first < w.touched.size(); first += 64) {
     bool any = false;
-    for (std::size_t k = 0; k < 64; k += hn::Lanes(bytes)) any |= !hn::AllTrue(bytes, hn::Eq(hn::LoadU(bytes, touched + first + k), hn::Zero(bytes)));
+    for (std::size_t k = 0; k < 64; k += hn::Lanes(bytes))
+      any |= !hn::AllTrue(bytes, hn::Eq(hn::LoadU(bytes, touched + first + k), hn::Zero(bytes)));
     if (!any) continue;
     for (std::size_t word = first; word < first + 64; word += 8) {
       std::uint64_t rest;
       std::memcpy(&rest, touched + word, 8);
-      for (; rest != 0; rest &= rest - 1) nodes[count++] = static_cast<std::uint32_t>(word + hwy::Num0BitsBelowLS1Bit_Nonzero64(rest) / 8);
+      for (; rest != 0; rest &= rest - 1)
+        nodes[count++] = static_cast<std::uint32_t>(word + hwy::Num0BitsBelowLS1Bit_Nonzero64(rest) / 8);
     }
     std::memset(touched + first, 0, 64);
   }
@@ -207,11 +218,13 @@ void warped_lengths(const double* squared, const double* radius, std::size_t cou
   HWY_DYNAMIC_DISPATCH(Lengths)(squared, radius, count, lengths);
 }
 
-std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets,
+                               std::uint32_t* lengths) {
   return HWY_DYNAMIC_DISPATCH(LeadOn)(row, VisibilityGraph::edge_bit, 0, reach, targets, lengths);
 }
 
-std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths) {
+std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets,
+                                   std::uint32_t* lengths) {
   constexpr std::uint32_t bare = VisibilityGraph::edge_bit | VisibilityGraph::path_bit;
   return HWY_DYNAMIC_DISPATCH(LeadOn)(row, bare, bare, reach, targets, lengths);
 }
@@ -256,7 +269,8 @@ void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sou
 std::vector<std::string> vector_targets() {
   std::vector<std::string> names;
   hwy::SetSupportedTargetsForTest(0);
-  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) names.push_back(hwy::TargetName(rest & -rest));
+  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1)
+    names.push_back(hwy::TargetName(rest & -rest));
   return names;
 }
 

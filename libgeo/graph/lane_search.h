@@ -13,12 +13,14 @@ namespace geo {
 /// warped_length() of many edges, from squared distances and the larger radius of each.
 void warped_lengths(const double* squared, const double* radius, std::size_t count, std::uint32_t* lengths);
 
-/// The edges of a row whose ends may be within a support radius of something that is `reach` or more from here: where they
-/// lead, and at least how far that is. Writes up to 16 numbers behind the last, which are nothing. Returns how many there are.
+/// The edges of a row whose ends may be within a support radius of something that is `reach` or more from here: where
+/// they lead, and at least how far that is. Writes up to 16 numbers behind the last, which are nothing. Returns how
+/// many there are.
 std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths);
 
 /// The same with the neighbours in place of the edges.
-std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets, std::uint32_t* lengths);
+std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets,
+                                   std::uint32_t* lengths);
 
 class LaneSearch {
  public:
@@ -26,7 +28,8 @@ class LaneSearch {
   /// Everything within the support radius of a source but itself, ascending.
   struct Row {
     std::span<const std::uint32_t> node, id;  ///< local, and of the whole graph
-    std::span<const std::uint32_t> distance;  ///< warped, 0 < distance < unit_radius; and edge_bit where an edge joins it to the source
+    std::span<const std::uint32_t>
+        distance;  ///< warped, 0 < distance < unit_radius; and edge_bit where an edge joins it to the source
   };
   static constexpr std::uint32_t edge_bit = 1u << 31;
 
@@ -43,11 +46,11 @@ class LaneSearch {
   };
   /// What the vector code works on.
   struct Work {
-    std::vector<Lanes> distances;        // of each local node; `far` where nothing is known
-    std::vector<std::uint8_t> queued;    // 1 where a node is in the queue
-    std::vector<std::uint32_t> queue;    // a ring
-    std::vector<std::uint8_t> touched;   // 1 where a distance is known; a multiple of 64
-    std::vector<std::uint16_t> joined;   // of each local node: by bits, the lanes whose sources have an edge to it
+    std::vector<Lanes> distances;       // of each local node; `far` where nothing is known
+    std::vector<std::uint8_t> queued;   // 1 where a node is in the queue
+    std::vector<std::uint32_t> queue;   // a ring
+    std::vector<std::uint8_t> touched;  // 1 where a distance is known; a multiple of 64
+    std::vector<std::uint16_t> joined;  // of each local node: by bits, the lanes whose sources have an edge to it
     std::uint32_t tail = 0;
     struct Row {
       std::vector<std::uint32_t> node, id, distance;  // and room for sixteen more

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "kerf/vec.h"
 #include "graph/node_tree.h"
 #include "kerf/nodes.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -27,7 +27,8 @@ inline std::uint32_t warped_length(const NodeSet& nodes, std::size_t i, std::siz
 
 /// Plain length of an edge, |x_i − x_j|, in `unit`s, rounded up and at least 1.
 inline std::uint32_t plain_length(const Vec3& xi, const Vec3& xj, double unit) {
-  return static_cast<std::uint32_t>(std::clamp(std::ceil(std::sqrt(squared_distance(xi, xj)) / unit), 1.0, double(longest_length)));
+  return static_cast<std::uint32_t>(
+      std::clamp(std::ceil(std::sqrt(squared_distance(xi, xj)) / unit), 1.0, double(longest_length)));
 }
 
 /// The unit of plain lengths for a node set: a power of two, 2⁻²⁶ of about the largest support radius.

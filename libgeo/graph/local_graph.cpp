@@ -9,7 +9,8 @@ namespace geo {
 inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
   const auto number = numbers_.add(id);
   if (number == discovered_) {
-    if (discovered_ == discoveries_.size()) discoveries_.resize(2 * discovered_ + 64), queued_.resize(discoveries_.size(), 0);
+    if (discovered_ == discoveries_.size())
+      discoveries_.resize(2 * discovered_ + 64), queued_.resize(discoveries_.size(), 0);
     discoveries_[discovered_++] = {id, unit_radius, 0, 0};
   }
   return number;
@@ -23,7 +24,8 @@ void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint
   for (const auto id : sources) discover(id);
   std::size_t used = 0, tail = 0;
   if (queue_.size() < count) queue_.resize(2 * count);
-  for (std::uint32_t number = 0; number < count; ++number) queue_[tail++] = number, discoveries_[number].reach = 0, queued_[number] = 1;
+  for (std::uint32_t number = 0; number < count; ++number)
+    queue_[tail++] = number, discoveries_[number].reach = 0, queued_[number] = 1;
   const auto leads_on = [&](std::uint32_t number) {
     const Discovery& d = discoveries_[number];
     return d.reach + VisibilityGraph::bound(graph.store(d.id).least(VisibilityGraph::place(d.id))) < unit_radius;
@@ -93,7 +95,10 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   for (std::size_t k = 0; k < count; ++k) edges_[begin[class_[k]]++] = {to_[k], length_[k]};
   first_.push_back(begin[classes - 1]);
   limit_.push_back(unit_radius - shortest);
-  if (source) bare_edges_[number] = longest >= unit_radius || std::any_of(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(count), [&](auto to) { return to >= nodes_; });
+  if (source)
+    bare_edges_[number] =
+        longest >= unit_radius || std::any_of(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(count),
+                                              [&](auto to) { return to >= nodes_; });
 }
 
 void LocalGraph::gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources) {

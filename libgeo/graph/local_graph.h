@@ -19,7 +19,9 @@ class LocalGraph {
   /// Edges are in classes by length: those of 2⁻⁴ of a support radius, or of two, and so on.
   static constexpr unsigned class_shift = 20;
   /// Edges as long as this lead out of the support radius from there (as do some shorter ones).
-  static constexpr std::uint32_t end_of_classes(std::uint32_t distance) { return (((unit_radius - 1 - distance) >> class_shift) + 1) << class_shift; }
+  static constexpr std::uint32_t end_of_classes(std::uint32_t distance) {
+    return (((unit_radius - 1 - distance) >> class_shift) + 1) << class_shift;
+  }
 
   /// Everything within a support radius of one of the sources (ascending; best near each other).
   void gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources);
@@ -35,7 +37,9 @@ class LocalGraph {
   /// Has the k-th source edges that join no neighbours: as long as the support, which are not here, or to guides?
   bool has_bare_edges(std::size_t k) const { return bare_edges_[k]; }
   /// By class of length. A node has those edges only that lead to a neighbour of a source.
-  std::span<const Edge> edges(std::uint32_t local) const { return {edges_.data() + first_[local], edges_.data() + first_[local + 1]}; }
+  std::span<const Edge> edges(std::uint32_t local) const {
+    return {edges_.data() + first_[local], edges_.data() + first_[local + 1]};
+  }
   /// From this distance on, no edge of a node leads to a neighbour. By local node.
   std::span<const std::uint32_t> limits() const { return limit_; }
 

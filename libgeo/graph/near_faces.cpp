@@ -17,13 +17,15 @@ class Plane {
     const Vec3 u = t[1] - t[0], v = t[2] - t[0];
     normal_ = u.cross(v);
     length_ = normal_.norm();
-    // A height takes a dozen operations on products of these sizes, each with an error of 2⁻⁵³: 2⁻⁴⁸ is more than enough.
+    // A height takes a dozen operations on products of these sizes, each with an error of 2⁻⁵³: 2⁻⁴⁸ is more than
+    // enough.
     rounding_ = 0x1p-48 * u.lpNorm<1>() * v.lpNorm<1>();
   }
   /// False only when x is farther from the plane than `distance`.
   bool within(const Vec3& x, double distance) const {
     const double a = x.x() - origin_.x(), b = x.y() - origin_.y(), c = x.z() - origin_.z();
-    const double height = (a * normal_.x() + b * normal_.y()) + c * normal_.z(), error = rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c));
+    const double height = (a * normal_.x() + b * normal_.y()) + c * normal_.z(),
+                 error = rounding_ * ((std::abs(a) + std::abs(b)) + std::abs(c));
     return std::abs(height) <= error + (length_ + rounding_) * distance;
   }
 
@@ -34,12 +36,14 @@ class Plane {
 
 // Which nodes a face may cut something of: those within `reach` of it, and some more.
 struct Surroundings {
-  Surroundings(const Corners& t, double reach) : plane(t), around(box_of(t[0], t[1], t[2]).grown(reach)), reach(reach) {}
+  Surroundings(const Corners& t, double reach)
+      : plane(t), around(box_of(t[0], t[1], t[2]).grown(reach)), reach(reach) {}
   /// False only for what is farther than `distance`, which is `reach` at most.
   bool holds(const Vec3& x, double distance) const {
     const double less = reach - distance;
-    return x.x() >= around.lo.x() + less && x.x() <= around.hi.x() - less && x.y() >= around.lo.y() + less && x.y() <= around.hi.y() - less &&
-           x.z() >= around.lo.z() + less && x.z() <= around.hi.z() - less && plane.within(x, distance);
+    return x.x() >= around.lo.x() + less && x.x() <= around.hi.x() - less && x.y() >= around.lo.y() + less &&
+           x.y() <= around.hi.y() - less && x.z() >= around.lo.z() + less && x.z() <= around.hi.z() - less &&
+           plane.within(x, distance);
   }
   /// True unless it holds nothing of the cube.
   bool reaches(const Vec3& middle, double half) const {
@@ -54,7 +58,12 @@ struct Surroundings {
 class Search {
  public:
   Search(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const Corners> faces, const TriangleBvh& tree)
-      : nodes_(nodes), graph_(graph), faces_(faces), tree_(tree), reach_(graph.reach() * (1 + 1e-6)), support_(std::min(graph.support() * (1 + 1e-6), reach_)) {
+      : nodes_(nodes),
+        graph_(graph),
+        faces_(faces),
+        tree_(tree),
+        reach_(graph.reach() * (1 + 1e-6)),
+        support_(std::min(graph.support() * (1 + 1e-6), reach_)) {
     // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
     for (const Corners& face : faces) around_.emplace_back(face, 0.5 * reach_);
   }
@@ -88,7 +97,7 @@ class Search {
     std::iota(faces_at_[0].begin(), faces_at_[0].end(), 0u);
     std::size_t depth_of_cube = 0;  // of the one that was looked at last
     bool is_new = false;
-    int whole = none;       // depth of a cube so small that all in it is taken
+    int whole = none;  // depth of a cube so small that all in it is taken
     int depth_of_region = none;
     const auto into = [&](int depth, const Vec3& middle, double half) {
       if (depth > whole) return true;
@@ -181,10 +190,12 @@ class Search {
 
 }  // namespace
 
-Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, const Vec3& origin, double reach) : origin(origin) {
+Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, const Vec3& origin, double reach)
+    : origin(origin) {
   double largest = -1, far = reach;
   for (const auto f : rows)
-    if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest) largest = n.squaredNorm(), normal = n;
+    if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest)
+      largest = n.squaredNorm(), normal = n;
   for (const auto f : rows)
     for (const Vec3& corner : faces[f]) {
       const double h = height(corner);

@@ -13,15 +13,19 @@
 
 namespace geo {
 
-/// The stretch that some faces cover along one's normal, from `origin`, and some more: a segment beyond it touches none.
+/// The stretch that some faces cover along one's normal, from `origin`, and some more: a segment beyond it touches
+/// none.
 struct Slab {
   /// Of the faces in `rows`; heights are asked of points at most `reach` from the origin along each axis.
-  Slab(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> rows, const Vec3& origin, double reach);
+  Slab(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> rows, const Vec3& origin,
+       double reach);
   double height(const Vec3& x) const {
     return ((x.x() - origin.x()) * normal.x() + (x.y() - origin.y()) * normal.y()) + (x.z() - origin.z()) * normal.z();
   }
   /// False only for what is farther from all of the faces than `distance`.
-  bool within(double height, double distance) const { return height >= from - distance * length && height <= to + distance * length; }
+  bool within(double height, double distance) const {
+    return height >= from - distance * length && height <= to + distance * length;
+  }
   Vec3 origin, normal = Vec3::Zero();
   double from = std::numeric_limits<double>::infinity(), to = -from;
   double length = 0;  ///< of the normal, or a trifle more

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "graph/nearest_internal.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
-#include "graph/nearest_internal.h"
 
 namespace geo {
 
@@ -40,6 +40,8 @@ FreshArray<NodeId> nearest_nodes(const NodeTree& tree, int k) {
   return rows;
 }
 
-FreshArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k) { return nearest_nodes(NodeTree(positions), k); }
+FreshArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k) {
+  return nearest_nodes(NodeTree(positions), k);
+}
 
 }  // namespace geo

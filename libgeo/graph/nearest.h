@@ -5,8 +5,8 @@
 #include <span>
 
 #include "base/fresh_array.h"
-#include "kerf/vec.h"
 #include "graph/node_tree.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -15,8 +15,8 @@ namespace geo {
 FreshArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
 FreshArray<NodeId> nearest_nodes(const NodeTree& tree, int k);
 
-/// The same, a row at a time and none of them kept: `take(i, row)` is called once for each node, in no set order and from
-/// several threads; the row is gone after the call.
+/// The same, a row at a time and none of them kept: `take(i, row)` is called once for each node, in no set order and
+/// from several threads; the row is gone after the call.
 void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& take);
 
 }  // namespace geo

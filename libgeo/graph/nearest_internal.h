@@ -4,8 +4,8 @@
 #include <functional>
 #include <span>
 
-#include "kerf/vec.h"
 #include "graph/node_tree.h"
+#include "kerf/vec.h"
 
 namespace geo {
 

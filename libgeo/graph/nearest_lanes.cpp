@@ -21,12 +21,13 @@ namespace {
 
 using TakeRow = std::function<void(NodeId, std::span<const NodeId>)>;
 
-// Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within 2⁻²⁴ (1 + 2⁻²⁸) of the
-// exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at most. For a distance d ≤ 1 the sum of squares
-// is then off by 2 η √3 d + 3 η² from the coordinates and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
+// Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within 2⁻²⁴ (1 + 2⁻²⁸) of
+// the exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at most. For a distance d ≤ 1 the sum of
+// squares is then off by 2 η √3 d + 3 η² from the coordinates and by 4 · 2⁻²⁴ d² from its own rounding: below 18 ·
+// 2⁻²⁴.
 constexpr double float_error = 0x1p-19;
-// Candidates are told apart by the low bits of their squares, whose place is then the candidate's: that takes away a share
-// of key_error at most.
+// Candidates are told apart by the low bits of their squares, whose place is then the candidate's: that takes away a
+// share of key_error at most.
 constexpr std::uint32_t most_keyed = 2048, most_ranked = 255;
 constexpr double key_error = 0x1p-12;
 
@@ -59,7 +60,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 class GroupSearch {
  public:
-  GroupSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take) : tree_(tree), k_(k), take_(take), row_(std::size_t(k) + 1) {
+  GroupSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take)
+      : tree_(tree), k_(k), take_(take), row_(std::size_t(k) + 1) {
     wanted_ = static_cast<std::uint32_t>(std::min<std::size_t>(std::size_t(k) + 1, tree.size()));
   }
 
@@ -122,13 +124,16 @@ class GroupSearch {
     const hn::Rebind<std::uint32_t, decltype(dd)> du;
     const std::size_t lanes = hn::Lanes(dd);
     // Of nodes at one place the first k + 1 are enough: nobody has the others among its k nearest.
-    const auto end = cell.count() > NodeTree::leaf_size ? std::min(cell.end, cell.begin + std::max(wanted_, NodeTree::leaf_size)) : cell.end;
+    const auto end = cell.count() > NodeTree::leaf_size
+                         ? std::min(cell.end, cell.begin + std::max(wanted_, NodeTree::leaf_size))
+                         : cell.end;
     near_.room(end - cell.begin + lanes);
     const auto limit = hn::Set(df, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
     const auto zero = hn::Zero(df);
     for (std::size_t at = cell.begin; at < end; at += lanes) {
       const auto local = [&](int axis) {
-        return hn::DemoteTo(df, hn::Mul(hn::Sub(hn::LoadU(dd, tree_.along(axis) + at), hn::Set(dd, middle_[axis])), hn::Set(dd, scale_)));
+        return hn::DemoteTo(df, hn::Mul(hn::Sub(hn::LoadU(dd, tree_.along(axis) + at), hn::Set(dd, middle_[axis])),
+                                        hn::Set(dd, scale_)));
       };
       const auto x = local(0), y = local(1), z = local(2);
       const auto outside = [&](auto v, int axis) {
@@ -141,7 +146,8 @@ class GroupSearch {
       hn::StoreU(hn::Compress(x, mask), df, near_.along[0].data() + near_.size);
       hn::StoreU(hn::Compress(y, mask), df, near_.along[1].data() + near_.size);
       hn::StoreU(hn::Compress(z, mask), df, near_.along[2].data() + near_.size);
-      hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(at)), hn::RebindMask(du, mask)), du, near_.slot.data() + near_.size);
+      hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(at)), hn::RebindMask(du, mask)), du,
+                 near_.slot.data() + near_.size);
       near_.size += hn::CountTrue(df, mask);
     }
   }
@@ -159,13 +165,15 @@ class GroupSearch {
     const auto px = local(0), py = local(1), pz = local(2);
     const auto limit = hn::Set(d, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
     const auto kept = hn::Set(du, keyed ? ~(most_keyed - 1) : 0u);
-    const float *const near_x = near_.along[0].data(), *const near_y = near_.along[1].data(), *const near_z = near_.along[2].data();
+    const float *const near_x = near_.along[0].data(), *const near_y = near_.along[1].data(),
+                       *const near_z = near_.along[2].data();
     std::uint32_t* const keys = key_.data();
     std::uint32_t count = 0;
     auto at = hn::Iota(du, 0u);
     const auto step = hn::Set(du, static_cast<std::uint32_t>(lanes));
     for (std::size_t i = 0; i < near_.size; i += lanes) {
-      const auto x = hn::Sub(hn::LoadU(d, near_x + i), px), y = hn::Sub(hn::LoadU(d, near_y + i), py), z = hn::Sub(hn::LoadU(d, near_z + i), pz);
+      const auto x = hn::Sub(hn::LoadU(d, near_x + i), px), y = hn::Sub(hn::LoadU(d, near_y + i), py),
+                 z = hn::Sub(hn::LoadU(d, near_z + i), pz);
       const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
       const auto mask = hn::RebindMask(du, hn::Le(square, limit));
       hn::StoreU(hn::Compress(hn::Or(hn::And(hn::BitCast(du, square), kept), at), mask), du, keys + count);
@@ -176,7 +184,8 @@ class GroupSearch {
     if (exact_.size() < count) exact_.resize(2 * count);
     const auto exact = [&](std::uint32_t which) {
       const auto s = near_.slot[which];
-      return Exact{square_of(tree_.along(0)[s] - p[0], tree_.along(1)[s] - p[1], tree_.along(2)[s] - p[2]), tree_.nodes()[s]};
+      return Exact{square_of(tree_.along(0)[s] - p[0], tree_.along(1)[s] - p[1], tree_.along(2)[s] - p[2]),
+                   tree_.nodes()[s]};
     };
     if (keyed && count <= most_ranked) {
       rank(count, exact);
@@ -197,7 +206,8 @@ class GroupSearch {
     return true;
   }
 
-  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put behind them, in order.
+  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put behind them, in
+  // order.
   template <class ToExact>
   void rank(std::uint32_t count, const ToExact& exact) {
     const hn::ScalableTag<std::uint32_t> du;
@@ -205,7 +215,8 @@ class GroupSearch {
     const auto one = hn::Set(du, 1u);
     const std::uint32_t* const keys = key_.data();
     for (std::size_t at = 0; at < count; at += 3 * lanes) {
-      const auto a = hn::LoadU(du, keys + at), b = hn::LoadU(du, keys + at + lanes), c = hn::LoadU(du, keys + at + 2 * lanes);
+      const auto a = hn::LoadU(du, keys + at), b = hn::LoadU(du, keys + at + lanes),
+                 c = hn::LoadU(du, keys + at + 2 * lanes);
       auto below_a = hn::Zero(du), below_b = below_a, below_c = below_a;
       for (std::uint32_t j = 0; j < count; ++j) {
         const auto key = hn::Set(du, keys[j]);
@@ -219,7 +230,8 @@ class GroupSearch {
     }
     for (std::uint32_t i = 0; i < count; ++i) order_[rank_[i]] = keys[i];
     const float square = std::bit_cast<float>(order_[wanted_ - 1]);
-    const auto last = std::bit_cast<std::uint32_t>(square * static_cast<float>(1 + 4 * key_error) + static_cast<float>(2 * float_error));
+    const auto last = std::bit_cast<std::uint32_t>(square * static_cast<float>(1 + 4 * key_error) +
+                                                   static_cast<float>(2 * float_error));
     std::uint32_t taken = wanted_;
     while (taken < count && order_[taken] <= last) ++taken;
     // Floats nearly always have them in their order, and then nothing is asked of one at a time.
@@ -238,8 +250,8 @@ class GroupSearch {
   const NodeTree& tree_;
   const std::uint32_t k_;
   const TakeRow& take_;
-  std::uint32_t wanted_;    // of the nearest, the node itself included
-  double learned_ = 0;      // the farthest last of a row in the group before, squared
+  std::uint32_t wanted_;  // of the nearest, the node itself included
+  double learned_ = 0;    // the farthest last of a row in the group before, squared
   double middle_[3], unit_ = 1, scale_ = 1;
   Gathered near_;
   std::vector<std::uint32_t> pending_, stack_, key_;  // key_: the squares of a node's candidates, and which they are
@@ -248,7 +260,8 @@ class GroupSearch {
   std::uint32_t rank_[2 * most_ranked], order_[most_ranked];
 };
 
-void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k, const TakeRow& take) {
+void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,
+                       const TakeRow& take) {
   GroupSearch search(tree, k, take);
   for (const auto group : groups) search(group);
 }
@@ -260,7 +273,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(nearest_of_groups);
-void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k, const TakeRow& take) {
+void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,
+                       const TakeRow& take) {
   HWY_DYNAMIC_DISPATCH(nearest_of_groups)(tree, groups, k, take);
 }
 }  // namespace geo

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "kerf/parallel.h"
 #include "geometry/bvh.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -15,12 +15,14 @@ using Group = std::span<std::uint32_t>;  // places in `ids`
 void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all, std::vector<Group>& groups) {
   Box3 box;
   double support = 0;
-  for (const auto place : all) box.add(nodes.position[ids[place]]), support = std::max(support, nodes.radius[ids[place]]);
+  for (const auto place : all)
+    box.add(nodes.position[ids[place]]), support = std::max(support, nodes.radius[ids[place]]);
   Eigen::Index axis = 0;
   const Vec3 size = box.hi - box.lo, middle = box.center();
-  const auto second = size.maxCoeff(&axis) <= support
-                          ? all.begin()
-                          : std::partition(all.begin(), all.end(), [&](auto place) { return nodes.position[ids[place]][axis] < middle[axis]; });
+  const auto second =
+      size.maxCoeff(&axis) <= support ? all.begin() : std::partition(all.begin(), all.end(), [&](auto place) {
+        return nodes.position[ids[place]][axis] < middle[axis];
+      });
   if (second == all.begin() || second == all.end()) {
     groups.push_back(all);
     return;
@@ -32,9 +34,10 @@ void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all,
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> nearest_seen(const NodeSet& nodes, const NodeGrid& grid, std::span<const std::uint32_t> ids, int k,
-                                                     const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near,
-                                                     const Progress& progress) {
+std::vector<std::vector<std::uint32_t>> nearest_seen(
+    const NodeSet& nodes, const NodeGrid& grid, std::span<const std::uint32_t> ids, int k,
+    const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near,
+    const Progress& progress) {
   const auto& x = nodes.position;
   const auto most = static_cast<std::size_t>(k);
   std::vector<std::vector<std::uint32_t>> seen(ids.size());

@@ -4,11 +4,11 @@
 #include <numeric>
 #include <optional>
 
-#include "kerf/parallel.h"
 #include "graph/block_release.h"
 #include "graph/reference_rows.h"
 #include "graph/row_search.h"
 #include "graph/visibility.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -16,7 +16,8 @@ namespace {
 // A row from its distances, as RowSearch makes it.
 class RowMaker {
  public:
-  RowMaker(const NodeSet& nodes, const VisibilityGraph& graph, const RowSearch::Sight& sight) : nodes_(nodes), graph_(graph), sight_(sight) {}
+  RowMaker(const NodeSet& nodes, const VisibilityGraph& graph, const RowSearch::Sight& sight)
+      : nodes_(nodes), graph_(graph), sight_(sight) {}
   RowView make(std::uint32_t i, const PathRow& found) {
     to_.clear(), bits_.clear(), paths_.clear();
     for (const auto& [j, length] : found) {
@@ -27,7 +28,8 @@ class RowMaker {
     }
     if (sight_) sight_(i, to_, bits_);
     for (std::size_t k = 0; k < to_.size(); ++k)
-      if (RowStore::has_path(bits_[k])) paths_.push_back(static_cast<float>(double(static_cast<std::uint32_t>(found[k].second)) * graph_.plain_unit()));
+      if (RowStore::has_path(bits_[k]))
+        paths_.push_back(static_cast<float>(double(static_cast<std::uint32_t>(found[k].second)) * graph_.plain_unit()));
     insert_bare_edges(nodes_, graph_, i, to_, bits_);
     return {to_, bits_, paths_};
   }
@@ -43,8 +45,8 @@ class RowMaker {
 
 }  // namespace
 
-void build_neighborhoods(const NodeSet& nodes, VisibilityGraph& graph, const TriangleBvh& obstacles, NeighborMethod method,
-                         const Progress& progress) {
+void build_neighborhoods(const NodeSet& nodes, VisibilityGraph& graph, const TriangleBvh& obstacles,
+                         NeighborMethod method, const Progress& progress) {
   const std::size_t n = nodes.size();
   report(progress, "neighbourhoods", 0, n);
   std::optional<Visibility> visibility;

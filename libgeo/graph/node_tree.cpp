@@ -63,8 +63,8 @@ void encode(std::span<const Vec3> positions, const Box3& box, std::span<std::uin
   });
 }
 
-// By digits, lowest first: rows that ascend stay so among equal codes. Each part counts its digits, and then writes where those
-// of lower digits and of the parts before it end.
+// By digits, lowest first: rows that ascend stay so among equal codes. Each part counts its digits, and then writes
+// where those of lower digits and of the parts before it end.
 void sort_by_digits(FreshArray<std::uint64_t>& keyed) {
   constexpr int digit = 10, values = 1 << digit;
   FreshArray<std::uint64_t> other(keyed.size());
@@ -94,8 +94,8 @@ class Splitter {
  public:
   Splitter(std::span<const Vec3> positions, FreshArray<std::uint64_t>& keyed) : positions_(positions), keyed_(keyed) {}
 
-  // Splits a cell at the highest bit in which its first code and the last differ, and appends the jobs that this makes, the
-  // first part's last. False when it stays a leaf.
+  // Splits a cell at the highest bit in which its first code and the last differ, and appends the jobs that this makes,
+  // the first part's last. False when it stays a leaf.
   bool split(std::vector<Cell>& cells, Job job, std::vector<Job>& jobs) {
     const auto begin = cells[job.cell].begin, end = cells[job.cell].end;
     if (end - begin <= NodeTree::leaf_size) return false;
@@ -115,7 +115,8 @@ class Splitter {
       std::sort(first, last);
       bit = highest(code_bits - 1);
     }
-    const auto middle = static_cast<std::uint32_t>(std::partition_point(first, last, [&](std::uint64_t k) { return !(k >> (32 + bit) & 1); }) - keyed_.data());
+    const auto middle = static_cast<std::uint32_t>(
+        std::partition_point(first, last, [&](std::uint64_t k) { return !(k >> (32 + bit) & 1); }) - keyed_.data());
     const auto left = static_cast<std::uint32_t>(cells.size());
     cells[job.cell].children = left;
     cells.push_back({{}, {}, begin, middle, job.cell});
@@ -131,7 +132,8 @@ class Splitter {
 };
 
 void join_boxes(Cell& cell, const Cell& l, const Cell& r) {
-  for (int axis = 0; axis < 3; ++axis) cell.lo[axis] = std::min(l.lo[axis], r.lo[axis]), cell.hi[axis] = std::max(l.hi[axis], r.hi[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    cell.lo[axis] = std::min(l.lo[axis], r.lo[axis]), cell.hi[axis] = std::max(l.hi[axis], r.hi[axis]);
 }
 
 }  // namespace
@@ -187,7 +189,8 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
 
   // Behind the large cells those in each of the others, without its root.
   std::vector<std::uint32_t> place(trees.size() + 1, static_cast<std::uint32_t>(top.size()));
-  for (std::size_t t = 0; t < trees.size(); ++t) place[t + 1] = place[t] + static_cast<std::uint32_t>(trees[t].size()) - 1;
+  for (std::size_t t = 0; t < trees.size(); ++t)
+    place[t + 1] = place[t] + static_cast<std::uint32_t>(trees[t].size()) - 1;
   cells_ = FreshArray<Cell>(place.back());
   parallel_for(trees.size(), 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t t = from; t < to; ++t) {
@@ -201,7 +204,8 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
     }
   });
   for (std::size_t c = top.size(); c-- > 0;) {
-    if (!top[c].leaf() && top[c].children < top.size()) join_boxes(top[c], top[top[c].children], top[top[c].children + 1]);
+    if (!top[c].leaf() && top[c].children < top.size())
+      join_boxes(top[c], top[top[c].children], top[top[c].children + 1]);
     cells_[c] = top[c];
   }
 }

@@ -11,27 +11,31 @@ namespace geo {
 
 /// The square of the distance between two nodes as the graph compares it: in doubles, in this order of rounding.
 inline double square_of(double x, double y, double z) { return (x * x + y * y) + z * z; }
-inline double squared_distance(const Vec3& p, const Vec3& q) { return square_of(p.x() - q.x(), p.y() - q.y(), p.z() - q.z()); }
+inline double squared_distance(const Vec3& p, const Vec3& q) {
+  return square_of(p.x() - q.x(), p.y() - q.y(), p.z() - q.z());
+}
 
-/// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot tell nodes apart, they
-/// are coded anew within their own box. So any distribution gives small leaves, and O(n) time but for one sort of digits.
-/// About 45 bytes a node.
+/// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot tell nodes apart,
+/// they are coded anew within their own box. So any distribution gives small leaves, and O(n) time but for one sort of
+/// digits. About 45 bytes a node.
 class NodeTree {
  public:
   /// A leaf has at most this many nodes, or any number of nodes at one place.
   static constexpr std::uint32_t leaf_size = 10;
 
   struct Cell {
-    double lo[3], hi[3];          ///< tight, closed
-    std::uint32_t begin, end;     ///< slots of its nodes
-    std::uint32_t parent;         ///< of the root: itself
-    std::uint32_t children = 0;   ///< the first of two in a row; 0: a leaf
+    double lo[3], hi[3];         ///< tight, closed
+    std::uint32_t begin, end;    ///< slots of its nodes
+    std::uint32_t parent;        ///< of the root: itself
+    std::uint32_t children = 0;  ///< the first of two in a row; 0: a leaf
     bool leaf() const { return children == 0; }
     std::uint32_t count() const { return end - begin; }
-    /// The square of the gap to another box (or point: twice the same), and of the diagonal. Both are rounded as squared distances of points are,
-    /// and rounding is monotone: a computed squared distance between nodes of two cells is never less than their gap, and
-    /// within a cell never more than its diagonal.
-    double gap(const double* from, const double* to) const { return square_of(apart(0, from, to), apart(1, from, to), apart(2, from, to)); }
+    /// The square of the gap to another box (or point: twice the same), and of the diagonal. Both are rounded as
+    /// squared distances of points are, and rounding is monotone: a computed squared distance between nodes of two
+    /// cells is never less than their gap, and within a cell never more than its diagonal.
+    double gap(const double* from, const double* to) const {
+      return square_of(apart(0, from, to), apart(1, from, to), apart(2, from, to));
+    }
     double diagonal() const { return square_of(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]); }
 
    private:

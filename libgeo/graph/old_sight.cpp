@@ -8,15 +8,15 @@
 #include <cstring>
 
 #include "graph/old_sight.h"
-#include "kerf/graph.h"
 #include "hwy/highway.h"
+#include "kerf/graph.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const RowView& old, std::span<const std::uint32_t> lost,
-                   std::uint32_t* unsure) {
+std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const RowView& old,
+                   std::span<const std::uint32_t> lost, std::uint32_t* unsure) {
   const hn::CappedTag<std::uint32_t, 16> d;
   const hn::Rebind<std::uint16_t, decltype(d)> dh;
   const std::size_t lanes = hn::Lanes(d), count = to.size(), old_count = old.to.size();
@@ -24,7 +24,8 @@ std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint1
   const auto take = [&](std::size_t e) {
     if (VisibilityGraph::is_edge(bits[e])) return;
     const auto at = std::lower_bound(old.to.begin(), old.to.end(), to[e]);
-    const bool saw = at != old.to.end() && *at == to[e] && !(old.bits[static_cast<std::size_t>(at - old.to.begin())] & VisibilityGraph::path_bit);
+    const bool saw = at != old.to.end() && *at == to[e] &&
+                     !(old.bits[static_cast<std::size_t>(at - old.to.begin())] & VisibilityGraph::path_bit);
     const bool is_lost = saw && std::binary_search(lost.begin(), lost.end(), to[e]);
     if (!saw || is_lost) unsure[found++] = static_cast<std::uint32_t>(e) | (is_lost ? lost_bit : 0);
   };
@@ -32,7 +33,8 @@ std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint1
     for (std::size_t e = 0; e < count; ++e) take(e);
     return found;
   }
-  const auto edge = hn::Set(d, std::uint32_t(VisibilityGraph::edge_bit)), path = hn::Set(d, std::uint32_t(VisibilityGraph::path_bit));
+  const auto edge = hn::Set(d, std::uint32_t(VisibilityGraph::edge_bit)),
+             path = hn::Set(d, std::uint32_t(VisibilityGraph::path_bit));
   const auto zero = hn::Zero(d);
   const auto nothing = hn::Ne(zero, zero);
   std::size_t gone = 0;  // entries of the old row that the new one has left out so far
@@ -40,7 +42,8 @@ std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint1
   for (std::size_t e = 0; e < count; e += lanes) {
     const auto at = std::min(e, count - lanes);
     const auto now = hn::LoadU(d, to.data() + at);
-    // Old rows have nearly all that new ones have: what is sought is as many places on as entries have gone, or a few more.
+    // Old rows have nearly all that new ones have: what is sought is as many places on as entries have gone, or a few
+    // more.
     auto same = nothing, seen = nothing;
     for (std::size_t k = at + gone; k <= old_count - lanes; ++k) {
       const auto equal = hn::Eq(now, hn::LoadU(d, old.to.data() + k));
@@ -50,12 +53,14 @@ std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint1
       }
       gone = k - at;
       same = hn::Or(same, equal);
-      seen = hn::Or(seen, hn::And(equal, hn::Eq(hn::And(hn::PromoteTo(d, hn::LoadU(dh, old.bits.data() + k)), path), zero)));
+      seen = hn::Or(seen,
+                    hn::And(equal, hn::Eq(hn::And(hn::PromoteTo(d, hn::LoadU(dh, old.bits.data() + k)), path), zero)));
       if (hn::AllTrue(d, same)) break;
     }
     auto is_lost = nothing;
     while (next_lost > 0 && at < e && lost[next_lost - 1] >= to[at]) --next_lost;
-    while (next_lost < lost.size() && lost[next_lost] <= to[at + lanes - 1]) is_lost = hn::Or(is_lost, hn::Eq(now, hn::Set(d, lost[next_lost++])));
+    while (next_lost < lost.size() && lost[next_lost] <= to[at + lanes - 1])
+      is_lost = hn::Or(is_lost, hn::Eq(now, hn::Set(d, lost[next_lost++])));
     const auto is_edge = hn::Ne(hn::And(hn::PromoteTo(d, hn::LoadU(dh, bits.data() + at)), edge), zero);
     auto open = hn::Not(hn::Or(is_edge, hn::AndNot(is_lost, seen)));
     if (at < e) open = hn::AndNot(hn::FirstN(d, e - at), open);
@@ -63,7 +68,8 @@ std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint1
     std::uint8_t open_bits[8] = {};
     hn::StoreMaskBits(d, open, open_bits);
     std::uint64_t rest;
-    for (std::memcpy(&rest, open_bits, 8); rest != 0; rest &= rest - 1) take(at + hwy::Num0BitsBelowLS1Bit_Nonzero64(rest));
+    for (std::memcpy(&rest, open_bits, 8); rest != 0; rest &= rest - 1)
+      take(at + hwy::Num0BitsBelowLS1Bit_Nonzero64(rest));
   }
   return found;
 }

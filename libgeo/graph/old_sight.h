@@ -11,8 +11,8 @@ namespace geo {
 /// Set in what unsure_entries() writes where something came between.
 constexpr std::uint32_t lost_bit = std::uint32_t(1) << 31;
 
-/// Of a node's new row: which entries are neither edges nor were seen in its old row and are still. Writes their places, ascending, with
-/// lost_bit where they were seen and are among `lost` (ascending). Returns how many.
+/// Of a node's new row: which entries are neither edges nor were seen in its old row and are still. Writes their
+/// places, ascending, with lost_bit where they were seen and are among `lost` (ascending). Returns how many.
 std::size_t unsure_entries(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const RowView& old,
                            std::span<const std::uint32_t> lost, std::uint32_t* unsure);
 

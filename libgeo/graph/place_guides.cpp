@@ -5,15 +5,16 @@
 #include <numbers>
 #include <optional>
 
-#include "kerf/error.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {
 
 constexpr double beside = 1.0 / 64;  // of the nodes' spacing: how far guides stand from their edges
 
-// Of unit length, halves the material around an edge, unless that spans less than 180 degrees and `bend`, in radians, more.
+// Of unit length, halves the material around an edge, unless that spans less than 180 degrees and `bend`, in radians,
+// more.
 std::optional<Vec3> way_into(const SurfaceEdge& e, double bend) {
   const Vec3 along = (e.b - e.a).normalized();
   const auto across = [&](const Vec3& p) -> Vec3 { return ((p - e.a) - (p - e.a).dot(along) * along).normalized(); };
@@ -30,14 +31,18 @@ std::optional<Vec3> way_into(const SurfaceEdge& e, double bend) {
 }  // namespace
 
 std::vector<Guide> place_guides(std::span<const SurfaceEdge> edges, const NodeSet& nodes, const NodeGrid& grid,
-                                const std::function<bool(const Vec3&, const Vec3&)>& blocked, const GuideOptions& options,
-                                const GuideSet& taken) {
-  if (!(options.spacing >= 0.05 && options.spacing <= 10)) throw InputError("guides: their spacing must be from 0.05 to 10");
-  if (!(options.bend >= 1 && options.bend <= 180)) throw InputError("guides: the bend of an edge must be from 1 to 180 degrees");
+                                const std::function<bool(const Vec3&, const Vec3&)>& blocked,
+                                const GuideOptions& options, const GuideSet& taken) {
+  if (!(options.spacing >= 0.05 && options.spacing <= 10))
+    throw InputError("guides: their spacing must be from 0.05 to 10");
+  if (!(options.bend >= 1 && options.bend <= 180))
+    throw InputError("guides: the bend of an edge must be from 1 to 180 degrees");
   std::vector<Guide> guides;
   GuideSet placed = taken;
   std::vector<std::uint32_t> near;
-  const auto node_at = [&](const Vec3& p) { return grid.nearest(nodes.position, p, 1, ~0u, [](std::uint32_t) { return true; }).front(); };
+  const auto node_at = [&](const Vec3& p) {
+    return grid.nearest(nodes.position, p, 1, ~0u, [](std::uint32_t) { return true; }).front();
+  };
   for (const SurfaceEdge& edge : edges) {
     const auto into = way_into(edge, options.bend * std::numbers::pi / 180);
     if (!into) continue;
@@ -49,7 +54,8 @@ std::vector<Guide> place_guides(std::span<const SurfaceEdge> edges, const NodeSe
       const Vec3 p = at + beside * nodes.spacing[node] * *into;
       near.clear();
       placed.within(p, 0.5 * options.spacing * nodes.spacing[node], near);
-      if (std::any_of(near.begin(), near.end(), [&](std::uint32_t g) { return !blocked(placed.position(g), p); })) continue;
+      if (std::any_of(near.begin(), near.end(), [&](std::uint32_t g) { return !blocked(placed.position(g), p); }))
+        continue;
       guides.push_back({p, nodes.radius[node]});
       placed.add(guides.back());
     }

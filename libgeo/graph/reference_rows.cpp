@@ -61,14 +61,16 @@ std::vector<PathRow> edge_lengths(const NodeSet& nodes, const VisibilityGraph& g
   std::vector<PathRow> rows(n + graph.guides().size());
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto id = i < n ? static_cast<std::uint32_t>(i) : static_cast<std::uint32_t>(i - n) + VisibilityGraph::first_guide;
+      const auto id =
+          i < n ? static_cast<std::uint32_t>(i) : static_cast<std::uint32_t>(i - n) + VisibilityGraph::first_guide;
       const auto row = graph.entries(id);
       for (std::size_t k = 0; k < row.to.size(); ++k) {
         const auto j = row.to[k];
         if (!VisibilityGraph::is_edge(row.bits[k])) continue;
         if (const auto length = graph.warped(nodes, id, j); length < unit_radius)
           rows[i].push_back({VisibilityGraph::is_guide(j) ? n + VisibilityGraph::place(j) : j,
-                             PathLength(length) << 32 | plain_length(graph.position(nodes, id), graph.position(nodes, j), graph.plain_unit())});
+                             PathLength(length) << 32 | plain_length(graph.position(nodes, id),
+                                                                     graph.position(nodes, j), graph.plain_unit())});
       }
     }
   });

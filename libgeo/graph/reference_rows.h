@@ -9,8 +9,8 @@
 
 namespace geo {
 
-/// A distance as one number, warped length in the high half and plain length in the low one: the smallest is the shortest
-/// warped path and, among equals, the plainly shortest. They add without rounding.
+/// A distance as one number, warped length in the high half and plain length in the low one: the smallest is the
+/// shortest warped path and, among equals, the plainly shortest. They add without rounding.
 using PathLength = std::uint64_t;
 using PathRow = std::vector<std::pair<std::uint32_t, PathLength>>;
 

@@ -16,10 +16,11 @@ constexpr std::size_t block = 4096;
 struct RowSearch::Work {
   LocalGraph local;
   LaneSearch search;
-  std::vector<std::uint32_t> to;     // where a row has edges that join no neighbours
+  std::vector<std::uint32_t> to;  // where a row has edges that join no neighbours
   std::vector<std::uint16_t> bits;
   std::vector<float> paths;
-  // By local node, of one source: distances, 0 elsewhere; where they are known, plain lengths or `open`, and the last of its Steps.
+  // By local node, of one source: distances, 0 elsewhere; where they are known, plain lengths or `open`, and the last
+  // of its Steps.
   std::vector<std::uint32_t> distance, last;
   std::vector<std::uint64_t> plain;
   struct Step {
@@ -73,8 +74,8 @@ std::uint64_t RowSearch::Work::plain_length_to(std::uint32_t node, double unit) 
 RowSearch::RowSearch() : work_(std::make_unique<Work>()) {}
 RowSearch::~RowSearch() = default;
 
-void insert_bare_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i, std::vector<std::uint32_t>& to,
-                       std::vector<std::uint16_t>& bits) {
+void insert_bare_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i,
+                       std::vector<std::uint32_t>& to, std::vector<std::uint16_t>& bits) {
   const auto row = graph.entries(i);
   for (std::size_t e = 0; e < row.to.size(); ++e) {
     if (!VisibilityGraph::is_edge(row.bits[e])) continue;
@@ -87,12 +88,13 @@ void insert_bare_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::
       continue;
     }
     to.insert(to.begin() + k, j);
-    bits.insert(bits.begin() + k, VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(length));
+    bits.insert(bits.begin() + k,
+                VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(length));
   }
 }
 
-void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources, const Sight& sight,
-                    const Put& put) {
+void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources,
+                    const Sight& sight, const Put& put) {
   Work& w = *work_;
   std::vector<std::uint32_t> lanes;
   for (std::size_t first = 0; first < sources.size(); first += block) {
@@ -107,7 +109,8 @@ void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::spa
       }
       const auto i = sources[first + k], source = lanes[lane];
       const auto found = w.search.row(lane);
-      const auto size = static_cast<std::size_t>(std::lower_bound(found.node.begin(), found.node.end(), w.local.node_count()) - found.node.begin());
+      const auto size = static_cast<std::size_t>(
+          std::lower_bound(found.node.begin(), found.node.end(), w.local.node_count()) - found.node.begin());
       std::span<const std::uint32_t> to = found.id.first(size);
       w.bits.resize(size), w.paths.clear();
       for (std::size_t e = 0; e < size; ++e) {
@@ -125,7 +128,9 @@ void RowSearch::run(const NodeSet& nodes, const VisibilityGraph& graph, std::spa
           w.find_steps(source, found);
           for (std::size_t e = 0, f = 0; e < to.size(); ++e) {
             if (!VisibilityGraph::is_neighbor(w.bits[e])) continue;
-            if (RowStore::has_path(w.bits[e])) w.paths.push_back(static_cast<float>(double(w.plain_length_to(found.node[f], graph.plain_unit())) * graph.plain_unit()));
+            if (RowStore::has_path(w.bits[e]))
+              w.paths.push_back(static_cast<float>(double(w.plain_length_to(found.node[f], graph.plain_unit())) *
+                                                   graph.plain_unit()));
             ++f;
           }
           w.forget_steps(found);

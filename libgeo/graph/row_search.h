@@ -19,9 +19,11 @@ class RowSearch {
 
   RowSearch();
   ~RowSearch();
-  /// The rows of some nodes (ascending; guides, too) along the graph as it is, with all edges: calls `put` for each, in order. An empty
-  /// `sight` sees everything. `put` may change the graph's neighbours but not its edges. One search a thread.
-  void run(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources, const Sight& sight, const Put& put);
+  /// The rows of some nodes (ascending; guides, too) along the graph as it is, with all edges: calls `put` for each, in
+  /// order. An empty `sight` sees everything. `put` may change the graph's neighbours but not its edges. One search a
+  /// thread.
+  void run(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources,
+           const Sight& sight, const Put& put);
 
  private:
   struct Work;
@@ -29,7 +31,7 @@ class RowSearch {
 };
 
 /// Puts entries for those edges of a node into its row that join no neighbours: as long as the support, or to guides.
-void insert_bare_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i, std::vector<std::uint32_t>& to,
-                       std::vector<std::uint16_t>& bits);
+void insert_bare_edges(const NodeSet& nodes, const VisibilityGraph& graph, std::uint32_t i,
+                       std::vector<std::uint32_t>& to, std::vector<std::uint16_t>& bits);
 
 }  // namespace geo

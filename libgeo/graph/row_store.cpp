@@ -38,7 +38,8 @@ RowView RowStore::row(std::size_t i) const {
 std::span<std::uint16_t> RowStore::bits(std::size_t i) {
   const Place& place = places_[i];
   if (place.count == 0) return {};
-  return {reinterpret_cast<std::uint16_t*>(reinterpret_cast<std::uint32_t*>(at(place.offset)) + place.count), place.count};
+  return {reinterpret_cast<std::uint16_t*>(reinterpret_cast<std::uint32_t*>(at(place.offset)) + place.count),
+          place.count};
 }
 
 void RowStore::set_bound(std::size_t i, std::size_t entry, std::uint16_t bound) {
@@ -52,7 +53,8 @@ std::uint32_t RowStore::words_for(std::size_t i, const RowView& row) {
   const std::size_t n = row.to.size();
   if (n > most_entries)
     throw InputError("node " + std::to_string(i) + ": it has " + std::to_string(n) + " neighbours, more than " +
-                     std::to_string(most_entries) + "; give the nodes smaller support radii, or fewer nearest neighbours");
+                     std::to_string(most_entries) +
+                     "; give the nodes smaller support radii, or fewer nearest neighbours");
   return static_cast<std::uint32_t>((n + (n + 1) / 2 + row.paths.size() + 1) / 2);
 }
 
@@ -62,7 +64,8 @@ void RowStore::copy(const RowView& row, Place& place, std::byte* words) {
   std::memcpy(to, row.to.data(), n * sizeof(std::uint32_t));
   std::memcpy(to + n, row.bits.data(), n * sizeof(std::uint16_t));
   if (!row.paths.empty()) std::memcpy(to + n + (n + 1) / 2, row.paths.data(), row.paths.size() * sizeof(float));
-  std::int16_t least = 0x7fff;  // above 14 bits where the uppermost is not set; without a branch, so that it is done in vectors
+  std::int16_t least =
+      0x7fff;  // above 14 bits where the uppermost is not set; without a branch, so that it is done in vectors
   std::uint16_t bare = 0;
   for (const auto bits : row.bits) {
     least = std::min(least, static_cast<std::int16_t>((bits & 0x3fff) | ((~bits & 0x8000) >> 1)));
@@ -81,7 +84,8 @@ RowStore::Room RowStore::open_room(std::uint32_t words) {
       give_back(open_[k].block << block_shift | open_[k].begin, open_[k].end - open_[k].begin);
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(k));
     }
-  if (blocks_.size() == std::size_t(1) << (32 - block_shift)) throw InputError("the graph: it needs more than 32 GiB; use fewer nodes");
+  if (blocks_.size() == std::size_t(1) << (32 - block_shift))
+    throw InputError("the graph: it needs more than 32 GiB; use fewer nodes");
   if (spare_.empty()) spare_.emplace_back(word << block_shift);
   blocks_.push_back(std::move(spare_.back()));
   spare_.pop_back();

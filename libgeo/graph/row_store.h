@@ -97,7 +97,7 @@ class RowStore {
   struct Place {
     std::uint32_t offset = 0;
     std::uint16_t count = 0, words = 0;  // entries, and the room that the row has
-    std::uint16_t least = 0x7fff;  // the uppermost bit: has_bare_edges()
+    std::uint16_t least = 0x7fff;        // the uppermost bit: has_bare_edges()
   };
   struct Room {
     std::uint32_t block, begin, end;
@@ -106,7 +106,9 @@ class RowStore {
   static constexpr std::size_t word = 8;       // bytes
   static std::uint32_t words_for(std::size_t i, const RowView& row);
   static void copy(const RowView& row, Place& place, std::byte* to);
-  std::byte* at(std::uint32_t offset) { return blocks_[offset >> block_shift].data() + word * (offset & ((1u << block_shift) - 1)); }
+  std::byte* at(std::uint32_t offset) {
+    return blocks_[offset >> block_shift].data() + word * (offset & ((1u << block_shift) - 1));
+  }
   const std::byte* at(std::uint32_t offset) const { return const_cast<RowStore*>(this)->at(offset); }
   std::uint32_t take(std::uint32_t& words);
   void give_back(std::uint32_t offset, std::uint32_t words);

@@ -26,8 +26,8 @@ struct Pair {
   std::uint16_t bits;
 };
 
-// Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other end, rows ascending: these
-// are the same rows, but in order.
+// Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other end, rows ascending:
+// these are the same rows, but in order.
 Severed rows_of(std::span<const Pair> pairs, IdPages& ids, const std::vector<bool>& above) {
   Severed severed;
   std::vector<std::uint32_t> next(ids.size(), 0);  // how many entries, then where the next one goes
@@ -65,8 +65,10 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   std::vector<std::uint8_t> blocked;
   for (std::uint32_t at = 0; at < near.ids.size(); ++at) {
     constexpr std::size_t ahead = 4;
-    if (at + 2 * ahead < near.ids.size()) graph.store(near.ids[at + 2 * ahead]).prefetch_place(VisibilityGraph::place(near.ids[at + 2 * ahead]));
-    if (at + ahead < near.ids.size()) graph.store(near.ids[at + ahead]).prefetch(VisibilityGraph::place(near.ids[at + ahead]));
+    if (at + 2 * ahead < near.ids.size())
+      graph.store(near.ids[at + 2 * ahead]).prefetch_place(VisibilityGraph::place(near.ids[at + 2 * ahead]));
+    if (at + ahead < near.ids.size())
+      graph.store(near.ids[at + ahead]).prefetch(VisibilityGraph::place(near.ids[at + ahead]));
     const auto i = near.ids[at];
     const auto row = graph.entries(i);
     // What is not beyond the slab on the same side.
@@ -81,7 +83,8 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
       count += (h >= least) & (h <= most);
     };
     std::uint32_t k = 0;
-    for (const auto end = static_cast<std::uint32_t>(row.to.size() - guides_in(row)); k < end; ++k) ask(k, nodes.position[row.to[k]]);
+    for (const auto end = static_cast<std::uint32_t>(row.to.size() - guides_in(row)); k < end; ++k)
+      ask(k, nodes.position[row.to[k]]);
     for (; k < row.to.size(); ++k) ask(k, graph.position(nodes, row.to[k]));
     ends.clear();
     std::size_t kept = 0;

@@ -19,7 +19,7 @@ struct Severed {
   };
   struct Row {
     std::uint32_t id, begin, end;  ///< whose, and which of `entries`
-    bool above;                    ///< on which side of the faces, where these have two: those on one side may see each other
+    bool above;  ///< on which side of the faces, where these have two: those on one side may see each other
   };
   std::vector<Row> rows;       ///< ascending; none is empty
   std::vector<Entry> entries;  ///< ascending in each row

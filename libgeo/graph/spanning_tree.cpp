@@ -1,8 +1,8 @@
 // Boruvka: each component's shortest way out, round by round. A node's nearest nodes are asked first. One that has none
-// of another component among them is searched for in the tree, unless its component knows a way out that is shorter than
-// the distance to the last of them: where nodes are spread evenly it always does.
-// Where only edges beyond the nearest nodes are asked for, all that is joined by shorter edges than any node's last nearest
-// counts as one component from the start. Where nodes are spread evenly that is everything, and nothing is left to do.
+// of another component among them is searched for in the tree, unless its component knows a way out that is shorter
+// than the distance to the last of them: where nodes are spread evenly it always does. Where only edges beyond the
+// nearest nodes are asked for, all that is joined by shorter edges than any node's last nearest counts as one component
+// from the start. Where nodes are spread evenly that is everything, and nothing is left to do.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>
@@ -25,12 +25,17 @@ struct Way {
 class Boruvka {
  public:
   Boruvka(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k)
-      : tree_(tree), x_(positions), near_(near), k_(static_cast<std::size_t>(k)), component_(positions.size()), components_(positions.size()) {
+      : tree_(tree),
+        x_(positions),
+        near_(near),
+        k_(static_cast<std::size_t>(k)),
+        component_(positions.size()),
+        components_(positions.size()) {
     std::iota(component_.begin(), component_.end(), 0u);
   }
 
-  // Joins what edges of nearest nodes join that are shorter than those of every node's last nearest. Each such edge is in
-  // the rows of both its ends, and all other pairs of nodes come later in the tree.
+  // Joins what edges of nearest nodes join that are shorter than those of every node's last nearest. Each such edge is
+  // in the rows of both its ends, and all other pairs of nodes come later in the tree.
   void join_near() {
     if (k_ == 0) return;
     double reach = std::numeric_limits<double>::infinity();
@@ -159,7 +164,8 @@ std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> posit
   return as_pairs(Boruvka(tree, positions, near, k).run());
 }
 
-std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k) {
+std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions,
+                                                            std::span<const NodeId> near, int k) {
   Boruvka boruvka(tree, positions, near, k);
   boruvka.join_near();
   auto edges = boruvka.run();

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "graph/node_tree.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -16,6 +16,7 @@ std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> posit
 
 /// Those of its edges that join no node with one of its k nearest: what the tree adds to the graph of these, which is
 /// nothing where nodes are spread evenly. `near`: nearest_nodes(tree, k).
-std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions, std::span<const NodeId> near, int k);
+std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions,
+                                                            std::span<const NodeId> near, int k);
 
 }  // namespace geo

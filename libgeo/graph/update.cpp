@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "kerf/parallel.h"
 #include "geometry/predicates.h"
 #include "graph/guides.h"
 #include "graph/id_flags.h"
@@ -14,6 +13,7 @@
 #include "graph/old_sight.h"
 #include "graph/row_search.h"
 #include "graph/severed.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -21,27 +21,33 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 using ObstacleNear = std::function<void(const Box3&, std::vector<Corners>&)>;
 
-// Whether faces lie between two nodes, for pairs that mostly have one node in common: faces are read around it, not farther than
-// there are few.
+// Whether faces lie between two nodes, for pairs that mostly have one node in common: faces are read around it, not
+// farther than there are few.
 class PairSight {
  public:
-  PairSight(const NodeSet& nodes, const VisibilityGraph& graph, const ObstacleNear& near) : nodes_(nodes), graph_(graph), near_(near), most_(graph.reach()), reach_(most_) {}
+  PairSight(const NodeSet& nodes, const VisibilityGraph& graph, const ObstacleNear& near)
+      : nodes_(nodes), graph_(graph), near_(near), most_(graph.reach()), reach_(most_) {}
   bool blocked(std::uint32_t i, std::uint32_t j) {
     const Vec3 &p = graph_.position(nodes_, std::min(i, j)), &q = graph_.position(nodes_, std::max(i, j));
     Box3 segment{p, p};
     segment.add(q);
-    if (known_.empty() || (segment.lo.array() < known_.lo.array()).any() || (segment.hi.array() > known_.hi.array()).any()) {
+    if (known_.empty() || (segment.lo.array() < known_.lo.array()).any() ||
+        (segment.hi.array() > known_.hi.array()).any()) {
       const Vec3& middle = i < j ? p : q;
       known_ = {middle - Vec3::Constant(reach_), middle + Vec3::Constant(reach_)};
       known_.add(segment);
       triangles_.clear(), boxes_.clear();
       near_(known_, triangles_);
       for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
-      if (triangles_.size() > 32 && reach_ > (segment.hi - segment.lo).maxCoeff()) reach_ *= 0.5;
-      else if (triangles_.size() < 8) reach_ = std::min(2 * reach_, most_);
+      if (triangles_.size() > 32 && reach_ > (segment.hi - segment.lo).maxCoeff())
+        reach_ *= 0.5;
+      else if (triangles_.size() < 8)
+        reach_ = std::min(2 * reach_, most_);
     }
     for (std::size_t k = 0; k < triangles_.size(); ++k)
-      if (boxes_[k].meets(segment) && segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2])) return true;
+      if (boxes_[k].meets(segment) &&
+          segment_meets_triangle(p, q, triangles_[k][0], triangles_[k][1], triangles_[k][2]))
+        return true;
     return false;
   }
 
@@ -55,11 +61,12 @@ class PairSight {
   std::vector<Box3> boxes_;
 };
 
-// Adds the nodes whose shortest paths may have used a cut edge, by old distances: within a support radius of an end, less the
-// edge's length. Of several edges at an end the shortest decides.
+// Adds the nodes whose shortest paths may have used a cut edge, by old distances: within a support radius of an end,
+// less the edge's length. Of several edges at an end the shortest decides.
 class Users {
  public:
-  Users(const NodeSet& nodes, const VisibilityGraph& graph, IdFlags& update) : nodes_(nodes), graph_(graph), update_(update) {}
+  Users(const NodeSet& nodes, const VisibilityGraph& graph, IdFlags& update)
+      : nodes_(nodes), graph_(graph), update_(update) {}
   /// An end, and at most the length of its shortest edge that is cut.
   void add(std::uint32_t end, std::uint32_t length) {
     if (VisibilityGraph::is_guide(end)) {
@@ -74,7 +81,8 @@ class Users {
     std::sort(guides_.begin(), guides_.end());
     std::vector<std::uint32_t> ids, lengths;
     for (const auto entry : guides_)
-      if (const auto id = static_cast<std::uint32_t>(entry >> 32); ids.empty() || ids.back() != id) ids.push_back(id), lengths.push_back(static_cast<std::uint32_t>(entry));
+      if (const auto id = static_cast<std::uint32_t>(entry >> 32); ids.empty() || ids.back() != id)
+        ids.push_back(id), lengths.push_back(static_cast<std::uint32_t>(entry));
     std::size_t next = 0;
     search.run(nodes_, graph_, ids, {}, [&](std::uint32_t, const RowView& row) { add_near(row, lengths[next++]); });
   }
@@ -111,7 +119,8 @@ class RowBatch {
   void give(const RowSearch::Put& put) const {
     std::size_t entry = 0, path = 0;
     for (const auto& [i, entries, paths] : rows_) {
-      put(i, {std::span(to_).subspan(entry, entries), std::span(bits_).subspan(entry, entries), std::span(paths_).subspan(path, paths)});
+      put(i, {std::span(to_).subspan(entry, entries), std::span(bits_).subspan(entry, entries),
+              std::span(paths_).subspan(path, paths)});
       entry += entries, path += paths;
     }
   }
@@ -129,10 +138,10 @@ class RowBatch {
 
 }  // namespace
 
-GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved, std::span<const Corners> new_faces,
-                         const ObstacleNear& obstacle_near, int k, const NodeGrid& grid, VisibilityGraph& graph,
-                         std::span<const std::pair<NodeId, NodeId>> joins, const GuideChange& guides, const Progress& progress,
-                         std::span<const NodeId> resized) {
+GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const NodeId> moved,
+                         std::span<const Corners> new_faces, const ObstacleNear& obstacle_near, int k,
+                         const NodeGrid& grid, VisibilityGraph& graph, std::span<const std::pair<NodeId, NodeId>> joins,
+                         const GuideChange& guides, const Progress& progress, std::span<const NodeId> resized) {
   GraphUpdate result;
   RowSearch& search = own_search();
   graph.resize(nodes.size());
@@ -144,17 +153,22 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   const Severed severed = find_severed(nodes, graph, grid, first_new, new_faces);
   Users users(nodes, graph, update);
   for (const auto& row : severed.rows)
-    if (const auto lost = severed.of(row); std::any_of(lost.begin(), lost.end(), [](const auto& entry) { return VisibilityGraph::is_neighbor(entry.bits); })) update.add(row.id);
+    if (const auto lost = severed.of(row); std::any_of(
+            lost.begin(), lost.end(), [](const auto& entry) { return VisibilityGraph::is_neighbor(entry.bits); }))
+      update.add(row.id);
   const auto fetch = [&](const Severed::Row* row) {  // those that come next
     constexpr std::ptrdiff_t ahead = 4;
     const auto left = severed.rows.data() + severed.rows.size() - row;
-    if (left > 2 * ahead) std::as_const(graph).store(row[2 * ahead].id).prefetch_place(VisibilityGraph::place(row[2 * ahead].id));
+    if (left > 2 * ahead)
+      std::as_const(graph).store(row[2 * ahead].id).prefetch_place(VisibilityGraph::place(row[2 * ahead].id));
     if (left > ahead) std::as_const(graph).store(row[ahead].id).prefetch(VisibilityGraph::place(row[ahead].id));
   };
   for (const auto& row : severed.rows) {
     fetch(&row);
     std::uint32_t shortest = unit_radius;
-    for (const auto& entry : severed.of(row)) shortest = std::min(shortest, VisibilityGraph::is_edge(entry.bits) ? VisibilityGraph::bound(entry.bits) : unit_radius);
+    for (const auto& entry : severed.of(row))
+      shortest =
+          std::min(shortest, VisibilityGraph::is_edge(entry.bits) ? VisibilityGraph::bound(entry.bits) : unit_radius);
     if (shortest < unit_radius) users.add(row.id, shortest);
   }
   std::vector<std::pair<NodeId, NodeId>> lost;  // other edges that go, from one end or both
@@ -188,12 +202,14 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     for (const auto& entry : severed.of(row)) {
       if (!VisibilityGraph::is_edge(entry.bits)) continue;
       ends.push_back(entry.to);
-      if (row.id < entry.to && !VisibilityGraph::is_guide(entry.to)) result.cut_edges.push_back({NodeId(row.id), NodeId(entry.to)});
+      if (row.id < entry.to && !VisibilityGraph::is_guide(entry.to))
+        result.cut_edges.push_back({NodeId(row.id), NodeId(entry.to)});
     }
     graph.drop(row.id, ends);
   }
   for (const auto& [i, j] : lost)
-    if (graph.remove(i, j) && !VisibilityGraph::is_guide(i.value) && !VisibilityGraph::is_guide(j.value)) result.cut_edges.push_back(std::minmax(i, j));
+    if (graph.remove(i, j) && !VisibilityGraph::is_guide(i.value) && !VisibilityGraph::is_guide(j.value))
+      result.cut_edges.push_back(std::minmax(i, j));
   if (!lost.empty()) std::sort(result.cut_edges.begin(), result.cut_edges.end());
 
   for (const NodeId r : resized) graph.resize_node(nodes, r);
@@ -233,7 +249,8 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     join(a, b);
     beginnings.insert(beginnings.end(), {a.value, b.value});  // an old node that gains an edge is a new beginning, too
   }
-  for (std::size_t g = 0; g < guides.added.size(); ++g) beginnings.push_back(static_cast<std::uint32_t>(old_guides + g));
+  for (std::size_t g = 0; g < guides.added.size(); ++g)
+    beginnings.push_back(static_cast<std::uint32_t>(old_guides + g));
   std::sort(beginnings.begin(), beginnings.end());
   beginnings.erase(std::unique(beginnings.begin(), beginnings.end()), beginnings.end());
   std::sort(result.added_edges.begin(), result.added_edges.end());
@@ -250,13 +267,16 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
   std::sort(sources.begin(), sources.end());
   report(progress, "neighbourhoods", 0, sources.size());
 
-  // Who saw each other goes on doing so unless a new face came between them. Who did not is asked again: faces that were
-  // divided have rounded corners, and a segment that only just touched one may pass now.
-  const auto is_fresh = [&](std::uint32_t i) { return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i)); };
+  // Who saw each other goes on doing so unless a new face came between them. Who did not is asked again: faces that
+  // were divided have rounded corners, and a segment that only just touched one may pass now.
+  const auto is_fresh = [&](std::uint32_t i) {
+    return i >= first_new.value || (!moved.empty() && std::binary_search(fresh.begin(), fresh.end(), i));
+  };
   const auto find_rows = [&](std::span<const std::uint32_t> some, const RowSearch::Put& put) {
     PairSight asked(nodes, graph, obstacle_near);
     std::vector<std::uint32_t> lost, unsure;
-    auto next_row = std::lower_bound(severed.rows.begin(), severed.rows.end(), some.empty() ? 0 : some.front(), [](const auto& row, std::uint32_t id) { return row.id < id; });
+    auto next_row = std::lower_bound(severed.rows.begin(), severed.rows.end(), some.empty() ? 0 : some.front(),
+                                     [](const auto& row, std::uint32_t id) { return row.id < id; });
     auto ahead = some.begin();
     const auto prefetch_next = [&] {
       constexpr std::ptrdiff_t rows = 4;
@@ -272,14 +292,17 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
         for (const auto& entry : severed.of(*next_row))
           if (VisibilityGraph::is_neighbor(entry.bits)) lost.push_back(entry.to);  // others have left the old row
       if (unsure.size() < to.size()) unsure.resize(2 * to.size());
-      const auto count = unsure_entries(to, bits, is_fresh(i) ? RowView() : graph.rows().entries(i), lost, unsure.data());
+      const auto count =
+          unsure_entries(to, bits, is_fresh(i) ? RowView() : graph.rows().entries(i), lost, unsure.data());
       for (std::size_t k = 0; k < count; ++k) {
         const auto e = unsure[k] & ~lost_bit;
-        if (((unsure[k] & lost_bit) && !is_fresh(to[e])) || asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
+        if (((unsure[k] & lost_bit) && !is_fresh(to[e])) || asked.blocked(i, to[e]))
+          bits[e] |= VisibilityGraph::path_bit;
       }
       if (moved.empty()) return;
       for (std::size_t e = 0; e < to.size(); ++e)  // what is seen of those is not what it was
-        if (!VisibilityGraph::is_edge(bits[e]) && to[e] < first_new.value && is_fresh(to[e]) && asked.blocked(i, to[e])) bits[e] |= VisibilityGraph::path_bit;
+        if (!VisibilityGraph::is_edge(bits[e]) && to[e] < first_new.value && is_fresh(to[e]) && asked.blocked(i, to[e]))
+          bits[e] |= VisibilityGraph::path_bit;
     };
     own_search().run(nodes, graph, some, mark_hidden, put);
   };
@@ -298,10 +321,12 @@ GraphUpdate update_graph(const NodeSet& nodes, NodeId first_new, std::span<const
     // The graph stays as it is until all are found.
     std::vector<std::span<const std::uint32_t>> parts;
     for (const auto& side : sides)
-      for (std::size_t first = 0; first < side.size(); first += grain) parts.push_back(std::span(side).subspan(first, std::min(grain, side.size() - first)));
+      for (std::size_t first = 0; first < side.size(); first += grain)
+        parts.push_back(std::span(side).subspan(first, std::min(grain, side.size() - first)));
     std::vector<RowBatch> batches(parts.size());
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) find_rows(parts[b], [&](std::uint32_t i, const RowView& row) { batches[b].add(i, row); });
+      for (std::size_t b = begin; b < end; ++b)
+        find_rows(parts[b], [&](std::uint32_t i, const RowView& row) { batches[b].add(i, row); });
     });
     for (const RowBatch& batch : batches) batch.give(set);
   }

@@ -22,7 +22,8 @@ std::vector<std::uint8_t> Visibility::blocked(std::span<const std::pair<NodeId, 
     std::vector<NodeId> to;
     for (std::size_t e = begin; e < end; e += to.size()) {
       to.clear();
-      while (e + to.size() < end && pairs[e + to.size()].first == pairs[e].first) to.push_back(pairs[e + to.size()].second);
+      while (e + to.size() < end && pairs[e + to.size()].first == pairs[e].first)
+        to.push_back(pairs[e + to.size()].second);
       blocked(pairs[e].first, to, std::span(result).subspan(e, to.size()));
     }
   });

@@ -43,7 +43,9 @@ bool VisibilityGraph::add(const NodeSet& nodes, NodeId i, NodeId j) {
     std::vector<float> paths(row.paths.begin(), row.paths.end());
     if (k < ids.size() && ids[k] == to.value) {
       // Neighbours already: now they see each other.
-      if (RowStore::has_path(bits[k])) paths.erase(paths.begin() + std::count_if(bits.begin(), bits.begin() + static_cast<std::ptrdiff_t>(k), RowStore::has_path));
+      if (RowStore::has_path(bits[k]))
+        paths.erase(paths.begin() +
+                    std::count_if(bits.begin(), bits.begin() + static_cast<std::ptrdiff_t>(k), RowStore::has_path));
       bits[k] = static_cast<std::uint16_t>(edge_bit | std::min<std::uint16_t>(bits[k] & bound_bits, bound));
     } else {
       ids.insert(ids.begin() + static_cast<std::ptrdiff_t>(k), to.value);
@@ -53,7 +55,8 @@ bool VisibilityGraph::add(const NodeSet& nodes, NodeId i, NodeId j) {
   };
   put(i, j), put(j, i);
   support_ = std::max({support_, radius(nodes, i.value), radius(nodes, j.value)});
-  reach_ = std::max({reach_, support_, std::sqrt(squared_distance(position(nodes, i.value), position(nodes, j.value)))});
+  reach_ =
+      std::max({reach_, support_, std::sqrt(squared_distance(position(nodes, i.value), position(nodes, j.value)))});
   edges_ += !is_guide(i.value) && !is_guide(j.value);
   return true;
 }
@@ -67,7 +70,8 @@ std::uint32_t VisibilityGraph::add_guide(const Guide& guide) {
   return id;
 }
 
-void VisibilityGraph::append_guide_edges(const NodeSet& nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
+void VisibilityGraph::append_guide_edges(const NodeSet& nodes,
+                                         std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
   for (std::size_t e = 0; e < edges.size();) {
     const auto id = edges[e].first;
     const auto row = store(id).row(place(id));
@@ -151,9 +155,10 @@ std::uint32_t VisibilityGraph::components(std::vector<std::uint32_t>& of) const 
   return count;
 }
 
-VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_unit, std::span<const std::uint32_t> count,
-                                           std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
-                                           std::span<const float> paths, std::span<const Guide> guides,
+VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_unit,
+                                           std::span<const std::uint32_t> count, std::span<const std::uint32_t> to,
+                                           std::span<const std::uint16_t> bits, std::span<const float> paths,
+                                           std::span<const Guide> guides,
                                            std::span<const std::array<std::uint32_t, 2>> guide_edges) {
   const std::size_t n = nodes.size();
   const auto require = [](bool right, const char* what, std::size_t e) {
@@ -171,7 +176,8 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_guides;  // edges, from their ends
   for (std::size_t e = 0; e < guide_edges.size(); ++e) {
     const auto [g, h] = guide_edges[e];
-    if (!(there(g) && h < g && there(h)) || (e > 0 && !(guide_edges[e - 1] < guide_edges[e]))) throw InputError("edge " + std::to_string(e) + " of the graph's guides is out of order or range");
+    if (!(there(g) && h < g && there(h)) || (e > 0 && !(guide_edges[e - 1] < guide_edges[e])))
+      throw InputError("edge " + std::to_string(e) + " of the graph's guides is out of order or range");
     of_guides.push_back({first_guide + g, first_guide + h}), of_guides.push_back({first_guide + h, first_guide + g});
   }
   RowStore::Writer rows(graph.rows_);
@@ -180,11 +186,13 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
     const std::size_t begin = i ? ends[i - 1] : 0, end = ends[i], first_path = path;
     for (std::size_t e = begin; e < end; ++e) {
       const bool to_guide = is_guide(to[e]);
-      require((to_guide ? there(place(to[e])) : to[e] < n && to[e] != i) && (e == begin || to[e - 1] < to[e]), "is out of order or range", e);
+      require((to_guide ? there(place(to[e])) : to[e] < n && to[e] != i) && (e == begin || to[e - 1] < to[e]),
+              "is out of order or range", e);
       if (to_guide) {
         const auto length = graph.warped(nodes, static_cast<std::uint32_t>(i), to[e]);
         require(bits[e] == (edge_bit | path_bit | bits_of_bound(length)), "is not what an edge to a guide is", e);
-        graph.reach_ = std::max(graph.reach_, std::sqrt(squared_distance(nodes.position[i], graph.position(nodes, to[e]))));
+        graph.reach_ =
+            std::max(graph.reach_, std::sqrt(squared_distance(nodes.position[i], graph.position(nodes, to[e]))));
         of_guides.push_back({to[e], static_cast<std::uint32_t>(i)});
         continue;
       }
@@ -202,7 +210,8 @@ VisibilityGraph VisibilityGraph::from_rows(const NodeSet& nodes, double plain_un
     if (begin < end) graph.support_ = std::max(graph.support_, nodes.radius[i]);
     // All entries to lower nodes must have been met from there.
     require(next[i] == end || to[next[i]] > i, "is not the same from its other end", next[i]);
-    rows.set(i, {to.subspan(begin, end - begin), bits.subspan(begin, end - begin), paths.subspan(first_path, path - first_path)});
+    rows.set(i, {to.subspan(begin, end - begin), bits.subspan(begin, end - begin),
+                 paths.subspan(first_path, path - first_path)});
   }
   graph.reach_ = std::max(graph.reach_, graph.support_);
   if (path != paths.size()) throw InputError("the graph has more lengths of paths than it uses");

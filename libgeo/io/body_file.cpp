@@ -13,7 +13,9 @@ namespace {
 
 // ---- Writing: each part of a body as arrays, which refer to the body and to what is kept beside them.
 
-std::span<const double> flat(const std::vector<Vec3>& points) { return {points.empty() ? nullptr : points[0].data(), 3 * points.size()}; }
+std::span<const double> flat(const std::vector<Vec3>& points) {
+  return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
+}
 
 struct Arrays {
   const Body& body;
@@ -40,7 +42,10 @@ struct Arrays {
 void add_surface(Arrays& a) {
   a.mesh = a.body.surface.two_sided(&a.rows);
   a.add("surface/vertices", flat(a.mesh.vertices), 3);
-  a.add("surface/triangles", std::span<const std::uint32_t>(a.mesh.triangles.empty() ? nullptr : a.mesh.triangles[0].data(), 3 * a.mesh.triangles.size()), 3);
+  a.add("surface/triangles",
+        std::span<const std::uint32_t>(a.mesh.triangles.empty() ? nullptr : a.mesh.triangles[0].data(),
+                                       3 * a.mesh.triangles.size()),
+        3);
   a.add("surface/patch", a.mesh.patch);
   a.add("surface/site", a.mesh.site);
   a.add("surface/source", a.mesh.source);
@@ -66,7 +71,10 @@ void add_guides(Arrays& a) {
     for (std::uint32_t g = 0; g < guides.size(); ++g) out.put(guides.radius(g));
   });
   a.guide_edges = a.body.graph.guide_edges();
-  a.add("guides/edges", std::span<const std::uint32_t>(a.guide_edges.empty() ? nullptr : a.guide_edges[0].data(), 2 * a.guide_edges.size()), 2);
+  a.add("guides/edges",
+        std::span<const std::uint32_t>(a.guide_edges.empty() ? nullptr : a.guide_edges[0].data(),
+                                       2 * a.guide_edges.size()),
+        2);
 }
 
 // Edges and neighbours. Rows are given by their lengths: what changes in one row changes no other.
@@ -110,11 +118,19 @@ void add_binding(Arrays& a) {
 
 void add_about(Arrays& a) {
   const Body& body = a.body;
-  nlohmann::ordered_json about = {{"k", body.k}, {"updates", body.updates}, {"resample_limit", body.resample_limit}, {"sampled", body.sampled}, {"cell", body.grid.cell()}, {"crack_count", body.surface.crack_count()}};
+  nlohmann::ordered_json about = {{"k", body.k},
+                                  {"updates", body.updates},
+                                  {"resample_limit", body.resample_limit},
+                                  {"sampled", body.sampled},
+                                  {"cell", body.grid.cell()},
+                                  {"crack_count", body.surface.crack_count()}};
   if (body.guides > 0) about["guides"] = body.guides;
-  if (const auto first = body.nodes.radius.begin(); body.widest != *std::max_element(first, first + body.sampled)) about["widest"] = body.widest;
+  if (const auto first = body.nodes.radius.begin(); body.widest != *std::max_element(first, first + body.sampled))
+    about["widest"] = body.widest;
   about["history"] = nlohmann::ordered_json::array();
-  for (const auto& p : body.history) about["history"].push_back({{"tool", p.tool}, {"version", p.version}, {"arguments", p.arguments}, {"inputs", p.inputs}});
+  for (const auto& p : body.history)
+    about["history"].push_back(
+        {{"tool", p.tool}, {"version", p.version}, {"arguments", p.arguments}, {"inputs", p.inputs}});
   const std::string text = about.dump();
   a.about.assign(text.begin(), text.end());
   a.add("about", a.about);
@@ -138,7 +154,8 @@ std::vector<Vec3> points(const KerfFile& in, const std::string& section) {
   result.reserve(values.size() / 3);
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
     result.push_back({values[i], values[i + 1], values[i + 2]});
-    if (!in_range(result.back())) in.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
+    if (!in_range(result.back()))
+      in.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
   }
   return result;
 }
@@ -148,7 +165,8 @@ void read_surface(const KerfFile& in, Body& body) {
   mesh.vertices = points(in, "surface/vertices");
   const auto triangles = in.read<std::uint32_t>("surface/triangles", 3);
   mesh.triangles.reserve(triangles.size() / 3);
-  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) mesh.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
+    mesh.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
   mesh.patch = in.read<std::int32_t>("surface/patch");
   mesh.site = in.read<std::uint32_t>("surface/site");
   if (mesh.site.empty()) in.fail("the surface is empty");
@@ -170,11 +188,14 @@ void read_nodes(const KerfFile& in, Body& body) {
   nodes.volume = in.read<double>("nodes/volume");
   body.debris = in.read<std::uint8_t>("nodes/debris");
   const std::size_t n = nodes.size();
-  if (n == 0 || n >= NodeId::none || nodes.radius.size() != n || nodes.spacing.size() != n || nodes.volume.size() != n || body.debris.size() != n)
+  if (n == 0 || n >= NodeId::none || nodes.radius.size() != n || nodes.spacing.size() != n ||
+      nodes.volume.size() != n || body.debris.size() != n)
     in.fail("the sections of nodes have different lengths");
   for (std::size_t i = 0; i < n; ++i)
-    if (!(nodes.radius[i] > 0) || !(nodes.spacing[i] > 0) || !(nodes.volume[i] > 0) || !(nodes.radius[i] + nodes.spacing[i] + nodes.volume[i] <= largest_coordinate))
-      in.fail("node " + std::to_string(i) + " has a radius, spacing or volume that is not positive or of no sensible size");
+    if (!(nodes.radius[i] > 0) || !(nodes.spacing[i] > 0) || !(nodes.volume[i] > 0) ||
+        !(nodes.radius[i] + nodes.spacing[i] + nodes.volume[i] <= largest_coordinate))
+      in.fail("node " + std::to_string(i) +
+              " has a radius, spacing or volume that is not positive or of no sensible size");
 }
 
 // Version 1, and early files of version 2, had the edges i < j and the neighbours apart, with all distances.
@@ -197,23 +218,31 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
   const auto edge_ends = ends_of("graph", edge.size());
   for (std::uint32_t i = 0; i < n; ++i)
     for (auto e = i ? edge_ends[i - 1] : 0; e < edge_ends[i]; ++e)
-      if (edge[e] >= n || edge[e] <= i || !edges.add(nodes, NodeId(i), NodeId(edge[e]))) in.fail("edge " + std::to_string(e) + " of the graph is out of range or there twice");
+      if (edge[e] >= n || edge[e] <= i || !edges.add(nodes, NodeId(i), NodeId(edge[e])))
+        in.fail("edge " + std::to_string(e) + " of the graph is out of range or there twice");
   const auto neighbor = in.read<std::uint32_t>("neighbors/to"), warped = in.read<std::uint32_t>("neighbors/warped");
   const auto distance = in.read<float>("neighbors/distance");
   const auto ends = ends_of("neighbors", neighbor.size());
-  if (warped.size() != neighbor.size() || distance.size() != neighbor.size()) in.fail("the sections of neighbours have different lengths");
+  if (warped.size() != neighbor.size() || distance.size() != neighbor.size())
+    in.fail("the sections of neighbours have different lengths");
   std::vector<std::uint32_t> count, to;
   std::vector<std::uint16_t> bits;
   std::vector<float> paths;
   for (std::uint32_t i = 0; i < n; ++i) {
     std::map<std::uint32_t, std::pair<std::uint16_t, float>> row;
-    for (const NodeId j : edges.edges(NodeId(i))) row[j.value] = {VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(unit_radius), 0};
+    for (const NodeId j : edges.edges(NodeId(i)))
+      row[j.value] = {
+          VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(unit_radius), 0};
     for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
-      if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e])) in.fail("neighbour " + std::to_string(e) + " is out of range");
+      if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e]))
+        in.fail("neighbour " + std::to_string(e) + " is out of range");
       // Who does not see the other has a longer path than the straight one.
-      const auto straight = static_cast<float>(std::sqrt(squared_distance(nodes.position[i], nodes.position[neighbor[e]])));
+      const auto straight =
+          static_cast<float>(std::sqrt(squared_distance(nodes.position[i], nodes.position[neighbor[e]])));
       const bool hidden = distance[e] > std::nextafter(straight, 2 * straight);
-      const std::uint16_t kind = row.count(neighbor[e]) ? VisibilityGraph::edge_bit : hidden ? VisibilityGraph::path_bit : 0;
+      const std::uint16_t kind = row.count(neighbor[e]) ? VisibilityGraph::edge_bit
+                                 : hidden               ? VisibilityGraph::path_bit
+                                                        : 0;
       row[neighbor[e]] = {kind | VisibilityGraph::bits_of_bound(warped[e]), distance[e]};
     }
     count.push_back(static_cast<std::uint32_t>(row.size()));
@@ -229,10 +258,13 @@ std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::u
   std::vector<Guide> guides;
   if (in.sections().count("guides/position") == 0) return guides;
   const auto radius = in.read<double>("guides/radius");
-  for (const Vec3& p : points(in, "guides/position")) guides.push_back({p, guides.size() < radius.size() ? radius[guides.size()] : -1});
-  if (guides.size() != radius.size() || guides.size() >= VisibilityGraph::first_guide - 1) in.fail("the sections of guides have different lengths");
+  for (const Vec3& p : points(in, "guides/position"))
+    guides.push_back({p, guides.size() < radius.size() ? radius[guides.size()] : -1});
+  if (guides.size() != radius.size() || guides.size() >= VisibilityGraph::first_guide - 1)
+    in.fail("the sections of guides have different lengths");
   for (const Guide& g : guides)
-    if (!(g.radius >= 0 && g.radius <= largest_coordinate)) in.fail("section 'guides/radius' holds a value that is negative or of no sensible size");
+    if (!(g.radius >= 0 && g.radius <= largest_coordinate))
+      in.fail("section 'guides/radius' holds a value that is negative or of no sensible size");
   const auto ends = in.read<std::uint32_t>("guides/edges", 2);
   for (std::size_t e = 0; e + 1 < ends.size(); e += 2) edges.push_back({ends[e], ends[e + 1]});
   return guides;
@@ -240,7 +272,8 @@ std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::u
 
 void read_rows(const KerfFile& in, Body& body) {
   const auto unit = in.read<double>("graph/plain_unit");
-  if (unit.size() != 1 || !(unit[0] > 0) || !std::isfinite(unit[0])) in.fail("the unit of plain lengths is not positive");
+  if (unit.size() != 1 || !(unit[0] > 0) || !std::isfinite(unit[0]))
+    in.fail("the unit of plain lengths is not positive");
   if (in.sections().count("neighbors/to")) return read_old_rows(in, body, unit[0]);
   const auto count = in.read<std::uint32_t>("graph/count"), to = in.read<std::uint32_t>("graph/to");
   const auto bits = in.read<std::uint16_t>("graph/bits");
@@ -279,16 +312,19 @@ void read_about(const KerfFile& in, Body& body) {
     body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
     body.guides = about.value("guides", 0.0), widest = about.value("widest", 0.0);
-    body.sampled = about.contains("sampled") ? whole<std::uint32_t>(about.at("sampled")) : static_cast<std::uint32_t>(body.nodes.size());
+    body.sampled = about.contains("sampled") ? whole<std::uint32_t>(about.at("sampled"))
+                                             : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
-      body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(), p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
+      body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(),
+                              p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
   } catch (const nlohmann::json::exception&) {
     in.fail("section 'about' is malformed");
   } catch (const std::out_of_range&) {
     in.fail("section 'about' holds an impossible value");
   }
-  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) || body.sampled < 1 || body.sampled > body.nodes.size() ||
-      !(widest >= 0 && widest <= largest_coordinate) || (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
+  if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) ||
+      body.sampled < 1 || body.sampled > body.nodes.size() || !(widest >= 0 && widest <= largest_coordinate) ||
+      (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
     in.fail("section 'about' holds an impossible value");
   set_sampled(body, body.sampled);
   body.widest = widest > 0 ? widest : body.widest;

@@ -1,20 +1,23 @@
 #include "kerf/run_files.h"
 
-#include "kerf/body_file.h"
 #include "io/json_internal.h"
+#include "kerf/body_file.h"
 #include "kerf/surface_file.h"
 
 namespace geo {
 namespace {
 
-std::span<const double> flat(const std::vector<Vec3>& points) { return {points.empty() ? nullptr : points[0].data(), 3 * points.size()}; }
+std::span<const double> flat(const std::vector<Vec3>& points) {
+  return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
+}
 
 std::vector<Vec3> points(const KerfFile& file, const std::string& section) {
   const auto values = file.read<double>(section, 3);
   std::vector<Vec3> result;
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
     result.push_back({values[i], values[i + 1], values[i + 2]});
-    if (!in_range(result.back())) file.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
+    if (!in_range(result.back()))
+      file.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
   }
   return result;
 }
@@ -22,7 +25,8 @@ std::vector<Vec3> points(const KerfFile& file, const std::string& section) {
 // The counts of a run so far, by name.
 template <class Work, class Each>
 void counts(Work& w, const Each& each) {
-  each("steps", w.steps), each("newton", w.newton), each("cg", w.cg), each("fronts", w.fronts), each("refused", w.refused);
+  each("steps", w.steps), each("newton", w.newton), each("cg", w.cg), each("fronts", w.fronts),
+      each("refused", w.refused);
   each("cracks_begun", w.fracture.begun), each("cracks_divided", w.fracture.divided);
   each("triangles_cut", w.split.crack.triangles_cut), each("edges_cut", w.split.edges_cut);
   each("touching", w.contact.touching), each("in_zones", w.contact.in_zones), each("held", w.contact.held);
@@ -66,7 +70,8 @@ FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const K
     front.segments.emplace_back();
     for (const auto& id : segment) {
       const auto v = whole<std::int64_t>(id);
-      front.segments.back().push_back({places.next(), v < 0 || v > ~0u ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
+      front.segments.back().push_back(
+          {places.next(), v < 0 || v > ~0u ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
     }
     if (front.segments.back().size() < 2) file.fail("a front of the run has a segment without ends");
     front.points.push_back(front.segments.back().front());
@@ -81,7 +86,10 @@ FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const K
 void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene) {
   std::vector<Vec3> places;
   std::vector<double> at;
-  nlohmann::ordered_json about = {{"frame", state.frame}, {"scene", scene}, {"fronts", nlohmann::ordered_json::array()}, {"counts", nlohmann::ordered_json::object()}};
+  nlohmann::ordered_json about = {{"frame", state.frame},
+                                  {"scene", scene},
+                                  {"fronts", nlohmann::ordered_json::array()},
+                                  {"counts", nlohmann::ordered_json::object()}};
   for (const auto& blade : state.fronts) {
     about["fronts"].push_back(nlohmann::ordered_json::array());
     for (const EdgeFront& edge : blade) {
@@ -95,20 +103,28 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   std::vector<Vec3> normals, owed;
   for (const GrowingFront& g : state.fracture.fronts) {
     about["growing"].push_back(about_front(g.front, places));
-    for (std::size_t i = 0; i < g.size(); ++i) normals.push_back(g.normal[i]), owed.push_back({g.owed[i], double(g.ended[i]), g.length});
+    for (std::size_t i = 0; i < g.size(); ++i)
+      normals.push_back(g.normal[i]), owed.push_back({g.owed[i], double(g.ended[i]), g.length});
   }
   counts(state.total, [&](const char* name, std::size_t n) { about["counts"][name] = n; });
   const std::string text = about.dump();
-  std::vector<KerfArray> more{kerf_array("run/displacement", flat(state.motion.displacement), 3), kerf_array("run/velocity", flat(state.motion.velocity), 3),
-                              kerf_array("run/part", std::span(state.part)), kerf_array("run/surface", flat(state.surface), 3), kerf_array("run/front_points", flat(places), 3),
-                              kerf_array("run/front_at", std::span<const double>(at)), kerf_array("run/front_normals", flat(normals), 3),
-                              kerf_array("run/front_owed", flat(owed), 3), kerf_array("run/time", std::span(&state.time, 1))};
-  if (!state.motion.acceleration.empty()) more.push_back(kerf_array("run/acceleration", flat(state.motion.acceleration), 3));
+  std::vector<KerfArray> more{kerf_array("run/displacement", flat(state.motion.displacement), 3),
+                              kerf_array("run/velocity", flat(state.motion.velocity), 3),
+                              kerf_array("run/part", std::span(state.part)),
+                              kerf_array("run/surface", flat(state.surface), 3),
+                              kerf_array("run/front_points", flat(places), 3),
+                              kerf_array("run/front_at", std::span<const double>(at)),
+                              kerf_array("run/front_normals", flat(normals), 3),
+                              kerf_array("run/front_owed", flat(owed), 3),
+                              kerf_array("run/time", std::span(&state.time, 1))};
+  if (!state.motion.acceleration.empty())
+    more.push_back(kerf_array("run/acceleration", flat(state.motion.acceleration), 3));
   std::vector<Vec3> plastic;  // columns
   for (const Mat3& m : state.motion.plastic)
     for (int c = 0; c < 3; ++c) plastic.push_back(m.col(c));
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", flat(plastic), 3));
-  more.push_back({"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
+  more.push_back(
+      {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
   write_body(out, body, more);
 }
 
@@ -123,16 +139,19 @@ Checkpoint read_checkpoint(const KerfFile& file) {
     const auto plastic = points(file, "run/plastic");
     if (plastic.size() % 3 != 0) file.fail("the plastic strains of the run are incomplete");
     state.motion.plastic.resize(plastic.size() / 3);
-    for (std::size_t i = 0; i < plastic.size(); ++i) state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
+    for (std::size_t i = 0; i < plastic.size(); ++i)
+      state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
   }
   state.surface = points(file, "run/surface");
   state.part = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");
   const std::size_t n = c.body.nodes.size();
-  if (time.size() != 1 || !std::isfinite(time[0]) || state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.part.size() != n)
+  if (time.size() != 1 || !std::isfinite(time[0]) || state.motion.displacement.size() != n ||
+      state.motion.velocity.size() != n || state.part.size() != n)
     file.fail("the sections of the run have different lengths");
   state.time = time[0];
-  Supply<Vec3> places(points(file, "run/front_points"), file), normals(points(file, "run/front_normals"), file), owed(points(file, "run/front_owed"), file);
+  Supply<Vec3> places(points(file, "run/front_points"), file), normals(points(file, "run/front_normals"), file),
+      owed(points(file, "run/front_owed"), file);
   Supply<double> at(file.read<double>("run/front_at"), file);
   const auto about = nlohmann::json::parse(file.text("run/about"), nullptr, false);
   try {
@@ -158,7 +177,8 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       }
       state.fracture.fronts.push_back(std::move(g));
     }
-    counts(state.total, [&](const char* name, std::size_t& count) { count = whole<std::size_t>(about.at("counts").at(name)); });
+    counts(state.total,
+           [&](const char* name, std::size_t& count) { count = whole<std::size_t>(about.at("counts").at(name)); });
   } catch (const nlohmann::json::exception&) {
     file.fail("section 'run/about' is malformed");
   } catch (const std::out_of_range&) {

@@ -1,8 +1,8 @@
 #include <functional>
 
-#include "kerf/export.h"
 #include "io/export_internal.h"
 #include "io/kerf_writer.h"
+#include "kerf/export.h"
 
 namespace geo {
 namespace {
@@ -14,7 +14,9 @@ void put(std::ostream& out, const T* values, std::size_t count) {
 
 // Gathers small values into blocks.
 KerfSink into(std::ostream& out) {
-  return KerfSink([&out](std::span<const std::byte> bytes) { out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())); });
+  return KerfSink([&out](std::span<const std::byte> bytes) {
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  });
 }
 
 }  // namespace
@@ -23,9 +25,11 @@ void write_graph_ply(std::ostream& out, const Body& body) {
   const NodeSet& nodes = body.nodes;
   std::vector<std::uint32_t> component;
   body.graph.components(component);
-  out << "ply\nformat binary_little_endian 1.0\ncomment visibility graph by kerf\nelement vertex " << nodes.size() << '\n';
+  out << "ply\nformat binary_little_endian 1.0\ncomment visibility graph by kerf\nelement vertex " << nodes.size()
+      << '\n';
   for (const char* field : {"x", "y", "z", "radius", "spacing", "volume"}) out << "property double " << field << '\n';
-  out << "property uchar debris\nproperty uint component\nelement edge " << body.graph.edge_count() << "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+  out << "property uchar debris\nproperty uint component\nelement edge " << body.graph.edge_count()
+      << "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
   KerfSink sink = into(out);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (int k = 0; k < 3; ++k) sink.put(nodes.position[i][k]);
@@ -48,9 +52,13 @@ void write_vtu(std::ostream& out, const Body& body) {
     std::uint64_t bytes;
     std::function<void()> write;
   };
-  const auto field = [&](const char* name, const std::vector<double>& values) { return Part{"Float64", name, 1, 8 * n, [&] { put(out, values.data(), n); }}; };
+  const auto field = [&](const char* name, const std::vector<double>& values) {
+    return Part{"Float64", name, 1, 8 * n, [&] { put(out, values.data(), n); }};
+  };
   const std::vector<Part> points{{"Float64", "Points", 3, 24 * n, [&] { put(out, nodes.position[0].data(), 3 * n); }}};
-  const std::vector<Part> fields{field("radius", nodes.radius), field("spacing", nodes.spacing), field("volume", nodes.volume),
+  const std::vector<Part> fields{field("radius", nodes.radius),
+                                 field("spacing", nodes.spacing),
+                                 field("volume", nodes.volume),
                                  {"UInt8", "debris", 1, n, [&] { put(out, body.debris.data(), n); }},
                                  {"UInt32", "component", 1, 4 * n, [&] { put(out, component.data(), n); }}};
   const auto filled = [&](const auto& fill) {
@@ -60,16 +68,26 @@ void write_vtu(std::ostream& out, const Body& body) {
       sink.finish();
     };
   };
-  const std::vector<Part> cells{{"Int64", "connectivity", 1, 16 * edges, filled([&](KerfSink& sink) { each_edge(body, [&](std::uint32_t i, std::uint32_t j) { sink.put(std::int64_t(i)), sink.put(std::int64_t(j)); }); })},
-                                {"Int64", "offsets", 1, 8 * edges, filled([&](KerfSink& sink) { for (std::size_t e = 1; e <= edges; ++e) sink.put(static_cast<std::int64_t>(2 * e)); })},
-                                {"UInt8", "types", 1, edges, filled([&](KerfSink& sink) { for (std::size_t e = 0; e < edges; ++e) sink.put(std::uint8_t(3)); })}};
-  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
+  const std::vector<Part> cells{{"Int64", "connectivity", 1, 16 * edges, filled([&](KerfSink& sink) {
+                                   each_edge(body, [&](std::uint32_t i, std::uint32_t j) {
+                                     sink.put(std::int64_t(i)), sink.put(std::int64_t(j));
+                                   });
+                                 })},
+                                {"Int64", "offsets", 1, 8 * edges, filled([&](KerfSink& sink) {
+                                   for (std::size_t e = 1; e <= edges; ++e) sink.put(static_cast<std::int64_t>(2 * e));
+                                 })},
+                                {"UInt8", "types", 1, edges, filled([&](KerfSink& sink) {
+                                   for (std::size_t e = 0; e < edges; ++e) sink.put(std::uint8_t(3));
+                                 })}};
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
       << n << "\" NumberOfCells=\"" << edges << "\">\n";
   std::uint64_t offset = 0;
   const auto declare = [&](const char* group, const std::vector<Part>& parts) {
     out << "      <" << group << ">\n";
     for (const auto& p : parts) {
-      out << "        <DataArray type=\"" << p.type << "\" Name=\"" << p.name << "\" NumberOfComponents=\"" << p.columns << "\" format=\"appended\" offset=\"" << offset << "\"/>\n";
+      out << "        <DataArray type=\"" << p.type << "\" Name=\"" << p.name << "\" NumberOfComponents=\"" << p.columns
+          << "\" format=\"appended\" offset=\"" << offset << "\"/>\n";
       offset += sizeof(std::uint64_t) + p.bytes;
     }
     out << "      </" << group << ">\n";

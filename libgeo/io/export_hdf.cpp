@@ -5,10 +5,10 @@
 #include <functional>
 #include <vector>
 
-#include "kerf/error.h"
-#include "kerf/export.h"
 #include "io/export_internal.h"
 #include "io/kerf_writer.h"
+#include "kerf/error.h"
+#include "kerf/export.h"
 
 namespace geo {
 namespace {
@@ -37,9 +37,11 @@ void write_attribute(hid_t object, const char* name, hid_t type, const Handle& s
 }
 
 // A data set of `rows` × `columns` values, which `fill` puts.
-void write_set(hid_t group, const char* name, hid_t type, hsize_t rows, hsize_t columns, const std::function<void(KerfSink&)>& fill) {
+void write_set(hid_t group, const char* name, hid_t type, hsize_t rows, hsize_t columns,
+               const std::function<void(KerfSink&)>& fill) {
   const hsize_t shape[] = {rows, columns};
-  const Handle space(H5Screate_simple(columns > 1 ? 2 : 1, shape, nullptr), H5Sclose), properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Handle space(H5Screate_simple(columns > 1 ? 2 : 1, shape, nullptr), H5Sclose),
+      properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   require(H5Pset_obj_track_times(properties, false));  // the same body, the same bytes
   const Handle set(H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
   // Row by row of the shape, however its rows lie in the blocks.
@@ -62,15 +64,20 @@ void write_set(hid_t group, const char* name, hid_t type, hsize_t rows, hsize_t 
 
 template <class T>
 hid_t type_of() {
-  if constexpr (std::is_same_v<T, double>) return H5T_IEEE_F64LE;
-  else if constexpr (std::is_same_v<T, std::int64_t>) return H5T_STD_I64LE;
-  else if constexpr (std::is_same_v<T, std::uint32_t>) return H5T_STD_U32LE;
-  else return H5T_STD_U8LE;
+  if constexpr (std::is_same_v<T, double>)
+    return H5T_IEEE_F64LE;
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return H5T_STD_I64LE;
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return H5T_STD_U32LE;
+  else
+    return H5T_STD_U8LE;
 }
 
 template <class T>
 void write_set(hid_t group, const char* name, const std::vector<T>& values) {
-  write_set(group, name, type_of<T>(), values.size(), 1, [&](KerfSink& sink) { sink.write(std::as_bytes(std::span(values))); });
+  write_set(group, name, type_of<T>(), values.size(), 1,
+            [&](KerfSink& sink) { sink.write(std::as_bytes(std::span(values))); });
 }
 
 }  // namespace
@@ -88,7 +95,8 @@ void write_vtkhdf(std::ostream& out, const Body& body) {
   {
     const Handle root(H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
     const hsize_t two = 2;
-    const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose), scalar(H5Screate(H5S_SCALAR), H5Sclose), text(H5Tcopy(H5T_C_S1), H5Tclose);
+    const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose), scalar(H5Screate(H5S_SCALAR), H5Sclose),
+        text(H5Tcopy(H5T_C_S1), H5Tclose);
     const std::int64_t version[] = {1, 0};
     const char kind[] = "UnstructuredGrid";
     require(H5Tset_size(text, sizeof kind - 1));
@@ -98,7 +106,8 @@ void write_vtkhdf(std::ostream& out, const Body& body) {
     write_set(root, "NumberOfPoints", std::vector<std::int64_t>{static_cast<std::int64_t>(nodes.size())});
     write_set(root, "NumberOfCells", std::vector<std::int64_t>{edges});
     write_set(root, "NumberOfConnectivityIds", std::vector<std::int64_t>{2 * edges});
-    write_set(root, "Points", H5T_IEEE_F64LE, nodes.size(), 3, [&](KerfSink& sink) { sink.write(std::as_bytes(std::span(nodes.position))); });
+    write_set(root, "Points", H5T_IEEE_F64LE, nodes.size(), 3,
+              [&](KerfSink& sink) { sink.write(std::as_bytes(std::span(nodes.position))); });
     write_set(root, "Types", H5T_STD_U8LE, static_cast<hsize_t>(edges), 1, [&](KerfSink& sink) {
       for (std::int64_t e = 0; e < edges; ++e) sink.put(std::uint8_t(3));  // lines
     });

@@ -1,9 +1,9 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "kerf/export.h"
 #include "io/kerf_layout_internal.h"
 #include "io/text_internal.h"
+#include "kerf/export.h"
 
 namespace geo {
 namespace {

@@ -1,8 +1,8 @@
 // The zip format is PKWARE's APPNOTE 6.3, with the 64-bit fields of its § 4.5.3 in every entry; .npy is NumPy's NEP 1.
 #include <array>
 
-#include "kerf/export.h"
 #include "io/kerf_layout_internal.h"
+#include "kerf/export.h"
 
 namespace geo {
 namespace {
@@ -40,7 +40,8 @@ class Fields {
 std::string npy_header(const KerfFile::Section& s) {
   std::string shape;
   for (const auto d : s.shape) shape += std::to_string(d) + ",";
-  std::string text = "{'descr': '" + std::string(s.dtype == "u1" ? "|" : "<") + s.dtype + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  std::string text = "{'descr': '" + std::string(s.dtype == "u1" ? "|" : "<") + s.dtype +
+                     "', 'fortran_order': False, 'shape': (" + shape + "), }";
   text.resize(kerf::aligned(10 + text.size() + 1) - 11, ' ');
   text += '\n';
   return Fields().text("\x93NUMPY\x01").text(std::string(1, '\0')).u2(text.size()).text(text).bytes;
@@ -70,13 +71,29 @@ void write_npz(std::ostream& out, const KerfFile& file) {
       return sink.finish();
     };
     const std::uint64_t size = pass(sum);
-    const auto common = [&](Fields& f) -> Fields& { return f.u2(45).u2(0).u2(0).u2(0).u2(first_of_january_1980).u4(~crc).u4(elsewhere).u4(elsewhere).u2(name.size()); };
+    const auto common = [&](Fields& f) -> Fields& {
+      return f.u2(45).u2(0).u2(0).u2(0).u2(first_of_january_1980).u4(~crc).u4(elsewhere).u4(elsewhere).u2(name.size());
+    };
     Fields local, central;
     common(local.u4(0x04034b50)).u2(20).text(name).u2(1).u2(16).u8(size).u8(size);
-    common(central.u4(0x02014b50).u2(45)).u2(28).u2(0).u2(0).u2(0).u4(0).u4(elsewhere).text(name).u2(1).u2(24).u8(size).u8(size).u8(at);
+    common(central.u4(0x02014b50).u2(45))
+        .u2(28)
+        .u2(0)
+        .u2(0)
+        .u2(0)
+        .u4(0)
+        .u4(elsewhere)
+        .text(name)
+        .u2(1)
+        .u2(24)
+        .u8(size)
+        .u8(size)
+        .u8(at);
     directory += central.bytes;
     out << local.bytes;
-    at += local.bytes.size() + pass([&](std::span<const std::byte> bytes) { out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())); });
+    at += local.bytes.size() + pass([&](std::span<const std::byte> bytes) {
+            out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+          });
     ++entries;
   }
   Fields end;

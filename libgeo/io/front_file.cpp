@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "kerf/stream.h"
 #include "io/text_internal.h"
+#include "kerf/stream.h"
 
 namespace geo {
 namespace {
@@ -12,12 +12,16 @@ namespace {
 void check(const Front& front, const std::string& name, std::size_t least_steps) {
   const bool sheet = front.is_sheet();
   const std::string who = name + (sheet ? ": sheet '" : ": front '") + shown(front.name) + "' ";
-  if (front.steps.size() < least_steps && !sheet) throw InputError(who + "has one time step only; it needs at least two to sweep anything (a sheet, triangles)");
+  if (front.steps.size() < least_steps && !sheet)
+    throw InputError(who + "has one time step only; it needs at least two to sweep anything (a sheet, triangles)");
   for (std::size_t s = 0; s < front.steps.size(); ++s) {
     for (const Vec3& p : front.steps[s])
-      if (!in_range(p)) throw InputError(who + "has a coordinate of no sensible size" + (sheet ? "" : " in step " + std::to_string(s)) + "; repair the file");
+      if (!in_range(p))
+        throw InputError(who + "has a coordinate of no sensible size" + (sheet ? "" : " in step " + std::to_string(s)) +
+                         "; repair the file");
     if (front.steps[s].size() < (front.closed ? 3u : 2u))
-      throw InputError(who + "has " + std::to_string(front.steps[s].size()) + " point(s) in step " + std::to_string(s) + "; it needs at least " + (front.closed ? "three" : "two"));
+      throw InputError(who + "has " + std::to_string(front.steps[s].size()) + " point(s) in step " + std::to_string(s) +
+                       "; it needs at least " + (front.closed ? "three" : "two"));
   }
 }
 
@@ -46,7 +50,9 @@ std::vector<Front> from_obj(const std::string& bytes, const std::string& name, s
   }
   Front front;
   front.name = "obj";
-  front.closed = !objects.empty() && std::all_of(objects.begin(), objects.end(), [](const auto& o) { return o.second.size() > 3 && o.second.front() == o.second.back(); });
+  front.closed = !objects.empty() && std::all_of(objects.begin(), objects.end(), [](const auto& o) {
+    return o.second.size() > 3 && o.second.front() == o.second.back();
+  });
   for (auto& [key, line] : objects) {
     if (front.closed) line.pop_back();
     front.steps.emplace_back();
@@ -55,7 +61,6 @@ std::vector<Front> from_obj(const std::string& bytes, const std::string& name, s
   check(front, name, least_steps);
   return {front};
 }
-
 
 std::vector<Front> parse(const std::string& bytes, const std::string& name, std::size_t least_steps) {
   Lines lines(bytes, name);
@@ -68,7 +73,8 @@ std::vector<Front> parse(const std::string& bytes, const std::string& name, std:
   };
   while (lines.next(words)) {
     if (words[0] == "front") {
-      if (words.size() < 2 || words.size() > 3 || (words.size() == 3 && words[2] != "closed")) lines.fail("write 'front NAME' or 'front NAME closed'");
+      if (words.size() < 2 || words.size() > 3 || (words.size() == 3 && words[2] != "closed"))
+        lines.fail("write 'front NAME' or 'front NAME closed'");
       fronts.push_back({std::string(words[1]), words.size() == 3, {}, {}});
       sheet = false;
     } else if (words[0] == "sheet") {
@@ -76,7 +82,8 @@ std::vector<Front> parse(const std::string& bytes, const std::string& name, std:
       fronts.push_back({std::string(words[1]), false, {{}}, {}});
       sheet = true;
     } else if (fronts.empty()) {
-      if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib") return from_obj(bytes, name, least_steps);
+      if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib")
+        return from_obj(bytes, name, least_steps);
       lines.fail("begins with '" + shown(words[0]) + "'; a front file begins with 'front NAME' or 'sheet NAME'");
     } else if (sheet && words[0] == "v") {
       fronts.back().steps[0].push_back(point(1));
@@ -85,7 +92,8 @@ std::vector<Front> parse(const std::string& bytes, const std::string& name, std:
       Triangle t;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto row = lines.integer(words[k + 1]);
-        if (row < 1 || row > static_cast<long long>(fronts.back().steps[0].size())) lines.fail("a triangle names a point that is not there; points are numbered from 1 and stand before");
+        if (row < 1 || row > static_cast<long long>(fronts.back().steps[0].size()))
+          lines.fail("a triangle names a point that is not there; points are numbered from 1 and stand before");
         t[k] = static_cast<std::uint32_t>(row - 1);
       }
       fronts.back().triangles.push_back(t);

@@ -16,13 +16,22 @@ Json row(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes) {
   Json pieces = Json::array(), held = Json::array();
   for (std::size_t p = 0; p < chunks.size(); ++p)
-    pieces.push_back({{notes.kind, notes.names[p]}, {"volume", chunks[p].volume}, {"centroid", row(chunks[p].centroid)}, {"triangles", chunks[p].mesh.triangles.size()}});
+    pieces.push_back({{notes.kind, notes.names[p]},
+                      {"volume", chunks[p].volume},
+                      {"centroid", row(chunks[p].centroid)},
+                      {"triangles", chunks[p].mesh.triangles.size()}});
   for (const Bond& b : bonds)
-    held.push_back({{"a", b.a}, {"b", b.b}, {"area", b.area}, {"normal", row(b.normal)}, {"centroid", row(b.centroid)}, {"strength", notes.strength * b.area}});
+    held.push_back({{"a", b.a},
+                    {"b", b.b},
+                    {"area", b.area},
+                    {"normal", row(b.normal)},
+                    {"centroid", row(b.centroid)},
+                    {"strength", notes.strength * b.area}});
   return {{"pieces", pieces}, {"bonds", held}};
 }
 
-// Unit normals at the corners: of the triangles there, weighed by their areas, that are of the same kind and bent less than 45°.
+// Unit normals at the corners: of the triangles there, weighed by their areas, that are of the same kind and bent less
+// than 45°.
 std::vector<std::array<Vec3, 3>> smooth_normals(const TriangleMesh& mesh) {
   std::vector<Vec3> normal(mesh.triangles.size());
   std::vector<std::vector<std::uint32_t>> at(mesh.vertices.size());
@@ -36,7 +45,9 @@ std::vector<std::array<Vec3, 3>> smooth_normals(const TriangleMesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) {
       Vec3 sum = Vec3::Zero();
       for (const auto other : at[mesh.triangles[t][k]])
-        if ((mesh.patch[other] == 0) == (mesh.patch[t] == 0) && normal[t].stableNormalized().dot(normal[other].stableNormalized()) > std::sqrt(0.5)) sum += normal[other];
+        if ((mesh.patch[other] == 0) == (mesh.patch[t] == 0) &&
+            normal[t].stableNormalized().dot(normal[other].stableNormalized()) > std::sqrt(0.5))
+          sum += normal[other];
       result[t][k] = sum.norm() > 0 ? sum.stableNormalized() : Vec3(Vec3::UnitZ());
     }
   return result;
@@ -57,23 +68,27 @@ class Glb {
     const std::size_t offset = bytes_.size();
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", values.size() * sizeof(T)}, {"target", target}});
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", values.size() * sizeof(T)}, {"target", target}});
     return json["bufferViews"].size() - 1;
   }
   template <class T>
   std::size_t accessor(const std::vector<T>& values, int component, const char* type, std::size_t count) {
-    json["accessors"].push_back({{"bufferView", view(values, 34962)}, {"componentType", component}, {"count", count}, {"type", type}});
+    json["accessors"].push_back(
+        {{"bufferView", view(values, 34962)}, {"componentType", component}, {"count", count}, {"type", type}});
     return json["accessors"].size() - 1;
   }
   std::size_t positions(const std::vector<float>& values) {
     const std::size_t at = accessor(values, 5126, "VEC3", values.size() / 3);
     std::array<float, 3> lo{values[0], values[1], values[2]}, hi = lo;
-    for (std::size_t i = 0; i < values.size(); ++i) lo[i % 3] = std::min(lo[i % 3], values[i]), hi[i % 3] = std::max(hi[i % 3], values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      lo[i % 3] = std::min(lo[i % 3], values[i]), hi[i % 3] = std::max(hi[i % 3], values[i]);
     json["accessors"][at]["min"] = lo, json["accessors"][at]["max"] = hi;
     return at;
   }
   std::size_t indices(const std::vector<std::uint32_t>& values) {
-    json["accessors"].push_back({{"bufferView", view(values, 34963)}, {"componentType", 5125}, {"count", values.size()}, {"type", "SCALAR"}});
+    json["accessors"].push_back(
+        {{"bufferView", view(values, 34963)}, {"componentType", 5125}, {"count", values.size()}, {"type", "SCALAR"}});
     return json["accessors"].size() - 1;
   }
   std::size_t node(Json description) {
@@ -107,11 +122,12 @@ class Glb {
 };
 
 // The triangles of one group, corners with equal values joined.
-Json primitive(Glb& glb, const Chunk& chunk, const std::vector<std::array<Vec3, 3>>& normals, std::int32_t group, std::size_t material) {
+Json primitive(Glb& glb, const Chunk& chunk, const std::vector<std::array<Vec3, 3>>& normals, std::int32_t group,
+               std::size_t material) {
   const TriangleMesh& mesh = chunk.mesh;
   const Attributes& a = mesh.attributes;
   struct Corner {
-    std::array<float, 8> at;                // position, normal, uv
+    std::array<float, 8> at;  // position, normal, uv
     std::array<std::uint16_t, 4> color;
     auto operator<=>(const Corner&) const = default;
   };
@@ -124,10 +140,13 @@ Json primitive(Glb& glb, const Chunk& chunk, const std::vector<std::array<Vec3, 
     for (std::size_t k = 0; k < 3; ++k) {
       Corner corner{};
       const Vec3 p = mesh.vertices[mesh.triangles[t][k]] - chunk.centroid;
-      for (int i = 0; i < 3; ++i) corner.at[std::size_t(i)] = float(p[i]), corner.at[std::size_t(3 + i)] = float(normals[t][k][i]);
+      for (int i = 0; i < 3; ++i)
+        corner.at[std::size_t(i)] = float(p[i]), corner.at[std::size_t(3 + i)] = float(normals[t][k][i]);
       corner.at[6] = float(a.uv[t][k].x()), corner.at[7] = float(1 - a.uv[t][k].y());  // glTF counts from the top
       if (!a.color.empty())
-        for (int i = 0; i < 4; ++i) corner.color[std::size_t(i)] = static_cast<std::uint16_t>(std::lround(65535 * (i < 3 ? linear(a.color[t][k][i]) : std::clamp(a.color[t][k][i], 0.0, 1.0))));
+        for (int i = 0; i < 4; ++i)
+          corner.color[std::size_t(i)] = static_cast<std::uint16_t>(
+              std::lround(65535 * (i < 3 ? linear(a.color[t][k][i]) : std::clamp(a.color[t][k][i], 0.0, 1.0))));
       const auto [entry, fresh] = rows.try_emplace(corner, static_cast<std::uint32_t>(rows.size()));
       index.push_back(entry->second);
       if (!fresh) continue;
@@ -137,7 +156,9 @@ Json primitive(Glb& glb, const Chunk& chunk, const std::vector<std::array<Vec3, 
       color.insert(color.end(), corner.color.begin(), corner.color.end());
     }
   }
-  Json attributes = {{"POSITION", glb.positions(position)}, {"NORMAL", glb.accessor(normal, 5126, "VEC3", rows.size())}, {"TEXCOORD_0", glb.accessor(uv, 5126, "VEC2", rows.size())}};
+  Json attributes = {{"POSITION", glb.positions(position)},
+                     {"NORMAL", glb.accessor(normal, 5126, "VEC3", rows.size())},
+                     {"TEXCOORD_0", glb.accessor(uv, 5126, "VEC2", rows.size())}};
   if (!a.color.empty()) {
     attributes["COLOR_0"] = glb.accessor(color, 5123, "VEC4", rows.size());
     glb.json["accessors"].back()["normalized"] = true;
@@ -157,7 +178,8 @@ Json hull_primitive(Glb& glb, const TriangleMesh& hull, const Vec3& origin) {
 
 }  // namespace
 
-void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes) {
+void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+                 const ChunkNotes& notes) {
   out << bonds_json(chunks, bonds, notes).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
@@ -166,15 +188,25 @@ std::string hull_suffix(std::size_t part, std::size_t parts) {
   return (part < 10 ? "_0" : "_") + std::to_string(part);
 }
 
-void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes, const GlbOptions& options) {
+void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+               const ChunkNotes& notes, const GlbOptions& options) {
   Glb glb;
-  glb.json = {{"asset", {{"version", "2.0"}, {"generator", "kerf-pieces"}}}, {"scene", 0}, {"scenes", Json::array()}, {"nodes", Json::array()},
-              {"meshes", Json::array()}, {"materials", Json::array()}, {"accessors", Json::array()}, {"bufferViews", Json::array()}};
+  glb.json = {{"asset", {{"version", "2.0"}, {"generator", "kerf-pieces"}}},
+              {"scene", 0},
+              {"scenes", Json::array()},
+              {"nodes", Json::array()},
+              {"meshes", Json::array()},
+              {"materials", Json::array()},
+              {"accessors", Json::array()},
+              {"bufferViews", Json::array()}};
   std::map<std::string, std::size_t> materials;
   const auto material = [&](const std::string& name) {
     const auto [entry, fresh] = materials.try_emplace(name, materials.size());
     const Json color = name == crack_group ? Json::array({0.42, 0.36, 0.31, 1.0}) : Json::array({0.8, 0.8, 0.8, 1.0});
-    if (fresh) glb.json["materials"].push_back({{"name", name}, {"pbrMetallicRoughness", {{"baseColorFactor", color}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}}});
+    if (fresh)
+      glb.json["materials"].push_back(
+          {{"name", name},
+           {"pbrMetallicRoughness", {{"baseColorFactor", color}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}}});
     return entry->second;
   };
   Json children = Json::array();
@@ -186,8 +218,12 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
       if (chunk.mesh.patch[t] == 0) normals[t] = a.normal[t];
     Json primitives = Json::array();
     for (std::int32_t g = 0; g < std::int32_t(a.group_names.size()); ++g)
-      if (std::find(a.group.begin(), a.group.end(), g) != a.group.end()) primitives.push_back(primitive(glb, chunk, normals, g, material(a.group_names[std::size_t(g)])));
-    Json node = {{"name", notes.names[p]}, {"translation", row(chunk.centroid)}, {"mesh", glb.mesh(primitives, notes.names[p])}, {"extras", {{"volume", chunk.volume}}}};
+      if (std::find(a.group.begin(), a.group.end(), g) != a.group.end())
+        primitives.push_back(primitive(glb, chunk, normals, g, material(a.group_names[std::size_t(g)])));
+    Json node = {{"name", notes.names[p]},
+                 {"translation", row(chunk.centroid)},
+                 {"mesh", glb.mesh(primitives, notes.names[p])},
+                 {"extras", {{"volume", chunk.volume}}}};
     if (options.hull_corners > 0) {
       const auto hulls = convex_parts(chunk.mesh, options.hull_parts, options.hull_corners);
       for (std::size_t h = 0; h < hulls.size(); ++h) {

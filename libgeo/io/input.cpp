@@ -27,17 +27,22 @@ Input::Input(const std::string& path) : name_(path) {
   size_ = bytes_.size();
 }
 
-Input::Input(std::string bytes, std::string name) : name_(std::move(name)), bytes_(std::move(bytes)), size_(bytes_.size()) {}
+Input::Input(std::string bytes, std::string name)
+    : name_(std::move(name)), bytes_(std::move(bytes)), size_(bytes_.size()) {}
 
 Input::~Input() {
   if (file_ >= 0) ::close(file_);
 }
 
 Input::Input(Input&& other) noexcept
-    : name_(std::move(other.name_)), bytes_(std::move(other.bytes_)), size_(other.size_), file_(std::exchange(other.file_, -1)) {}
+    : name_(std::move(other.name_)),
+      bytes_(std::move(other.bytes_)),
+      size_(other.size_),
+      file_(std::exchange(other.file_, -1)) {}
 
 void Input::read(std::uint64_t offset, std::span<std::byte> out) const {
-  if (offset > size_ || out.size() > size_ - offset) throw InputError(name_ + ": ends before all of it was read; the file is truncated");
+  if (offset > size_ || out.size() > size_ - offset)
+    throw InputError(name_ + ": ends before all of it was read; the file is truncated");
   if (file_ < 0) {
     if (!out.empty()) std::memcpy(out.data(), bytes_.data() + offset, out.size());
     return;

@@ -12,7 +12,8 @@ namespace geo {
 /// shortens ends this one, and one that it changes is no longer what was checked. Everything else is read to its end.
 class Input {
  public:
-  /// Opens a file, or standard input where `path` is "-". Throws MissingInputError, or InputError when empty or a folder.
+  /// Opens a file, or standard input where `path` is "-". Throws MissingInputError, or InputError when empty or a
+  /// folder.
   explicit Input(const std::string& path);
   /// The bytes given, under that name.
   Input(std::string bytes, std::string name);

@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <cstring>
 
-#include "kerf/error.h"
 #include "io/kerf_delta_internal.h"
 #include "io/kerf_segment_internal.h"
+#include "kerf/error.h"
 #include "kerf/stream.h"
 
 namespace geo {
@@ -19,7 +19,8 @@ namespace {
 
 std::uint64_t hash_in_blocks(std::span<const std::byte> bytes) {
   std::vector<std::uint64_t> blocks;
-  for (std::size_t at = 0; at < bytes.size(); at += kerf::hash_block) blocks.push_back(kerf::hash_of(bytes.data() + at, std::min(kerf::hash_block, bytes.size() - at)));
+  for (std::size_t at = 0; at < bytes.size(); at += kerf::hash_block)
+    blocks.push_back(kerf::hash_of(bytes.data() + at, std::min(kerf::hash_block, bytes.size() - at)));
   return kerf::hash_of(blocks);
 }
 
@@ -37,7 +38,8 @@ kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::u
   const KerfFile::Section& old = file.sections().at(array.name);
   kerf::Stored s{array, {}, 0, hash};
   const std::uint64_t width = kerf::row_bytes(array.dtype, array.shape);
-  const bool comparable = !array.shape.empty() && array.dtype == old.dtype && array.shape.size() == old.shape.size() && std::equal(array.shape.begin() + 1, array.shape.end(), old.shape.begin() + 1);
+  const bool comparable = !array.shape.empty() && array.dtype == old.dtype && array.shape.size() == old.shape.size() &&
+                          std::equal(array.shape.begin() + 1, array.shape.end(), old.shape.begin() + 1);
   if (comparable && width > 0 && old.bytes > 0) {
     std::vector<std::byte> before(old.bytes);
     file.read(array.name, before);
@@ -53,7 +55,9 @@ kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::u
       }
       after.resize(to), after.shrink_to_fit();
       s.runs = std::move(runs), s.literal_rows = given;
-      s.array.fill = [bytes = std::make_shared<const std::vector<std::byte>>(std::move(after))](KerfSink& sink) { sink.write(*bytes); };
+      s.array.fill = [bytes = std::make_shared<const std::vector<std::byte>>(std::move(after))](KerfSink& sink) {
+        sink.write(*bytes);
+      };
     }
   }
   return s;
@@ -64,11 +68,13 @@ kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::u
 KerfUpdate::KerfUpdate(const std::string& path) : path_(path) {
   Input input(path);  // says what is wrong when it is missing, empty or a folder
   struct stat info {};
-  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) throw OutputError(path + ": is no regular file and cannot be updated in place; write to another one");
+  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode))
+    throw OutputError(path + ": is no regular file and cannot be updated in place; write to another one");
   fd_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (fd_ < 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
   try {
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) throw OutputError(path + ": is being updated by another program; wait for it, or write to another file");
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0)
+      throw OutputError(path + ": is being updated by another program; wait for it, or write to another file");
     file_ = std::make_unique<KerfFile>(Input(path));  // once it is locked: nobody adds to it any more
     require_same_file();
   } catch (...) {
@@ -81,8 +87,10 @@ KerfUpdate::~KerfUpdate() { ::close(fd_); }
 
 // Somebody may have put another file in its place, which a lock does not prevent.
 void KerfUpdate::require_same_file() const {
-  struct stat ours {}, there {};
-  if (::fstat(fd_, &ours) != 0 || ::stat(path_.c_str(), &there) != 0 || ours.st_dev != there.st_dev || ours.st_ino != there.st_ino)
+  struct stat ours {
+  }, there{};
+  if (::fstat(fd_, &ours) != 0 || ::stat(path_.c_str(), &there) != 0 || ours.st_dev != there.st_dev ||
+      ours.st_ino != there.st_ino)
     throw OutputError(path_ + ": was replaced by another program; start again");
 }
 
@@ -134,7 +142,8 @@ std::vector<kerf::Stored> KerfUpdate::changes(const std::vector<KerfArray>& arra
     }
     auto bytes = all_of(array);
     const std::uint64_t hash = hash_in_blocks(bytes);
-    if (old->second.hash != hash || old->second.dtype != array.dtype || old->second.shape != array.shape) changed.push_back(stored(array, std::move(bytes), hash, *file_));
+    if (old->second.hash != hash || old->second.dtype != array.dtype || old->second.shape != array.shape)
+      changed.push_back(stored(array, std::move(bytes), hash, *file_));
   }
   return changed;
 }
@@ -143,7 +152,8 @@ void KerfUpdate::append(const std::vector<kerf::Stored>& changed) {
   const std::uint64_t start = file_->committed();
   require_same_file();
   try {
-    if (::ftruncate(fd_, static_cast<off_t>(start)) != 0) throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
+    if (::ftruncate(fd_, static_cast<off_t>(start)) != 0)
+      throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
     std::uint64_t at = start;
     const auto put = [&](std::span<const std::byte> bytes) {
       write(at, bytes);
@@ -160,8 +170,10 @@ void KerfUpdate::append(const std::vector<kerf::Stored>& changed) {
 }
 
 bool same_file(const std::string& a, const std::string& b) {
-  struct stat first {}, second {};
-  return ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 && S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+  struct stat first {
+  }, second{};
+  return ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 && S_ISREG(first.st_mode) &&
+         first.st_dev == second.st_dev && first.st_ino == second.st_ino;
 }
 
 }  // namespace geo

@@ -16,8 +16,8 @@ struct Stored;
 /// A file that is read, and brought up to another state later. Locked meanwhile against others that do the same.
 class KerfUpdate {
  public:
-  /// Throws MissingInputError, InputError as KerfFile does, OutputError when it is no regular file, cannot be written or is
-  /// locked.
+  /// Throws MissingInputError, InputError as KerfFile does, OutputError when it is no regular file, cannot be written
+  /// or is locked.
   explicit KerfUpdate(const std::string& path);
   ~KerfUpdate();
   KerfUpdate(const KerfUpdate&) = delete;
@@ -26,8 +26,8 @@ class KerfUpdate {
   /// The state before.
   const KerfFile& file() const { return *file_; }
 
-  /// Makes `arrays` the state of the file; call it once. What changed is appended: a write that is killed leaves the state
-  /// before. Where the file would become more than twice as long as a whole one, has lost a section, or is of an
+  /// Makes `arrays` the state of the file; call it once. What changed is appended: a write that is killed leaves the
+  /// state before. Where the file would become more than twice as long as a whole one, has lost a section, or is of an
   /// older version, it is written whole, aside and renamed. Returns how many bytes were written. Memory: the largest
   /// array twice. Throws OutputError, the state before stays.
   std::uint64_t commit(const std::vector<KerfArray>& arrays);

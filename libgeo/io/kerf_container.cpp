@@ -4,7 +4,9 @@ namespace geo {
 
 void write_kerf(std::ostream& out, const KerfSections& sections) {
   std::vector<KerfArray> arrays;
-  for (const auto& [name, s] : sections) arrays.push_back({name, s.dtype, s.shape, [bytes = std::as_bytes(std::span(s.bytes))](KerfSink& sink) { sink.write(bytes); }});
+  for (const auto& [name, s] : sections)
+    arrays.push_back(
+        {name, s.dtype, s.shape, [bytes = std::as_bytes(std::span(s.bytes))](KerfSink& sink) { sink.write(bytes); }});
   write_kerf(out, arrays);
 }
 

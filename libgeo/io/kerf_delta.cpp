@@ -53,8 +53,10 @@ std::vector<Run> difference(std::span<const std::byte> before, std::span<const s
   const auto give = [&](std::size_t bytes) {
     if (bytes > 0) runs.push_back({literal, bytes / width});
   };
-  const auto same = [&](std::size_t i, std::size_t j) { return std::memcmp(after.data() + i, before.data() + j, width) == 0; };
-  std::vector<Blocks> moved;  // made when first wanted
+  const auto same = [&](std::size_t i, std::size_t j) {
+    return std::memcmp(after.data() + i, before.data() + j, width) == 0;
+  };
+  std::vector<Blocks> moved;       // made when first wanted
   std::size_t done = 0, used = 0;  // bytes of `after` that are told, of `before` that may not be copied any more
   while (done < after.size()) {
     // The next window that is the same in place, or, once that takes long, anywhere.
@@ -73,7 +75,9 @@ std::vector<Run> difference(std::span<const std::byte> before, std::span<const s
     }
     if (j == before.size()) break;
     while (i > done && j > used && same(i - width, j - width)) i -= width, j -= width;
-    const std::size_t length = common_bytes(after.data() + i, before.data() + j, std::min(after.size() - i, before.size() - j)) / width * width;
+    const std::size_t length =
+        common_bytes(after.data() + i, before.data() + j, std::min(after.size() - i, before.size() - j)) / width *
+        width;
     give(i - done);
     runs.push_back({j / width, length / width});
     done = i + length, used = j + length;

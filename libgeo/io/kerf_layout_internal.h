@@ -16,7 +16,7 @@ namespace geo::kerf {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 constexpr std::size_t alignment = 64;
-constexpr std::size_t hash_block = 1 << 18;            ///< bytes that are hashed together
+constexpr std::size_t hash_block = 1 << 18;           ///< bytes that are hashed together
 constexpr std::uint64_t literal = ~std::uint64_t(0);  ///< where the rows of a run come from, when not from before
 
 constexpr std::uint64_t aligned(std::uint64_t at) { return (at + alignment - 1) / alignment * alignment; }
@@ -24,7 +24,9 @@ constexpr std::uint64_t aligned(std::uint64_t at) { return (at + alignment - 1) 
 inline std::uint64_t hash_of(const void* bytes, std::size_t size) { return XXH3_64bits(bytes, size); }
 
 /// A section's hash is that of its blocks' hashes, so that they may be taken by many threads.
-inline std::uint64_t hash_of(const std::vector<std::uint64_t>& blocks) { return hash_of(blocks.data(), 8 * blocks.size()); }
+inline std::uint64_t hash_of(const std::vector<std::uint64_t>& blocks) {
+  return hash_of(blocks.data(), 8 * blocks.size());
+}
 
 inline std::string hex(std::uint64_t hash) {
   std::string text(16, '0');
@@ -34,7 +36,11 @@ inline std::string hex(std::uint64_t hash) {
 
 /// Bytes of one number; 0: a type that this version does not know.
 inline std::size_t size_of(const std::string& dtype) {
-  return dtype == "f8" || dtype == "u8" ? 8 : dtype == "f4" || dtype == "u4" || dtype == "i4" ? 4 : dtype == "u2" ? 2 : dtype == "u1" || dtype == "json" ? 1 : 0;
+  return dtype == "f8" || dtype == "u8"                    ? 8
+         : dtype == "f4" || dtype == "u4" || dtype == "i4" ? 4
+         : dtype == "u2"                                   ? 2
+         : dtype == "u1" || dtype == "json"                ? 1
+                                                           : 0;
 }
 
 /// Each segment begins with one. The magic is like PNG's: a byte over 127, the name, CR LF, end-of-file for DOS, LF:
@@ -43,11 +49,11 @@ struct Head {
   char magic[9] = {'\x8b', 'K', 'E', 'R', 'F', '\r', '\n', '\x1a', '\n'};
   char zero[3] = {};
   std::uint32_t version = 2, endian = 0x01020304;
-  std::uint32_t number = 0;                       ///< of the segment, from 0
-  std::uint64_t table = 0, table_length = 0;      ///< where the table is
-  std::uint64_t previous = 0;                     ///< hash of the commit record before
+  std::uint32_t number = 0;                   ///< of the segment, from 0
+  std::uint64_t table = 0, table_length = 0;  ///< where the table is
+  std::uint64_t previous = 0;                 ///< hash of the commit record before
   std::uint64_t reserved = 0;
-  std::uint64_t hash = 0;                         ///< of all before it
+  std::uint64_t hash = 0;  ///< of all before it
   std::uint64_t own_hash() const { return hash_of(this, sizeof *this - 8); }
 };
 static_assert(sizeof(Head) == 64);

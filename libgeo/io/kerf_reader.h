@@ -57,8 +57,8 @@ class KerfFile {
   }
   /// The text of a json section.
   std::string text(const std::string& section) const;
-  /// The section's bytes in order, without having all of them in memory. Throws InputError at their end when they do not
-  /// match their hash.
+  /// The section's bytes in order, without having all of them in memory. Throws InputError at their end when they do
+  /// not match their hash.
   void stream(const std::string& section, KerfSink& sink) const;
 
   [[noreturn]] void fail(const std::string& what) const;

@@ -18,7 +18,8 @@ struct Stored {
 std::uint64_t row_bytes(const std::string& dtype, const std::vector<std::uint64_t>& shape);
 
 /// Writes a segment that begins at `start`, up to its commit record, which it returns: that comes next.
-Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous, const std::vector<Stored>& sections);
+Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous,
+                     const std::vector<Stored>& sections);
 
 /// How long a segment that begins at `start` will be, commit record included.
 std::uint64_t segment_size(std::uint64_t start, const std::vector<Stored>& sections);

@@ -37,7 +37,9 @@ std::uint64_t KerfSink::finish() {
 void write_kerf(std::ostream& out, const std::vector<KerfArray>& arrays) {
   std::vector<kerf::Stored> sections;
   for (const auto& a : arrays) sections.push_back({a, {}, 0, 0});
-  const auto put = [&](std::span<const std::byte> bytes) { out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())); };
+  const auto put = [&](std::span<const std::byte> bytes) {
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
   put(kerf::bytes_of_one(kerf::write_segment(put, 0, 0, 0, sections)));
 }
 
@@ -54,7 +56,12 @@ struct Plan {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < sections.size(); ++i) {
       const auto& [name, dtype, shape, fill] = sections[i].array;
-      rows.push_back({{"name", name}, {"dtype", dtype}, {"shape", shape}, {"offset", offsets[i]}, {"length", lengths[i]}, {"xxh3", hex(hashes[i])}});
+      rows.push_back({{"name", name},
+                      {"dtype", dtype},
+                      {"shape", shape},
+                      {"offset", offsets[i]},
+                      {"length", lengths[i]},
+                      {"xxh3", hex(hashes[i])}});
       if (!sections[i].runs.empty()) rows.back()["runs"] = sections[i].runs.size();
     }
     return rows.dump();
@@ -88,7 +95,8 @@ std::uint64_t segment_size(std::uint64_t start, const std::vector<Stored>& secti
   return aligned(plan.table + plan.text(sections).size()) + sizeof(Commit) - start;
 }
 
-Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous, const std::vector<Stored>& sections) {
+Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous,
+                     const std::vector<Stored>& sections) {
   static constexpr std::byte zeros[alignment] = {};
   std::uint64_t at = start;
   const auto put = [&](std::span<const std::byte> bytes) {
@@ -111,7 +119,8 @@ Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32
       put(block);
     });
     s.array.fill(sink);
-    if (sink.finish() != plan.lengths[i] - s.runs.size() * sizeof(Run)) throw std::logic_error("section " + s.array.name + " has another size than its shape");
+    if (sink.finish() != plan.lengths[i] - s.runs.size() * sizeof(Run))
+      throw std::logic_error("section " + s.array.name + " has another size than its shape");
     if (s.runs.empty()) plan.hashes[i] = hash_of(blocks);
     pad();
   }

@@ -46,12 +46,18 @@ struct KerfArray {
 
 template <class T>
 constexpr const char* kerf_dtype() {
-  if constexpr (std::is_same_v<T, double>) return "f8";
-  else if constexpr (std::is_same_v<T, float>) return "f4";
-  else if constexpr (std::is_same_v<T, std::uint64_t>) return "u8";
-  else if constexpr (std::is_same_v<T, std::uint32_t>) return "u4";
-  else if constexpr (std::is_same_v<T, std::int32_t>) return "i4";
-  else if constexpr (std::is_same_v<T, std::uint16_t>) return "u2";
+  if constexpr (std::is_same_v<T, double>)
+    return "f8";
+  else if constexpr (std::is_same_v<T, float>)
+    return "f4";
+  else if constexpr (std::is_same_v<T, std::uint64_t>)
+    return "u8";
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return "u4";
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return "i4";
+  else if constexpr (std::is_same_v<T, std::uint16_t>)
+    return "u2";
   else {
     static_assert(std::is_same_v<T, std::uint8_t>);
     return "u1";
@@ -67,7 +73,8 @@ KerfArray kerf_array(std::string name, std::uint64_t rows, std::uint64_t columns
 }
 template <class T>
 KerfArray kerf_array(std::string name, std::span<const T> values, std::uint64_t columns = 1) {
-  return kerf_array<T>(std::move(name), values.size() / columns, columns, [values](KerfSink& sink) { sink.write(std::as_bytes(values)); });
+  return kerf_array<T>(std::move(name), values.size() / columns, columns,
+                       [values](KerfSink& sink) { sink.write(std::as_bytes(values)); });
 }
 
 /// A whole file, in one pass, to a pipe as well. Deterministic. Memory: one block, whatever the size.

@@ -5,8 +5,8 @@
 
 #include "io/kerf_reader.h"
 #include "io/ply_internal.h"
-#include "kerf/stream.h"
 #include "io/text_internal.h"
+#include "kerf/stream.h"
 
 namespace geo {
 namespace {
@@ -20,9 +20,12 @@ NodeSet with_room(std::size_t count) {
 }
 
 void add(NodeSet& nodes, const double (&v)[6], const std::string& name) {
-  const auto fail = [&](const char* what) { throw InputError(name + ": node " + std::to_string(nodes.size()) + " has a " + what); };
+  const auto fail = [&](const char* what) {
+    throw InputError(name + ": node " + std::to_string(nodes.size()) + " has a " + what);
+  };
   for (const double x : v)
-    if (!(std::abs(x) <= largest_coordinate)) fail("value that is not a finite number of sensible size; repair the file");
+    if (!(std::abs(x) <= largest_coordinate))
+      fail("value that is not a finite number of sensible size; repair the file");
   if (!(v[3] > 0) || !(v[4] > 0) || !(v[5] > 0)) fail("radius, spacing or volume that is not positive");
   nodes.position.push_back({v[0], v[1], v[2]});
   nodes.radius.push_back(v[3]);
@@ -37,7 +40,8 @@ NodeSet from_ply(const std::string& bytes, const std::string& name) {
   const PlyProperty* columns[6];
   for (int i = 0; i < 6; ++i) {
     columns[i] = vertex->find(fields[i]);
-    if (!columns[i] || columns[i]->count_type) throw InputError(name + ": has no field '" + fields[i] + "'; nodes come from kerf-sample");
+    if (!columns[i] || columns[i]->count_type)
+      throw InputError(name + ": has no field '" + fields[i] + "'; nodes come from kerf-sample");
   }
   NodeSet nodes = with_room(vertex->count);
   for (std::size_t i = 0; i < vertex->count; ++i) {
@@ -56,45 +60,59 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
   int data = -1;
   while (data < 0 && header.next(words)) {
     const auto rest = [&] { return std::vector<std::string>(words.begin() + 1, words.end()); };
-    if (words[0] == "FIELDS") names = rest();
-    else if (words[0] == "SIZE") sizes = rest();
-    else if (words[0] == "TYPE") types = rest();
-    else if (words[0] == "COUNT") counts = rest();
-    else if (words[0] == "WIDTH" && words.size() == 2) width = header.integer(words[1]);
-    else if (words[0] == "HEIGHT" && words.size() == 2) height = header.integer(words[1]);
-    else if (words[0] == "POINTS" && words.size() == 2) points = header.integer(words[1]);
+    if (words[0] == "FIELDS")
+      names = rest();
+    else if (words[0] == "SIZE")
+      sizes = rest();
+    else if (words[0] == "TYPE")
+      types = rest();
+    else if (words[0] == "COUNT")
+      counts = rest();
+    else if (words[0] == "WIDTH" && words.size() == 2)
+      width = header.integer(words[1]);
+    else if (words[0] == "HEIGHT" && words.size() == 2)
+      height = header.integer(words[1]);
+    else if (words[0] == "POINTS" && words.size() == 2)
+      points = header.integer(words[1]);
     else if (words[0] == "DATA" && words.size() == 2) {
       data = words[1] == "ascii" ? 0 : words[1] == "binary" ? 1 : 2;
       if (data == 2) header.fail("PCD data '" + shown(words[1]) + "' is not read here; write ascii or binary");
-    } else if (words[0] != "VERSION" && words[0] != "VIEWPOINT") header.fail("'" + shown(words[0]) + "' is not expected in a PCD header");
+    } else if (words[0] != "VERSION" && words[0] != "VIEWPOINT")
+      header.fail("'" + shown(words[0]) + "' is not expected in a PCD header");
   }
   if (data < 0) throw InputError(name + ": the PCD header is not complete; the file is truncated");
-  if (names.empty() || sizes.size() != names.size() || types.size() != names.size() || (!counts.empty() && counts.size() != names.size()))
+  if (names.empty() || sizes.size() != names.size() || types.size() != names.size() ||
+      (!counts.empty() && counts.size() != names.size()))
     throw InputError(name + ": FIELDS, SIZE, TYPE and COUNT of the PCD header do not agree");
   if (points < 0) points = width * height;
   if (width < 0 || height < 0 || points != width * height || static_cast<std::size_t>(points) > bytes.size())
-    throw InputError(name + ": the file is too short for " + std::to_string(points) + " points; it is truncated or damaged");
+    throw InputError(name + ": the file is too short for " + std::to_string(points) +
+                     " points; it is truncated or damaged");
   std::size_t column[6], offset[6], stride = 0, total = 0;
   bool single[6];
   std::fill(std::begin(column), std::end(column), ~std::size_t(0));
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto size = header.integer(sizes[i]), count = counts.empty() ? 1 : header.integer(counts[i]);
-    if ((size != 1 && size != 2 && size != 4 && size != 8) || count < 1 || count > 4096) throw InputError(name + ": the PCD header has a field of impossible size");
+    if ((size != 1 && size != 2 && size != 4 && size != 8) || count < 1 || count > 4096)
+      throw InputError(name + ": the PCD header has a field of impossible size");
     for (int k = 0; k < 6; ++k)
       if (names[i] == fields[k]) {
-        if (types[i] != "F" || (size != 4 && size != 8) || count != 1) throw InputError(name + ": field '" + names[i] + "' is not one floating-point number");
+        if (types[i] != "F" || (size != 4 && size != 8) || count != 1)
+          throw InputError(name + ": field '" + names[i] + "' is not one floating-point number");
         column[k] = total, offset[k] = stride, single[k] = size == 4;
       }
     stride += static_cast<std::size_t>(size * count);
     total += static_cast<std::size_t>(count);
   }
   for (int k = 0; k < 6; ++k)
-    if (column[k] == ~std::size_t(0)) throw InputError(name + ": has no field '" + fields[k] + "'; nodes come from kerf-sample");
+    if (column[k] == ~std::size_t(0))
+      throw InputError(name + ": has no field '" + fields[k] + "'; nodes come from kerf-sample");
   NodeSet nodes = with_room(static_cast<std::size_t>(points));  // the file has a byte for each at least
   const std::size_t at = header.position();
   if (data == 1) {
     if (bytes.size() - at != stride * static_cast<std::size_t>(points))
-      throw InputError(name + ": holds " + std::to_string(bytes.size() - at) + " bytes of points instead of " + std::to_string(stride * static_cast<std::size_t>(points)) + "; it is truncated or damaged");
+      throw InputError(name + ": holds " + std::to_string(bytes.size() - at) + " bytes of points instead of " +
+                       std::to_string(stride * static_cast<std::size_t>(points)) + "; it is truncated or damaged");
     for (long long i = 0; i < points; ++i) {
       double v[6];
       for (int k = 0; k < 6; ++k) {
@@ -113,8 +131,11 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
   }
   Lines rows(std::string_view(bytes).substr(at), name);
   for (long long i = 0; i < points; ++i) {
-    if (!rows.next(words)) throw InputError(name + ": ends after " + std::to_string(i) + " of " + std::to_string(points) + " points; it is truncated");
-    if (words.size() != total) rows.fail("a point has " + std::to_string(words.size()) + " numbers instead of " + std::to_string(total));
+    if (!rows.next(words))
+      throw InputError(name + ": ends after " + std::to_string(i) + " of " + std::to_string(points) +
+                       " points; it is truncated");
+    if (words.size() != total)
+      rows.fail("a point has " + std::to_string(words.size()) + " numbers instead of " + std::to_string(total));
     double v[6];
     for (int k = 0; k < 6; ++k) v[k] = rows.real(words[column[k]]);
     add(nodes, v, name);
@@ -129,7 +150,8 @@ void put_rows(std::ostream& out, const NodeSet& nodes) {
   for (std::size_t first = 0; first < nodes.size(); first += share) {
     rows.clear();
     for (std::size_t i = first; i < std::min(first + share, nodes.size()); ++i)
-      rows.push_back({nodes.position[i].x(), nodes.position[i].y(), nodes.position[i].z(), nodes.radius[i], nodes.spacing[i], nodes.volume[i]});
+      rows.push_back({nodes.position[i].x(), nodes.position[i].y(), nodes.position[i].z(), nodes.radius[i],
+                      nodes.spacing[i], nodes.volume[i]});
     out.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
   }
 }
@@ -139,15 +161,18 @@ void put_rows(std::ostream& out, const NodeSet& nodes) {
 NodeSet read_nodes(const std::string& path) { return parse_nodes(read_all(path), path); }
 
 NodeSet parse_nodes(const std::string& bytes, const std::string& name) {
-  if (looks_like_kerf(bytes)) throw InputError(name + ": is a body (.kerf), which has its nodes already; give those of kerf-sample");
+  if (looks_like_kerf(bytes))
+    throw InputError(name + ": is a body (.kerf), which has its nodes already; give those of kerf-sample");
   NodeSet nodes = bytes.rfind("ply", 0) == 0 ? from_ply(bytes, name) : from_pcd(bytes, name);
   if (nodes.size() == 0) throw InputError(name + ": holds no nodes");
   return nodes;
 }
 
 void write_pcd(std::ostream& out, const NodeSet& nodes) {
-  out << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z radius spacing volume\nSIZE 8 8 8 8 8 8\nTYPE F F F F F F\n"
-      << "COUNT 1 1 1 1 1 1\nWIDTH " << nodes.size() << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << nodes.size() << "\nDATA binary\n";
+  out << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z radius spacing volume\nSIZE 8 8 8 8 8 "
+         "8\nTYPE F F F F F F\n"
+      << "COUNT 1 1 1 1 1 1\nWIDTH " << nodes.size() << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << nodes.size()
+      << "\nDATA binary\n";
   put_rows(out, nodes);
 }
 

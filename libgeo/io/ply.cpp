@@ -11,15 +11,17 @@ namespace {
 
 char type_of(std::string_view word) {
   static constexpr std::pair<std::string_view, char> types[] = {
-      {"char", 'c'},   {"int8", 'c'},  {"uchar", 'C'}, {"uint8", 'C'},  {"short", 's'},  {"int16", 's'},   {"ushort", 'S'},
-      {"uint16", 'S'}, {"int", 'i'},   {"int32", 'i'}, {"uint", 'I'},   {"uint32", 'I'}, {"float", 'f'},   {"float32", 'f'},
-      {"double", 'd'}, {"float64", 'd'}};
+      {"char", 'c'},   {"int8", 'c'},    {"uchar", 'C'},  {"uint8", 'C'},  {"short", 's'}, {"int16", 's'},
+      {"ushort", 'S'}, {"uint16", 'S'},  {"int", 'i'},    {"int32", 'i'},  {"uint", 'I'},  {"uint32", 'I'},
+      {"float", 'f'},  {"float32", 'f'}, {"double", 'd'}, {"float64", 'd'}};
   for (const auto& [name, type] : types)
     if (name == word) return type;
   return 0;
 }
 
-std::size_t size_of(char type) { return type == 'd' ? 8 : type == 'c' || type == 'C' ? 1 : type == 's' || type == 'S' ? 2 : 4; }
+std::size_t size_of(char type) {
+  return type == 'd' ? 8 : type == 'c' || type == 'C' ? 1 : type == 's' || type == 'S' ? 2 : 4;
+}
 
 template <class T>
 double decode(const char* bytes, bool swap) {
@@ -32,20 +34,29 @@ double decode(const char* bytes, bool swap) {
 
 double decode(const char* bytes, char type, bool swap) {
   switch (type) {
-    case 'c': return decode<std::int8_t>(bytes, swap);
-    case 'C': return decode<std::uint8_t>(bytes, swap);
-    case 's': return decode<std::int16_t>(bytes, swap);
-    case 'S': return decode<std::uint16_t>(bytes, swap);
-    case 'i': return decode<std::int32_t>(bytes, swap);
-    case 'I': return decode<std::uint32_t>(bytes, swap);
-    case 'f': return decode<float>(bytes, swap);
-    default: return decode<double>(bytes, swap);
+    case 'c':
+      return decode<std::int8_t>(bytes, swap);
+    case 'C':
+      return decode<std::uint8_t>(bytes, swap);
+    case 's':
+      return decode<std::int16_t>(bytes, swap);
+    case 'S':
+      return decode<std::uint16_t>(bytes, swap);
+    case 'i':
+      return decode<std::int32_t>(bytes, swap);
+    case 'I':
+      return decode<std::uint32_t>(bytes, swap);
+    case 'f':
+      return decode<float>(bytes, swap);
+    default:
+      return decode<double>(bytes, swap);
   }
 }
 
 // Numbers that stand at equal distances, `each` of them in a place; false where one is not finite.
 template <class T>
-bool fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
+bool fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each,
+          bool swap) {
   values.resize(places * each);
   const auto read = [&](auto swapped) {
     bool finite = true;
@@ -63,14 +74,22 @@ bool fill(std::vector<double>& values, const char* first, std::size_t apart, std
 
 bool fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
   switch (p.type) {
-    case 'c': return fill<std::int8_t>(p.values, first, apart, places, each, swap);
-    case 'C': return fill<std::uint8_t>(p.values, first, apart, places, each, swap);
-    case 's': return fill<std::int16_t>(p.values, first, apart, places, each, swap);
-    case 'S': return fill<std::uint16_t>(p.values, first, apart, places, each, swap);
-    case 'i': return fill<std::int32_t>(p.values, first, apart, places, each, swap);
-    case 'I': return fill<std::uint32_t>(p.values, first, apart, places, each, swap);
-    case 'f': return fill<float>(p.values, first, apart, places, each, swap);
-    default: return fill<double>(p.values, first, apart, places, each, swap);
+    case 'c':
+      return fill<std::int8_t>(p.values, first, apart, places, each, swap);
+    case 'C':
+      return fill<std::uint8_t>(p.values, first, apart, places, each, swap);
+    case 's':
+      return fill<std::int16_t>(p.values, first, apart, places, each, swap);
+    case 'S':
+      return fill<std::uint16_t>(p.values, first, apart, places, each, swap);
+    case 'i':
+      return fill<std::int32_t>(p.values, first, apart, places, each, swap);
+    case 'I':
+      return fill<std::uint32_t>(p.values, first, apart, places, each, swap);
+    case 'f':
+      return fill<float>(p.values, first, apart, places, each, swap);
+    default:
+      return fill<double>(p.values, first, apart, places, each, swap);
   }
 }
 
@@ -82,8 +101,8 @@ bool repeats(const char* first, std::size_t size, std::size_t apart, std::size_t
   return true;
 }
 
-// Reads a binary element whose rows are all as long as the first, as they are in most files, a property at a time. False, with nothing
-// read, where they are not or anything else is wrong.
+// Reads a binary element whose rows are all as long as the first, as they are in most files, a property at a time.
+// False, with nothing read, where they are not or anything else is wrong.
 bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyElement& element) {
   std::string_view rest = bytes.substr(at);
   std::vector<std::size_t> first, each;  // of the numbers of a property in a row
@@ -101,7 +120,9 @@ bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyEleme
   if (row == 0 || rest.size() / row < element.count) return false;
   for (std::size_t k = 0; k < each.size(); ++k)
     if (const char type = element.properties[k].count_type; type != 0)
-      if (const char* const count = rest.data() + first[k] - size_of(type); !repeats(count, size_of(type), row, element.count)) return false;
+      if (const char* const count = rest.data() + first[k] - size_of(type);
+          !repeats(count, size_of(type), row, element.count))
+        return false;
   for (std::size_t k = 0; k < each.size(); ++k) {
     PlyProperty& p = element.properties[k];
     if (!fill(p, rest.data() + first[k], row, element.count, each[k], swap)) {
@@ -142,7 +163,10 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
     if (words[0] == "end_header") {
       ended = true;
     } else if (words[0] == "format" && words.size() >= 2) {
-      format = words[1] == "ascii" ? 0 : words[1] == "binary_little_endian" ? 1 : words[1] == "binary_big_endian" ? 2 : -1;
+      format = words[1] == "ascii"                  ? 0
+               : words[1] == "binary_little_endian" ? 1
+               : words[1] == "binary_big_endian"    ? 2
+                                                    : -1;
       if (format < 0) header.fail("unknown PLY format '" + shown(words[1]) + "'");
     } else if (words[0] == "comment" || words[0] == "obj_info") {
       std::string line;
@@ -152,14 +176,17 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
       const auto count = header.integer(words[2]);
       // No row is smaller than a byte, so the file bounds every count before anything is allocated.
       if (count < 0 || static_cast<std::size_t>(count) > bytes.size())
-        header.fail("the file is too short for " + shown(words[2]) + " rows of '" + shown(words[1]) + "'; it is truncated or damaged");
+        header.fail("the file is too short for " + shown(words[2]) + " rows of '" + shown(words[1]) +
+                    "'; it is truncated or damaged");
       ply.elements.push_back({std::string(words[1]), static_cast<std::size_t>(count), {}});
-    } else if (words[0] == "property" && !ply.elements.empty() && (words.size() == 3 || (words.size() == 5 && words[1] == "list"))) {
+    } else if (words[0] == "property" && !ply.elements.empty() &&
+               (words.size() == 3 || (words.size() == 5 && words[1] == "list"))) {
       PlyProperty p;
       p.name = std::string(words.back());
       p.type = type_of(words[words.size() - 2]);
       if (words.size() == 5) p.count_type = type_of(words[2]);
-      if (p.type == 0 || (words.size() == 5 && (p.count_type == 0 || p.count_type == 'f' || p.count_type == 'd'))) header.fail("unknown property type");
+      if (p.type == 0 || (words.size() == 5 && (p.count_type == 0 || p.count_type == 'f' || p.count_type == 'd')))
+        header.fail("unknown property type");
       ply.elements.back().properties.push_back(std::move(p));
     } else {
       header.fail("'" + shown(words[0]) + "' is not expected in a PLY header");
@@ -173,7 +200,8 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
     throw InputError(name + ": ends within element '" + shown(element) + "'; the file is truncated");
   };
   for (auto& element : ply.elements) {
-    if (element.properties.empty() && element.count > 0) throw InputError(name + ": element '" + shown(element.name) + "' has rows but no properties");
+    if (element.properties.empty() && element.count > 0)
+      throw InputError(name + ": element '" + shown(element.name) + "' has rows but no properties");
     if (format != 0 && element.count > 0 && read_even_rows(bytes, format == 2, at, element)) continue;
     for (std::size_t row = 0; row < element.count; ++row) {
       std::size_t word = 0;
@@ -189,7 +217,8 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
           at += size_of(type);
         }
         if (!std::isfinite(value))
-          throw InputError(name + ": row " + std::to_string(row) + " of '" + shown(element.name) + "' holds a value that is not a finite number; repair the file");
+          throw InputError(name + ": row " + std::to_string(row) + " of '" + shown(element.name) +
+                           "' holds a value that is not a finite number; repair the file");
         return value;
       };
       for (auto& p : element.properties) {
@@ -198,14 +227,16 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
           continue;
         }
         const double count = take(p.count_type);
-        if (!(count >= 0) || count > static_cast<double>(bytes.size()) || count != std::floor(count)) truncated(element.name);
+        if (!(count >= 0) || count > static_cast<double>(bytes.size()) || count != std::floor(count))
+          truncated(element.name);
         for (double i = 0; i < count; ++i) p.values.push_back(take(p.type));
         p.ends.push_back(static_cast<std::uint32_t>(p.values.size()));
       }
       if (format == 0 && word != words.size()) rows.fail("too many numbers for a row of '" + shown(element.name) + "'");
     }
   }
-  if (format == 0 ? rows.next(words) : at != bytes.size()) throw InputError(name + ": has bytes after its last element; the file is damaged");
+  if (format == 0 ? rows.next(words) : at != bytes.size())
+    throw InputError(name + ": has bytes after its last element; the file is damaged");
   return ply;
 }
 

@@ -2,20 +2,22 @@
 
 #include <array>
 
+#include "io/ply_internal.h"
 #include "kerf/error.h"
 #include "kerf/node_file.h"
-#include "io/ply_internal.h"
 
 namespace geo {
 
 void write_frame_nodes(std::ostream& out, const FrameNodes& frame) {
   const NodeSet& n = frame.nodes;
   out << "ply\nformat binary_little_endian 1.0\nelement vertex " << n.size() << '\n';
-  for (const char* field : {"x", "y", "z", "radius", "spacing", "volume", "stress"}) out << "property float " << field << '\n';
+  for (const char* field : {"x", "y", "z", "radius", "spacing", "volume", "stress"})
+    out << "property float " << field << '\n';
   out << "end_header\n";
   std::vector<std::array<float, 7>> rows;
   for (std::size_t i = 0; i < n.size(); ++i)
-    rows.push_back({float(n.position[i].x()), float(n.position[i].y()), float(n.position[i].z()), float(n.radius[i]), float(n.spacing[i]), float(n.volume[i]), float(frame.stress[i])});
+    rows.push_back({float(n.position[i].x()), float(n.position[i].y()), float(n.position[i].z()), float(n.radius[i]),
+                    float(n.spacing[i]), float(n.volume[i]), float(frame.stress[i])});
   out.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
 }
 
@@ -32,7 +34,8 @@ FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name) 
 void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate) {
   out << "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n";
   for (std::size_t i = 0; i < frames.size(); ++i)
-    out << "    {\"name\": \"" << frames[i] << "\", \"time\": " << double(i) / frame_rate << (i + 1 < frames.size() ? "},\n" : "}\n");
+    out << "    {\"name\": \"" << frames[i] << "\", \"time\": " << double(i) / frame_rate
+        << (i + 1 < frames.size() ? "},\n" : "}\n");
   out << "  ]\n}\n";
 }
 

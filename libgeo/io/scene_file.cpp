@@ -5,11 +5,11 @@
 #include <initializer_list>
 #include <sstream>
 
-#include "kerf/front_file.h"
 #include "io/scene_keys_internal.h"
+#include "kerf/check.h"
+#include "kerf/front_file.h"
 #include "kerf/stream.h"
 #include "kerf/surface_file.h"
-#include "kerf/check.h"
 
 namespace geo {
 namespace {
@@ -29,14 +29,16 @@ struct Files {
 // What one body cannot have of its own.
 void refuse_shared(TomlTable& t, const std::string& table, std::initializer_list<const char*> keys) {
   for (const std::string key : keys)
-    if (const auto* node = t.find(key)) t.fail(*node, "'" + t.path() + key + "' is the same for all bodies: write it in the scene's [" + table + "]");
+    if (const auto* node = t.find(key))
+      t.fail(*node, "'" + t.path() + key + "' is the same for all bodies: write it in the scene's [" + table + "]");
 }
 
 // Of the scene, or, where `own`, of one body: what the scene's has goes for what is left out.
 void read_material(TomlTable& t, Material& m, bool own = false) {
   std::string model = m.model == ElasticModel::saint_venant_kirchhoff ? "stvk" : "neo-hookean";
   t.get("model", model);
-  if (model != "stvk" && model != "neo-hookean") t.fail(*t.find("model"), "'" + t.path() + "model' must be \"neo-hookean\" or \"stvk\"");
+  if (model != "stvk" && model != "neo-hookean")
+    t.fail(*t.find("model"), "'" + t.path() + "model' must be \"neo-hookean\" or \"stvk\"");
   m.model = model == "stvk" ? ElasticModel::saint_venant_kirchhoff : ElasticModel::neo_hookean;
   t.get("young", m.young, 1e-6, 1e15);
   t.get("poisson", m.poisson, -0.99, 0.4999);
@@ -46,7 +48,8 @@ void read_material(TomlTable& t, Material& m, bool own = false) {
   if (own) refuse_shared(t, "material", {"discretisation"});
   std::string discretisation = m.discretisation == Discretisation::galerkin ? "galerkin" : "mueller04";
   t.get("discretisation", discretisation);
-  if (discretisation != "galerkin" && discretisation != "mueller04") t.fail(*t.find("discretisation"), "'material.discretisation' must be \"galerkin\" or \"mueller04\"");
+  if (discretisation != "galerkin" && discretisation != "mueller04")
+    t.fail(*t.find("discretisation"), "'material.discretisation' must be \"galerkin\" or \"mueller04\"");
   m.discretisation = discretisation == "galerkin" ? Discretisation::galerkin : Discretisation::mueller04;
   t.get("viscosity", m.viscosity, 0, 1e15);
   t.get("mode_penalty", m.mode_penalty, 0, 100);
@@ -84,7 +87,8 @@ void read_body_table(TomlTable& t, Scene& s) {
   int nodes = 0;
   t.get("nodes", nodes, 1, 100000000);
   body.sampling.count = static_cast<std::size_t>(nodes);
-  if ((t.find("spacing") != nullptr) + (t.find("spacing_percent") != nullptr) + (nodes > 0) > 1) t.fail("give one of 'spacing', 'spacing_percent' and 'nodes'");
+  if ((t.find("spacing") != nullptr) + (t.find("spacing_percent") != nullptr) + (nodes > 0) > 1)
+    t.fail("give one of 'spacing', 'spacing_percent' and 'nodes'");
   t.get("levels", body.sampling.levels, 1, 10);
   t.get("across", body.sampling.across, 0, 100);
   t.get("k", s.k, 3, 1000);
@@ -94,7 +98,9 @@ void read_body_table(TomlTable& t, Scene& s) {
   t.get("velocity", body.velocity);
   t.get("spin", body.spin);
   t.section("material", [&](TomlTable& own) { read_material(own, body.material.emplace(s.material), true); });
-  if (const auto* node = t.find("fracture"); node && !s.fracture.on) t.fail(*node, "'body.fracture' says how strong one body is; give the scene a [fracture], too, by which bodies break");
+  if (const auto* node = t.find("fracture"); node && !s.fracture.on)
+    t.fail(*node,
+           "'body.fracture' says how strong one body is; give the scene a [fracture], too, by which bodies break");
   s.fracture.own.push_back(s.fracture);
   t.section("fracture", [&](TomlTable& own) {
     read_strength(own, s.fracture.own.back());
@@ -122,7 +128,8 @@ void read_blade(TomlTable& t, Scene& s, Files& files) {
   t.get("name", blade.name);
   t.get("closed", blade.closed);
   for (const auto& v : t.rows("points", 3)) blade.points.push_back({v[0], v[1], v[2]});
-  if (blade.points.size() < (blade.closed ? 3 : 2)) t.fail("'blade.points' must be a list of two points at least, three when closed");
+  if (blade.points.size() < (blade.closed ? 3 : 2))
+    t.fail("'blade.points' must be a list of two points at least, three when closed");
   blade.motion = read_motion(t, files);
   if (blade.motion.keys.size() < 2) t.fail("a blade needs two 'keys' at least, or a 'motion' file of them");
   // The edge is divided finely enough to follow what the body does to it.
@@ -131,12 +138,14 @@ void read_blade(TomlTable& t, Scene& s, Files& files) {
   t.get("divide", divide, 1, 10000);
   const std::size_t n = blade.points.size(), segments = blade.closed ? n : n - 1;
   for (std::size_t i = 0; i < segments; ++i)
-    for (int k = 0; k < divide; ++k) fine.push_back(blade.points[i] + (blade.points[(i + 1) % n] - blade.points[i]) * (double(k) / divide));
+    for (int k = 0; k < divide; ++k)
+      fine.push_back(blade.points[i] + (blade.points[(i + 1) % n] - blade.points[i]) * (double(k) / divide));
   if (!blade.closed) fine.push_back(blade.points.back());
   blade.points = fine;
   t.get("back", blade.back);
   t.get("thickness", blade.thickness, 0, 1e9);
-  if (blade.thickness > 0 && !(blade.back.norm() > 0)) t.fail("a blade with 'thickness' needs 'back': the way from its edge to its back");
+  if (blade.thickness > 0 && !(blade.back.norm() > 0))
+    t.fail("a blade with 'thickness' needs 'back': the way from its edge to its back");
   t.get("stiffness", blade.stiffness, 0, 1e12);
   t.get("limit", blade.limit, 1e-3, 1e9);
   s.blades.push_back(std::move(blade));
@@ -202,10 +211,13 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   });
   const auto* body = top.find("body");
   if (!body) top.missing("body", "write [body], and in it mesh = \"MODEL\"");
-  if (body->is_table()) top.section("body", [&](TomlTable& t) { read_body_table(t, s); });
-  else top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
+  if (body->is_table())
+    top.section("body", [&](TomlTable& t) { read_body_table(t, s); });
+  else
+    top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
   // Where all are as the scene says, there is nothing to look up.
-  if (std::all_of(s.fracture.own.begin(), s.fracture.own.end(), [&](const Strength& own) { return own == s.fracture; })) s.fracture.own.clear();
+  if (std::all_of(s.fracture.own.begin(), s.fracture.own.end(), [&](const Strength& own) { return own == s.fracture; }))
+    s.fracture.own.clear();
   top.section("ground", [&](TomlTable& t) {
     s.ground = true;
     t.get("point", s.ground_point);
@@ -229,7 +241,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("checkpoint_every", s.checkpoint_every, 1, 1000000);
     std::string integrator = "implicit";
     t.get("integrator", integrator);
-    if (integrator != "implicit" && integrator != "leapfrog") t.fail(*t.find("integrator"), "'time.integrator' must be \"implicit\" or \"leapfrog\"");
+    if (integrator != "implicit" && integrator != "leapfrog")
+      t.fail(*t.find("integrator"), "'time.integrator' must be \"implicit\" or \"leapfrog\"");
     s.implicit = integrator == "implicit";
     int seed = 1;
     t.get("seed", seed, 0, 2147483647);
@@ -272,12 +285,17 @@ Scene read_scene(const std::string& path, const SceneOverrides& overrides) {
   return scene;
 }
 
-Scene parse_scene(const std::string& text, const std::string& name, const SceneOverrides& overrides, const std::string& folder) {
+Scene parse_scene(const std::string& text, const std::string& name, const SceneOverrides& overrides,
+                  const std::string& folder) {
   toml::table root;
   try {
     root = toml::parse(text);
   } catch (const toml::parse_error& e) {
-    throw InputError(name + ":" + std::to_string(e.source().begin.line) + ":" + std::to_string(e.source().begin.column) + ": " + shown(e.description(), 250) + (name == "-" || name.ends_with(".toml") || name.ends_with(".json") ? "" : "; a scene is a text file, as those in samples/scenes"));
+    throw InputError(name + ":" + std::to_string(e.source().begin.line) + ":" +
+                     std::to_string(e.source().begin.column) + ": " + shown(e.description(), 250) +
+                     (name == "-" || name.ends_with(".toml") || name.ends_with(".json")
+                          ? ""
+                          : "; a scene is a text file, as those in samples/scenes"));
   }
   for (const auto& [key, value] : overrides) override_key(root, key, value);
   Scene scene;

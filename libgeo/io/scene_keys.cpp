@@ -11,8 +11,11 @@ namespace {
 std::size_t index_of(const std::string& part, std::size_t size, const std::string& key) {
   std::size_t i = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), i);
-  if (error != std::errc() || end != part.data() + part.size()) throw InputError("--set " + shown(key) + ": '" + shown(part) + "' names no row of a list; give its number, from 0");
-  if (i >= size) throw InputError("--set " + shown(key) + ": there is no row " + std::to_string(i) + ", there are " + std::to_string(size));
+  if (error != std::errc() || end != part.data() + part.size())
+    throw InputError("--set " + shown(key) + ": '" + shown(part) + "' names no row of a list; give its number, from 0");
+  if (i >= size)
+    throw InputError("--set " + shown(key) + ": there is no row " + std::to_string(i) + ", there are " +
+                     std::to_string(size));
   return i;
 }
 
@@ -33,7 +36,8 @@ void override_key(toml::table& root, const std::string& key, const std::string& 
     from = dot + 1;
     if (toml::table* table = at->as_table()) {
       if (last) {
-        const std::initializer_list<const char*> fineness{"spacing", "spacing_percent", "nodes"};  // a body has one of them: the new one
+        const std::initializer_list<const char*> fineness{"spacing", "spacing_percent",
+                                                          "nodes"};  // a body has one of them: the new one
         if (std::find(fineness.begin(), fineness.end(), part) != fineness.end())
           for (const char* other : fineness) table->erase(other);
         table->insert_or_assign(part, *parsed.get("value"));
@@ -49,20 +53,23 @@ void override_key(toml::table& root, const std::string& key, const std::string& 
       }
       at = array->get(i);
     } else {
-      throw InputError("--set " + shown(key) + ": '" + shown(part) + "' is asked of what is neither a table nor a list");
+      throw InputError("--set " + shown(key) + ": '" + shown(part) +
+                       "' is asked of what is neither a table nor a list");
     }
   }
 }
 
 std::vector<Motion::Key> parse_motion(const std::string& text, const std::string& name) {
   std::string blanks = text;
-  std::replace_if(blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  std::replace_if(
+      blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
   Lines lines(blanks, name);
   std::vector<Motion::Key> keys;
   std::vector<std::string_view> words;
   for (bool first = true; lines.next(words); first = false) {
     if (first && (words[0][0] == 't' || words[0][0] == 'T' || words[0][0] == '"')) continue;
-    if (words.size() != 8) lines.fail("has " + std::to_string(words.size()) + " numbers; a line is: time, x, y, z, ax, ay, az, degrees");
+    if (words.size() != 8)
+      lines.fail("has " + std::to_string(words.size()) + " numbers; a line is: time, x, y, z, ax, ay, az, degrees");
     double v[8];
     for (int i = 0; i < 8; ++i) v[i] = lines.real(words[static_cast<std::size_t>(i)]);
     keys.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, v[7]});

@@ -93,7 +93,8 @@ Unfinished::~Unfinished() {
 
 void Unfinished::commit(const std::string& path) {
   const std::lock_guard lock(unfinished().mutex);
-  if (::rename(aside_.c_str(), path.c_str()) != 0) throw OutputError(path + ": cannot be written (" + reason(errno) + ")");
+  if (::rename(aside_.c_str(), path.c_str()) != 0)
+    throw OutputError(path + ": cannot be written (" + reason(errno) + ")");
   committed_ = true;
 }
 
@@ -116,7 +117,8 @@ std::string read_all(const std::string& path) {
       throw InputError(path + ": is a folder; give a file");
     }
     constexpr std::size_t most_at_once = 1u << 30;  // what a file says of its size may not be so
-    if (S_ISREG(info.st_mode)) bytes.reserve(std::min<std::size_t>(static_cast<std::size_t>(info.st_size), most_at_once));
+    if (S_ISREG(info.st_mode))
+      bytes.reserve(std::min<std::size_t>(static_cast<std::size_t>(info.st_size), most_at_once));
   }
   if (path == "-" && ::isatty(0)) throw InputError("-: standard input is a terminal; give a file or a pipe");
   char chunk[1 << 16];
@@ -143,8 +145,10 @@ void require_place(const std::string& path) {
   if (there && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");
   // A device or a pipe is written to as it is; anything else is made aside, in its folder.
   const auto folder = std::filesystem::path(path).parent_path() / ".";
-  const bool possible = there && !S_ISREG(info.st_mode) ? ::access(path.c_str(), W_OK) == 0 : ::access(folder.c_str(), W_OK | X_OK) == 0;
-  if (!possible) throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
+  const bool possible =
+      there && !S_ISREG(info.st_mode) ? ::access(path.c_str(), W_OK) == 0 : ::access(folder.c_str(), W_OK | X_OK) == 0;
+  if (!possible)
+    throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
 }
 
 void write_all(const std::string& path, const std::function<void(std::ostream&)>& write, Kept kept) {
@@ -173,7 +177,8 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
       if (fd < 0 && errno != EEXIST) break;
     }
   }
-  if (fd < 0) throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
+  if (fd < 0)
+    throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
   int error = 0;
   try {
     auto buffer = std::make_unique<DescriptorBuffer>(fd);

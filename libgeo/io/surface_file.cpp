@@ -1,9 +1,9 @@
 #include "kerf/surface_file.h"
 
 #include "io/kerf_reader.h"
-#include "kerf/stream.h"
 #include "io/surface_internal.h"
 #include "io/text_internal.h"
+#include "kerf/stream.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"
 
@@ -27,8 +27,10 @@ bool looks_like_off(const std::string& bytes) {
 
 // What is often given in place of a surface file that is read here, told by its first bytes; null: none of these.
 const char* other_format(const std::string& bytes) {
-  static constexpr std::pair<const char*, const char*> formats[] = {{"glTF", "a glTF"}, {"Kaydara FBX", "an FBX"}, {"; FBX", "an FBX"}, {"<?xml", "an XML (COLLADA?)"}, {"BLENDER", "a Blender"},
-                                                                    {"PXR-USDC", "a USD"}, {"#usda", "a USD"}, {"PK\3\4", "a zipped"}, {"{", "a JSON (glTF?)"}};
+  static constexpr std::pair<const char*, const char*> formats[] = {
+      {"glTF", "a glTF"},       {"Kaydara FBX", "an FBX"}, {"; FBX", "an FBX"}, {"<?xml", "an XML (COLLADA?)"},
+      {"BLENDER", "a Blender"}, {"PXR-USDC", "a USD"},     {"#usda", "a USD"},  {"PK\3\4", "a zipped"},
+      {"{", "a JSON (glTF?)"}};
   for (const auto& [beginning, what] : formats)
     if (bytes.rfind(beginning, 0) == 0) return what;
   return nullptr;
@@ -36,11 +38,13 @@ const char* other_format(const std::string& bytes) {
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where) {
+std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon,
+                                                      const std::string& where) {
   if (polygon.size() < 3) throw InputError(where + "a face has fewer than three vertices");
   for (const auto v : polygon)
     if (v >= mesh.vertices.size())
-      throw InputError(where + "a face names vertex " + std::to_string(v) + ", but there are " + std::to_string(mesh.vertices.size()));
+      throw InputError(where + "a face names vertex " + std::to_string(v) + ", but there are " +
+                       std::to_string(mesh.vertices.size()));
   auto triangles = triangles_of(mesh.vertices, polygon);
   for (const auto& [a, b, c] : triangles) mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
   return triangles;
@@ -59,11 +63,14 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
   else if (looks_like_kerf(bytes))
     throw InputError(name + ": is a body (.kerf); give the surface that it was made of, or that it was cut by");
   else if (const char* other = other_format(bytes))
-    throw InputError(name + ": is " + other + " file; save it as PLY, OBJ, STL or OFF, or convert it: assimp export " + name + " model.obj");
+    throw InputError(name + ": is " + other + " file; save it as PLY, OBJ, STL or OFF, or convert it: assimp export " +
+                     name + " model.obj");
   else
     file.mesh = parse_stl(bytes, name);
   for (std::size_t v = 0; v < file.mesh.vertices.size(); ++v)
-    if (!in_range(file.mesh.vertices[v])) throw InputError(name + ": vertex " + std::to_string(v) + " has a coordinate of no sensible size; repair the file");
+    if (!in_range(file.mesh.vertices[v]))
+      throw InputError(name + ": vertex " + std::to_string(v) +
+                       " has a coordinate of no sensible size; repair the file");
   if (!file.mesh.two_sided()) weld_seams(file.mesh);
   if (file.mesh.triangles.empty()) throw InputError(name + ": has no triangles; give a closed triangle mesh");
   return file;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kerf/surface_file.h"
 #include "kerf/mesh.h"
+#include "kerf/surface_file.h"
 
 namespace geo {
 
@@ -22,9 +22,10 @@ inline std::uint32_t row_of(double x) {
   return static_cast<double>(row) == x ? row : ~0u;
 }
 
-/// Adds a polygon of n corners as n − 2 triangles: 0, k, k + 1 for k = 1, 2 … unless these fold over, as of one that is not convex.
-/// Returns the corners of each. Throws InputError, `where` first.
-std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon, const std::string& where);
+/// Adds a polygon of n corners as n − 2 triangles: 0, k, k + 1 for k = 1, 2 … unless these fold over, as of one that is
+/// not convex. Returns the corners of each. Throws InputError, `where` first.
+std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon,
+                                                      const std::string& where);
 
 /// Each vertex' value at all of its corners.
 template <class V>

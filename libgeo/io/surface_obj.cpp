@@ -33,7 +33,8 @@ std::uint32_t row_at(const Lines& lines, std::string_view word, std::size_t coun
   const auto i = lines.integer(word);
   const auto size = static_cast<long long>(count);
   if (i > size || i < -size || i == 0)
-    lines.fail("a face names " + std::string(what) + " " + std::to_string(i) + ", but there are " + std::to_string(count) + " so far");
+    lines.fail("a face names " + std::string(what) + " " + std::to_string(i) + ", but there are " +
+               std::to_string(count) + " so far");
   return static_cast<std::uint32_t>(i > 0 ? i - 1 : size + i);
 }
 
@@ -80,7 +81,8 @@ TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
     } else if (words[0] == "f") {
       polygon.clear(), polygon_uv.clear(), polygon_normal.clear();
       for (std::size_t k = 1; k < words.size(); ++k) {
-        const auto first = std::min(words[k].find('/'), words[k].size()), second = std::min(words[k].find('/', first + 1), words[k].size());
+        const auto first = std::min(words[k].find('/'), words[k].size()),
+                   second = std::min(words[k].find('/', first + 1), words[k].size());
         const auto vt = first == words[k].size() ? std::string_view() : words[k].substr(first + 1, second - first - 1);
         const auto vn = second == words[k].size() ? std::string_view() : words[k].substr(second + 1);
         polygon.push_back(row_at(lines, words[k].substr(0, first), mesh.vertices.size(), "vertex"));
@@ -90,7 +92,8 @@ TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
       }
       if (polygon.size() < 3) lines.fail("a face has fewer than three vertices");
       for (const auto& [p, q, r] : add_polygon(mesh, polygon, name + ": ")) {
-        rows.push_back({{polygon_uv[p], polygon_uv[q], polygon_uv[r]}, {polygon_normal[p], polygon_normal[q], polygon_normal[r]}});
+        rows.push_back(
+            {{polygon_uv[p], polygon_uv[q], polygon_uv[r]}, {polygon_normal[p], polygon_normal[q], polygon_normal[r]}});
         material_of.push_back(materials.row(material));
         part_of.push_back(parts.row(part));
       }
@@ -104,7 +107,8 @@ TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
       const auto vt = rows[t].uv[k], vn = rows[t].normal[k];
       const auto& [p, q, r] = mesh.triangles[t];
       if (any_uv) a.uv[t][k] = vt == ~0u ? Vec2(Vec2::Zero()) : uv[vt];
-      if (any_normal) a.normal[t][k] = vn == ~0u ? face_normal(mesh.vertices[p], mesh.vertices[q], mesh.vertices[r]) : normal[vn];
+      if (any_normal)
+        a.normal[t][k] = vn == ~0u ? face_normal(mesh.vertices[p], mesh.vertices[q], mesh.vertices[r]) : normal[vn];
     }
   if (colored) a.color = at_corners(mesh, color);
   if (any_material)
@@ -166,7 +170,8 @@ void write_obj(std::ostream& out, const TriangleMesh& mesh) {
   for (const auto& [patch, triangles] : patches) {
     if (!mesh.patch.empty()) out << "g patch_" << patch << '\n';
     for (const auto t : triangles) {
-      if (!a.group.empty() && a.group[t] != group) group = a.group[t], out << "usemtl " << a.group_names[static_cast<std::size_t>(group)] << '\n';
+      if (!a.group.empty() && a.group[t] != group)
+        group = a.group[t], out << "usemtl " << a.group_names[static_cast<std::size_t>(group)] << '\n';
       out << 'f';
       for (int k = 0; k < 3; ++k) {
         out << ' ' << mesh.triangles[t][k] + 1;

@@ -45,7 +45,8 @@ std::vector<Color> colors_of(const PlyElement& e) {
   const auto columns = scalars(e, {"red", "green", "blue"}), alpha = scalars(e, {"alpha"});
   std::vector<Color> rows(columns.empty() ? 0 : e.count, Color::Ones());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (int k = 0; k < 3; ++k) rows[i][k] = columns[static_cast<std::size_t>(k)]->values[i] / full(columns[static_cast<std::size_t>(k)]->type);
+    for (int k = 0; k < 3; ++k)
+      rows[i][k] = columns[static_cast<std::size_t>(k)]->values[i] / full(columns[static_cast<std::size_t>(k)]->type);
     if (!alpha.empty()) rows[i][3] = alpha[0]->values[i] / full(alpha[0]->type);
   }
   return rows;
@@ -55,7 +56,8 @@ class Reader {
  public:
   Reader(const Ply& ply, const std::string& name) : ply_(ply), name_(name) {
     vertex_ = ply.find("vertex"), face_ = ply.find("face");
-    if (!vertex_ || !face_) throw InputError(name + ": has no " + (vertex_ ? "faces; it is not a surface" : "vertices"));
+    if (!vertex_ || !face_)
+      throw InputError(name + ": has no " + (vertex_ ? "faces; it is not a surface" : "vertices"));
   }
 
   SurfaceFile read() {
@@ -70,7 +72,8 @@ class Reader {
   TriangleMesh& mesh() { return file_.mesh; }
 
   std::int32_t whole(double x, const char* property) const {
-    if (!(std::abs(x) <= 2147483647.0) || x != static_cast<std::int32_t>(x)) throw InputError(name_ + ": a '" + property + "' is not an integer of 32 bits");
+    if (!(std::abs(x) <= 2147483647.0) || x != static_cast<std::int32_t>(x))
+      throw InputError(name_ + ": a '" + property + "' is not an integer of 32 bits");
     return static_cast<std::int32_t>(x);
   }
 
@@ -83,14 +86,16 @@ class Reader {
     indices_ = face_->find("vertex_indices");
     if (!indices_) indices_ = face_->find("vertex_index");
     if (!indices_ || !indices_->count_type) throw InputError(name_ + ": its faces have no vertex_indices");
-    if ((site && site->count_type) || (patch_ && patch_->count_type)) throw InputError(name_ + ": 'site' and 'patch' must not be lists");
+    if ((site && site->count_type) || (patch_ && patch_->count_type))
+      throw InputError(name_ + ": 'site' and 'patch' must not be lists");
     parts_.reserve(face_->count), mesh().triangles.reserve(face_->count);
     std::vector<std::uint32_t> polygon;
     const auto vertices = static_cast<std::uint32_t>(mesh().vertices.size());
     for (std::uint32_t i = 0; i < face_->count; ++i) {
       const auto begin = i ? indices_->ends[i - 1] : 0, end = indices_->ends[i];
       if (end - begin == 3) {
-        const Triangle t{row_of(indices_->values[begin]), row_of(indices_->values[begin + 1]), row_of(indices_->values[begin + 2])};
+        const Triangle t{row_of(indices_->values[begin]), row_of(indices_->values[begin + 1]),
+                         row_of(indices_->values[begin + 2])};
         if (std::max({t[0], t[1], t[2]}) < vertices) {
           mesh().triangles.push_back(t), parts_.push_back({i, {0, 1, 2}});
           continue;
@@ -98,7 +103,8 @@ class Reader {
       }
       polygon.clear();
       for (auto j = begin; j < end; ++j) polygon.push_back(row_of(indices_->values[j]));
-      for (const auto& corner : add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": ")) parts_.push_back({i, corner});
+      for (const auto& corner : add_polygon(mesh(), polygon, name_ + ": face " + std::to_string(i) + ": "))
+        parts_.push_back({i, corner});
     }
     if (patch_ && site) {
       mesh().patch.reserve(parts_.size()), mesh().site.reserve(vertices);
@@ -117,7 +123,8 @@ class Reader {
   // A corner has what its face's list gives it; without such a list, what its face has (`at_face`), or on a crack
   // `on_crack`, or else what its vertex has.
   template <class V, class OnCrack>
-  void fill(std::vector<std::array<V, 3>>& out, const char* list_name, const std::vector<V>& at_face, const std::vector<V>& at_vertex, const OnCrack& on_crack) {
+  void fill(std::vector<std::array<V, 3>>& out, const char* list_name, const std::vector<V>& at_face,
+            const std::vector<V>& at_vertex, const OnCrack& on_crack) {
     constexpr std::uint32_t size = V::SizeAtCompileTime;
     const auto* list = face_->find(list_name);
     if (list && !list->count_type) list = nullptr;
@@ -127,8 +134,9 @@ class Reader {
         const auto begin = i ? list->ends[i - 1] : 0, first = i ? indices_->ends[i - 1] : 0;
         const auto corners = indices_->ends[i] - first, given = list->ends[i] - begin;
         if (given != size * corners)
-          throw InputError(name_ + ": face " + std::to_string(i) + ": its list '" + list_name + "' has " + std::to_string(given) + " numbers, but its " +
-                           std::to_string(corners) + " corners need " + std::to_string(size * corners));
+          throw InputError(name_ + ": face " + std::to_string(i) + ": its list '" + list_name + "' has " +
+                           std::to_string(given) + " numbers, but its " + std::to_string(corners) + " corners need " +
+                           std::to_string(size * corners));
       }
     const double scale = list && size == 4 ? full(list->type) : 1;
     for (std::size_t t = 0; t < parts_.size(); ++t) {
@@ -136,7 +144,8 @@ class Reader {
       std::array<V, 3> row;
       for (int k = 0; k < 3; ++k) {
         if (list)
-          for (std::uint32_t c = 0; c < size; ++c) row[k][c] = list->values[(face ? list->ends[face - 1] : 0) + size * corner[k] + c] / scale;
+          for (std::uint32_t c = 0; c < size; ++c)
+            row[k][c] = list->values[(face ? list->ends[face - 1] : 0) + size * corner[k] + c] / scale;
         else if (!at_face.empty())
           row[k] = at_face[face];
         else if (patch_ && patch_->values[face] != 0)
@@ -155,18 +164,21 @@ class Reader {
     if (uv.empty()) uv = scalars(*vertex_, {"texture_u", "texture_v"});
     const auto at_vertex = colors_of(*vertex_);
     fill<Vec2>(a.uv, "texcoord", {}, rows_of<Vec2>(uv, vertex_->count), [](std::size_t) { return Vec2(Vec2::Zero()); });
-    fill<Vec3>(a.normal, "normal", {}, rows_of<Vec3>(scalars(*vertex_, {"nx", "ny", "nz"}), vertex_->count), [&](std::size_t t) {
-      const auto& [i, j, k] = mesh().triangles[t];
-      return face_normal(mesh().vertices[i], mesh().vertices[j], mesh().vertices[k]);
-    });
-    fill<Color>(a.color, "color", at_vertex.empty() ? colors_of(*face_) : std::vector<Color>(), at_vertex, [](std::size_t) { return crack_color; });
+    fill<Vec3>(a.normal, "normal", {}, rows_of<Vec3>(scalars(*vertex_, {"nx", "ny", "nz"}), vertex_->count),
+               [&](std::size_t t) {
+                 const auto& [i, j, k] = mesh().triangles[t];
+                 return face_normal(mesh().vertices[i], mesh().vertices[j], mesh().vertices[k]);
+               });
+    fill<Color>(a.color, "color", at_vertex.empty() ? colors_of(*face_) : std::vector<Color>(), at_vertex,
+                [](std::size_t) { return crack_color; });
   }
 
   // Named by comments in order; without these, any integers are groups.
   void groups() {
     Attributes& a = mesh().attributes;
     for (const auto& c : ply_.comments) {
-      if (c == "kerf_group" || c.rfind("kerf_group ", 0) == 0) a.group_names.push_back(c.size() > 11 ? c.substr(11) : "default");
+      if (c == "kerf_group" || c.rfind("kerf_group ", 0) == 0)
+        a.group_names.push_back(c.size() > 11 ? c.substr(11) : "default");
       if (c.rfind("kerf_materials ", 0) == 0) a.materials = c.substr(15);
     }
     const auto* group = integers(*face_, "group");
@@ -186,7 +198,8 @@ class Reader {
     }
     for (std::size_t i = 0; i < face_->count; ++i)
       if (group->values[i] < 0 || group->values[i] >= static_cast<double>(a.group_names.size()))
-        throw InputError(name_ + ": face " + std::to_string(i) + " is of group " + std::to_string(static_cast<long long>(group->values[i])) + ", but " +
+        throw InputError(name_ + ": face " + std::to_string(i) + " is of group " +
+                         std::to_string(static_cast<long long>(group->values[i])) + ", but " +
                          std::to_string(a.group_names.size()) + " groups are named");
     for (const Part& part : parts_) a.group.push_back(static_cast<std::int32_t>(group->values[part.face]));
   }
@@ -222,12 +235,16 @@ void Reader::fronts() {
     if (f.crack < 1) throw InputError(name_ + ": a front has no crack");
     file_.fronts.push_back(f);
   }
-  const auto &front = column(*contacts, "front"), &segment = column(*contacts, "segment"), &at = column(*contacts, "site");
+  const auto &front = column(*contacts, "front"), &segment = column(*contacts, "segment"),
+             &at = column(*contacts, "site");
   const auto &x = column(*contacts, "x"), &y = column(*contacts, "y"), &z = column(*contacts, "z");
   for (std::size_t i = 0; i < contacts->count; ++i) {
     const auto f = row_of(front[i]), s = row_of(segment[i]);
-    if (f >= file_.fronts.size() || s > file_.fronts[f].segments.size()) throw InputError(name_ + ": contact " + std::to_string(i) + " is out of order");
-    if (!in_range({x[i], y[i], z[i]})) throw InputError(name_ + ": contact " + std::to_string(i) + " has a coordinate of no sensible size; repair the file");
+    if (f >= file_.fronts.size() || s > file_.fronts[f].segments.size())
+      throw InputError(name_ + ": contact " + std::to_string(i) + " is out of order");
+    if (!in_range({x[i], y[i], z[i]}))
+      throw InputError(name_ + ": contact " + std::to_string(i) +
+                       " has a coordinate of no sensible size; repair the file");
     auto& segments = file_.fronts[f].segments;
     if (s == segments.size()) segments.emplace_back();
     segments[s].push_back({{x[i], y[i], z[i]}, at[i] < 0 ? VertexId() : VertexId(row_of(at[i]))});
@@ -237,7 +254,8 @@ void Reader::fronts() {
     for (std::size_t s = 0; s < f.segments.size(); ++s) {
       if (f.segments[s].size() < 2) throw InputError(name_ + ": a front's segment has fewer than two points");
       for (const auto& p : f.segments[s])
-        if (p.id.valid() && std::find(file_.mesh.site.begin(), file_.mesh.site.end(), p.id.value) == file_.mesh.site.end())
+        if (p.id.valid() &&
+            std::find(file_.mesh.site.begin(), file_.mesh.site.end(), p.id.value) == file_.mesh.site.end())
           throw InputError(name_ + ": a front's contact names a site that is not there");
       f.points.push_back(f.segments[s].front());
     }

@@ -47,7 +47,8 @@ Block block_of(const std::vector<Row>& rows, bool color = false) {
 
 // How the reader would fill the corners from vertices alone; a list is needed where that is not what they have.
 template <class V, class OnCrack>
-bool told_by_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 3>>& at_corner, const AtVertices<V>& at_vertex, const OnCrack& on_crack) {
+bool told_by_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 3>>& at_corner,
+                      const AtVertices<V>& at_vertex, const OnCrack& on_crack) {
   if (!at_vertex.agree) return false;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.patch.empty() || mesh.patch[t] == 0) continue;
@@ -60,7 +61,8 @@ bool told_by_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 
 
 }  // namespace
 
-void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts, const std::string& comment) {
+void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts,
+               const std::string& comment) {
   const Attributes& a = mesh.attributes;
   AtVertices<Vec3> normal;
   AtVertices<Color> color;
@@ -78,7 +80,8 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
   if (!a.color.empty()) {
     color = at_vertices(mesh, a.color);
     if (color.agree) vertex_blocks.push_back({{"red", "green", "blue", "alpha"}, block_of(color.value, true)});
-    if (!told_by_vertices(mesh, a.color, color, [](std::size_t) { return crack_color; })) lists.push_back({"color", block_of(a.color, true)});
+    if (!told_by_vertices(mesh, a.color, color, [](std::size_t) { return crack_color; }))
+      lists.push_back({"color", block_of(a.color, true)});
   }
   if (!a.uv.empty()) lists.push_back({"texcoord", block_of(a.uv)});
 
@@ -100,8 +103,10 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
   if (!a.group.empty()) out << "property int group\n";
   for (const auto& [name, block] : lists) out << "property list uchar " << block.type_name() << ' ' << name << '\n';
   if (!fronts.empty())
-    out << "element kerf_front " << fronts.size() << "\nproperty int crack\nproperty uint step\nproperty uchar closed\nelement kerf_contact "
-        << contacts << "\nproperty uint front\nproperty uint segment\nproperty int site\nproperty double x\nproperty double y\nproperty double z\n";
+    out << "element kerf_front " << fronts.size()
+        << "\nproperty int crack\nproperty uint step\nproperty uchar closed\nelement kerf_contact " << contacts
+        << "\nproperty uint front\nproperty uint segment\nproperty int site\nproperty double x\nproperty double "
+           "y\nproperty double z\n";
   out << "end_header\n";
   std::string row;
   const auto flush = [&](bool last) {

@@ -20,7 +20,8 @@ TriangleMesh parse_stl(const std::string& bytes, const std::string& name) {
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, 4);
   const bool binary = bytes.size() >= 84 && bytes.size() == 84 + 50 * static_cast<std::size_t>(count);
-  if (!binary && bytes.rfind("solid", 0) != 0) throw InputError(name + ": is no surface file that is known here, or an STL file that is truncated");
+  if (!binary && bytes.rfind("solid", 0) != 0)
+    throw InputError(name + ": is no surface file that is known here, or an STL file that is truncated");
   if (binary) {
     for (std::size_t t = 0; t < count; ++t) {
       float f[12];
@@ -28,7 +29,9 @@ TriangleMesh parse_stl(const std::string& bytes, const std::string& name) {
       Vec3 c[3];
       for (int k = 0; k < 3; ++k) c[k] = Vec3(f[3 + 3 * k], f[4 + 3 * k], f[5 + 3 * k]);
       for (const auto& p : c)
-        if (!p.allFinite()) throw InputError(name + ": triangle " + std::to_string(t) + " has a coordinate that is not a finite number; repair the file");
+        if (!p.allFinite())
+          throw InputError(name + ": triangle " + std::to_string(t) +
+                           " has a coordinate that is not a finite number; repair the file");
       add(mesh, c);
     }
     return mesh;

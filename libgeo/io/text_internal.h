@@ -13,7 +13,8 @@ namespace geo {
 
 /// What a file says, as a message may show it: without control characters, and not at length.
 inline std::string shown(std::string_view text, std::size_t most = 60) {
-  for (int i = 0; i < 3 && most < text.size() && (text[most] & 0xc0) == 0x80; ++i) --most;  // UTF-8 is not cut within a character
+  for (int i = 0; i < 3 && most < text.size() && (text[most] & 0xc0) == 0x80; ++i)
+    --most;  // UTF-8 is not cut within a character
   std::string out(text.substr(0, most));
   for (char& c : out)
     if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
@@ -23,7 +24,8 @@ inline std::string shown(std::string_view text, std::size_t most = 60) {
 /// Walks over the lines of a text, dropping what follows `comment` (0: nothing) and empty lines.
 class Lines {
  public:
-  Lines(std::string_view text, std::string name, char comment = '#') : text_(text), name_(std::move(name)), comment_(comment) {}
+  Lines(std::string_view text, std::string name, char comment = '#')
+      : text_(text), name_(std::move(name)), comment_(comment) {}
 
   /// The words of the next line that has any; false at the end.
   bool next(std::vector<std::string_view>& words) {
@@ -48,7 +50,9 @@ class Lines {
     }
     return false;
   }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(name_ + ":" + std::to_string(number_) + ": " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(name_ + ":" + std::to_string(number_) + ": " + what);
+  }
   std::size_t position() const { return std::min(at_, text_.size()); }
 
   double real(std::string_view word) const {

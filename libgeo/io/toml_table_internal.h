@@ -1,32 +1,36 @@
-// A table of a TOML file, read key by key: every complaint has line and column, and a key that nobody asks for is unknown.
+// A table of a TOML file, read key by key: every complaint has line and column, and a key that nobody asks for is
+// unknown.
 #pragma once
 
+#include <toml++/toml.h>
 #include <cmath>
 #include <cstdio>
 #include <set>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
+#include "io/text_internal.h"
 #include "kerf/error.h"
 #include "kerf/vec.h"
-#include "io/text_internal.h"
 
 namespace geo {
 
 class TomlTable {
  public:
-  TomlTable(const toml::table& table, std::string name, std::string path) : table_(table), name_(std::move(name)), path_(std::move(path)) {}
+  TomlTable(const toml::table& table, std::string name, std::string path)
+      : table_(table), name_(std::move(name)), path_(std::move(path)) {}
 
   [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
     const auto at = node.source().begin;
-    throw InputError(at.line > 0 ? name_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " + what : name_ + ": " + what);
+    throw InputError(at.line > 0 ? name_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " + what
+                                 : name_ + ": " + what);
   }
   [[noreturn]] void fail(const std::string& what) const { fail(table_, what); }
   /// A key that must be there is not: perhaps it is there misspelt.
   [[noreturn]] void missing(const std::string& key, const std::string& what) const {
     for (const auto& [other, node] : table_)
-      if (const auto meant = did_you_mean(other.str(), {key}); !meant.empty()) fail(node, "unknown key '" + path_ + shown(other.str()) + "'" + meant);
+      if (const auto meant = did_you_mean(other.str(), {key}); !meant.empty())
+        fail(node, "unknown key '" + path_ + shown(other.str()) + "'" + meant);
     fail("'" + path_ + key + "' is missing: " + what);
   }
   /// What stands before its keys in messages.
@@ -40,14 +44,18 @@ class TomlTable {
     if (!node) return;
     const auto v = node->value<double>();
     if (!v) fail(*node, "'" + path_ + key + "' must be a number");
-    if (!(*v >= least && *v <= most)) fail(*node, "'" + path_ + key + "' is out of range: it must be from " + in_words(least) + " to " + in_words(most));
+    if (!(*v >= least && *v <= most))
+      fail(*node,
+           "'" + path_ + key + "' is out of range: it must be from " + in_words(least) + " to " + in_words(most));
     value = *v;
   }
   void get(const std::string& key, int& value, int least, int most) {
     const auto* node = find(key);
     if (!node) return;
     const auto v = node->value_exact<std::int64_t>();
-    if (!v || *v < least || *v > most) fail(*node, "'" + path_ + key + "' must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
+    if (!v || *v < least || *v > most)
+      fail(*node,
+           "'" + path_ + key + "' must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
     value = static_cast<int>(*v);
   }
   void get(const std::string& key, std::string& value) {
@@ -103,13 +111,16 @@ class TomlTable {
   void list(const std::string& key, const Read& read) {
     const auto* node = find(key);
     if (!node) return;
-    if (!node->is_array_of_tables() && !(node->is_array() && node->as_array()->is_homogeneous<toml::table>())) fail(*node, "write each " + key + " as [[" + key + "]]");
+    if (!node->is_array_of_tables() && !(node->is_array() && node->as_array()->is_homogeneous<toml::table>()))
+      fail(*node, "write each " + key + " as [[" + key + "]]");
     for (const auto& e : *node->as_array()) each(*e.as_table(), key, read);
   }
   /// After all keys were asked for.
   void done() const {
     for (const auto& [key, node] : table_)
-      if (!known_.count(std::string(key.str()))) fail(node, "unknown key '" + path_ + shown(key.str()) + "'" + did_you_mean(key.str(), {known_.begin(), known_.end()}));
+      if (!known_.count(std::string(key.str())))
+        fail(node, "unknown key '" + path_ + shown(key.str()) + "'" +
+                       did_you_mean(key.str(), {known_.begin(), known_.end()}));
   }
 
  private:

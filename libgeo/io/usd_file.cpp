@@ -99,10 +99,12 @@ void each_in_order(const Frames& frames, const Make& make, const auto& each) {
   }
 }
 
-// A sample is what holds until the next: one that says the same is left out. Frames that are not given are like those before them.
+// A sample is what holds until the next: one that says the same is left out. Frames that are not given are like those
+// before them.
 class Samples {
  public:
-  Samples(std::ostream& out, std::string margin, const std::string& declaration) : out_(out), margin_(std::move(margin)) {
+  Samples(std::ostream& out, std::string margin, const std::string& declaration)
+      : out_(out), margin_(std::move(margin)) {
     out_ << margin_ << declaration << ".timeSamples = {\n";
   }
   void add(std::size_t i, std::string text) {
@@ -120,9 +122,12 @@ class Samples {
   std::size_t written_ = 0;
 };
 
-void add_samples(std::ostream& out, const std::string& margin, const std::string& declaration, const Frames& frames, const auto& frame, const auto& text_of) {
+void add_samples(std::ostream& out, const std::string& margin, const std::string& declaration, const Frames& frames,
+                 const auto& frame, const auto& text_of) {
   Samples samples(out, margin, declaration);
-  each_in_order(frames, [&](std::size_t i) { return text_of(frame(i)); }, [&](std::size_t i, std::string text) { samples.add(i, std::move(text)); });
+  each_in_order(
+      frames, [&](std::size_t i) { return text_of(frame(i)); },
+      [&](std::size_t i, std::string text) { samples.add(i, std::move(text)); });
 }
 
 Frames all_frames(const UsdRun& run) {
@@ -131,42 +136,58 @@ Frames all_frames(const UsdRun& run) {
   return all;
 }
 
-bool same_rows(const TriangleMesh& a, const TriangleMesh& b) { return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv; }
+bool same_rows(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv;
+}
 
 // What same_rows() looks at.
 TriangleMesh rows_of(TriangleMesh&& m) {
   TriangleMesh rows;
-  rows.triangles = std::move(m.triangles), rows.patch = std::move(m.patch), rows.attributes.uv = std::move(m.attributes.uv);
+  rows.triangles = std::move(m.triangles), rows.patch = std::move(m.patch),
+  rows.attributes.uv = std::move(m.attributes.uv);
   return rows;
 }
 
 void add_subset(std::ostream& out, const std::string& name, const Frames& cut, const auto& rows, bool crack) {
-  out << "\n        def GeomSubset \"" << name << "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {\n"
-      << "            uniform token elementType = \"face\"\n            uniform token familyName = \"materialBind\"\n            rel material:binding = </run/materials/" << name << ">\n";
-  add_samples(out, "            ", "int[] indices", cut, rows, [&](const TriangleMesh& m) { return subset_of(m, crack); });
+  out << "\n        def GeomSubset \"" << name
+      << "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {\n"
+      << "            uniform token elementType = \"face\"\n            uniform token familyName = \"materialBind\"\n  "
+         "          rel material:binding = </run/materials/"
+      << name << ">\n";
+  add_samples(out, "            ", "int[] indices", cut, rows,
+              [&](const TriangleMesh& m) { return subset_of(m, crack); });
   out << "        }\n";
 }
 
 void add_material(std::ostream& out, const std::string& name, const std::string& color) {
-  out << "        def Material \"" << name << "\"\n        {\n            token outputs:surface.connect = </run/materials/" << name << "/preview.outputs:surface>\n\n"
-      << "            def Shader \"preview\"\n            {\n                uniform token info:id = \"UsdPreviewSurface\"\n                color3f inputs:diffuseColor = " << color
-      << "\n                float inputs:roughness = 0.6\n                token outputs:surface\n            }\n        }\n";
+  out << "        def Material \"" << name
+      << "\"\n        {\n            token outputs:surface.connect = </run/materials/" << name
+      << "/preview.outputs:surface>\n\n"
+      << "            def Shader \"preview\"\n            {\n                uniform token info:id = "
+         "\"UsdPreviewSurface\"\n                color3f inputs:diffuseColor = "
+      << color
+      << "\n                float inputs:roughness = 0.6\n                token outputs:surface\n            }\n       "
+         " }\n";
 }
 
 void begin_mesh(std::ostream& out, const std::string& name, const std::string& material) {
-  out << "    def Mesh \"" << name << "\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {\n        uniform token subdivisionScheme = \"none\"\n"
+  out << "    def Mesh \"" << name
+      << "\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {\n        uniform token "
+         "subdivisionScheme = \"none\"\n"
       << "        rel material:binding = </run/materials/" << material << ">\n";
 }
 
 }  // namespace
 
 void write_usda(std::ostream& out, const UsdRun& run) {
-  out << "#usda 1.0\n(\n    defaultPrim = \"run\"\n    metersPerUnit = 1\n    upAxis = \"" << run.up << "\"\n    startTimeCode = 0\n    endTimeCode = " << (run.frames > 0 ? run.frames - 1 : 0)
-      << "\n    timeCodesPerSecond = " << run.frame_rate << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
+  out << "#usda 1.0\n(\n    defaultPrim = \"run\"\n    metersPerUnit = 1\n    upAxis = \"" << run.up
+      << "\"\n    startTimeCode = 0\n    endTimeCode = " << (run.frames > 0 ? run.frames - 1 : 0)
+      << "\n    timeCodesPerSecond = " << run.frame_rate
+      << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
   constexpr std::size_t most_kept = 16;
-  Frames cut;  // those with other triangles than the one before
+  Frames cut;                                // those with other triangles than the one before
   std::map<std::size_t, TriangleMesh> kept;  // rows of the first of them, which are not read again
   TriangleMesh last;
   {
@@ -184,7 +205,9 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     });
   }
   const auto rows = [&](std::size_t i) { return kept.contains(i) ? kept.at(i) : run.surface(i); };
-  const auto body = [&](const std::string& declaration, const auto& text_of) { add_samples(out, "        ", declaration, cut, rows, text_of); };
+  const auto body = [&](const std::string& declaration, const auto& text_of) {
+    add_samples(out, "        ", declaration, cut, rows, text_of);
+  };
   body("int[] faceVertexCounts", counts_of);
   body("int[] faceVertexIndices", corners_of_triangles);
   out << "        int[] primvars:patch (\n            interpolation = \"uniform\"\n        )\n";
@@ -200,7 +223,8 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     out << '\n';
     begin_mesh(out, "obstacles", "obstacle");
     const TriangleMesh first = run.obstacles(0);
-    out << "        int[] faceVertexCounts = " << counts_of(first) << "\n        int[] faceVertexIndices = " << corners_of_triangles(first) << '\n';
+    out << "        int[] faceVertexCounts = " << counts_of(first)
+        << "\n        int[] faceVertexIndices = " << corners_of_triangles(first) << '\n';
     add_samples(out, "        ", "point3f[] points", all_frames(run), run.obstacles, points_of);
     out << "    }\n";
   }

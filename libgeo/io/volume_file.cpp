@@ -8,8 +8,8 @@
 
 #include <sstream>
 
-#include "kerf/error.h"
 #include "geometry/bvh.h"
+#include "kerf/error.h"
 #include "kerf/stream.h"
 
 namespace geo {
@@ -26,7 +26,9 @@ openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec& grids, const std::strin
   }
   if (names.empty()) throw InputError(path + ": holds no grid of numbers");
   if (fit == 0) throw InputError(path + ": holds no grid of numbers named '" + name + "' but " + names);
-  if (fit > 1) throw InputError(path + ": holds several grids, " + names + (name.empty() ? "; choose one by its name" : "; they cannot be told apart by name"));
+  if (fit > 1)
+    throw InputError(path + ": holds several grids, " + names +
+                     (name.empty() ? "; choose one by its name" : "; they cannot be told apart by name"));
   return found;
 }
 
@@ -36,7 +38,8 @@ openvdb::FloatGrid::Ptr level_set_of(const TriangleMesh& solid, double voxel) {
   std::vector<openvdb::Vec3I> triangles;
   for (const Vec3& p : solid.vertices) points.emplace_back(float(p.x()), float(p.y()), float(p.z()));
   for (const auto& [a, b, c] : solid.triangles) triangles.emplace_back(a, b, c);
-  return openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*openvdb::math::Transform::createLinearTransform(voxel), points, triangles);
+  return openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*openvdb::math::Transform::createLinearTransform(voxel),
+                                                            points, triangles);
 }
 
 template <class Grid>
@@ -46,7 +49,9 @@ TriangleMesh surface_of(const Grid& grid, const VolumeOptions& options, const st
   const bool low_inside = level_set || (grid.getGridClass() != openvdb::GRID_FOG_VOLUME && grid.background() > 0);
   const double iso = options.iso.value_or(low_inside ? 0.0 : 0.5);
   if (grid.activeVoxelCount() == 0) throw InputError(path + ": the grid is empty");
-  if ((double(grid.background()) < iso) == low_inside) throw InputError(path + ": the level " + std::to_string(iso) + " makes all space outside the grid material; choose another");
+  if ((double(grid.background()) < iso) == low_inside)
+    throw InputError(path + ": the level " + std::to_string(iso) +
+                     " makes all space outside the grid material; choose another");
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;
@@ -91,7 +96,8 @@ TriangleMesh wrapped(const TriangleMesh& solid, double voxel) {
   TriangleMesh mesh = surface_of(*level_set_of(scaled, 1), {}, "the level set");
   const TriangleBvh tree(corners_of(solid));
   for (Vec3& p : mesh.vertices) p = middle + voxel * p;
-  for (const auto& [a, b, c] : mesh.triangles) mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).row);
+  for (const auto& [a, b, c] : mesh.triangles)
+    mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).row);
   carry(solid, mesh);
   return mesh;
 }

@@ -5,7 +5,8 @@
 
 namespace geo {
 
-void push_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free, const Progress& progress) {
+void push_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free,
+                const Progress& progress) {
   constexpr int steps = 8;
   constexpr double strength = 0.5, room = 0.5 - keep_off;
   std::vector<Vec3> moved(nodes.size());

@@ -2,16 +2,16 @@
 
 #include <cmath>
 
-#include "kerf/error.h"
 #include "base/random.h"
+#include "kerf/error.h"
 #include "kerf/progress.h"
 
 namespace geo {
 namespace {
 
 // Where the number of nodes is asked for, cells with more material than `surely` always have one and those with less
-// than `hardly` never: between them some have, so that the number is met. Models with flat faces across the axes lose or
-// gain all cells of a face at once, half filled: where nothing else helps some of those have none.
+// than `hardly` never: between them some have, so that the number is met. Models with flat faces across the axes lose
+// or gain all cells of a face at once, half filled: where nothing else helps some of those have none.
 constexpr float surely = 0.35f, at_worst = 0.6f, hardly = 0.03f;
 
 std::size_t count_above(const LeafLists& lists, float share) {
@@ -27,7 +27,8 @@ Keep keep_count(const LeafLists& lists, std::size_t count, float surely) {
   std::vector<std::pair<float, std::uint64_t>> rest;
   for (const auto& list : lists)
     for (const Leaf& leaf : list)
-      if (leaf.node && leaf.share <= surely && leaf.share >= hardly) rest.push_back({leaf.share, Keep::ticket_of(leaf)});
+      if (leaf.node && leaf.share <= surely && leaf.share >= hardly)
+        rest.push_back({leaf.share, Keep::ticket_of(leaf)});
   if (count <= sure) return {surely, ~std::uint64_t(0)};
   if (count - sure >= rest.size()) return {hardly, 0};
   const auto least = rest.begin() + static_cast<std::ptrdiff_t>(count - sure - 1);
@@ -38,13 +39,21 @@ Keep keep_count(const LeafLists& lists, std::size_t count, float surely) {
 /// Numbers of nodes by spacing, as measured, and guesses between and beyond them: a power law in pieces.
 class CountCurve {
  public:
-  void add(double spacing, double count) { points_.insert(std::upper_bound(points_.begin(), points_.end(), std::pair{std::log(spacing), 0.0}), {std::log(spacing), std::log(count + 0.5)}); }
+  void add(double spacing, double count) {
+    points_.insert(std::upper_bound(points_.begin(), points_.end(), std::pair{std::log(spacing), 0.0}),
+                   {std::log(spacing), std::log(count + 0.5)});
+  }
   double guess(double count) const {
     const double y = std::log(count + 0.5);
     std::size_t i = 0;  // the first with fewer nodes
     while (i < points_.size() && points_[i].second > y) ++i;
     const bool between = i > 0 && i < points_.size();
-    const std::size_t a = between ? i - 1 : i == 0 ? 0 : points_.size() - 1, b = between ? i : i == 0 ? 1 : points_.size() - 2;
+    const std::size_t a = between  ? i - 1
+                          : i == 0 ? 0
+                                   : points_.size() - 1,
+                      b = between  ? i
+                          : i == 0 ? 1
+                                   : points_.size() - 2;
     double slope = -2.8;
     if (points_.size() > 1) slope = (points_[b].second - points_[a].second) / (points_[b].first - points_[a].first);
     if (!between) slope = std::clamp(slope, -4.0, -1.5);
@@ -65,10 +74,12 @@ class CountCurve {
 std::uint64_t Keep::ticket_of(const Leaf& leaf) { return Random(morton(leaf.cell.corner)).bits(); }
 
 std::optional<Found> LeafFinder::at(double spacing, int thin_levels, std::size_t most, SampleReport& report) const {
-  if (!(spacing > box_.diagonal() * 1e-4)) throw InputError("the spacing is less than 0.01 % of the model's diagonal; choose a larger one");
+  if (!(spacing > box_.diagonal() * 1e-4))
+    throw InputError("the spacing is less than 0.01 % of the model's diagonal; choose a larger one");
   Stopwatch clock;
   // The cells are centred on the body, so that a symmetric model is sampled symmetrically.
-  OctreeShape shape{{box_.lo, std::ldexp(spacing, -thin_levels)}, 0, thin_levels + options_.levels - 1, thin_levels, options_.across};
+  OctreeShape shape{
+      {box_.lo, std::ldexp(spacing, -thin_levels)}, 0, thin_levels + options_.levels - 1, thin_levels, options_.across};
   shape.root = shape.top;
   const double coarse = shape.lattice.edge(shape.top);
   for (int i = 0; i < 3; ++i) {

@@ -10,7 +10,9 @@ struct Keep {
   float share = float(least_share);
   std::uint64_t ticket = 0;
   static std::uint64_t ticket_of(const Leaf& leaf);
-  bool operator()(const Leaf& leaf) const { return leaf.node && (leaf.share != share ? leaf.share > share : ticket_of(leaf) >= ticket); }
+  bool operator()(const Leaf& leaf) const {
+    return leaf.node && (leaf.share != share ? leaf.share > share : ticket_of(leaf) >= ticket);
+  }
 };
 
 struct Found {
@@ -23,7 +25,8 @@ struct Found {
 /// Leaves over one solid at any spacing.
 class LeafFinder {
  public:
-  LeafFinder(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress) : tree_(solid), box_(bounding_box(solid)), options_(options), progress_(progress) {}
+  LeafFinder(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress)
+      : tree_(solid), box_(bounding_box(solid)), options_(options), progress_(progress) {}
 
   /// How many levels below the spacing the options let thin material have.
   int thin_levels() const { return options_.across > 0 ? 5 : 0; }

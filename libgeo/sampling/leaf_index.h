@@ -24,9 +24,9 @@ class LeafIndex {
  private:
   std::vector<std::uint64_t> codes_;
   std::vector<std::uint8_t> levels_;
-  int block_ = 0;                            // level of a block
-  std::array<std::int32_t, 3> blocks_{};     // along each axis
-  std::vector<std::uint32_t> begin_, end_;   // rows of a block
+  int block_ = 0;                           // level of a block
+  std::array<std::int32_t, 3> blocks_{};    // along each axis
+  std::vector<std::uint32_t> begin_, end_;  // rows of a block
 };
 
 template <class Take>
@@ -41,17 +41,23 @@ void LeafIndex::around(const Cell& c, int level, const Take& take) const {
   for (p[2] = lo[2]; p[2] < hi[2]; p[2] += unit)
     for (p[1] = lo[1]; p[1] < hi[1]; p[1] += unit)
       for (p[0] = lo[0]; p[0] < hi[0]; p[0] += unit) {
-        const auto block = (static_cast<std::size_t>(p[2] >> block_) * static_cast<std::size_t>(blocks_[1]) + static_cast<std::size_t>(p[1] >> block_)) * static_cast<std::size_t>(blocks_[0]) + static_cast<std::size_t>(p[0] >> block_);
+        const auto block = (static_cast<std::size_t>(p[2] >> block_) * static_cast<std::size_t>(blocks_[1]) +
+                            static_cast<std::size_t>(p[1] >> block_)) *
+                               static_cast<std::size_t>(blocks_[0]) +
+                           static_cast<std::size_t>(p[0] >> block_);
         const std::uint32_t begin = begin_[block], end = end_[block];
         if (begin == end) continue;
         const std::uint64_t first = morton(p), past = first + (std::uint64_t(1) << 3 * std::min(level, block_));
-        auto row = static_cast<std::uint32_t>(std::lower_bound(codes_.begin() + begin, codes_.begin() + end, first) - codes_.begin());
+        auto row = static_cast<std::uint32_t>(std::lower_bound(codes_.begin() + begin, codes_.begin() + end, first) -
+                                              codes_.begin());
         if (row > begin && (row == end || codes_[row] != first)) {
           // A larger leaf may hold this cell: it is taken at the first of the cells that it holds.
           const int large = levels_[row - 1];
           if (codes_[row - 1] >> 3 * large == first >> 3 * large) {
             const auto corner = corner_of(codes_[row - 1]);
-            if (p[0] == std::max(corner[0], lo[0]) && p[1] == std::max(corner[1], lo[1]) && p[2] == std::max(corner[2], lo[2])) take(row - 1);
+            if (p[0] == std::max(corner[0], lo[0]) && p[1] == std::max(corner[1], lo[1]) &&
+                p[2] == std::max(corner[2], lo[2]))
+              take(row - 1);
           }
         }
         for (; row < end && codes_[row] < past; ++row) take(row);

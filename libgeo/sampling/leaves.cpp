@@ -11,7 +11,8 @@ constexpr int points = across * across * across;
 
 Vec3 random_shift(const Cell& cell, std::uint64_t seed) {
   const auto& c = cell.corner;
-  Random random(seed ^ (std::uint64_t(c[0]) << 42 ^ std::uint64_t(c[1]) << 21 ^ std::uint64_t(c[2])) * 0x9e3779b97f4a7c15ull);
+  Random random(seed ^
+                (std::uint64_t(c[0]) << 42 ^ std::uint64_t(c[1]) << 21 ^ std::uint64_t(c[2])) * 0x9e3779b97f4a7c15ull);
   const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
   return {x, y, random.uniform(-1, 1)};
 }
@@ -37,7 +38,9 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
   const Box3 box = lattice.box(region.cell);
   Vec3 at[points];
   char in[points];
-  for (int i = 0; i < points; ++i) at[i] = box.lo + edge / across * (Vec3(i % across, i / across % across, i / (across * across)) + Vec3::Constant(0.5));
+  for (int i = 0; i < points; ++i)
+    at[i] =
+        box.lo + edge / across * (Vec3(i % across, i / across % across, i / (across * across)) + Vec3::Constant(0.5));
   tree.inside(region, at, in);
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -71,14 +74,20 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
 
 }  // namespace
 
-LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Divisions& divided, const SampleOptions& options, const Progress& progress) {
-  return walk<Leaf>(tree, shape.lattice, {{0, 0, 0}, shape.root}, "nodes", progress, [&](const Region& region, std::vector<Leaf>& found) {
-    if (region.cell.level > shape.top || (region.cell.level > 0 && is_divided(divided, region.cell))) return true;
-    const double spread = options.pattern == NodePattern::grid ? 0 : options.pattern == NodePattern::blue ? 0.5 - keep_off : options.jitter;
-    const Leaf leaf = place(tree, shape.lattice, region, spread * random_shift(region.cell, options.seed));
-    if (leaf.share > 0) found.push_back(leaf);
-    return false;
-  });
+LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Divisions& divided,
+                      const SampleOptions& options, const Progress& progress) {
+  return walk<Leaf>(tree, shape.lattice, {{0, 0, 0}, shape.root}, "nodes", progress,
+                    [&](const Region& region, std::vector<Leaf>& found) {
+                      if (region.cell.level > shape.top || (region.cell.level > 0 && is_divided(divided, region.cell)))
+                        return true;
+                      const double spread = options.pattern == NodePattern::grid   ? 0
+                                            : options.pattern == NodePattern::blue ? 0.5 - keep_off
+                                                                                   : options.jitter;
+                      const Leaf leaf =
+                          place(tree, shape.lattice, region, spread * random_shift(region.cell, options.seed));
+                      if (leaf.share > 0) found.push_back(leaf);
+                      return false;
+                    });
 }
 
 }  // namespace geo

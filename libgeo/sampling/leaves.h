@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "sampling/octree.h"
 #include "kerf/nodes.h"
+#include "sampling/octree.h"
 
 namespace geo {
 
@@ -21,7 +21,8 @@ using LeafLists = std::vector<std::vector<Leaf>>;
 
 /// All leaves with material. A whole leaf's node is displaced at random about its middle, a cut one's about the middle
 /// of its material, off the surface by an eighth of the cell where there is room.
-LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Divisions& divided, const SampleOptions& options, const Progress& progress);
+LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Divisions& divided,
+                      const SampleOptions& options, const Progress& progress);
 
 /// The part of its cell's edge that a node keeps off the surface where it can.
 constexpr double keep_off = 0.12;

@@ -74,7 +74,8 @@ void NodeGrid::erase(std::uint32_t row, const Vec3& p) {
   --size_;
 }
 
-void NodeGrid::within(std::span<const Vec3> positions, const Vec3& p, double radius, std::vector<std::uint32_t>& out) const {
+void NodeGrid::within(std::span<const Vec3> positions, const Vec3& p, double radius,
+                      std::vector<std::uint32_t>& out) const {
   if (cells_.empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(out.size());
   const double reach = radius * radius;

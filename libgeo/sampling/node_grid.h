@@ -12,8 +12,9 @@
 
 namespace geo {
 
-/// Rows of a position array by cell: an octree in one array, whose leaves are linked lists in another, so that any grading
-/// of the nodes will do. 12 bytes a node or less. The array of positions stays with the caller and is passed to each call.
+/// Rows of a position array by cell: an octree in one array, whose leaves are linked lists in another, so that any
+/// grading of the nodes will do. 12 bytes a node or less. The array of positions stays with the caller and is passed to
+/// each call.
 class NodeGrid {
  public:
   /// `cell`: the usual spacing of nodes, model units; callers ask for it, and it is the size of the first cell.
@@ -28,10 +29,11 @@ class NodeGrid {
   void within(std::span<const Vec3> positions, const Vec3& p, double radius, std::vector<std::uint32_t>& out) const;
   /// The k rows nearest to p by (distance, row), without `self`; fewer when there are fewer. `accept` may refuse rows.
   template <class Accept>
-  std::vector<std::uint32_t> nearest(std::span<const Vec3> positions, const Vec3& p, std::size_t k, std::uint32_t self, const Accept& accept) const;
-  /// Walks down the tree: into(depth, middle, half) tells whether to enter a cube, middle ± half, which holds all rows that
-  /// are below it; see(depth, row) gets the rows of each leaf entered. On the way to a cube those around it were entered, at
-  /// depths 0, 1 and so on.
+  std::vector<std::uint32_t> nearest(std::span<const Vec3> positions, const Vec3& p, std::size_t k, std::uint32_t self,
+                                     const Accept& accept) const;
+  /// Walks down the tree: into(depth, middle, half) tells whether to enter a cube, middle ± half, which holds all rows
+  /// that are below it; see(depth, row) gets the rows of each leaf entered. On the way to a cube those around it were
+  /// entered, at depths 0, 1 and so on.
   template <class Into, class See>
   void walk(const Into& into, const See& see) const {
     if (!cells_.empty()) walk(root(), into, see);
@@ -53,7 +55,9 @@ class NodeGrid {
     Vec3 middle;
     double half = 0;
     int depth = 0;
-    int octant(const Vec3& p) const { return (p.x() >= middle.x()) | (p.y() >= middle.y()) << 1 | (p.z() >= middle.z()) << 2; }
+    int octant(const Vec3& p) const {
+      return (p.x() >= middle.x()) | (p.y() >= middle.y()) << 1 | (p.z() >= middle.z()) << 2;
+    }
   };
   Place root() const { return {0, middle_, half_, 0}; }
   Place child(const Place& parent, int octant) const {
@@ -112,8 +116,8 @@ void NodeGrid::walk(const Place& at, const Into& into, const See& see) const {
 }
 
 template <class Accept>
-std::vector<std::uint32_t> NodeGrid::nearest(std::span<const Vec3> positions, const Vec3& p, std::size_t k, std::uint32_t self,
-                                             const Accept& accept) const {
+std::vector<std::uint32_t> NodeGrid::nearest(std::span<const Vec3> positions, const Vec3& p, std::size_t k,
+                                             std::uint32_t self, const Accept& accept) const {
   std::vector<std::uint32_t> rows;
   if (cells_.empty() || k == 0) return rows;
   std::vector<std::pair<double, std::uint32_t>> best;  // a heap, the farthest on top

@@ -41,7 +41,8 @@ void balance(Divisions& divided) {
   }
 }
 
-std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most, ThinPlaces& thin, const Progress& progress) {
+std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most,
+                                     ThinPlaces& thin, const Progress& progress) {
   Divisions divided(static_cast<std::size_t>(shape.top) + 1);
   const int across = shape.across;
   if (shape.top == 0 && across == 0) return divided;
@@ -65,7 +66,8 @@ std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& 
     } else {
       // Cells of both sides of a wall count; those inside may be as large as what they leave.
       const double limit = (across - 1) * edge;
-      const auto closest = tree.tree().closest(region.probe, std::max(cell.level > shape.regular ? edge : 0.0, 0.5 * limit));
+      const auto closest =
+          tree.tree().closest(region.probe, std::max(cell.level > shape.regular ? edge : 0.0, 0.5 * limit));
       if (closest.row == ~0u) return false;
       divide = cell.level > shape.regular && closest.distance < edge;
       if (!divide && across > 0) wall = wall_around(tree, region.probe, closest, limit);
@@ -73,7 +75,8 @@ std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& 
     divide |= wall.thickness < std::numeric_limits<double>::infinity();
     if (divide) {
       ++count;
-      found.push_back({cell.level, morton(cell.corner), wall, cell.level > last || !(wall.thickness < across * shape.lattice.size)});
+      found.push_back({cell.level, morton(cell.corner), wall,
+                       cell.level > last || !(wall.thickness < across * shape.lattice.size)});
     }
     return divide && cell.level > last;
   };

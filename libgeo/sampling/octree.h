@@ -1,5 +1,5 @@
-// Which cells of an octree over a solid are divided (Pauly et al. 2005): those at the surface and in thin material, fewer
-// with the depth, neighbours (corners included) differing by one level at most.
+// Which cells of an octree over a solid are divided (Pauly et al. 2005): those at the surface and in thin material,
+// fewer with the depth, neighbours (corners included) differing by one level at most.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,8 @@ struct ThinPlaces {
 /// A cell that the surface cuts is divided down to the regular level, another while its middle is less deep than the
 /// cell is large, and any while thin material has too few cells across; then whatever the 2:1 rule asks for. Gives up,
 /// returning nothing, when more than `most` cells are to be divided.
-std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most, ThinPlaces& thin, const Progress& progress);
+std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most,
+                                     ThinPlaces& thin, const Progress& progress);
 
 /// Adds to each level the cells that the 2:1 rule asks for.
 void balance(Divisions& divided);

@@ -20,7 +20,8 @@ int crossings(const Vec3& p, const Vec3& q, int sp, int sq, const std::array<Vec
   return e0 == 0 || e1 == 0 || e2 == 0 ? -1 : 1;
 }
 
-// Whether the triangle has all of its plane that is in the box: seen along the axis that it faces most, the box is strictly within it.
+// Whether the triangle has all of its plane that is in the box: seen along the axis that it faces most, the box is
+// strictly within it.
 bool covers(const std::array<Vec3, 3>& t, const Box3& box) {
   int axis = 0;
   (t[1] - t[0]).cross(t[2] - t[0]).cwiseAbs().maxCoeff(&axis);
@@ -31,7 +32,9 @@ bool covers(const std::array<Vec3, 3>& t, const Box3& box) {
     for (int side = 0; side < 2; ++side)
       if (const int a = (axis + 1 + side) % 3; k >> side & 1) corner[a] = box.hi[a];
     for (int e = 0; e < 3; ++e)
-      if (orient2d_quick(t[static_cast<std::size_t>(e)], t[static_cast<std::size_t>((e + 1) % 3)], corner, axis) != turn) return false;
+      if (orient2d_quick(t[static_cast<std::size_t>(e)], t[static_cast<std::size_t>((e + 1) % 3)], corner, axis) !=
+          turn)
+        return false;
   }
   return true;
 }
@@ -40,7 +43,9 @@ bool covers(const std::array<Vec3, 3>& t, const Box3& box) {
 
 bool may_meet(const Box3& box, const Vec3& a, const Vec3& b, const Vec3& c) {
   if (!box_of(a, b, c).meets(box)) return false;
-  const auto corner = [&](int k) { return Vec3(k & 1 ? box.hi.x() : box.lo.x(), k & 2 ? box.hi.y() : box.lo.y(), k & 4 ? box.hi.z() : box.lo.z()); };
+  const auto corner = [&](int k) {
+    return Vec3(k & 1 ? box.hi.x() : box.lo.x(), k & 2 ? box.hi.y() : box.lo.y(), k & 4 ? box.hi.z() : box.lo.z());
+  };
   // All corners strictly on one side of its plane.
   const int side = orient3d_quick(a, b, c, corner(0));
   if (side != 2) {
@@ -86,7 +91,8 @@ Region RegionTree::at(const Lattice& lattice, const Cell& cell) const {
   region.inside = tree_.inside(region.probe);
   const Box3 box = lattice.box(cell);
   tree_.near(box, region.rows);
-  std::erase_if(region.rows, [&](auto row) { return !may_meet(box, corners_[row][0], corners_[row][1], corners_[row][2]); });
+  std::erase_if(region.rows,
+                [&](auto row) { return !may_meet(box, corners_[row][0], corners_[row][1], corners_[row][2]); });
   std::sort(region.rows.begin(), region.rows.end());
   return region;
 }
@@ -105,7 +111,8 @@ bool RegionTree::inside(const Region& region, const Vec3& p) const {
   bool odd = false;
   for (const auto row : region.rows) {
     const auto& t = corners_[row];
-    const int n = crossings(region.probe, p, orient3d(t[0], t[1], t[2], region.probe), orient3d(t[0], t[1], t[2], p), t);
+    const int n =
+        crossings(region.probe, p, orient3d(t[0], t[1], t[2], region.probe), orient3d(t[0], t[1], t[2], p), t);
     if (n < 0) return tree_.inside(p);
     odd ^= n == 1;
   }
@@ -113,7 +120,8 @@ bool RegionTree::inside(const Region& region, const Vec3& p) const {
 }
 
 void RegionTree::inside(const Region& region, std::span<const Vec3> points, std::span<char> answers) const {
-  // From each point to the next, the first from the probe; a triangle with both on one side of its plane is not between them. A bit a point.
+  // From each point to the next, the first from the probe; a triangle with both on one side of its plane is not between
+  // them. A bit a point.
   const std::size_t count = points.size(), words = (count + 63) / 64;
   const auto padded = 64 * words;
   std::vector<double> coordinates(3 * padded);
@@ -126,7 +134,8 @@ void RegionTree::inside(const Region& region, std::span<const Vec3> points, std:
     box.add(p);
   }
   std::vector<std::uint64_t> bits(5 * words, 0);
-  std::uint64_t *const above = &bits[0], *const below = &bits[words], *const odd = &bits[2 * words], *const unknown = &bits[3 * words], *const ask = &bits[4 * words];
+  std::uint64_t *const above = &bits[0], *const below = &bits[words], *const odd = &bits[2 * words],
+                       *const unknown = &bits[3 * words], *const ask = &bits[4 * words];
   const auto bit = [](const std::uint64_t* of, std::size_t i) { return int(of[i / 64] >> i % 64 & 1); };
   for (const auto row : region.rows) {
     const auto& t = corners_[row];
@@ -161,7 +170,8 @@ void RegionTree::inside(const Region& region, std::span<const Vec3> points, std:
       }
   }
   bool inside = region.inside;
-  for (std::size_t i = 0; i < count; ++i) answers[i] = inside = bit(unknown, i) ? tree_.inside(points[i]) : inside != bool(bit(odd, i));
+  for (std::size_t i = 0; i < count; ++i)
+    answers[i] = inside = bit(unknown, i) ? tree_.inside(points[i]) : inside != bool(bit(odd, i));
 }
 
 }  // namespace geo

@@ -1,12 +1,13 @@
-// Boxes with what is known of the material in them: the triangles that may meet them and, exactly, the side of one point.
+// Boxes with what is known of the material in them: the triangles that may meet them and, exactly, the side of one
+// point.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "geometry/bvh.h"
-#include "sampling/lattice.h"
 #include "kerf/mesh.h"
+#include "sampling/lattice.h"
 
 namespace geo {
 
@@ -37,7 +38,9 @@ class RegionTree {
     const std::int32_t half = 1 << (region.cell.level - 1);
     const auto& c = region.cell.corner;
     for (int k = 0; k < 8; ++k)
-      if (Region part = child(lattice, region, {{c[0] + (k & 1 ? half : 0), c[1] + (k & 2 ? half : 0), c[2] + (k & 4 ? half : 0)}, region.cell.level - 1});
+      if (Region part = child(lattice, region,
+                              {{c[0] + (k & 1 ? half : 0), c[1] + (k & 2 ? half : 0), c[2] + (k & 4 ? half : 0)},
+                               region.cell.level - 1});
           part.cut() || part.inside)
         each(std::move(part));
   }

@@ -7,7 +7,8 @@
 
 namespace geo {
 
-std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces, const std::function<double(const Vec3&)>& spacing_at, std::uint64_t seed) {
+std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces,
+                                         const std::function<double(const Vec3&)>& spacing_at, std::uint64_t seed) {
   std::vector<OffsetSample> samples;
   std::vector<Vec3> positions;
   if (faces.empty()) return samples;

@@ -18,9 +18,10 @@ struct OffsetSample {
   int side = 0;  ///< 1: offset along the face's normal, 0: against it
 };
 
-/// Points at half the spacing from both sides of the faces, no two closer than 0.8 spacing to each other; `spacing_at` tells the
-/// spacing wanted at a point of a face, model units, > 0. Deterministic: faces in order, random points on each. The caller keeps
-/// those that lie in material and see their base.
-std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces, const std::function<double(const Vec3&)>& spacing_at, std::uint64_t seed);
+/// Points at half the spacing from both sides of the faces, no two closer than 0.8 spacing to each other; `spacing_at`
+/// tells the spacing wanted at a point of a face, model units, > 0. Deterministic: faces in order, random points on
+/// each. The caller keeps those that lie in material and see their base.
+std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces,
+                                         const std::function<double(const Vec3&)>& spacing_at, std::uint64_t seed);
 
 }  // namespace geo

@@ -14,7 +14,8 @@ namespace {
 
 /// Material of leaves without a node goes to the nearest node; what cut leaves hold, which is an estimate, is scaled so
 /// that all together have the body's volume.
-void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole, const std::vector<Leaf>& orphans, double volume) {
+void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole,
+                  const std::vector<Leaf>& orphans, double volume) {
   double exact = 0, estimate = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) (whole[i] ? exact : estimate) += nodes.volume[i];
   const auto volume_of = [&](const Leaf& leaf) { return leaf.share * std::pow(lattice.edge(leaf.cell.level), 3); };
@@ -38,7 +39,8 @@ void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice
   for (std::size_t k = 0; k < orphans.size(); ++k) nodes.volume[heir[k]] += scale * volume_of(orphans[k]);
 }
 
-NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double volume, const SampleOptions& options, const Progress& progress, SampleReport& found) {
+NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double volume, const SampleOptions& options,
+               const Progress& progress, SampleReport& found) {
   Stopwatch clock;
   std::vector<std::size_t> first(lists.size() + 1, 0);
   std::vector<Leaf> orphans;
@@ -61,7 +63,8 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double
         if (!keep(leaf)) continue;
         const double edge = lattice.edge(leaf.cell.level);
         nodes.position[i] = leaf.position, nodes.spacing[i] = edge, nodes.volume[i] = leaf.share * edge * edge * edge;
-        codes[i] = morton(leaf.cell.corner), levels[i] = static_cast<std::uint8_t>(leaf.cell.level), whole[i] = leaf.whole;
+        codes[i] = morton(leaf.cell.corner), levels[i] = static_cast<std::uint8_t>(leaf.cell.level),
+        whole[i] = leaf.whole;
         ++i;
       }
       std::vector<Leaf>().swap(lists[l]);
@@ -78,7 +81,8 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double
 
 }  // namespace
 
-NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress, SampleReport* report) {
+NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress,
+                     SampleReport* report) {
   const double diagonal = bounding_box(solid).diagonal(), volume = signed_volume(solid);
   if (options.levels < 1 || options.levels > 10) throw InputError("levels must be from 1 to 10");
   if (!(options.spacing >= 0)) throw InputError("the spacing must be positive");
@@ -95,7 +99,8 @@ NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, co
     leaves = finder.at(spacing, finder.thin_levels(), ~std::size_t(0), found).value();
   }
   const NodeSet nodes = gather(std::move(leaves.lists), leaves.lattice, leaves.keep, volume, options, progress, found);
-  if (nodes.size() == 0) throw InputError("no node fits inside at spacing " + std::to_string(found.spacing) + "; choose a smaller one");
+  if (nodes.size() == 0)
+    throw InputError("no node fits inside at spacing " + std::to_string(found.spacing) + "; choose a smaller one");
   const auto tell = [](const Wall& wall, double& thickness, Vec3& at) {
     thickness = std::isfinite(wall.thickness) ? wall.thickness : 0, at = wall.at;
   };

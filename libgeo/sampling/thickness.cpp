@@ -10,8 +10,10 @@ constexpr double none = std::numeric_limits<double>::infinity();
 
 /// Where the ray from p leaves the material, `from` being the row it starts on; infinite where it does not within
 /// `length`, or not through a face across its way.
-/// Looks for triangles in boxes about so many parts of the ray: the one box of a slanting ray holds most of what is near.
-double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from, int parts) {
+/// Looks for triangles in boxes about so many parts of the ray: the one box of a slanting ray holds most of what is
+/// near.
+double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from,
+               int parts) {
   std::vector<std::uint32_t> rows;
   for (int part = 0; part < parts; ++part) {
     Box3 box;
@@ -38,7 +40,8 @@ double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, dou
   return none;
 }
 
-/// The middle of the corners of the part of a triangle that is in a box, and that part's area; false where there is none.
+/// The middle of the corners of the part of a triangle that is in a box, and that part's area; false where there is
+/// none.
 bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, double& area) {
   Vec3 polygon[2][10];  // each of six planes adds one corner at most
   int n = 3, now = 0;
@@ -59,7 +62,9 @@ bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, do
   }
   middle = Vec3::Zero();
   Vec3 twice = Vec3::Zero();
-  for (int i = 0; i < n; ++i) middle += polygon[now][i] / n, twice += (polygon[now][i] - polygon[now][0]).cross(polygon[now][(i + 1) % n] - polygon[now][0]);
+  for (int i = 0; i < n; ++i)
+    middle += polygon[now][i] / n,
+        twice += (polygon[now][i] - polygon[now][0]).cross(polygon[now][(i + 1) % n] - polygon[now][0]);
   area = 0.5 * twice.norm();
   return n > 0;
 }

@@ -14,7 +14,8 @@ namespace geo {
 /// for which it returned true. Returns the lists of what was found, which one after the other are in the order of a
 /// serial walk in depth.
 template <class Found, class Visit>
-std::vector<std::vector<Found>> walk(const RegionTree& tree, const Lattice& lattice, const Cell& root, const char* phase, const Progress& progress, const Visit& visit) {
+std::vector<std::vector<Found>> walk(const RegionTree& tree, const Lattice& lattice, const Cell& root,
+                                     const char* phase, const Progress& progress, const Visit& visit) {
   constexpr std::size_t enough = 1024;  // tasks, for a smooth bar and even threads
   struct Task {
     Region region;

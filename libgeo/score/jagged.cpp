@@ -5,11 +5,11 @@
 #include <queue>
 #include <unordered_map>
 
-#include "kerf/error.h"
-#include "kerf/parallel.h"
-#include "kerf/crack_edits.h"
 #include "geometry/triangle_index.h"
 #include "kerf/check.h"
+#include "kerf/crack_edits.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -37,7 +37,8 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
     if (!keep[t]) continue;
     Triangle triangle = walls.triangles[t];
     for (auto& v : triangle) {
-      if (row[v] == ~0u) row[v] = static_cast<std::uint32_t>(kept.vertices.size()), kept.vertices.push_back(walls.vertices[v]);
+      if (row[v] == ~0u)
+        row[v] = static_cast<std::uint32_t>(kept.vertices.size()), kept.vertices.push_back(walls.vertices[v]);
       v = row[v];
     }
     kept.triangles.push_back(triangle);
@@ -52,7 +53,9 @@ void divide(TriangleMesh& walls, double longest) {
     std::uint32_t a, b;
     bool operator<(const Edge& o) const { return std::tie(length2, o.a, o.b) < std::tie(o.length2, a, b); }
   };
-  const auto key = [](std::uint32_t a, std::uint32_t b) { return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b); };
+  const auto key = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
+  };
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> at;
   std::priority_queue<Edge> edges;
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t t) {
@@ -112,7 +115,8 @@ class Crossings {
         index_.find_near_triangle(c[0], c[1], c[2], 0, near);
         for (const auto other : near)
           if (other != t && faces_cross(walls_.triangles[t], c, walls_.triangles[other], corners(walls_, other)))
-            for (const auto each : {t, other}) bad[i].insert(bad[i].end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
+            for (const auto each : {t, other})
+              bad[i].insert(bad[i].end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
       }
     });
     std::vector<std::uint32_t> all;
@@ -155,8 +159,10 @@ void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, 
 }
 
 void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& o) {
-  if (!(o.amplitude >= 0 && o.amplitude < 1) || !(o.frequency > 0 && o.frequency <= 1e4) || o.octaves < 1 || o.octaves > 16 || !(o.edge >= 0))
-    throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive and at most 10000, its octaves 1 to 16");
+  if (!(o.amplitude >= 0 && o.amplitude < 1) || !(o.frequency > 0 && o.frequency <= 1e4) || o.octaves < 1 ||
+      o.octaves > 16 || !(o.edge >= 0))
+    throw InputError(
+        "the jaggedness's amplitude must be in [0, 1), its frequency positive and at most 10000, its octaves 1 to 16");
   const double size = skin.box().diagonal();
   refine_walls(walls, skin, size * (o.edge > 0 ? o.edge : 1 / (8 * o.frequency)), 4 * o.amplitude * size);
   const std::vector<Vec3> flat = walls.vertices;
@@ -166,7 +172,8 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
       double high = o.amplitude * size, fine = o.frequency / size;
       for (int octave = 0; octave < o.octaves; ++octave, high *= 0.6, fine *= 2)
         for (int k = 0; k < 3; ++k)
-          way[i][k] += high * noise(fine * (flat[i] - skin.box().lo), o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
+          way[i][k] += high * noise(fine * (flat[i] - skin.box().lo),
+                                    o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
       walls.vertices[i] = flat[i] + way[i];
     }
   });

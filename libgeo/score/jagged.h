@@ -1,4 +1,5 @@
-// Jagged walls: finer triangles, displaced by noise that depends on the place alone, so that walls that meet stay together.
+// Jagged walls: finer triangles, displaced by noise that depends on the place alone, so that walls that meet stay
+// together.
 #pragma once
 
 #include "geometry/bvh.h"

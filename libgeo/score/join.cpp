@@ -20,7 +20,8 @@ class Joining {
     const TriangleBvh tree(corners_of(walls));
     for (std::uint32_t f = 0; f < cut.face_count(); ++f) {
       if (!cut.alive(FaceId(f)) || cut.face(FaceId(f)).crack != crack) continue;
-      const auto a = static_cast<std::uint32_t>(pieces.of_side[2 * f]), b = static_cast<std::uint32_t>(pieces.of_side[2 * f + 1]);
+      const auto a = static_cast<std::uint32_t>(pieces.of_side[2 * f]),
+                 b = static_cast<std::uint32_t>(pieces.of_side[2 * f + 1]);
       if (a == b) continue;
       const auto c = cut.corners(FaceId(f));
       const Pair pair{std::min(a, b), std::max(a, b)};
@@ -39,7 +40,8 @@ class Joining {
     std::vector<std::uint32_t> smallest;
     for (std::uint32_t g = 0; g < members_.size(); ++g)
       if (!members_[g].empty()) smallest.push_back(g);
-    std::sort(smallest.begin(), smallest.end(), [&](auto a, auto b) { return std::tie(volume_[a], a) < std::tie(volume_[b], b); });
+    std::sort(smallest.begin(), smallest.end(),
+              [&](auto a, auto b) { return std::tie(volume_[a], a) < std::tie(volume_[b], b); });
     for (const auto g : smallest) {
       std::map<std::uint32_t, double> shared;
       for (const auto& [pair, wall] : walls_) {
@@ -62,7 +64,9 @@ class Joining {
   }
 
   bool dropped(std::size_t triangle) const {
-    return !between_[triangle].empty() && std::all_of(between_[triangle].begin(), between_[triangle].end(), [&](const Pair& p) { return group_[p.first] == group_[p.second]; });
+    return !between_[triangle].empty() &&
+           std::all_of(between_[triangle].begin(), between_[triangle].end(),
+                       [&](const Pair& p) { return group_[p.first] == group_[p.second]; });
   }
 
  private:
@@ -90,7 +94,8 @@ class Joining {
 
 }  // namespace
 
-std::uint32_t join_small_pieces(TriangleMesh& walls, const Complex& cut, std::int32_t crack, const Pieces& pieces, std::uint32_t wanted) {
+std::uint32_t join_small_pieces(TriangleMesh& walls, const Complex& cut, std::int32_t crack, const Pieces& pieces,
+                                std::uint32_t wanted) {
   Joining joining(walls, cut, crack, pieces);
   std::uint32_t count = pieces.count;
   while (count > wanted && joining.join_one()) --count;

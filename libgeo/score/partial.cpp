@@ -4,8 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "kerf/error.h"
 #include "base/joined.h"
+#include "kerf/error.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -24,7 +24,8 @@ struct Edge {
 
 class Rim {
  public:
-  Rim(TriangleMesh& walls, const TriangleBvh& skin, double depth) : walls_(walls), level_(walls.triangles.size(), whole) {
+  Rim(TriangleMesh& walls, const TriangleBvh& skin, double depth)
+      : walls_(walls), level_(walls.triangles.size(), whole) {
     find_depths(skin);
     for (std::uint32_t t = 0; t < walls_.triangles.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k) edge(t, k).triangles.push_back(t);
@@ -75,13 +76,16 @@ class Rim {
   void find_levels(const TriangleBvh& skin, double depth) {
     Joined joined(level_.size());
     for (const auto& [name, e] : edges_)
-      if (e.triangles.size() == 2 && std::max(deep_[name >> 32], deep_[static_cast<std::uint32_t>(name)]) > 0) joined.join(e.triangles[0], e.triangles[1]);
+      if (e.triangles.size() == 2 && std::max(deep_[name >> 32], deep_[static_cast<std::uint32_t>(name)]) > 0)
+        joined.join(e.triangles[0], e.triangles[1]);
     std::vector<double> deepest(level_.size(), 0);
     for (std::uint32_t t = 0; t < level_.size(); ++t) deepest[joined[t]] = std::max(deepest[joined[t]], deepest_of(t));
     for (std::uint32_t t = 0; t < level_.size(); ++t) {
       const auto& c = walls_.triangles[t];
-      if (deepest_of(t) > 0) level_[t] = depth * deepest[joined[t]];
-      else if (skin.inside((walls_.vertices[c[0]] + walls_.vertices[c[1]] + walls_.vertices[c[2]]) / 3)) level_[t] = -whole;  // all of a thin place
+      if (deepest_of(t) > 0)
+        level_[t] = depth * deepest[joined[t]];
+      else if (skin.inside((walls_.vertices[c[0]] + walls_.vertices[c[1]] + walls_.vertices[c[2]]) / 3))
+        level_[t] = -whole;  // all of a thin place
     }
   }
 
@@ -89,7 +93,9 @@ class Rim {
   void split(Edge& e, std::uint32_t a, std::uint32_t b) {
     for (const auto t : e.triangles) {
       const double level = level_[t];
-      if ((deep_[a] < level) == (deep_[b] < level) || std::any_of(e.splits.begin(), e.splits.end(), [&](const auto& s) { return s.level == level; })) continue;
+      if ((deep_[a] < level) == (deep_[b] < level) ||
+          std::any_of(e.splits.begin(), e.splits.end(), [&](const auto& s) { return s.level == level; }))
+        continue;
       const double s = (level - deep_[a]) / (deep_[b] - deep_[a]);
       if (s < 0.05 || s > 0.95) {
         e.splits.push_back({level, s < 0.5 ? a : b});
@@ -99,7 +105,8 @@ class Rim {
       walls_.vertices.push_back(walls_.vertices[a] + s * (walls_.vertices[b] - walls_.vertices[a]));
     }
     const bool down = deep_[a] < deep_[b];
-    std::sort(e.splits.begin(), e.splits.end(), [&](const auto& x, const auto& y) { return down ? x.level < y.level : x.level > y.level; });
+    std::sort(e.splits.begin(), e.splits.end(),
+              [&](const auto& x, const auto& y) { return down ? x.level < y.level : x.level > y.level; });
   }
 
   // The loop around what of a triangle is less deep than its level.

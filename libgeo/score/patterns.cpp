@@ -6,8 +6,8 @@
 
 #include <Eigen/LU>
 
-#include "kerf/error.h"
 #include "base/random.h"
+#include "kerf/error.h"
 #include "score/voronoi.h"
 #include "score/walls.h"
 
@@ -20,8 +20,10 @@ Vec3 axis_of(const Box3& box, const PatternOptions& o) {
   if (o.axis) return *o.axis;
   int axis = 2;
   const Vec3 size = box.hi - box.lo;
-  if (o.pattern == Pattern::radial || o.pattern == Pattern::glass) size.minCoeff(&axis);
-  else if (o.pattern != Pattern::curves) size.maxCoeff(&axis);
+  if (o.pattern == Pattern::radial || o.pattern == Pattern::glass)
+    size.minCoeff(&axis);
+  else if (o.pattern != Pattern::curves)
+    size.maxCoeff(&axis);
   return Vec3::Unit(axis);
 }
 
@@ -51,8 +53,10 @@ TriangleMesh planes(const Box3& box, int cells, const PatternOptions& o) {
   const bool crossing = o.pattern == Pattern::crossing;
   const auto n = crossing ? divisions(along.hi - along.lo, cells) : std::array<int, 3>{1, 1, cells};
   std::array<std::vector<double>, 3> at;
-  for (std::size_t k = 0; k < 3; ++k) at[k] = cuts(along.lo[int(k)], along.hi[int(k)], n[k], 0.3, along.diagonal(), random);
-  return grid_walls(at, [&](int i, int j, int k) { return (i * n[1] + j) * n[2] + k; }, frame);
+  for (std::size_t k = 0; k < 3; ++k)
+    at[k] = cuts(along.lo[int(k)], along.hi[int(k)], n[k], 0.3, along.diagonal(), random);
+  return grid_walls(
+      at, [&](int i, int j, int k) { return (i * n[1] + j) * n[2] + k; }, frame);
 }
 
 TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
@@ -72,7 +76,8 @@ TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
     at[k].front() -= size.norm(), at[k].back() += size.norm();
   }
   const int columns = int(at[0].size()), rows = int(at[1].size());
-  return grid_walls(at, [&](int i, int j, int k) { return (k * rows + (j + k % 2) / 2) * columns + (i + k % 2) / 2; }, frame);
+  return grid_walls(
+      at, [&](int i, int j, int k) { return (k * rows + (j + k % 2) / 2) * columns + (i + k % 2) / 2; }, frame);
 }
 
 TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
@@ -82,13 +87,17 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
   Random random(o.seed);
   double reach = 0;
   for (int corner = 0; corner < 4; ++corner)
-    reach = std::max(reach, Vec2((corner & 1 ? along.hi : along.lo).x() - hub.x(), (corner & 2 ? along.hi : along.lo).y() - hub.y()).norm());
+    reach = std::max(
+        reach, Vec2((corner & 1 ? along.hi : along.lo).x() - hub.x(), (corner & 2 ? along.hi : along.lo).y() - hub.y())
+                   .norm());
   const bool rings = o.pattern == Pattern::glass;
   const int spokes = std::max(2, rings ? int(std::lround(std::sqrt(2.5 * cells))) : cells);
   const int circles = rings ? std::max(1, int(std::lround(double(cells) / spokes))) : 1;
   std::vector<Vec2> points{{hub.x(), hub.y()}};
   std::vector<std::array<std::uint32_t, 2>> segments;
-  const auto at = [&](int spoke, int circle) { return circle == 0 ? 0u : static_cast<std::uint32_t>(1 + spoke % spokes * circles + circle - 1); };
+  const auto at = [&](int spoke, int circle) {
+    return circle == 0 ? 0u : static_cast<std::uint32_t>(1 + spoke % spokes * circles + circle - 1);
+  };
   std::vector<double> angle;
   for (int s = 0; s < spokes; ++s) angle.push_back(turn / spokes * (s + 0.5 * random.uniform(-0.5, 0.5)));
   for (int s = 0; s < spokes; ++s)
@@ -128,7 +137,8 @@ TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
     std::vector<std::array<std::uint32_t, 2>> segments;
     for (const Vec3& p : curve) {
       const Vec3 q = frame.transpose() * p;
-      if (!points.empty()) segments.push_back({static_cast<std::uint32_t>(points.size() - 1), static_cast<std::uint32_t>(points.size())});
+      if (!points.empty())
+        segments.push_back({static_cast<std::uint32_t>(points.size() - 1), static_cast<std::uint32_t>(points.size())});
       points.push_back({q.x(), q.y()});
     }
     sheets.push_back(raised_walls(points, segments, along.lo.z(), along.hi.z(), frame));
@@ -153,7 +163,10 @@ std::vector<Vec3> spread_sites(const TriangleBvh& skin, int count, const Mat3& s
   const double diagonal = box.diagonal();
   // How far apart sites stand there, for one away from the impact.
   constexpr double closest = 0.15;
-  const auto spacing = [&](const Vec3& p) { return o.impact ? 1 - (1 - closest) * std::exp(-std::pow((p - *o.impact).norm() / (2 * o.cluster * diagonal), 2)) : 1.0; };
+  const auto spacing = [&](const Vec3& p) {
+    return o.impact ? 1 - (1 - closest) * std::exp(-std::pow((p - *o.impact).norm() / (2 * o.cluster * diagonal), 2))
+                    : 1.0;
+  };
   std::vector<Vec3> sites;
   const auto candidate = [&](Vec3& p) {
     for (int tries = 0; tries < 100000; ++tries) {
@@ -167,7 +180,8 @@ std::vector<Vec3> spread_sites(const TriangleBvh& skin, int count, const Mat3& s
     Vec3 best = Vec3::Zero(), p;
     double farthest = -1;
     for (int tries = 0; tries < 10; ++tries) {
-      if (!candidate(p)) throw InputError("no place for Voronoi sites is found inside; is the model thinner than rounding?");
+      if (!candidate(p))
+        throw InputError("no place for Voronoi sites is found inside; is the model thinner than rounding?");
       const Vec3 q = stretch * p;
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vec3& s : sites) nearest = std::min(nearest, (q - s).norm());
@@ -183,14 +197,20 @@ TriangleMesh pattern_walls(const TriangleBvh& skin, int cells, const PatternOpti
   const Box3& box = skin.box();
   switch (o.pattern) {
     case Pattern::planes:
-    case Pattern::crossing: return planes(box, cells, o);
+    case Pattern::crossing:
+      return planes(box, cells, o);
     case Pattern::voronoi:
-    case Pattern::wood: return cells_of_sites(skin, cells, o);
+    case Pattern::wood:
+      return cells_of_sites(skin, cells, o);
     case Pattern::radial:
-    case Pattern::glass: return wheel(box, cells, o);
-    case Pattern::bricks: return bricks(box, cells, o);
-    case Pattern::curves: return swept_curves(box, o);
-    case Pattern::sheets: return divided_by_each_other(o.sheets, widened(box));
+    case Pattern::glass:
+      return wheel(box, cells, o);
+    case Pattern::bricks:
+      return bricks(box, cells, o);
+    case Pattern::curves:
+      return swept_curves(box, o);
+    case Pattern::sheets:
+      return divided_by_each_other(o.sheets, widened(box));
   }
   return {};
 }

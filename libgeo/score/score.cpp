@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "kerf/error.h"
 #include "kerf/crack.h"
+#include "kerf/error.h"
+#include "kerf/pieces.h"
 #include "score/join.h"
 #include "score/partial.h"
-#include "kerf/pieces.h"
 
 namespace geo {
 namespace {
@@ -20,7 +20,8 @@ std::vector<std::array<Vec3, 3>> skin_of(const Complex& model) {
 
 class Scoring {
  public:
-  Scoring(const Complex& model, const ScoreOptions& options, const Progress& progress) : model_(model), o_(options), progress_(progress), skin_(skin_of(model)) {}
+  Scoring(const Complex& model, const ScoreOptions& options, const Progress& progress)
+      : model_(model), o_(options), progress_(progress), skin_(skin_of(model)) {}
 
   Score run() {
     Try now{o_.pieces, o_.pattern.seed};
@@ -78,7 +79,8 @@ class Scoring {
       TriangleMesh walls = walls_of(t);
       t.pieces = as_given() ? 1 : find_pieces(cut_by(walls)).count;
       if (off(t.pieces) < off(nearest_.pieces)) nearest_ = t;
-      if (as_given() || (t.pieces >= wanted() && t.pieces <= wanted() + wanted() / 4 + 1)) t.pieces = finish(std::move(walls));
+      if (as_given() || (t.pieces >= wanted() && t.pieces <= wanted() + wanted() / 4 + 1))
+        t.pieces = finish(std::move(walls));
       return true;
     } catch (const GeometryError& e) {
       reason_ = std::string(": ") + e.what();
@@ -121,11 +123,13 @@ class Scoring {
 }  // namespace
 
 Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress) {
-  if (options.pieces < 1 || options.pieces > 1000000) throw InputError("the number of pieces must be between 1 and 1000000");
+  if (options.pieces < 1 || options.pieces > 1000000)
+    throw InputError("the number of pieces must be between 1 and 1000000");
   if (!(options.depth > 0 && options.depth <= 1)) throw InputError("the depth must be above 0 and at most 100 percent");
   if (options.attempts < 1) throw InputError("at least one attempt is needed");
   const auto& p = options.pattern;
-  if (!(p.cluster > 0 && p.cluster <= 10)) throw InputError("the cluster's size must be above 0 and at most 10 diagonals");
+  if (!(p.cluster > 0 && p.cluster <= 10))
+    throw InputError("the cluster's size must be above 0 and at most 10 diagonals");
   if (!(p.grain >= 1 && p.grain <= 1000)) throw InputError("the grain must be between 1 and 1000");
   return Scoring(model, options, progress).run();
 }

@@ -7,8 +7,8 @@
 
 #include <Eigen/LU>
 
-#include "kerf/error.h"
 #include "base/random.h"
+#include "kerf/error.h"
 #include "score/walls.h"
 
 namespace geo {
@@ -90,7 +90,8 @@ std::uint32_t shared_plane(const Name& a, const Name& b, std::uint32_t site, std
   return ~0u;
 }
 
-// Cuts off what is nearer to `other`. False when corners so close together that rounding misplaces them make no polygon.
+// Cuts off what is nearer to `other`. False when corners so close together that rounding misplaces them make no
+// polygon.
 bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners) {
   std::map<Name, Name> next;  // along the new side
   bool any = false;
@@ -131,8 +132,8 @@ bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners)
   return true;
 }
 
-// All walls, or nothing when the sites are too regular for names of four: a corner's place follows from the sites with about
-// as many digits lost as the walls' edges there are short, and half of all digits must be left.
+// All walls, or nothing when the sites are too regular for names of four: a corner's place follows from the sites with
+// about as many digits lost as the walls' edges there are short, and half of all digits must be left.
 std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& box) {
   const auto count = static_cast<std::uint32_t>(sites.size());
   Corners corners(sites, box);
@@ -174,7 +175,8 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
     std::vector<std::uint32_t> polygon;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Name& name = loop[i];
-      if ((corners.at(name) - corners.at(loop[(i + 1) % loop.size()])).norm() < 0x1p-26 * box.diagonal()) return std::nullopt;
+      if ((corners.at(name) - corners.at(loop[(i + 1) % loop.size()])).norm() < 0x1p-26 * box.diagonal())
+        return std::nullopt;
       const auto [entry, fresh] = rows.try_emplace(name, static_cast<std::uint32_t>(mesh.vertices.size()));
       if (fresh) mesh.vertices.push_back(corners.at(name));
       polygon.push_back(entry->second);
@@ -192,12 +194,15 @@ TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box) {
     if (!Box3{s, s}.meets(box)) throw InputError("a site is outside of the box");
   std::vector<Vec3> moved(sites.begin(), sites.end());
   auto sorted = moved;
-  std::sort(sorted.begin(), sorted.end(), [](const Vec3& a, const Vec3& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); });
+  std::sort(sorted.begin(), sorted.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) throw InputError("two sites are at one place");
   Random random(sites.size());
   for (double by = 0x1p-16 * box.diagonal(); by < 0x1p-6 * box.diagonal(); by *= 2) {
     if (auto walls = walls_of(moved, box)) return *walls;
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = (sites[i] + by * random.direction()).cwiseMax(box.lo).cwiseMin(box.hi);
+    for (std::size_t i = 0; i < moved.size(); ++i)
+      moved[i] = (sites[i] + by * random.direction()).cwiseMax(box.lo).cwiseMin(box.hi);
   }
   throw GeometryError("the sites' cells cannot be told apart");
 }

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "kerf/error.h"
 #include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/shapes.h"
 
 namespace geo {
@@ -22,7 +22,8 @@ Mat3 frame_along(const Vec3& axis) {
 Box3 box_along(const Box3& box, const Mat3& frame) {
   Box3 all;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 p(corner & 1 ? box.hi.x() : box.lo.x(), corner & 2 ? box.hi.y() : box.lo.y(), corner & 4 ? box.hi.z() : box.lo.z());
+    const Vec3 p(corner & 1 ? box.hi.x() : box.lo.x(), corner & 2 ? box.hi.y() : box.lo.y(),
+                 corner & 4 ? box.hi.z() : box.lo.z());
     all.add(frame.transpose() * p);
   }
   return all;
@@ -37,10 +38,12 @@ void add_wall(TriangleMesh& walls, std::span<const std::uint32_t> corners) {
   for (const auto c : corners) middle += walls.vertices[c] / double(corners.size());
   const auto center = static_cast<std::uint32_t>(walls.vertices.size());
   walls.vertices.push_back(middle);
-  for (std::size_t i = 0; i < corners.size(); ++i) walls.triangles.push_back({corners[i], corners[(i + 1) % corners.size()], center});
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    walls.triangles.push_back({corners[i], corners[(i + 1) % corners.size()], center});
 }
 
-TriangleMesh grid_walls(const std::array<std::vector<double>, 3>& at, const std::function<int(int, int, int)>& label, const Mat3& frame) {
+TriangleMesh grid_walls(const std::array<std::vector<double>, 3>& at, const std::function<int(int, int, int)>& label,
+                        const Mat3& frame) {
   TriangleMesh walls;
   std::map<std::array<int, 3>, std::uint32_t> rows;
   const auto row = [&](const std::array<int, 3>& c) {
@@ -67,7 +70,8 @@ TriangleMesh grid_walls(const std::array<std::vector<double>, 3>& at, const std:
   return walls;
 }
 
-TriangleMesh raised_walls(std::span<const Vec2> points, std::span<const std::array<std::uint32_t, 2>> segments, double low, double high, const Mat3& frame) {
+TriangleMesh raised_walls(std::span<const Vec2> points, std::span<const std::array<std::uint32_t, 2>> segments,
+                          double low, double high, const Mat3& frame) {
   TriangleMesh walls;
   for (const Vec2& p : points)
     for (const double height : {low, high}) walls.vertices.push_back(frame * Vec3(p.x(), p.y(), height));

@@ -20,10 +20,13 @@ struct Nearest {
 
 class Surroundings {
  public:
-  Surroundings(const Body& body, const SurfaceWeights& weights, const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u)
+  Surroundings(const Body& body, const SurfaceWeights& weights, const std::vector<std::uint32_t>& part,
+               const std::vector<Vec3>& u)
       : body_(body), weights_(weights), part_(part), u_(u) {}
 
-  std::uint32_t part_of(SurfaceVertexId v) const { return weights_.row(v.index()).empty() ? ~0u : part_[weights_.row(v.index())[0].node]; }
+  std::uint32_t part_of(SurfaceVertexId v) const {
+    return weights_.row(v.index()).empty() ? ~0u : part_[weights_.row(v.index())[0].node];
+  }
   Vec3 material(SurfaceVertexId v) const { return body_.surface.point(body_.surface.site(v)); }
   Vec3 world(SurfaceVertexId v) const { return material(v) + weights_.at(v.index(), u_); }
   Vec3 world(const Nearest& n, int which) const {
@@ -44,7 +47,8 @@ class Surroundings {
       if (part_of(k.surface_vertex({f, 0}, 0)) != part) continue;
       const auto c = k.corners(f);
       if (crack && segment_meets_triangle(anchor, x, c[0], c[1], c[2])) return false;
-      const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on, normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+      const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on,
+                 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
       const double d = away.norm(), square = std::abs(normal.dot(away));
       // Of triangles that share the nearest place the one that looks at x most squarely tells the side.
       if (!(d < least || (d == least && square > squarely))) continue;
@@ -65,8 +69,9 @@ class Surroundings {
 
 }  // namespace
 
-MutualContact between_bodies(const Body& body, const Solid& solid, const SurfaceWeights& weights, const std::vector<std::uint32_t>& part,
-                             const std::vector<Vec3>& u, const BetweenBodies& options) {
+MutualContact between_bodies(const Body& body, const Solid& solid, const SurfaceWeights& weights,
+                             const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
+                             const BetweenBodies& options) {
   MutualContact contact(options.friction, options.slow);
   const std::uint32_t parts = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
   if (parts < 2) return contact;
@@ -85,7 +90,8 @@ MutualContact between_bodies(const Body& body, const Solid& solid, const Surface
     std::vector<std::pair<SurfaceVertexId, Vec3>> near;
     Box3 about;
     for (const auto& v : vertices)
-      if (around.part_of(v.first) != p && box[p].grown(options.reach).meets({v.second, v.second})) near.push_back(v), about.add(v.second);
+      if (around.part_of(v.first) != p && box[p].grown(options.reach).meets({v.second, v.second}))
+        near.push_back(v), about.add(v.second);
     if (near.empty()) continue;
     std::vector<std::uint8_t> counted;
     for (const auto q : part) counted.push_back(q == p);
@@ -94,7 +100,9 @@ MutualContact between_bodies(const Body& body, const Solid& solid, const Surface
     for (const auto& [v, y] : near) {
       const PointMap::Place place = map.material(y, memory);
       Nearest n;
-      if (!place.within || !around.nearest(place.material, body.nodes.position[place.anchor.index()], p, options.reach, n)) continue;
+      if (!place.within ||
+          !around.nearest(place.material, body.nodes.position[place.anchor.index()], p, options.reach, n))
+        continue;
       Vec3 at[3];
       std::map<std::uint32_t, double> apart;
       for (const auto& e : weights.row(v.index())) apart[e.node] += e.weight;
@@ -107,7 +115,9 @@ MutualContact between_bodies(const Body& body, const Solid& solid, const Surface
       if (!normal.allFinite() || normal.isZero(0)) continue;
       std::vector<SurfaceWeights::Entry> entries;
       for (const auto& [node, w] : apart) entries.push_back({node, w});
-      const auto firm = [&](SurfaceVertexId of) { return options.firmness.empty() ? 1.0 : options.firmness[weights.heaviest()[of.index()]]; };
+      const auto firm = [&](SurfaceVertexId of) {
+        return options.firmness.empty() ? 1.0 : options.firmness[weights.heaviest()[of.index()]];
+      };
       const double pressure = 0.5 * options.pressure * std::max(firm(v), firm(k.surface_vertex(n.side, 0)));
       contact.add(std::move(entries), around.material(v) - n.point, normal, pressure * weights.area(v.index()));
     }

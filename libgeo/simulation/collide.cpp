@@ -5,7 +5,8 @@
 
 namespace geo {
 
-Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows) : implicit_(scene.implicit) {
+Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows)
+    : implicit_(scene.implicit) {
   if (!scene.self_contact) return;
   std::vector<Vec3> positions;
   if (!rows.empty()) {
@@ -20,7 +21,8 @@ Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid,
 
 void Collisions::begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment) {
   if (!surface_ || !implicit_) return;
-  if (Potential* touch = surface_->begin(body, solid, motion, dt, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
+  if (Potential* touch = surface_->begin(body, solid, motion, dt, environment.gravity, environment.fixed))
+    environment.contact.push_back(touch);
 }
 
 Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion, double& seconds) {
@@ -41,8 +43,8 @@ void Collisions::follow(const Body& body, const Solid& solid, const BodyDelta& d
   if (surface_) surface_->follow(body, solid, delta);
 }
 
-void Collisions::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion,
-                         ContactWork& work) {
+void Collisions::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
+                         const Environment& environment, State& motion, ContactWork& work) {
   if (surface_) surface_->resolve(body, solid, before, dt, environment.fixed, motion, &work);
 }
 

@@ -21,7 +21,8 @@ class Collisions {
   Agreement agreement(const Body& body, const Solid& solid, const State& motion, double& seconds);
   /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
   void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
-  void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion, ContactWork& work);
+  void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
+               const Environment& environment, State& motion, ContactWork& work);
 
   /// False: the scene asks for none, and the surface is where Eq. 1 has it.
   bool on() const { return surface_.has_value(); }
@@ -29,7 +30,9 @@ class Collisions {
   /// The surface's weights where on(), else nothing.
   const SurfaceWeights* weights() const { return surface_ ? &surface_->weights() : nullptr; }
   /// Where nodes have each surface vertex where on(), else nothing; until the next call of anything.
-  std::span<const Vec3> wanted(const Body& body, const State& motion) { return surface_ ? std::span<const Vec3>(surface_->targets_at(body, motion.displacement)) : std::span<const Vec3>(); }
+  std::span<const Vec3> wanted(const Body& body, const State& motion) {
+    return surface_ ? std::span<const Vec3>(surface_->targets_at(body, motion.displacement)) : std::span<const Vec3>();
+  }
 
  private:
   std::optional<SelfContact> surface_;

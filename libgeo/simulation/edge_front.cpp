@@ -8,7 +8,9 @@ namespace geo {
 namespace {
 
 const EdgePoint& nearest(std::span<const EdgePoint> points, double at) {
-  return *std::min_element(points.begin(), points.end(), [&](const EdgePoint& a, const EdgePoint& b) { return std::abs(a.at - at) < std::abs(b.at - at); });
+  return *std::min_element(points.begin(), points.end(), [&](const EdgePoint& a, const EdgePoint& b) {
+    return std::abs(a.at - at) < std::abs(b.at - at);
+  });
 }
 
 bool has(std::span<const EdgePoint> points, double at) {
@@ -38,11 +40,14 @@ EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, cons
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to) {
   EdgeFront result = edge;
   for (const EdgePoint& p : next) {
-    const auto k = static_cast<std::size_t>(std::lower_bound(result.at.begin(), result.at.end(), p.at) - result.at.begin());
+    const auto k =
+        static_cast<std::size_t>(std::lower_bound(result.at.begin(), result.at.end(), p.at) - result.at.begin());
     if (k < result.at.size() && result.at[k] == p.at) continue;
     const bool after = k == result.at.size() || (k > 0 && p.at - result.at[k - 1] < result.at[k] - p.at);
-    if (after) double_point(result, k - 1, false, p.at);
-    else double_point(result, k, true, p.at);
+    if (after)
+      double_point(result, k - 1, false, p.at);
+    else
+      double_point(result, k, true, p.at);
   }
   to.clear();
   for (const double at : result.at) to.push_back(nearest(next, at).material);
@@ -57,7 +62,8 @@ void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {
       continue;
     }
     const std::size_t gone = has(next, at[s]) ? s + 1 : s;
-    points.erase(points.begin() + static_cast<std::ptrdiff_t>(gone)), at.erase(at.begin() + static_cast<std::ptrdiff_t>(gone));
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(gone)),
+        at.erase(at.begin() + static_cast<std::ptrdiff_t>(gone));
     segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(s));
   }
 }
@@ -68,7 +74,8 @@ EdgeFront part_of(const EdgeFront& edge, double from, double to) {
   EdgeFront part;
   if (end < first + 2) return part;
   const auto cut = [](const auto& all, std::size_t a, std::size_t b) {
-    return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(a), all.begin() + static_cast<std::ptrdiff_t>(b));
+    return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(a),
+                                       all.begin() + static_cast<std::ptrdiff_t>(b));
   };
   part.front = edge.front;
   part.front.points = cut(edge.front.points, first, end);

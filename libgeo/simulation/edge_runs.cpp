@@ -20,18 +20,21 @@ struct Sample {
 // Of a part of the edge.
 class Tracer {
  public:
-  Tracer(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) : map_(map), body_(body), blade_(blade), pose_(pose) {}
+  Tracer(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose)
+      : map_(map), body_(body), blade_(blade), pose_(pose) {}
 
   Sample at(double where) {
     const std::size_t n = blade_.points.size(), i = std::min(static_cast<std::size_t>(where), n - 1);
     const double t = where - double(i);
-    const Vec3 local = t > 0 ? Vec3(blade_.points[i] + t * (blade_.points[(i + 1) % n] - blade_.points[i])) : blade_.points[i];
+    const Vec3 local =
+        t > 0 ? Vec3(blade_.points[i] + t * (blade_.points[(i + 1) % n] - blade_.points[i])) : blade_.points[i];
     Sample s{where, pose_ * local, {}, false, 0, std::numeric_limits<double>::infinity()};
     const PointMap::Place place = map_.material(s.world, memory_);
     s.material = place.material, s.within = place.within;
     if (place.anchor.valid()) {
       s.spacing = body_.nodes.spacing[place.anchor.index()];
-      s.gap = (s.material - body_.nodes.position[place.anchor.index()]).norm() - body_.nodes.radius[place.anchor.index()];
+      s.gap =
+          (s.material - body_.nodes.position[place.anchor.index()]).norm() - body_.nodes.radius[place.anchor.index()];
     }
     return s;
   }
@@ -44,7 +47,8 @@ class Tracer {
     const bool ends = a.within != b.within;
     if ((ends || !a.within) && length < 0.25 * spacing) return;
     const Sample middle = at(0.5 * (a.at + b.at));
-    const bool straight = a.within && b.within && middle.within && (middle.material - 0.5 * (a.material + b.material)).norm() <= 0.1 * spacing;
+    const bool straight = a.within && b.within && middle.within &&
+                          (middle.material - 0.5 * (a.material + b.material)).norm() <= 0.1 * spacing;
     if (straight) return;
     between(a, middle, depth - 1, out);
     out.push_back(middle);
@@ -82,10 +86,12 @@ bool torn(const Sample& a, const Sample& b) {
   return (b.material - a.material).norm() > 4 * (b.world - a.world).norm() + 0.5 * std::min(a.spacing, b.spacing);
 }
 
-// The first sample from i on that `last` goes on to, where what is between has strayed: the map was lost for less than nodes are
-// apart, which nothing torn is. i where there is none.
+// The first sample from i on that `last` goes on to, where what is between has strayed: the map was lost for less than
+// nodes are apart, which nothing torn is. i where there is none.
 std::size_t after_strays(const std::vector<Sample>& samples, std::size_t i, const Sample& last) {
-  for (std::size_t j = i; j < samples.size() && samples[j].within && (samples[j].world - last.world).norm() < std::min(last.spacing, samples[j].spacing); ++j)
+  for (std::size_t j = i; j < samples.size() && samples[j].within &&
+                          (samples[j].world - last.world).norm() < std::min(last.spacing, samples[j].spacing);
+       ++j)
     if (!torn(last, samples[j])) return j;
   return i;
 }
@@ -96,7 +102,10 @@ bool follows(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
   if (from > to) return false;
   for (const EdgePoint& p : run) {
     if (p.at < from || p.at > to) continue;
-    const auto k = static_cast<std::size_t>(std::min_element(edge.at.begin(), edge.at.end(), [&](double a, double b) { return std::abs(a - p.at) < std::abs(b - p.at); }) - edge.at.begin());
+    const auto k = static_cast<std::size_t>(
+        std::min_element(edge.at.begin(), edge.at.end(),
+                         [&](double a, double b) { return std::abs(a - p.at) < std::abs(b - p.at); }) -
+        edge.at.begin());
     if ((edge.front.points[k].position - p.material).norm() < 4 * p.spacing) return true;
   }
   return false;
@@ -104,7 +113,8 @@ bool follows(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
 
 }  // namespace
 
-std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
+std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade,
+                                              const Pose& pose) {
   const std::vector<Sample> samples = trace(map, body, blade, pose);
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
@@ -117,8 +127,10 @@ std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& b
     const Sample& s = samples[i];
     if (!last || torn(*last, s)) runs.emplace_back();
     auto& run = runs.back();
-    if (run.size() > 1 && (s.material - run.back().material).norm() < 0.05 * s.spacing) run.back() = s.point();
-    else run.push_back(s.point());
+    if (run.size() > 1 && (s.material - run.back().material).norm() < 0.05 * s.spacing)
+      run.back() = s.point();
+    else
+      run.push_back(s.point());
     last = &s;
   }
   std::erase_if(runs, [](const auto& run) { return run.size() < 2; });
@@ -132,7 +144,8 @@ std::vector<EdgePoint> closed_run(const PointMap& map, const Body& body, const B
   return run;
 }
 
-std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before) {
+std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs,
+                                 const std::vector<EdgeFront>& before) {
   // Of a front that several runs go on from, each takes the part up to the middle between it and the next.
   std::vector<std::vector<std::size_t>> heirs(before.size());
   for (std::size_t e = 0; e < before.size(); ++e)
@@ -144,11 +157,14 @@ std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs
       const std::size_t r = heirs[e][h];
       const double infinity = std::numeric_limits<double>::infinity();
       const double from = h > 0 ? 0.5 * (runs[heirs[e][h - 1]].back().at + runs[r].front().at) : -infinity;
-      const double to = h + 1 < heirs[e].size() ? 0.5 * (runs[r].back().at + runs[heirs[e][h + 1]].front().at) : infinity;
+      const double to =
+          h + 1 < heirs[e].size() ? 0.5 * (runs[r].back().at + runs[heirs[e][h + 1]].front().at) : infinity;
       const EdgeFront part = heirs[e].size() == 1 ? before[e] : part_of(before[e], from, to);
       if (part.at.size() < 2) continue;
-      if (fronts[r].at.empty()) fronts[r] = part;
-      else if (fronts[r].at.back() < part.at.front()) fronts[r] = joined(std::move(fronts[r]), part);
+      if (fronts[r].at.empty())
+        fronts[r] = part;
+      else if (fronts[r].at.back() < part.at.front())
+        fronts[r] = joined(std::move(fronts[r]), part);
     }
   return fronts;
 }

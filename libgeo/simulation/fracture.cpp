@@ -14,7 +14,9 @@ double strength_factor(const Strength& s, std::uint64_t seed, double diagonal, c
 }
 
 bool may_break(const Fracture& f, const Vec3& x) {
-  return std::none_of(f.off.begin(), f.off.end(), [&](const auto& b) { return (x.array() >= b[0].array()).all() && (x.array() <= b[1].array()).all(); });
+  return std::none_of(f.off.begin(), f.off.end(), [&](const auto& b) {
+    return (x.array() >= b[0].array()).all() && (x.array() <= b[1].array()).all();
+  });
 }
 
 double rayleigh_speed(const Material& m) {

@@ -4,18 +4,19 @@
 #include <cmath>
 #include <numbers>
 
-#include "kerf/error.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {
 
-constexpr double apart = 0.7;       // points of a front, in spacings
-constexpr double ligament = 0.5;    // what nodes cannot carry
+constexpr double apart = 0.7;     // points of a front, in spacings
+constexpr double ligament = 0.5;  // what nodes cannot carry
 constexpr double overhang = 1.0 / 7;
 
-// How far along the unit direction d from p a face is met first, beyond what p itself touches; beyond `reach`: infinity.
+// How far along the unit direction d from p a face is met first, beyond what p itself touches; beyond `reach`:
+// infinity.
 double distance_to_face(const Complex& complex, const Vec3& p, const Vec3& d, double reach) {
   const Vec3 from = p + 1e-3 * reach * d, to = p + reach * d;
   Box3 box{from, from};
@@ -44,8 +45,15 @@ bool spans_material(const FrontState& front, std::size_t segment) {
 }  // namespace
 
 TipFrame GrowingFront::frame(std::size_t i) const {
-  const std::size_t n = size(), before = i > 0 ? i - 1 : front.closed ? n - 1 : 0, after = i + 1 < n ? i + 1 : front.closed ? 0 : n - 1;
-  const Vec3 tangent = unit_or(front.points[after].position - front.points[before].position, normal[i].unitOrthogonal());
+  const std::size_t n = size(),
+                    before = i > 0          ? i - 1
+                             : front.closed ? n - 1
+                                            : 0,
+                    after = i + 1 < n      ? i + 1
+                            : front.closed ? 0
+                                           : n - 1;
+  const Vec3 tangent =
+      unit_or(front.points[after].position - front.points[before].position, normal[i].unitOrthogonal());
   const Vec3 across = unit_or(normal[i] - normal[i].dot(tangent) * tangent, tangent.unitOrthogonal());
   return {front.points[i].position, tangent.cross(across), across};
 }
@@ -60,7 +68,8 @@ GrowingFront growing(FrontState front, std::vector<Vec3> normals) {
   return g;
 }
 
-FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<const double> step, std::span<const Vec3> direction, double spacing) {
+FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<const double> step,
+                     std::span<const Vec3> direction, double spacing) {
   const std::size_t n = g.size();
   const double out = overhang * spacing, wanted = apart * spacing;
   std::vector<Vec3> next(n);
@@ -69,7 +78,8 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
   for (std::size_t i = 0; i < n; ++i) {
     next[i] = g.front.points[i].position;
     if (!g.live(i) || !(step[i] > 0)) continue;
-    const double reach = step[i] + ligament * spacing, surface = distance_to_face(complex, next[i], direction[i], reach);
+    const double reach = step[i] + ligament * spacing,
+                 surface = distance_to_face(complex, next[i], direction[i], reach);
     ended[i] = surface <= reach;
     next[i] += (ended[i] ? surface + out : step[i]) * direction[i];
   }
@@ -107,17 +117,19 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     along -= along.dot(direction[base]) * direction[base];
     if (!(along.norm() > 0)) return;
     along.normalize();
-    const double reach = 3 * wanted, surface = distance_to_face(complex, next[base], along, reach), to = surface <= reach ? surface + out : wanted;
+    const double reach = 3 * wanted, surface = distance_to_face(complex, next[base], along, reach),
+                 to = surface <= reach ? surface + out : wanted;
     for (int k = 1; k * wanted < to - 0.4 * wanted; ++k) beyond.push_back({next[base] + k * wanted * along, false});
     beyond.push_back({next[base] + to * along, surface <= reach});
   };
-  // The way of an end in air is a border of the crack that no front follows: it must stay in air. Where it would not (round an
-  // edge of the body), the end goes ahead to where it sees its new place, and both belong to the front.
+  // The way of an end in air is a border of the crack that no front follows: it must stay in air. Where it would not
+  // (round an edge of the body), the end goes ahead to where it sees its new place, and both belong to the front.
   const auto round_edge = [&](std::size_t end, std::vector<std::pair<Vec3, bool>>& beyond) {
     const Vec3 &from = g.front.points[end].position, to = beyond.empty() ? next[end] : beyond.back().first;
     if (g.live(end) || from == to || !is_blocked(complex, from, to)) return;
     if (beyond.empty()) beyond.push_back({to, ended[end]});
-    const Vec3 ahead = g.frame(end).ahead, away = unit_or(from - g.front.points[end == 0 ? 1 : end - 1].position, ahead);
+    const Vec3 ahead = g.frame(end).ahead,
+               away = unit_or(from - g.front.points[end == 0 ? 1 : end - 1].position, ahead);
     Vec3 corner = from + wanted * away;
     bool seen = false;
     for (int k = 1; k <= 3 && !seen; ++k)
@@ -157,8 +169,10 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     if (!goes(i) || !goes(j)) continue;
     if (gap > 1.6 * wanted) {
       const int parts = static_cast<int>(std::ceil(gap / (1.6 * wanted)));
-      const std::size_t from = (next[i] - g.front.points[i].position).norm() >= (next[j] - g.front.points[j].position).norm() ? i : j;
-      for (int k = 1; k < parts; ++k) add(from, next[i] + double(k) / parts * (next[j] - next[i]), ended[i] && ended[j]);
+      const std::size_t from =
+          (next[i] - g.front.points[i].position).norm() >= (next[j] - g.front.points[j].position).norm() ? i : j;
+      for (int k = 1; k < parts; ++k)
+        add(from, next[i] + double(k) / parts * (next[j] - next[i]), ended[i] && ended[j]);
     } else if (gap < 0.4 * wanted && j > i && !ended[i] && !ended[j] && g.live(i) && g.live(j)) {
       next[j] = next[i];
     }
@@ -183,7 +197,8 @@ FrontState depart(const GrowingFront& g, const FrontPlan& plan) {
   return front;
 }
 
-std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& plan, FrontState moved, std::span<const Vec3> direction) {
+std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& plan, FrontState moved,
+                                 std::span<const Vec3> direction) {
   GrowingFront g;
   g.front = moved;
   g.front.points.clear(), g.front.segments.clear();
@@ -197,7 +212,8 @@ std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& pl
     g.front.points.push_back(p);
     // The crack behind the point holds its way and the front's tangent.
     const TipFrame old = before.frame(i);
-    const Vec3 ahead = before.live(i) && way.squaredNorm() > 0 ? direction[i] : old.ahead, tangent = old.normal.cross(old.ahead);
+    const Vec3 ahead = before.live(i) && way.squaredNorm() > 0 ? direction[i] : old.ahead,
+               tangent = old.normal.cross(old.ahead);
     g.normal.push_back(unit_or(ahead.cross(tangent), old.normal));
     g.owed.push_back(way.squaredNorm() > 0 ? 0 : before.owed[i]);
     g.ended.push_back(plan.ended[k] || !p.id.valid());
@@ -214,7 +230,8 @@ std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& pl
   const std::size_t count = g.front.segments.size(), points = g.size();
   const auto alive = [&](std::size_t s) {
     const std::size_t a = s, b = (s + 1) % points;
-    return g.live(a) || g.live(b) || (!g.front.points[a].id.valid() && !g.front.points[b].id.valid() && spans_material(g.front, s));
+    return g.live(a) || g.live(b) ||
+           (!g.front.points[a].id.valid() && !g.front.points[b].id.valid() && spans_material(g.front, s));
   };
   std::size_t begin = 0;
   while (begin < count && alive(begin)) ++begin;
@@ -246,10 +263,12 @@ std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& pl
   return parts;
 }
 
-std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal, double radius, std::int32_t crack) {
+std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal,
+                                             double radius, std::int32_t crack) {
   constexpr int count = 12;
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
-  GrowingFront g = growing(begin_front(std::vector<Vec3>(count, center), true, crack), std::vector<Vec3>(count, normal));
+  GrowingFront g =
+      growing(begin_front(std::vector<Vec3>(count, center), true, crack), std::vector<Vec3>(count, normal));
   FrontPlan plan;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * i / count, reach = (1 + ligament) * radius;

@@ -31,20 +31,23 @@ struct FrontPlan {
   std::vector<std::uint8_t> ended;
 };
 
-/// Live points go by `step[i]` (≥ 0) along `direction[i]` (unit), to a surface where one is near: what is thinner than half
-/// of `spacing` beyond parts with it, and the front sticks out by a seventh of it. Where the front ends at a surface it
-/// slides along it. Points are put in and taken out so that they stay about as far apart as 0.7 `spacing`.
-FrontPlan plan_front(const Complex& complex, const GrowingFront& front, std::span<const double> step, std::span<const Vec3> direction, double spacing);
+/// Live points go by `step[i]` (≥ 0) along `direction[i]` (unit), to a surface where one is near: what is thinner than
+/// half of `spacing` beyond parts with it, and the front sticks out by a seventh of it. Where the front ends at a
+/// surface it slides along it. Points are put in and taken out so that they stay about as far apart as 0.7 `spacing`.
+FrontPlan plan_front(const Complex& complex, const GrowingFront& front, std::span<const double> step,
+                     std::span<const Vec3> direction, double spacing);
 
 /// The front with the points that a plan starts from: what split() is to be called with, and `plan.next`.
 FrontState depart(const GrowingFront& front, const FrontPlan& plan);
 
-/// What becomes of a front that `moved` from `before` as planned: parts of it that are inside, one front each; none when all
-/// of it has come to surfaces.
-std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& plan, FrontState moved, std::span<const Vec3> direction);
+/// What becomes of a front that `moved` from `before` as planned: parts of it that are inside, one front each; none
+/// when all of it has come to surfaces.
+std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& plan, FrontState moved,
+                                 std::span<const Vec3> direction);
 
-/// A closed front about `center` in the plane of `normal`, of no size, and the plan that opens it to `radius`, through the
-/// skin where that is near.
-std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal, double radius, std::int32_t crack);
+/// A closed front about `center` in the plane of `normal`, of no size, and the plan that opens it to `radius`, through
+/// the skin where that is near.
+std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal,
+                                             double radius, std::int32_t crack);
 
 }  // namespace geo

@@ -38,7 +38,8 @@ Vec3 ahead_of(const Complex& complex, VertexId a, VertexId b) {
 
 }  // namespace
 
-std::vector<FrontState> left_behind(const Complex& complex, std::int32_t crack, const Box3& where, std::span<const GrowingFront> fronts) {
+std::vector<FrontState> left_behind(const Complex& complex, std::int32_t crack, const Box3& where,
+                                    std::span<const GrowingFront> fronts) {
   std::set<Ends> followed;
   for (const GrowingFront& g : fronts)
     for (const auto& segment : g.front.segments)
@@ -83,7 +84,8 @@ std::vector<Vec3> across_ligament(const Complex& complex, const FrontState& fron
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3& p = front.points[k].position;
     Vec3 to = p + 1.2 * most * way;
-    if (k == 0 || k + 1 == n) to += 1.2 * most * (p - front.points[k == 0 ? 1 : n - 2].position).normalized();  // aside, into the air
+    if (k == 0 || k + 1 == n)
+      to += 1.2 * most * (p - front.points[k == 0 ? 1 : n - 2].position).normalized();  // aside, into the air
     const bool end = k == 0 || k + 1 == n;
     if (is_inside(complex, end ? Vec3(p + 1e-3 * (to - p)) : Vec3(p + most * way))) return {};
     next.push_back(to);

@@ -15,7 +15,8 @@ class Cracks {
  public:
   explicit Cracks(const Complex& complex) {
     for (std::uint32_t f = 0; f < complex.face_count(); ++f)
-      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack != 0) triangles_.push_back(complex.corners(FaceId(f)));
+      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack != 0)
+        triangles_.push_back(complex.corners(FaceId(f)));
   }
   bool within(const Vec3& x, double reach) const {
     return std::any_of(triangles_.begin(), triangles_.end(), [&](const std::array<Vec3, 3>& t) {
@@ -31,14 +32,17 @@ class Cracks {
 }  // namespace
 
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
-  const auto sums = node_sums(solid, body.nodes, motion, [](const Material& material, const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
-    if (!(all.determinant() > 0.01)) return false;
-    const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-    const Mat3 s = rotation.transpose() * stress(material, elastic) * elastic.transpose() * rotation / elastic.determinant();
-    out = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
-    return true;
-  });
+  const auto sums =
+      node_sums(solid, body.nodes, motion,
+                [](const Material& material, const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
+                  if (!(all.determinant() > 0.01)) return false;
+                  const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
+                  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+                  const Mat3 s = rotation.transpose() * stress(material, elastic) * elastic.transpose() * rotation /
+                                 elastic.determinant();
+                  out = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+                  return true;
+                });
   std::vector<Mat3> mean(body.nodes.size(), Mat3::Zero());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const StressSums& s = sums[i];
@@ -49,7 +53,8 @@ std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const St
   return mean;
 }
 
-std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture, const std::vector<std::uint32_t>& part, std::size_t most) {
+std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture,
+                                    const std::vector<std::uint32_t>& part, std::size_t most) {
   const double diagonal = body.surface.extent().diagonal();
   std::vector<CrackStart> over;
   for (std::size_t i = 0; i < stress.size(); ++i) {
@@ -59,9 +64,12 @@ std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& s
     // No eigenvalue is larger than the norm: most nodes need no decomposition.
     if (stress[i].norm() <= strength || !may_break(fracture, x)) continue;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(stress[i]);
-    if (eigen.eigenvalues()[2] > strength) over.push_back({NodeId(i), eigen.eigenvectors().col(2), eigen.eigenvalues()[2] / strength});
+    if (eigen.eigenvalues()[2] > strength)
+      over.push_back({NodeId(i), eigen.eigenvectors().col(2), eigen.eigenvalues()[2] / strength});
   }
-  std::sort(over.begin(), over.end(), [](const CrackStart& a, const CrackStart& b) { return a.share != b.share ? a.share > b.share : a.node < b.node; });
+  std::sort(over.begin(), over.end(), [](const CrackStart& a, const CrackStart& b) {
+    return a.share != b.share ? a.share > b.share : a.node < b.node;
+  });
   std::vector<CrackStart> starts;
   if (over.empty() || most == 0) return starts;
   const Cracks cracks(body.surface);
@@ -70,7 +78,9 @@ std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& s
     const Vec3& x = body.nodes.position[s.node.index()];
     const double reach = fracture.apart * body.nodes.spacing[s.node.index()];
     if (cracks.within(x, reach)) continue;
-    const bool alone = std::none_of(starts.begin(), starts.end(), [&](const CrackStart& o) { return (body.nodes.position[o.node.index()] - x).norm() < reach; });
+    const bool alone = std::none_of(starts.begin(), starts.end(), [&](const CrackStart& o) {
+      return (body.nodes.position[o.node.index()] - x).norm() < reach;
+    });
     if (alone) starts.push_back(s);
   }
   return starts;

@@ -15,8 +15,8 @@ namespace {
 
 // What drives each point of a front.
 struct Drive {
-  std::vector<Vec3> direction;  // unit, across the front
-  std::vector<double> excess;   // stress over what the toughness asks for; ≤ 1: none
+  std::vector<Vec3> direction;     // unit, across the front
+  std::vector<double> excess;      // stress over what the toughness asks for; ≤ 1: none
   std::vector<std::uint8_t> told;  // whether enough nodes see the point for that to be known
   std::uint32_t node = 0;          // of the body that it is in, where any is told
 };
@@ -31,7 +31,8 @@ double needed_stress(const Strength& own, std::uint64_t seed, const Body& body, 
   return stress * strength_factor(own, seed, body.surface.extent().diagonal(), x);
 }
 
-Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid, const State& motion, const GrowingFront& g) {
+Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid,
+            const State& motion, const GrowingFront& g) {
   const std::size_t n = g.size();
   std::vector<Mat3> separation(n, Mat3::Zero());
   std::vector<TipFrame> frame(n);
@@ -47,7 +48,9 @@ Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, co
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
       const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
-      separation[i] = stress / needed_stress(fracture.of(part, field.node), fracture.seed, body, frame[i].at, field.support) * across * across.transpose();
+      separation[i] = stress /
+                      needed_stress(fracture.of(part, field.node), fracture.seed, body, frame[i].at, field.support) *
+                      across * across.transpose();
     }
   });
   // Twice with the weights 1, 2, 1 of neighbours on the same part of the front.
@@ -66,7 +69,8 @@ Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, co
     }
   }
   Drive d{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0), std::move(told)};
-  if (const auto any = std::find(d.told.begin(), d.told.end(), 1); any != d.told.end()) d.node = node[static_cast<std::size_t>(any - d.told.begin())];
+  if (const auto any = std::find(d.told.begin(), d.told.end(), 1); any != d.told.end())
+    d.node = node[static_cast<std::size_t>(any - d.told.begin())];
   for (std::size_t i = 0; i < n; ++i) {
     d.direction[i] = frame[i].ahead;
     if (!g.live(i) || separation[i].isZero() || !may_break(fracture, frame[i].at)) continue;
@@ -89,7 +93,8 @@ std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts
 }
 
 // A front whose stress is far more than it needs divides: the two parts leave at 30° to either side.
-bool divides(const Fracture& fracture, const GrowingFront& g, const Drive& d, double spacing, const FractureState& state) {
+bool divides(const Fracture& fracture, const GrowingFront& g, const Drive& d, double spacing,
+             const FractureState& state) {
   if (fracture.branching <= 0 || state.cracks >= fracture.cracks || g.length < fracture.apart * spacing) return false;
   double sum = 0;
   std::size_t live = 0;
@@ -107,12 +112,15 @@ void turn(Drive& d, const GrowingFront& g, double angle) {
 
 }  // namespace
 
-void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid, const State& motion, double dt, FractureState& state,
-                   const SplitStep& split, FractureWork* work) {
+void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body,
+                   const Solid& solid, const State& motion, double dt, FractureState& state, const SplitStep& split,
+                   FractureWork* work) {
   FractureWork done;
   std::vector<GrowingFront> fronts;
   fronts.swap(state.fronts);
-  const auto keep = [&](std::vector<GrowingFront> parts) { state.fronts.insert(state.fronts.end(), parts.begin(), parts.end()); };
+  const auto keep = [&](std::vector<GrowingFront> parts) {
+    state.fronts.insert(state.fronts.end(), parts.begin(), parts.end());
+  };
   std::vector<std::pair<std::int32_t, Box3>> moves;  // cracks, and where they grew
   const auto make = [&](GrowingFront& g, const Drive& d, std::vector<double>& step, double spacing) {
     const FrontPlan plan = plan_front(body.surface, g, step, d.direction, spacing);
@@ -140,8 +148,10 @@ void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& p
       air = false;
       const double here = spacing_at(body, g.front.points[i].position);
       spacing = std::min(spacing, here);
-      g.owed[i] = d.excess[i] > 1 ? std::min(here, g.owed[i] + dt * fastest * (1 - 1 / (d.excess[i] * d.excess[i]))) : 0;
-      if (!d.told[i] && may_break(fracture, g.front.points[i].position) && is_ligament(body.surface, g.frame(i), here)) g.owed[i] = std::max(g.owed[i], 0.25 * here);
+      g.owed[i] =
+          d.excess[i] > 1 ? std::min(here, g.owed[i] + dt * fastest * (1 - 1 / (d.excess[i] * d.excess[i]))) : 0;
+      if (!d.told[i] && may_break(fracture, g.front.points[i].position) && is_ligament(body.surface, g.frame(i), here))
+        g.owed[i] = std::max(g.owed[i], 0.25 * here);
       most = std::max(most, g.owed[i]);
     }
     if (air) spacing = spacing_at(body, g.front.points[0].position);
@@ -166,14 +176,17 @@ void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& p
   }
   for (const auto& [crack, where] : moves)
     for (FrontState& rest : left_behind(body.surface, crack, where, state.fronts))
-      if (const auto next = across_ligament(body.surface, rest, spacing_at(body, rest.points[0].position)); !next.empty()) ++(split(rest, next) ? done.advanced : done.refused);
+      if (const auto next = across_ligament(body.surface, rest, spacing_at(body, rest.points[0].position));
+          !next.empty())
+        ++(split(rest, next) ? done.advanced : done.refused);
   const int most = std::min(fracture.cracks_per_step, fracture.cracks - state.cracks);
   if (most > 0) {
     const auto stress = averaged_stress(body, solid, motion);
     for (const CrackStart& s : find_starts(body, stress, fracture, part, static_cast<std::size_t>(most))) {
       const double spacing = body.nodes.spacing[s.node.index()];
       // Off the node, which would lie in the flaw else.
-      auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal, s.normal, spacing, unused_crack(body, state.fronts, {}));
+      auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal,
+                                 s.normal, spacing, unused_crack(body, state.fronts, {}));
       FrontState moved = depart(g, plan);
       if (!split(moved, plan.next)) {
         ++done.refused;
@@ -183,7 +196,9 @@ void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& p
       keep(arrive(g, plan, std::move(moved), {}));
     }
   }
-  if (work) work->begun += done.begun, work->divided += done.divided, work->advanced += done.advanced, work->refused += done.refused;
+  if (work)
+    work->begun += done.begun, work->divided += done.divided, work->advanced += done.advanced,
+        work->refused += done.refused;
 }
 
 }  // namespace geo

@@ -11,7 +11,8 @@
 namespace geo {
 
 Mat3 mode_displacement(const Material& m, double r, double angle) {
-  const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson, scale = std::sqrt(r / (2 * std::numbers::pi)) / (2 * m.mu());
+  const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson,
+               scale = std::sqrt(r / (2 * std::numbers::pi)) / (2 * m.mu());
   Mat3 u;
   u.col(0) = scale * Vec3(c * (kappa - 1 + 2 * s * s), s * (kappa + 1 - 2 * c * c), 0);
   u.col(1) = scale * Vec3(s * (kappa + 1 + 2 * c * c), -c * (kappa - 1 - 2 * s * s), 0);
@@ -91,9 +92,10 @@ double share_behind(const Complex& complex, const TipFrame& tip, double h) {
   return 0.25 * crack;
 }
 
-// Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of them, in units of `scale`),
-// by weighted least squares with as small a norm as there is.
-Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material& material, const TipFrame& tip, const Nearby& near, int modes, double scale) {
+// Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of them, in units of
+// `scale`), by weighted least squares with as small a norm as there is.
+Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material& material, const TipFrame& tip,
+                    const Nearby& near, int modes, double scale) {
   const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
   const auto n = static_cast<Eigen::Index>(near.nodes.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 12 + modes);
@@ -104,7 +106,9 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
     const Vec3 x = frame.transpose() * (body.nodes.position[i] - tip.at);
     for (int c = 0; c < 3; ++c) a.block<3, 3>(3 * j, 3 * c) = w * x[c] / near.support * Mat3::Identity();
     a.block<3, 3>(3 * j, 9) = w * Mat3::Identity();
-    if (modes > 0) a.block<3, 3>(3 * j, 12) = w * scale * mode_displacement(material, std::hypot(x.x(), x.y()), std::atan2(x.y(), x.x()));
+    if (modes > 0)
+      a.block<3, 3>(3 * j, 12) =
+          w * scale * mode_displacement(material, std::hypot(x.x(), x.y()), std::atan2(x.y(), x.x()));
     b.segment<3>(3 * j) = w * (frame.transpose() * v[static_cast<std::size_t>(j)]);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
@@ -144,7 +148,8 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   field.uniform = stress(material, stretch) * stretch / stretch.determinant();
   if (modes == 0) return field;
   field.k = scale * c.tail<3>();
-  // What the nodes' field has of tractions on the crack itself is an error of theirs, as far as there is a crack behind.
+  // What the nodes' field has of tractions on the crack itself is an error of theirs, as far as there is a crack
+  // behind.
   const double open = 1 - share_behind(body.surface, tip, near.support);
   const Vec3 traction = open * field.uniform.col(1);
   field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();

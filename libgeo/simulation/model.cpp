@@ -23,7 +23,8 @@ void append(TriangleMesh& to, const TriangleMesh& from) {
 // Of a plane, in its own coordinates.
 TriangleMesh square_of(const SceneObstacle& plane, const Box3& bodies) {
   const Pose placed = plane.pose(0);
-  const Vec3 n = plane.normal.normalized(), middle = (placed.rotation.conjugate() * (bodies.center() - placed.position)) / plane.scale;
+  const Vec3 n = plane.normal.normalized(),
+             middle = (placed.rotation.conjugate() * (bodies.center() - placed.position)) / plane.scale;
   const Vec3 level = n.cross(Vec3::UnitZ()).norm() > 1e-6 ? n.cross(Vec3::UnitZ()).normalized() : Vec3::UnitX();
   const Vec3 foot = middle - n.dot(middle) * n, a = 0.75 * bodies.diagonal() / plane.scale * level, b = n.cross(a);
   TriangleMesh square;
@@ -34,12 +35,15 @@ TriangleMesh square_of(const SceneObstacle& plane, const Box3& bodies) {
 }  // namespace
 
 Model place_models(const Scene& scene, std::vector<TriangleMesh> meshes) {
-  if (meshes.size() != scene.bodies.size()) throw InputError("the scene has " + std::to_string(scene.bodies.size()) + " bodies, but " + std::to_string(meshes.size()) + " models were given");
+  if (meshes.size() != scene.bodies.size())
+    throw InputError("the scene has " + std::to_string(scene.bodies.size()) + " bodies, but " +
+                     std::to_string(meshes.size()) + " models were given");
   Model model{{}, std::move(meshes)};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
     TriangleMesh& mesh = model.parts[b];
-    if (body.scale != 1 || body.place.position != Vec3::Zero() || !body.place.rotation.isApprox(Eigen::Quaterniond::Identity(), 0))
+    if (body.scale != 1 || body.place.position != Vec3::Zero() ||
+        !body.place.rotation.isApprox(Eigen::Quaterniond::Identity(), 0))
       for (Vec3& p : mesh.vertices) p = body.place * (body.scale * p);
   }
   if (model.parts.size() == 1) {
@@ -66,13 +70,15 @@ Body build_model(const Scene& scene, const Model& model, std::vector<std::uint32
   for (std::size_t b = 0; b < model.parts.size(); ++b) {
     SampleOptions sampling = scene.bodies[b].sampling;
     sampling.seed = scene.seed;
-    if (sampling.spacing <= 0 && sampling.count == 0) sampling.spacing = scene.bodies[b].spacing_percent / 100 * bounding_box(model.parts[b]).diagonal();
+    if (sampling.spacing <= 0 && sampling.count == 0)
+      sampling.spacing = scene.bodies[b].spacing_percent / 100 * bounding_box(model.parts[b]).diagonal();
     const NodeSet own = sample_nodes(model.parts[b], sampling, progress);
     append(nodes.position, own.position), append(nodes.radius, own.radius);
     append(nodes.spacing, own.spacing), append(nodes.volume, own.volume);
     part.resize(nodes.size(), static_cast<std::uint32_t>(b));
   }
-  Body body = build_body(Complex::from_skin(model.mesh), std::move(nodes), {scene.k, NeighborMethod::automatic}, progress);
+  Body body =
+      build_body(Complex::from_skin(model.mesh), std::move(nodes), {scene.k, NeighborMethod::automatic}, progress);
   // Nodes put into narrow passages belong to what their donors do.
   for (const NodeId d : body.donors) part.push_back(std::uint32_t(part[d.index()]));
   part.resize(body.nodes.size(), 0);

@@ -7,7 +7,9 @@ namespace geo {
 
 Pose Motion::at(double time) const {
   if (keys.empty()) return {};
-  const auto rotation = [](const Key& k, double degrees) { return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, k.axis.normalized())); };
+  const auto rotation = [](const Key& k, double degrees) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, k.axis.normalized()));
+  };
   std::size_t i = 0;
   while (i + 2 < keys.size() && keys[i + 1].time <= time) ++i;
   if (keys.size() == 1) return {keys[0].position, rotation(keys[0], keys[0].angle)};

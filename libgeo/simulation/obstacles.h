@@ -1,4 +1,5 @@
-// Contact of objects in the loop: rigid obstacles, where they are and what bodies do to them; bodies that touch each other.
+// Contact of objects in the loop: rigid obstacles, where they are and what bodies do to them; bodies that touch each
+// other.
 #pragma once
 
 #include <memory>
@@ -8,7 +9,7 @@
 #include "contact/response/mutual_contact.h"
 #include "contact/response/obstacle.h"
 #include "kerf/scene.h"
-#include "kerf/simulation.h"
+#include "kerf/run.h"
 
 namespace geo {
 
@@ -19,11 +20,12 @@ class Obstacles {
   /// False: begin() has nothing to look at but bodies that touch each other.
   bool any() const { return !shapes_.empty(); }
 
-  /// Before a step of dt seconds from `time` on: adds them to what acts on nodes, and bodies that touch each other where nothing
-  /// else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is; none: they are found here. `at`: where they
-  /// have the surface now; empty: that is found here.
-  void begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights, std::span<const Vec3> at, const std::vector<std::uint32_t>& part, const State& motion,
-             double time, double dt, Environment& environment);
+  /// Before a step of dt seconds from `time` on: adds them to what acts on nodes, and bodies that touch each other
+  /// where nothing else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is;
+  /// none: they are found here. `at`: where they have the surface now; empty: that is found here.
+  void begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights,
+             std::span<const Vec3> at, const std::vector<std::uint32_t>& part, const State& motion, double time,
+             double dt, Environment& environment);
   /// After a crack step.
   void follow() { own_.reset(); }
   /// After a step: adds `share` of what was done to the scene's obstacles.

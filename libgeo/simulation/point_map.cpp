@@ -12,7 +12,8 @@ namespace geo {
 namespace {
 
 Mat3 inverse_of(const Mat3& f) {
-  return f.determinant() > 0.05 ? Mat3(f.inverse()) : Mat3::Identity();  // crushed or turned inside out: as if it were rigid
+  return f.determinant() > 0.05 ? Mat3(f.inverse())
+                                : Mat3::Identity();  // crushed or turned inside out: as if it were rigid
 }
 
 // 1 up to a, 0 from b on.
@@ -23,8 +24,14 @@ double fade(double x, double a, double b) {
 
 }  // namespace
 
-PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about, std::vector<std::uint8_t> counted)
-    : body_(body), u_(u), gradient_(gradient), counted_(std::move(counted)), reach_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())), grid_(body.grid.cell()) {
+PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about,
+                   std::vector<std::uint8_t> counted)
+    : body_(body),
+      u_(u),
+      gradient_(gradient),
+      counted_(std::move(counted)),
+      reach_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())),
+      grid_(body.grid.cell()) {
   const Box3 box = about.grown(2 * reach_);
   world_.reserve(body.nodes.size());
   for (std::size_t i = 0; i < body.nodes.size(); ++i) world_.push_back(body.nodes.position[i] + u[i]);
@@ -45,7 +52,9 @@ void PointMap::look(Round& round, const Vec3& x) const {
   std::vector<std::uint32_t> near;
   body_.grid.within(body_.nodes.position, x, 1.5 * reach_, near);
   for (const auto i : near)
-    if (const double share = fade((round.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3); share > 0 && counts(i)) round.node.push_back(i), round.share.push_back(share);
+    if (const double share = fade((round.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3);
+        share > 0 && counts(i))
+      round.node.push_back(i), round.share.push_back(share);
 }
 
 bool PointMap::forward(Round& round, const Vec3& x, Vec3& to, Mat3& slope) const {
@@ -89,7 +98,8 @@ Vec3 PointMap::deformed(SurfaceVertexId v, Memory& memory) const {
   return it->second;
 }
 
-// What Eq. 1 and the deformed triangles of the skin near y differ by: the nearest ones say most, and one that holds y all.
+// What Eq. 1 and the deformed triangles of the skin near y differ by: the nearest ones say most, and one that holds y
+// all.
 Vec3 PointMap::on_skin(Round& round, const Vec3& x, double reach, Memory& memory) const {
   const Vec3& y = round.world;
   Vec3 to;
@@ -122,7 +132,9 @@ PointMap::Place PointMap::material(const Vec3& y, Memory& memory) const {
   const auto& nodes = body_.nodes;
   if (!((y - world_[a]).norm() < nodes.radius[a])) return {y - u_[a], NodeId(a), false};
   // Each node's own map, as far as it agrees with the nearest one's.
-  const auto back = [&](std::size_t i) { return Vec3(nodes.position[i] + inverse_of(Mat3::Identity() + gradient_[i]) * (y - world_[i])); };
+  const auto back = [&](std::size_t i) {
+    return Vec3(nodes.position[i] + inverse_of(Mat3::Identity() + gradient_[i]) * (y - world_[i]));
+  };
   std::vector<std::uint32_t> near;
   grid_.within(world_, y, nodes.radius[a], near);
   const Vec3 guess = back(a);

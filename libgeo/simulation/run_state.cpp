@@ -1,7 +1,7 @@
 #include "simulation/run_state.h"
 
-#include "kerf/error.h"
 #include "kerf/crack.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {
@@ -31,7 +31,8 @@ void score(const Scene& scene, Beginning& run, const Progress& progress) {
       try {
         adopt(split(run.body, state, correspond(front.steps[0], front.steps[k], front.closed), options));
       } catch (const GeometryError&) {
-        throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name + "' cannot be made");
+        throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name +
+                            "' cannot be made");
       }
     }
   }

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "kerf/body.h"
+#include "kerf/run.h"
 #include "kerf/solid.h"
 #include "simulation/edge_front.h"
 #include "simulation/fracture_step.h"
 #include "simulation/model.h"
-#include "kerf/simulation.h"
 
 namespace geo {
 
@@ -17,8 +17,9 @@ struct RunState {
   State motion;
   std::vector<std::vector<EdgeFront>> fronts;  ///< per blade: a front for each part of the edge that cuts
   FractureState fracture;
-  std::vector<Vec3> surface;  ///< a row a living surface vertex, ascending: where it is; empty without self-contact, and at the beginning
-  std::vector<std::uint32_t> part;                ///< per node: the body of the scene that it belongs to
+  std::vector<Vec3> surface;  ///< a row a living surface vertex, ascending: where it is; empty without self-contact,
+                              ///< and at the beginning
+  std::vector<std::uint32_t> part;  ///< per node: the body of the scene that it belongs to
   double time = 0;
   int frame = 0;
   FrameWork total;  ///< counts since the run began; its seconds since the program did
@@ -29,8 +30,8 @@ struct Beginning {
   RunState state;
 };
 
-/// A run before its first step: samples and builds the body, makes the prescored cracks. Throws InputError when bodies do not
-/// fit the scene, GeometryError when a prescored crack cannot be made.
+/// A run before its first step: samples and builds the body, makes the prescored cracks. Throws InputError when bodies
+/// do not fit the scene, GeometryError when a prescored crack cannot be made.
 Beginning begin_run(const Scene& scene, const Model& model, const Progress& progress = {});
 
 }  // namespace geo

@@ -19,21 +19,29 @@ RunState fitting(const Scene& scene, const Body& body, RunState state) {
   const std::size_t n = body.nodes.size();
   if (state.part.empty()) state.part.assign(n, 0);
   const bool known = std::all_of(state.part.begin(), state.part.end(), [&](auto p) { return p < scene.bodies.size(); });
-  if (state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.part.size() != n || !known || state.fronts.size() != scene.blades.size())
+  if (state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.part.size() != n || !known ||
+      state.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   return state;
 }
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress) : Simulation(scene, Model{solid, {solid}}, progress) {}
+Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
+    : Simulation(scene, Model{solid, {solid}}, progress) {}
 
-Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress) : Simulation(scene, begin_run(scene, model, progress)) {}
+Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
+    : Simulation(scene, begin_run(scene, model, progress)) {}
 
-Simulation::Simulation(const Scene& scene, Beginning begun) : Simulation(scene, std::move(begun.body), std::move(begun.state)) {}
+Simulation::Simulation(const Scene& scene, Beginning begun)
+    : Simulation(scene, std::move(begun.body), std::move(begun.state)) {}
 
 Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene), state_(fitting(scene, body, std::move(state))), body_(std::move(body)), solid_(body_, materials_of(scene, state_.part)), obstacles_(scene) {
+    : scene_(scene),
+      state_(fitting(scene, body, std::move(state))),
+      body_(std::move(body)),
+      solid_(body_, materials_of(scene, state_.part)),
+      obstacles_(scene) {
   begin();
 }
 
@@ -71,7 +79,8 @@ void Simulation::prepare() {
       gripped_.push_back({NodeId(i), g});
       break;
     }
-    if (const auto v = body_.binding.closest[i]; v.valid() && body_.surface.alive(v)) environment_.clearance[i] = (body_.surface.point(body_.surface.site(v)) - x).norm();
+    if (const auto v = body_.binding.closest[i]; v.valid() && body_.surface.alive(v))
+      environment_.clearance[i] = (body_.surface.point(body_.surface.site(v)) - x).norm();
   }
 }
 
@@ -96,7 +105,9 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
   CrackOptions options;
   options.seed = scene_.seed;
   try {
-    adopt(split(body_, front, next, options, &work.split, collisions_ ? collisions_->agreement(body_, solid_, state_.motion, work.contact_seconds) : Agreement()), work);
+    adopt(split(body_, front, next, options, &work.split,
+                collisions_ ? collisions_->agreement(body_, solid_, state_.motion, work.contact_seconds) : Agreement()),
+          work);
     return true;
   } catch (const GeometryError&) {
     ++work.refused;
@@ -171,7 +182,8 @@ std::vector<Pose> Simulation::grip_poses(double time) const {
   return poses;
 }
 
-// Held nodes are put where their grip will be at the end of the step; what they do to the others is the step's business.
+// Held nodes are put where their grip will be at the end of the step; what they do to the others is the step's
+// business.
 void Simulation::move_grips(double dt) {
   std::fill(environment_.fixed.begin(), environment_.fixed.end(), 0);
   const double end = state_.time + dt;
@@ -193,15 +205,18 @@ void Simulation::push(double dt) {
     const Blade& blade = scene_.blades[b];
     if (!(blade.thickness > 0) || !blade.active(state_.time)) continue;
     for (std::size_t i = mass.size(); i < body_.nodes.size(); ++i) mass.push_back(solid_.mass(NodeId(i)));
-    wedge_.add(b, blade, blade.motion.at(state_.time + dt), body_.nodes.position, state_.motion.displacement, environment_.clearance, mass, blade.stiffness);
+    wedge_.add(b, blade, blade.motion.at(state_.time + dt), body_.nodes.position, state_.motion.displacement,
+               environment_.clearance, mass, blade.stiffness);
   }
   if (!wedge_.empty()) environment_.contact.push_back(&wedge_);
 }
 
 void Simulation::meet_obstacles(double dt, FrameWork& work) {
   Stopwatch watch;
-  const std::span<const Vec3> at = obstacles_.any() ? collisions_->wanted(body_, state_.motion) : std::span<const Vec3>();
-  obstacles_.begin(scene_, body_, solid_, collisions_->weights(), at, state_.part, state_.motion, state_.time, dt, environment_);
+  const std::span<const Vec3> at =
+      obstacles_.any() ? collisions_->wanted(body_, state_.motion) : std::span<const Vec3>();
+  obstacles_.begin(scene_, body_, solid_, collisions_->weights(), at, state_.part, state_.motion, state_.time, dt,
+                   environment_);
   collisions_->begin(body_, solid_, state_.motion, dt, environment_);
   work.contact_seconds += watch.lap();
 }
@@ -209,7 +224,8 @@ void Simulation::meet_obstacles(double dt, FrameWork& work) {
 void Simulation::integrate(double dt, FrameWork& work) {
   Stopwatch watch;
   solid_.settle(body_, state_.motion);
-  const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_, scene_.accuracy) : solid_.step_explicit(state_.motion, dt, environment_);
+  const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_, scene_.accuracy)
+                                            : solid_.step_explicit(state_.motion, dt, environment_);
   const std::vector<Pose> from = grip_poses(state_.time), to = grip_poses(state_.time + dt);
   for (const auto& [i, g] : gripped_) {
     const Grip& grip = scene_.grips[g];
@@ -237,8 +253,9 @@ void Simulation::fracture(double dt, FrameWork& work) {
   Stopwatch watch;
   const auto others = [&] { return work.split_seconds() + work.mechanics_seconds + work.contact_seconds; };
   const double splitting = others();
-  step_fracture(scene_.fracture, state_.part, body_, solid_, state_.motion, dt, state_.fracture,
-                [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, work); }, &work.fracture);
+  step_fracture(
+      scene_.fracture, state_.part, body_, solid_, state_.motion, dt, state_.fracture,
+      [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, work); }, &work.fracture);
   work.fracture_seconds += watch.lap() - (others() - splitting);
 }
 
@@ -266,7 +283,8 @@ FrameWork Simulation::advance_frame(const Progress& progress) {
     step(frame_time / steps, work);
     for (std::size_t i = 0; i < state_.motion.displacement.size(); ++i)
       if (!state_.motion.displacement[i].allFinite())
-        throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " + std::to_string(state_.time) + "; reduce the time step");
+        throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " +
+                            std::to_string(state_.time) + "; reduce the time step");
   }
   ++state_.frame;
   state_.surface = collisions_->rows(body_);

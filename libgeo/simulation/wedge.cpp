@@ -5,8 +5,9 @@
 
 namespace geo {
 
-void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x, const std::vector<Vec3>& u,
-                const std::vector<double>& clearance, const std::vector<double>& mass, double stiffness) {
+void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x,
+                const std::vector<Vec3>& u, const std::vector<double>& clearance, const std::vector<double>& mass,
+                double stiffness) {
   const Vec3 back = pose.rotation * shape.back;
   const double width = back.norm(), slope = 0.5 * shape.thickness / width;
   const std::size_t n = shape.points.size(), segments = shape.closed ? n : n - 1;
@@ -46,12 +47,15 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
   }
 }
 
-double Wedge::energy(std::size_t r, const Vec3& way) const { return 0.5 * contacts_[r].stiffness * std::pow(contacts_[r].depth(way), 2); }
+double Wedge::energy(std::size_t r, const Vec3& way) const {
+  return 0.5 * contacts_[r].stiffness * std::pow(contacts_[r].depth(way), 2);
+}
 
 Potential::Push Wedge::push(std::size_t r, const Vec3& way) {
   const Contact& c = contacts_[r];
   const double depth = c.depth(way);
-  return {c.stiffness * depth * c.normal, depth > 0 ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero())};
+  return {c.stiffness * depth * c.normal,
+          depth > 0 ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero())};
 }
 
 std::vector<Vec3> Wedge::reaction(const std::vector<Vec3>& u, std::size_t blades) const {

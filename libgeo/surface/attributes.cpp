@@ -15,7 +15,9 @@ struct Place {
   std::array<double, 3> weight{1, 0, 0};
 };
 
-bool before(const Vec3& p, const Vec3& q) { return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3); }
+bool before(const Vec3& p, const Vec3& q) {
+  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+}
 
 Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
   for (int k = 0; k < 3; ++k)
@@ -69,7 +71,9 @@ std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, std::size_t t) {
 
 // The other side of a crack's triangle, where it follows in the next row, as Kerf writes it; else the row itself.
 std::uint32_t other_side(const TriangleMesh& mesh, std::uint32_t row) {
-  if (mesh.patch.empty() || row + 1 >= mesh.triangles.size() || mesh.patch[row] <= 0 || mesh.patch[row + 1] != -mesh.patch[row]) return row;
+  if (mesh.patch.empty() || row + 1 >= mesh.triangles.size() || mesh.patch[row] <= 0 ||
+      mesh.patch[row + 1] != -mesh.patch[row])
+    return row;
   const auto sorted = [&](std::uint32_t t) {
     std::array<std::uint32_t, 3> sites;
     for (int k = 0; k < 3; ++k) sites[k] = mesh.site[mesh.triangles[t][k]];
@@ -96,15 +100,19 @@ std::vector<std::string> Attributes::names() const {
   return result;
 }
 
-Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).stableNormalized().cross((c - a).stableNormalized()).stableNormalized(); }
+Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (b - a).stableNormalized().cross((c - a).stableNormalized()).stableNormalized();
+}
 
 void carry(const TriangleMesh& original, TriangleMesh& derived) {
   const Attributes& from = original.attributes;
   const std::size_t count = derived.triangles.size();
-  if (derived.source.size() != count) throw InputError("the cut surface does not name the triangles that it is made of");
+  if (derived.source.size() != count)
+    throw InputError("the cut surface does not name the triangles that it is made of");
   for (const auto row : derived.source)
     if (row != ~0u && row >= original.triangles.size())
-      throw InputError("the cut surface names triangle " + std::to_string(row) + ", but the model has " + std::to_string(original.triangles.size()) + "; give the model that was cut");
+      throw InputError("the cut surface names triangle " + std::to_string(row) + ", but the model has " +
+                       std::to_string(original.triangles.size()) + "; give the model that was cut");
   Attributes to;
   to.group_names = from.group_names;
   to.materials = from.materials;
@@ -139,7 +147,8 @@ void carry(const TriangleMesh& original, TriangleMesh& derived) {
       if (!to.color.empty()) to.color[t][k] = mixed(from.color[s], place);
       if (to.normal.empty()) continue;
       Vec3 n = mixed(from.normal[s], place);
-      if (!constant(from.normal[s], place)) n = n.norm() > 0 ? n.normalized() : face_normal(source[0], source[1], source[2]);
+      if (!constant(from.normal[s], place))
+        n = n.norm() > 0 ? n.normalized() : face_normal(source[0], source[1], source[2]);
       to.normal[t][k] = behind && s == row ? Vec3(-n) : n;
     }
   }

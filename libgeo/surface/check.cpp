@@ -4,8 +4,8 @@
 #include <map>
 #include <unordered_map>
 
-#include "kerf/error.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
 #include "surface/complex_internal.h"
 
 namespace geo {
@@ -64,8 +64,8 @@ std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
 
 }  // namespace
 
-bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const std::array<std::uint32_t, 3>& g,
-                 const std::array<Vec3, 3>& q) {
+bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
+                 const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q) {
   int shared_f[3], shared_g[3], shared = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -93,7 +93,8 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
   if (shared == 1) {
     // Both others strictly on one side of the other's plane: they touch at the shared corner only.
     const int i = shared_f[0], j = shared_g[0];
-    if (clear(p, q[(j + 1) % 3], q[(j + 2) % 3]) || clear(q, p[(i + 1) % 3], p[(i + 2) % 3]) || apart(p, q)) return false;
+    if (clear(p, q[(j + 1) % 3], q[(j + 2) % 3]) || clear(q, p[(i + 1) % 3], p[(i + 2) % 3]) || apart(p, q))
+      return false;
     return segment_meets_triangle(p[(i + 1) % 3], p[(i + 2) % 3], q[0], q[1], q[2]) ||
            segment_meets_triangle(q[(j + 1) % 3], q[(j + 2) % 3], p[0], p[1], p[2]);
   }
@@ -122,7 +123,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   SurfaceReport report;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (!in_range(mesh.vertices[v])) {
-      note(report, "vertex " + std::to_string(v) + " has a coordinate that is not a finite number of sensible size; repair the file");
+      note(report, "vertex " + std::to_string(v) +
+                       " has a coordinate that is not a finite number of sensible size; repair the file");
       return report;
     }
   if (mesh.triangles.empty()) note(report, "the surface is empty: it has no triangles");
@@ -145,7 +147,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     index.find(box, near);
     for (const auto other : near)
       if (faces_cross(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
-        if (count++ == 0) note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
+        if (count++ == 0)
+          note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
       }
     index.insert(t, box);
   }
@@ -198,7 +201,8 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
       continue;
     }
     try {
-      check_ring(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b), [&](FaceId g) { return k.face(g); });
+      check_ring(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b),
+                 [&](FaceId g) { return k.face(g); });
     } catch (const GeometryError& error) {
       report.closed = false;
       note(report, error.what());
@@ -258,7 +262,8 @@ SurfaceReport check_complex(const Complex& k, bool crossings) {
   if (crossings) {
     const auto pairs = self_intersections(k);
     report.self_intersections = pairs.size();
-    if (!pairs.empty()) note(report, "faces " + pair_name(pairs[0].first.value, pairs[0].second.value) + " intersect each other");
+    if (!pairs.empty())
+      note(report, "faces " + pair_name(pairs[0].first.value, pairs[0].second.value) + " intersect each other");
   }
   return report;
 }
@@ -266,7 +271,8 @@ SurfaceReport check_complex(const Complex& k, bool crossings) {
 void require_solid(const TriangleMesh& mesh) {
   const SurfaceReport report = check_surface(mesh, true);
   if (!report.good()) throw InputError(report.first_problem);
-  if (!mesh.two_sided() && signed_volume(mesh) <= 0) throw InputError("the surface is inside out: its normals point inwards; reverse its triangles");
+  if (!mesh.two_sided() && signed_volume(mesh) <= 0)
+    throw InputError("the surface is inside out: its normals point inwards; reverse its triangles");
 }
 
 }  // namespace geo

@@ -13,18 +13,20 @@ struct Wall {
   Vec3 normal = Vec3::Zero(), center = Vec3::Zero();  // not yet divided by what they weigh
 };
 
-// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice. Where vertices have moved, a face is half way
-// between its sides, and weighs what it did before.
+// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice. Where vertices have
+// moved, a face is half way between its sides, and weighs what it did before.
 std::map<Pair, Wall> walls_of(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {}) {
   std::map<Pair, Wall> walls;
   for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
     if (!complex.alive(FaceId(f)) || complex.face(FaceId(f)).crack == 0) continue;
-    const auto behind = static_cast<std::uint32_t>(pieces.of_side[f * 2]), before = static_cast<std::uint32_t>(pieces.of_side[f * 2 + 1]);
+    const auto behind = static_cast<std::uint32_t>(pieces.of_side[f * 2]),
+               before = static_cast<std::uint32_t>(pieces.of_side[f * 2 + 1]);
     auto c = complex.corners(FaceId(f));
     const auto normal = [&] { return Vec3(0.5 * (c[1] - c[0]).cross(c[2] - c[0])); };
     const double area = normal().norm();
     for (int k = 0; k < 3 && !moved.empty(); ++k)
-      c[std::size_t(k)] = 0.5 * (moved[complex.surface_vertex({FaceId(f), 0}, k).index()] + moved[complex.surface_vertex({FaceId(f), 1}, k).index()]);
+      c[std::size_t(k)] = 0.5 * (moved[complex.surface_vertex({FaceId(f), 0}, k).index()] +
+                                 moved[complex.surface_vertex({FaceId(f), 1}, k).index()]);
     Wall& wall = walls[std::minmax(behind, before)];
     wall.area += area;
     wall.normal += behind <= before ? normal() : Vec3(-normal());
@@ -50,11 +52,13 @@ Vec3 centroid_of(const TriangleMesh& mesh) {
 std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved) {
   std::vector<Bond> bonds;
   for (const auto& [pair, wall] : walls_of(complex, pieces, moved))
-    if (pair.first != pair.second) bonds.push_back({pair.first, pair.second, wall.area, wall.normal.normalized(), wall.center / wall.area});
+    if (pair.first != pair.second)
+      bonds.push_back({pair.first, pair.second, wall.area, wall.normal.normalized(), wall.center / wall.area});
   return bonds;
 }
 
-std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile, std::span<const Vec3> moved) {
+std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile,
+                               std::span<const Vec3> moved) {
   const auto walls = walls_of(complex, pieces);
   // The walls that the triangles of each piece belong to, in the order in which piece_mesh() gives them.
   std::vector<std::vector<std::pair<const Wall*, bool>>> wall_at(pieces.count);
@@ -64,7 +68,9 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
       if (piece < 0) continue;
       const bool crack = complex.face(FaceId(f)).crack > 0;
       const auto other = crack ? pieces.of_side[f * 2 + 1 - which] : piece;
-      wall_at[std::size_t(piece)].push_back({crack ? &walls.at(std::minmax(std::uint32_t(piece), std::uint32_t(other))) : nullptr, other < piece || (other == piece && which == 1)});
+      wall_at[std::size_t(piece)].push_back(
+          {crack ? &walls.at(std::minmax(std::uint32_t(piece), std::uint32_t(other))) : nullptr,
+           other < piece || (other == piece && which == 1)});
     }
   std::vector<Chunk> chunks;
   std::vector<SurfaceVertexId> rows;

@@ -52,7 +52,8 @@ void Complex::unlink_corners(FaceId f) {
 
 void Complex::link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
-    radial_[faces[i].index() * 3 + static_cast<std::size_t>(edge_in(face(faces[i]), a, b))] = faces[i + 1 == count ? 0 : i + 1];
+    radial_[faces[i].index() * 3 + static_cast<std::size_t>(edge_in(face(faces[i]), a, b))] =
+        faces[i + 1 == count ? 0 : i + 1];
 }
 
 void Complex::near(const Box3& box, std::vector<FaceId>& out) const {
@@ -130,13 +131,16 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   // Everything is checked on the side first; K is touched only when nothing can fail any more.
   std::vector<FaceId> removed = edit.removed_faces;
   std::sort(removed.begin(), removed.end());
-  if (std::adjacent_find(removed.begin(), removed.end()) != removed.end()) throw GeometryError("a face is removed twice");
+  if (std::adjacent_find(removed.begin(), removed.end()) != removed.end())
+    throw GeometryError("a face is removed twice");
   for (const FaceId f : removed)
-    if (f.value >= old_faces || !alive(f)) throw GeometryError("face " + std::to_string(f.value) + " is not there to be removed");
+    if (f.value >= old_faces || !alive(f))
+      throw GeometryError("face " + std::to_string(f.value) + " is not there to be removed");
   const auto is_removed = [&](FaceId f) { return std::binary_search(removed.begin(), removed.end(), f); };
   for (const auto& n : edit.new_faces) {
     for (const VertexId v : n.v)
-      if (v.value >= vertex_total) throw GeometryError("a new face names vertex " + std::to_string(v.value) + ", which is not there");
+      if (v.value >= vertex_total)
+        throw GeometryError("a new face names vertex " + std::to_string(v.value) + ", which is not there");
     if (n.v[0] == n.v[1] || n.v[1] == n.v[2] || n.v[2] == n.v[0]) throw GeometryError("a new face has a vertex twice");
     if (n.crack < 0) throw GeometryError("a crack's number is negative");
   }
@@ -158,7 +162,8 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (std::uint32_t i = 0; i < edit.new_faces.size(); ++i)
     for (int k = 0; k < 3; ++k)
       gains.push_back({key(edit.new_faces[i].v[k], edit.new_faces[i].v[(k + 1) % 3]), FaceId(old_faces + i)});
-  std::sort(gains.begin(), gains.end(), [](const Gain& x, const Gain& y) { return x.edge != y.edge ? x.edge < y.edge : x.face < y.face; });
+  std::sort(gains.begin(), gains.end(),
+            [](const Gain& x, const Gain& y) { return x.edge != y.edge ? x.edge < y.edge : x.face < y.face; });
   std::vector<std::pair<std::uint64_t, const ComplexEdit::Ring*>> given;
   for (const auto& ring : edit.rings) given.push_back({key(ring.a, ring.b), &ring});
   std::sort(given.begin(), given.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
@@ -184,23 +189,27 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
           ring.push_back(f);
           continue;
         }
-        const auto heir = std::find_if(fresh.begin(), fresh.end(), [&](FaceId n) { return edit.new_faces[n.value - old_faces].parent == f; });
+        const auto heir = std::find_if(fresh.begin(), fresh.end(),
+                                       [&](FaceId n) { return edit.new_faces[n.value - old_faces].parent == f; });
         if (heir == fresh.end()) continue;
         ring.push_back(*heir);
         fresh.erase(heir);
       }
     ring.insert(ring.end(), fresh.begin(), fresh.end());
-    while (order != given.end() && order->first < edge) ++order;  // an order for an edge that nothing touched says nothing new
+    while (order != given.end() && order->first < edge)
+      ++order;  // an order for an edge that nothing touched says nothing new
     if (order != given.end() && order->first == edge) {
       wanted = order->second->faces;
       if (order->second->a > order->second->b) std::reverse(wanted.begin(), wanted.end());
       sorted_wanted = wanted;
       std::sort(sorted_wanted.begin(), sorted_wanted.end());
       std::sort(ring.begin(), ring.end());
-      if (sorted_wanted != ring) throw GeometryError("the order given for edge " + edge_name(lo, hi) + " does not list its faces");
+      if (sorted_wanted != ring)
+        throw GeometryError("the order given for edge " + edge_name(lo, hi) + " does not list its faces");
       ring = wanted;
     } else if (!fresh.empty() && ring.size() >= 3) {
-      throw GeometryError("no order is given for edge " + edge_name(lo, hi) + ", which has " + std::to_string(ring.size()) + " faces");
+      throw GeometryError("no order is given for edge " + edge_name(lo, hi) + ", which has " +
+                          std::to_string(ring.size()) + " faces");
     }
     check_ring(ring, lo, hi, shape);
     const auto begin = static_cast<std::uint32_t>(ring_faces.size());
@@ -242,7 +251,8 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
   for (std::uint32_t i = 0; i < edit.new_faces.size(); ++i) {
     const auto& n = edit.new_faces[i];
     const FaceId f(old_faces + i);
-    faces_.push_back({n.v, n.crack, true, n.parent.valid() && n.parent.value < old_faces ? face(n.parent).source : ~0u});
+    faces_.push_back(
+        {n.v, n.crack, true, n.parent.valid() && n.parent.value < old_faces ? face(n.parent).source : ~0u});
     link_corners(f);
     for (int k = 0; k < 3; ++k) {
       touch(n.v[k]);
@@ -286,7 +296,8 @@ CrackDelta Complex::apply(const ComplexEdit& edit) {
 
 void Complex::remember(VertexId v, const std::vector<SurfaceVertexId>& gone) {
   const auto keep = [&](SurfaceVertexId id) {
-    if (undo_.stands.empty() || undo_.stands.back().v != id) undo_.stands.push_back({id, site(id), fan_side_[id.index()], fan_corner_[id.index()]});
+    if (undo_.stands.empty() || undo_.stands.back().v != id)
+      undo_.stands.push_back({id, site(id), fan_side_[id.index()], fan_corner_[id.index()]});
   };
   for (const FaceId f : faces_at(v)) {
     if (f.value >= undo_.faces) break;
@@ -307,9 +318,11 @@ void Complex::take_back() {
     --live_faces_;
   }
   points_.resize(undo_.vertices), first_corner_.resize(undo_.vertices), mark_.resize(undo_.vertices);
-  faces_.resize(undo_.faces), radial_.resize(std::size_t(3) * undo_.faces), next_corner_.resize(std::size_t(3) * undo_.faces);
+  faces_.resize(undo_.faces), radial_.resize(std::size_t(3) * undo_.faces),
+      next_corner_.resize(std::size_t(3) * undo_.faces);
   corner_vertex_.resize(std::size_t(6) * undo_.faces);
-  site_.resize(undo_.surface_vertices), fan_side_.resize(undo_.surface_vertices), fan_corner_.resize(undo_.surface_vertices);
+  site_.resize(undo_.surface_vertices), fan_side_.resize(undo_.surface_vertices),
+      fan_corner_.resize(undo_.surface_vertices);
   for (const FaceId f : undo_.removed) {
     faces_[f.index()].alive = true;
     link_corners(f);
@@ -319,7 +332,8 @@ void Complex::take_back() {
   }
   for (const auto& [at, next] : undo_.radial) radial_[at] = next;
   for (const auto& [at, id] : undo_.corners) corner_vertex_[at] = id;
-  for (const auto& s : undo_.stands) site_[s.v.index()] = s.site, fan_side_[s.v.index()] = s.side, fan_corner_[s.v.index()] = s.corner;
+  for (const auto& s : undo_.stands)
+    site_[s.v.index()] = s.site, fan_side_[s.v.index()] = s.side, fan_corner_[s.v.index()] = s.corner;
   crack_count_ = undo_.cracks;
   undo_ = {};
 }
@@ -341,7 +355,9 @@ void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelt
       for (int edge = corner_at(face(f), v), k = edge;;) {
         corners.push_back({s, k});
         if (s <= fan.lowest) fan.lowest = s, fan.corner = k;
-        if (const auto old = surface_vertex(s, k); old.valid() && (candidates.size() == fan.first_candidate || candidates.back() != old)) candidates.push_back(old);
+        if (const auto old = surface_vertex(s, k);
+            old.valid() && (candidates.size() == fan.first_candidate || candidates.back() != old))
+          candidates.push_back(old);
         const VertexId far = face(s.face).v[edge == k ? (k + 1) % 3 : edge];
         s = neighbor(s, edge);
         if (s == start) break;
@@ -351,7 +367,8 @@ void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelt
       const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(fan.first_candidate);
       std::sort(first, candidates.end());
       candidates.erase(std::unique(first, candidates.end()), candidates.end());
-      old_ids.insert(old_ids.end(), candidates.begin() + static_cast<std::ptrdiff_t>(fan.first_candidate), candidates.end());
+      old_ids.insert(old_ids.end(), candidates.begin() + static_cast<std::ptrdiff_t>(fan.first_candidate),
+                     candidates.end());
       fan.end_corner = corners.size(), fan.end_candidate = candidates.size();
       fans.push_back(fan);
     }
@@ -383,7 +400,8 @@ void Complex::refan(VertexId v, std::vector<SurfaceVertexId>& old_ids, CrackDelt
     if (!delta) continue;
     if (fresh) {
       delta->new_surface_vertices.push_back(id);
-      delta->copied_from.push_back(fan.first_candidate == fan.end_candidate ? SurfaceVertexId() : candidates[fan.first_candidate]);
+      delta->copied_from.push_back(fan.first_candidate == fan.end_candidate ? SurfaceVertexId()
+                                                                            : candidates[fan.first_candidate]);
     } else {
       delta->touched_surface_vertices.push_back(id);
     }

@@ -4,10 +4,10 @@
 #include <map>
 #include <unordered_map>
 
-#include "kerf/error.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/complex.h"
+#include "kerf/error.h"
 #include "surface/complex_internal.h"
 
 namespace geo {
@@ -29,7 +29,8 @@ void require_rows(const TriangleMesh& mesh) {
   }
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (!in_range(mesh.vertices[v]))
-      throw InputError("vertex " + std::to_string(v) + " has a coordinate that is not a finite number of sensible size; repair the file");
+      throw InputError("vertex " + std::to_string(v) +
+                       " has a coordinate that is not a finite number of sensible size; repair the file");
 }
 
 std::array<std::uint32_t, 3> sorted(std::array<VertexId, 3> v) {
@@ -94,7 +95,8 @@ class ComplexBuilder {
       for (const VertexId v : f.v)
         if (f.crack == 0) k.extent_.add(k.point(v));
     if (k.extent_.empty()) throw InputError("the surface has cracks but no skin");
-    if (!(k.extent_.diagonal() * largest_coordinate > 1)) throw InputError("the surface has no extent: its points are at one place or nearly so; scale it up");
+    if (!(k.extent_.diagonal() * largest_coordinate > 1))
+      throw InputError("the surface has no extent: its points are at one place or nearly so; scale it up");
     for (std::uint32_t f = 0; f < k.faces_.size(); ++f) {
       const auto c = k.corners(FaceId(f));
       k.index_.insert(f, box_of(c[0], c[1], c[2]));
@@ -104,7 +106,8 @@ class ComplexBuilder {
   /// Room for the first cracks, so that they do not copy everything to a larger place.
   void make_room() {
     const auto more = [](auto& v, std::size_t each) { v.reserve(v.size() + v.size() / 4 + 4096 * each); };
-    more(k.points_, 1), more(k.mark_, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1), more(k.fan_corner_, 1);
+    more(k.points_, 1), more(k.mark_, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1),
+        more(k.fan_corner_, 1);
     more(k.faces_, 1), more(k.radial_, 3), more(k.next_corner_, 3), more(k.corner_vertex_, 6);
     k.index_.reserve(k.faces_.capacity());
   }
@@ -149,16 +152,18 @@ Complex Complex::from_skin(const TriangleMesh& skin) {
       const VertexId a = builder.k.face(FaceId(f)).v[k], b = builder.k.face(FaceId(f)).v[(k + 1) % 3];
       const auto ring = builder.k.around(a, b);
       if (ring.size() == 1)
-        throw InputError("the surface is open: edge " + edge_name(a, b) + " has one triangle only; close the holes first");
+        throw InputError("the surface is open: edge " + edge_name(a, b) +
+                         " has one triangle only; close the holes first");
       if (ring.size() > 2)
-        throw InputError("the surface is not manifold: edge " + edge_name(a, b) + " has " + std::to_string(ring.size()) +
-                         " triangles; separate the parts that touch there");
+        throw InputError("the surface is not manifold: edge " + edge_name(a, b) + " has " +
+                         std::to_string(ring.size()) + " triangles; separate the parts that touch there");
       if (runs_upwards(builder.k.face(ring[0]), a, b) == runs_upwards(builder.k.face(ring[1]), a, b))
         throw InputError("triangles " + std::to_string(ring[0].value) + " and " + std::to_string(ring[1].value) +
                          " have opposite orientations; orient the surface consistently");
     }
   if (signed_volume(skin) <= 0)
-    throw InputError("the surface is inside out (volume " + std::to_string(signed_volume(skin)) + "); reverse its triangles");
+    throw InputError("the surface is inside out (volume " + std::to_string(signed_volume(skin)) +
+                     "); reverse its triangles");
   builder.finish();
   builder.fan_all();
   builder.make_room();
@@ -171,7 +176,8 @@ void ComplexBuilder::order_ring(VertexId lo, VertexId hi, std::vector<FaceId>& r
   std::map<std::array<SurfaceVertexId, 2>, std::vector<std::pair<FaceId, bool>>> derived;  // face, looks ccw
   for (const FaceId f : ring)
     for (int which = 0; which < (k.face(f).crack > 0 ? 2 : 1); ++which) {
-      const auto a = k.surface_vertex({f, which}, corner_at(k.face(f), lo)), b = k.surface_vertex({f, which}, corner_at(k.face(f), hi));
+      const auto a = k.surface_vertex({f, which}, corner_at(k.face(f), lo)),
+                 b = k.surface_vertex({f, which}, corner_at(k.face(f), hi));
       derived[{a, b}].push_back({f, faces_counterclockwise(k.face(f), which, lo, hi)});
     }
   const VertexId zero = apex(ring[0], lo, hi);
@@ -188,7 +194,8 @@ void ComplexBuilder::order_ring(VertexId lo, VertexId hi, std::vector<FaceId>& r
     if (sides.size() > 2) continue;
     if (sides[0].second == sides[1].second)
       throw InputError("two triangles at the edge between sites " + edge_name(lo, hi) + " have opposite orientations");
-    const FaceId from = sides[0].second ? sides[0].first : sides[1].first, to = sides[0].second ? sides[1].first : sides[0].first;
+    const FaceId from = sides[0].second ? sides[0].first : sides[1].first,
+                 to = sides[0].second ? sides[1].first : sides[0].first;
     next[from] = to;
     previous[to] = from;
   }
@@ -267,11 +274,13 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
     throw InputError("the surface gives sites or patches for some rows only");
   for (std::size_t t = 0; t < surface.patch.size(); ++t)
     if (std::abs(std::int64_t(surface.patch[t])) > largest_crack)
-      throw InputError("triangle " + std::to_string(t) + " is of crack " + std::to_string(surface.patch[t]) + ", which is out of range");
+      throw InputError("triangle " + std::to_string(t) + " is of crack " + std::to_string(surface.patch[t]) +
+                       ", which is out of range");
   std::uint32_t sites = 0;
   for (const auto s : surface.site) {
     if (s > 4 * surface.vertices.size() + 1024 * 1024 * 4)
-      throw InputError("site " + std::to_string(s) + " is out of range for " + std::to_string(surface.vertices.size()) + " vertices");
+      throw InputError("site " + std::to_string(s) + " is out of range for " + std::to_string(surface.vertices.size()) +
+                       " vertices");
     sites = std::max(sites, s + 1);
   }
   std::vector<Vec3> points(sites, Vec3::Zero());
@@ -279,7 +288,8 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
   for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
     const auto s = surface.site[v];
     if (known[s] && points[s] != surface.vertices[v])
-      throw InputError("vertices of site " + std::to_string(s) + " are at different places; give the undeformed surface");
+      throw InputError("vertices of site " + std::to_string(s) +
+                       " are at different places; give the undeformed surface");
     points[s] = surface.vertices[v];
     known[s] = true;
   }
@@ -309,9 +319,12 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
     if (patch == 0) continue;
     const auto twin = minus.find({sorted(v), patch});
     if (twin == minus.end())
-      throw InputError("triangle " + std::to_string(t) + " of crack " + std::to_string(patch) + " has no twin on the other side");
+      throw InputError("triangle " + std::to_string(t) + " of crack " + std::to_string(patch) +
+                       " has no twin on the other side");
     const auto w = ids(twin->second);
-    if (even(v) == even(w)) throw InputError("triangles " + std::to_string(t) + " and " + std::to_string(twin->second) + " are twins with the same orientation");
+    if (even(v) == even(w))
+      throw InputError("triangles " + std::to_string(t) + " and " + std::to_string(twin->second) +
+                       " are twins with the same orientation");
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j)
         if (w[j] == v[k]) builder.set_corner({f, 1}, k, surface.triangles[twin->second][j]);
@@ -329,7 +342,8 @@ Complex Complex::from_two_sided(const TriangleMesh& surface) {
 
 void Complex::trace_sources(const std::vector<std::uint32_t>& rows) {
   for (const Face& f : faces_)
-    if (f.source != ~0u && f.source >= rows.size()) throw InputError("the surface does not name a source for each triangle");
+    if (f.source != ~0u && f.source >= rows.size())
+      throw InputError("the surface does not name a source for each triangle");
   for (Face& f : faces_)
     if (f.source != ~0u) f.source = rows[f.source];
 }
@@ -337,7 +351,8 @@ void Complex::trace_sources(const std::vector<std::uint32_t>& rows) {
 ComplexEdit Complex::difference(const Complex& other) const {
   if (other.vertex_count() < vertex_count()) {
     for (std::uint32_t v = other.vertex_count(); v < vertex_count(); ++v)
-      if (!faces_at(VertexId(v)).empty()) throw InputError("the surface has not grown from the body's: it has fewer vertices");
+      if (!faces_at(VertexId(v)).empty())
+        throw InputError("the surface has not grown from the body's: it has fewer vertices");
   }
   const std::uint32_t common = std::min(vertex_count(), other.vertex_count());
   for (std::uint32_t v = 0; v < common; ++v)
@@ -355,7 +370,8 @@ ComplexEdit Complex::difference(const Complex& other) const {
   for (std::uint32_t f = 0; f < other.face_count(); ++f) {
     if (!other.faces_[f].alive) continue;
     const auto it = mine.find(sorted(other.faces_[f].v));
-    if (it != mine.end() && face(it->second).crack == other.faces_[f].crack && even(face(it->second).v) == even(other.faces_[f].v)) {
+    if (it != mine.end() && face(it->second).crack == other.faces_[f].crack &&
+        even(face(it->second).v) == even(other.faces_[f].v)) {
       translated[FaceId(f)] = it->second;
       kept[it->second.index()] = true;
     } else {
@@ -404,14 +420,17 @@ ComplexEdit Complex::difference(const Complex& other) const {
     made.find(Box3{middle, middle}.grown(off), candidates);
     const bool found = std::any_of(candidates.begin(), candidates.end(), [&](std::uint32_t id) {
       const auto p = other.corners(FaceId(id));
-      return other.face(FaceId(id)).crack == face(f).crack && (closest_point_on_triangle(middle, p[0], p[1], p[2]) - middle).norm() < off;
+      return other.face(FaceId(id)).crack == face(f).crack &&
+             (closest_point_on_triangle(middle, p[0], p[1], p[2]) - middle).norm() < off;
     });
     if (!found)
-      throw InputError(face(f).crack > 0 ? "crack " + std::to_string(face(f).crack) + " of the body was moved since; build the body anew from the new surface"
+      throw InputError(face(f).crack > 0 ? "crack " + std::to_string(face(f).crack) +
+                                               " of the body was moved since; build the body anew from the new surface"
                                          : "the surface has not grown from the body's: skin is gone");
   }
   for (const FaceId f : edit.removed_faces)
-    for (int k = 0; k < 3; ++k) touched[key(face(f).v[k], face(f).v[(k + 1) % 3])] = {face(f).v[k], face(f).v[(k + 1) % 3]};
+    for (int k = 0; k < 3; ++k)
+      touched[key(face(f).v[k], face(f).v[(k + 1) % 3])] = {face(f).v[k], face(f).v[(k + 1) % 3]};
   for (const auto& [edge, ends] : touched) {
     const auto ring = other.around(ends.first, ends.second);
     if (ring.size() < 3) continue;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kerf/error.h"
 #include "kerf/complex.h"
+#include "kerf/error.h"
 
 namespace geo {
 
@@ -33,9 +33,7 @@ inline int side_facing(const Complex::Face& f, VertexId a, VertexId b, bool coun
 
 inline bool has_side(const Complex::Face& f, int which) { return which == 0 || f.crack > 0; }
 
-inline std::string edge_name(VertexId a, VertexId b) {
-  return std::to_string(a.value) + "-" + std::to_string(b.value);
-}
+inline std::string edge_name(VertexId a, VertexId b) { return std::to_string(a.value) + "-" + std::to_string(b.value); }
 
 /// Throws GeometryError unless every wedge of the ring is bounded by two material sides or by two air sides.
 template <class Shape>

@@ -25,13 +25,15 @@ TriangleMesh hull_of(const std::vector<Vec3>& points, std::size_t corners) {
   return hull;
 }
 
-// A closed soup of triangles. Where it was cut off it is closed by a fan, which may pass over itself, but not beyond the hull.
+// A closed soup of triangles. Where it was cut off it is closed by a fan, which may pass over itself, but not beyond
+// the hull.
 struct Part {
   std::vector<std::array<Vec3, 3>> triangles;
   TriangleMesh hull;
   double volume = 0;  // of the hull
 
-  Part(std::vector<std::array<Vec3, 3>> soup, const std::vector<Vec3>& points, std::size_t corners) : triangles(std::move(soup)), hull(hull_of(points, corners)), volume(signed_volume(hull)) {}
+  Part(std::vector<std::array<Vec3, 3>> soup, const std::vector<Vec3>& points, std::size_t corners)
+      : triangles(std::move(soup)), hull(hull_of(points, corners)), volume(signed_volume(hull)) {}
 };
 
 // What of a part is where `side` of (n · x − offset) is negative, closed again.
@@ -101,10 +103,13 @@ std::vector<TriangleMesh> convex_parts(const TriangleMesh& mesh, std::size_t par
   std::vector<Division> next;
   while (all.size() < parts) {
     for (std::size_t p = next.size(); p < all.size(); ++p) next.push_back(divide(all[p], corners));
-    const auto most = static_cast<std::size_t>(std::max_element(next.begin(), next.end(), [](const auto& a, const auto& b) { return a.saved < b.saved; }) - next.begin());
+    const auto most = static_cast<std::size_t>(
+        std::max_element(next.begin(), next.end(), [](const auto& a, const auto& b) { return a.saved < b.saved; }) -
+        next.begin());
     if (next[most].saved <= least) break;
     auto halves = std::move(next[most].halves);
-    all.erase(all.begin() + static_cast<std::ptrdiff_t>(most)), next.erase(next.begin() + static_cast<std::ptrdiff_t>(most));
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(most)),
+        next.erase(next.begin() + static_cast<std::ptrdiff_t>(most));
     for (Part& half : halves) all.push_back(std::move(half));
   }
   std::vector<TriangleMesh> hulls;

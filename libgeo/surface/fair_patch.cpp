@@ -28,12 +28,14 @@ double sharpness(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 class Patch {
  public:
-  Patch(const std::vector<Vec3>& rim, const std::vector<std::vector<Vec3>>& beyond, const std::function<bool(std::uint32_t, std::uint32_t)>& joined)
+  Patch(const std::vector<Vec3>& rim, const std::vector<std::vector<Vec3>>& beyond,
+        const std::function<bool(std::uint32_t, std::uint32_t)>& joined)
       : beyond_(beyond), joined_(joined), rim_(rim.size()), at_(rim), size_(rim.size()) {
     std::vector<std::uint32_t> polygon(rim_);
     std::iota(polygon.begin(), polygon.end(), 0u);
     triangles_ = triangles_of(rim, polygon);
-    for (std::size_t i = 0; i < rim_; ++i) size_[i] = 0.5 * ((rim[i] - rim[(i + 1) % rim_]).norm() + (rim[i] - rim[(i + rim_ - 1) % rim_]).norm());
+    for (std::size_t i = 0; i < rim_; ++i)
+      size_[i] = 0.5 * ((rim[i] - rim[(i + 1) % rim_]).norm() + (rim[i] - rim[(i + rim_ - 1) % rim_]).norm());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) link(t);
   }
 
@@ -52,7 +54,9 @@ class Patch {
     return !(count <= most_triangles);
   }
 
-  FairPatch result() const { return {{at_.begin() + static_cast<std::ptrdiff_t>(rim_), at_.end()}, between_, triangles_}; }
+  FairPatch result() const {
+    return {{at_.begin() + static_cast<std::ptrdiff_t>(rim_), at_.end()}, between_, triangles_};
+  }
 
  private:
   // Who is on both sides of each edge.
@@ -66,7 +70,9 @@ class Patch {
       if (at->second.empty()) sides_.erase(at);
     }
   }
-  double sharpness_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const { return sharpness(at_[a], at_[b], at_[c]); }
+  double sharpness_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return sharpness(at_[a], at_[b], at_[c]);
+  }
   bool flip(const Edge& edge);
   void relax();
   bool divide();
@@ -80,23 +86,29 @@ class Patch {
   std::map<Edge, std::vector<std::uint32_t>> sides_;
 };
 
-// Exchanges an edge for the other diagonal where that makes the sharper of both triangles less sharp, or the edge may not be: this ends.
+// Exchanges an edge for the other diagonal where that makes the sharper of both triangles less sharp, or the edge may
+// not be: this ends.
 bool Patch::flip(const Edge& edge) {
   const auto at = sides_.find(edge);
   if (at == sides_.end() || at->second.size() != 2) return false;
   const auto s = at->second[0], t = at->second[1];
   const auto& one = triangles_[s];
-  const int k = static_cast<int>(std::find_if(one.begin(), one.end(), [&](auto v) { return v != edge.first && v != edge.second; }) - one.begin());
+  const int k = static_cast<int>(
+      std::find_if(one.begin(), one.end(), [&](auto v) { return v != edge.first && v != edge.second; }) - one.begin());
   const std::uint32_t c = one[k], a = one[(k + 1) % 3], b = one[(k + 2) % 3];
   const auto& other = triangles_[t];
   const std::uint32_t d = *std::find_if(other.begin(), other.end(), [&](auto v) { return v != a && v != b; });
   if (c == d || sides_.count(std::minmax(c, d)) || (c < rim_ && d < rim_ && joined_(c, d))) return false;
   // Seen along its normal the quad is convex: nothing folds.
   const Vec3 normal = (at_[d] - at_[c]).cross(at_[b] - at_[a]);
-  const auto faces = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) { return (at_[j] - at_[i]).cross(at_[k] - at_[i]).dot(normal) > 0; };
+  const auto faces = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+    return (at_[j] - at_[i]).cross(at_[k] - at_[i]).dot(normal) > 0;
+  };
   if (!faces(a, d, c) || !faces(d, b, c)) return false;
   const bool there = edge.second < rim_ && joined_(edge.first, edge.second);  // the surface has it already
-  if (!there && !(std::max(sharpness_of(a, d, c), sharpness_of(d, b, c)) < std::max(sharpness_of(a, b, c), sharpness_of(b, a, d)))) return false;
+  if (!there && !(std::max(sharpness_of(a, d, c), sharpness_of(d, b, c)) <
+                  std::max(sharpness_of(a, b, c), sharpness_of(b, a, d))))
+    return false;
   unlink(s), unlink(t);
   triangles_[s] = {a, d, c}, triangles_[t] = {d, b, c};
   link(s), link(t);
@@ -124,14 +136,17 @@ bool Patch::divide() {
     const auto [a, b, c] = triangles_[t];
     const Vec3 middle = (at_[a] + at_[b] + at_[c]) / 3;
     const double size = (size_[a] + size_[b] + size_[c]) / 3;
-    const auto far = [&](std::uint32_t v) { return 2 * (at_[v] - middle).squaredNorm() > std::max(size * size, size_[v] * size_[v]); };
+    const auto far = [&](std::uint32_t v) {
+      return 2 * (at_[v] - middle).squaredNorm() > std::max(size * size, size_[v] * size_[v]);
+    };
     if (!far(a) || !far(b) || !far(c)) continue;
     const auto m = static_cast<std::uint32_t>(at_.size());
     at_.push_back(middle), size_.push_back(size), between_.push_back({a, b, c});
     unlink(t);
     triangles_[t] = {a, b, m};
     triangles_.insert(triangles_.end(), {{b, c, m}, {c, a, m}});
-    link(t), link(static_cast<std::uint32_t>(triangles_.size()) - 2), link(static_cast<std::uint32_t>(triangles_.size()) - 1);
+    link(t), link(static_cast<std::uint32_t>(triangles_.size()) - 2),
+        link(static_cast<std::uint32_t>(triangles_.size()) - 1);
     if (double(triangles_.size()) > most_triangles) return false;
     divided = true;
   }
@@ -143,7 +158,8 @@ void Patch::fair() {
   const auto inner = static_cast<Eigen::Index>(at_.size() - rim_);
   if (inner == 0) return;
   std::vector<std::vector<std::uint32_t>> around(at_.size());
-  for (const auto& [edge, triangles] : sides_) around[edge.first].push_back(edge.second), around[edge.second].push_back(edge.first);
+  for (const auto& [edge, triangles] : sides_)
+    around[edge.first].push_back(edge.second), around[edge.second].push_back(edge.first);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixX3d fixed = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(at_.size()), 3);
   for (std::uint32_t v = 0; v < at_.size(); ++v) {
@@ -154,8 +170,10 @@ void Patch::fair() {
       for (const Vec3& p : beyond_[v]) sum += weight(p);
     if (!std::isfinite(sum) || !(sum > 0)) continue;  // corners at one place: no mean
     const auto add = [&](std::uint32_t w, double share) {
-      if (w >= rim_) entries.emplace_back(v, w - rim_, share);
-      else fixed.row(v) += share * at_[w].transpose();
+      if (w >= rim_)
+        entries.emplace_back(v, w - rim_, share);
+      else
+        fixed.row(v) += share * at_[w].transpose();
     };
     add(v, -1);
     for (const auto w : around[v]) add(w, weight(at_[w]) / sum);

@@ -30,41 +30,66 @@ std::vector<Stroke> strokes_of(char letter) {
   constexpr double pi = std::numbers::pi;
   const Stroke left{l, b, l, t}, right{r, b, r, t}, top{l, t, r, t}, middle{l, m, r, m}, bottom{l, b, r, b};
   switch (letter) {
-    case 'A': return {{l, b, c, t}, {c, t, r, b}, {0.11, 0.27, 0.49, 0.27}};
-    case 'B': return {left, top, middle, bottom, right};
-    case 'C': return ring(pi / 4, 7 * pi / 4);
-    case 'D': return {left, {l, t, c, t}, {c, t, r, 0.55}, {r, 0.55, r, 0.25}, {r, 0.25, c, b}, {c, b, l, b}};
-    case 'E': return {left, top, middle, bottom};
-    case 'F': return {left, top, middle};
+    case 'A':
+      return {{l, b, c, t}, {c, t, r, b}, {0.11, 0.27, 0.49, 0.27}};
+    case 'B':
+      return {left, top, middle, bottom, right};
+    case 'C':
+      return ring(pi / 4, 7 * pi / 4);
+    case 'D':
+      return {left, {l, t, c, t}, {c, t, r, 0.55}, {r, 0.55, r, 0.25}, {r, 0.25, c, b}, {c, b, l, b}};
+    case 'E':
+      return {left, top, middle, bottom};
+    case 'F':
+      return {left, top, middle};
     case 'G': {
       auto g = ring(pi / 4, 2 * pi);
       g.push_back({r, m, c, m});
       return g;
     }
-    case 'H': return {left, right, middle};
-    case 'I': return {{c, b, c, t}};
-    case 'J': return {{r, t, r, 0.2}, {r, 0.2, c, b}, {c, b, l, 0.2}};
-    case 'K': return {left, {l, m, r, t}, {l, m, r, b}};
-    case 'L': return {left, bottom};
-    case 'M': return {left, right, {l, t, c, m}, {c, m, r, t}};
-    case 'N': return {left, right, {l, t, r, b}};
-    case 'O': return ring(0, 2 * pi);
-    case 'P': return {left, top, middle, {r, m, r, t}};
+    case 'H':
+      return {left, right, middle};
+    case 'I':
+      return {{c, b, c, t}};
+    case 'J':
+      return {{r, t, r, 0.2}, {r, 0.2, c, b}, {c, b, l, 0.2}};
+    case 'K':
+      return {left, {l, m, r, t}, {l, m, r, b}};
+    case 'L':
+      return {left, bottom};
+    case 'M':
+      return {left, right, {l, t, c, m}, {c, m, r, t}};
+    case 'N':
+      return {left, right, {l, t, r, b}};
+    case 'O':
+      return ring(0, 2 * pi);
+    case 'P':
+      return {left, top, middle, {r, m, r, t}};
     case 'Q': {
       auto q = ring(0, 2 * pi);
       q.push_back({c, 0.25, r, b});
       return q;
     }
-    case 'R': return {left, top, middle, {r, m, r, t}, {c, m, r, b}};
-    case 'S': return {top, {l, t, l, m}, middle, {r, m, r, b}, bottom};
-    case 'T': return {{c, b, c, t}, top};
-    case 'U': return {{l, t, l, 0.2}, {l, 0.2, c, b}, {c, b, r, 0.2}, {r, 0.2, r, t}};
-    case 'V': return {{l, t, c, b}, {c, b, r, t}};
-    case 'W': return {left, right, {l, b, c, m}, {c, m, r, b}};
-    case 'X': return {{l, b, r, t}, {l, t, r, b}};
-    case 'Y': return {{l, t, c, m}, {r, t, c, m}, {c, m, c, b}};
-    case 'Z': return {top, bottom, {l, b, r, t}};
-    default: throw InputError(std::string("no block letter for '") + letter + "'; use A to Z");
+    case 'R':
+      return {left, top, middle, {r, m, r, t}, {c, m, r, b}};
+    case 'S':
+      return {top, {l, t, l, m}, middle, {r, m, r, b}, bottom};
+    case 'T':
+      return {{c, b, c, t}, top};
+    case 'U':
+      return {{l, t, l, 0.2}, {l, 0.2, c, b}, {c, b, r, 0.2}, {r, 0.2, r, t}};
+    case 'V':
+      return {{l, t, c, b}, {c, b, r, t}};
+    case 'W':
+      return {left, right, {l, b, c, m}, {c, m, r, b}};
+    case 'X':
+      return {{l, b, r, t}, {l, t, r, b}};
+    case 'Y':
+      return {{l, t, c, m}, {r, t, c, m}, {c, m, c, b}};
+    case 'Z':
+      return {top, bottom, {l, b, r, t}};
+    default:
+      throw InputError(std::string("no block letter for '") + letter + "'; use A to Z");
   }
 }
 
@@ -88,8 +113,10 @@ struct Region {
 Region contour(const std::vector<Stroke>& strokes, int resolution) {
   constexpr double pen = 0.1, pad = 0.15;
   const double h = 1.0 / resolution;
-  const int nx = static_cast<int>(std::ceil((0.6 + 2 * pad) / h)), ny = static_cast<int>(std::ceil((0.8 + 2 * pad) / h));
-  // Sampled off the strokes' own lines, so that no value is zero; a value is never left so small that a cell degenerates.
+  const int nx = static_cast<int>(std::ceil((0.6 + 2 * pad) / h)),
+            ny = static_cast<int>(std::ceil((0.8 + 2 * pad) / h));
+  // Sampled off the strokes' own lines, so that no value is zero; a value is never left so small that a cell
+  // degenerates.
   const auto value = [&](int i, int j) {
     const double v = pen - distance_to(strokes, i * h - pad + 0.37e-3, j * h - pad + 0.53e-3);
     return std::abs(v) < 0.02 * h ? (v < 0 ? -0.02 : 0.02) * h : v;
@@ -150,7 +177,8 @@ Region contour(const std::vector<Stroke>& strokes, int resolution) {
 }  // namespace
 
 TriangleMesh make_letter(char letter, double depth, int resolution) {
-  if (resolution < 12 || !(depth > 0)) throw InputError("a letter needs a resolution of at least 12 and a positive depth");
+  if (resolution < 12 || !(depth > 0))
+    throw InputError("a letter needs a resolution of at least 12 and a positive depth");
   const Region region = contour(strokes_of(letter), resolution);
   const int layers = std::max(1, static_cast<int>(std::lround(depth * resolution)));
   const auto n = static_cast<std::uint32_t>(region.points.size());

@@ -37,7 +37,8 @@ class Pass {
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
       divide(mesh_.triangles[i], triangles);
       source.resize(triangles.size(), mesh_.source[i]);
-      if (triangles.size() > most_triangles) throw InputError("edges so short would make more than 20 million triangles; let them be longer");
+      if (triangles.size() > most_triangles)
+        throw InputError("edges so short would make more than 20 million triangles; let them be longer");
     }
     mesh_.triangles.swap(triangles), mesh_.source.swap(source);
     return true;
@@ -58,16 +59,21 @@ class Pass {
     // Turned so that the edge from 0 to 1 is divided, and, of two, that from 1 to 2 as well.
     int k = 0;
     while (m[k] == none || (whole == 1 && m[(k + 1) % 3] == none)) ++k;
-    const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], ab = m[k], bc = m[(k + 1) % 3], ca = m[(k + 2) % 3];
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], ab = m[k], bc = m[(k + 1) % 3],
+                        ca = m[(k + 2) % 3];
     if (whole == 2) {
       parts.insert(parts.end(), {{a, ab, c}, {ab, b, c}});
     } else if (whole == 0) {
       parts.insert(parts.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     } else {
       parts.push_back({ab, b, bc});
-      const auto length = [&](std::uint32_t i, std::uint32_t j) { return (mesh_.vertices[i] - mesh_.vertices[j]).squaredNorm(); };
-      if (length(a, bc) < length(ab, c)) parts.insert(parts.end(), {{a, ab, bc}, {a, bc, c}});
-      else parts.insert(parts.end(), {{a, ab, c}, {ab, bc, c}});
+      const auto length = [&](std::uint32_t i, std::uint32_t j) {
+        return (mesh_.vertices[i] - mesh_.vertices[j]).squaredNorm();
+      };
+      if (length(a, bc) < length(ab, c))
+        parts.insert(parts.end(), {{a, ab, bc}, {a, bc, c}});
+      else
+        parts.insert(parts.end(), {{a, ab, c}, {ab, bc, c}});
     }
   }
 

@@ -23,14 +23,17 @@ struct Side {
   Edge edge;  // ascending
   std::uint32_t triangle;
   int corner;  // where it begins
-  friend bool operator<(const Side& a, const Side& b) { return std::tie(a.edge, a.triangle, a.corner) < std::tie(b.edge, b.triangle, b.corner); }
+  friend bool operator<(const Side& a, const Side& b) {
+    return std::tie(a.edge, a.triangle, a.corner) < std::tie(b.edge, b.triangle, b.corner);
+  }
 };
 
 // The sides of all triangles, those of one edge together.
 std::vector<Side> sides_of(const TriangleMesh& mesh) {
   std::vector<Side> sides;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) sides.push_back({std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t, k});
+    for (int k = 0; k < 3; ++k)
+      sides.push_back({std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t, k});
   std::sort(sides.begin(), sides.end());
   return sides;
 }
@@ -70,7 +73,8 @@ void turn(TriangleMesh& mesh, std::uint32_t t) {
     if (n.dot(outwards) < 0) n = -n;
 }
 
-// Triangles with a vertex twice; of those with the same three vertices all but one, or all where as many run one way as the other.
+// Triangles with a vertex twice; of those with the same three vertices all but one, or all where as many run one way as
+// the other.
 std::size_t drop_void(TriangleMesh& mesh) {
   std::map<Triangle, std::pair<int, std::vector<std::uint32_t>>> same;
   std::vector<char> kept(mesh.triangles.size(), 0);
@@ -136,9 +140,11 @@ Parts orient(TriangleMesh& mesh, std::size_t& turned) {
   return parts;
 }
 
-// Loops of edges with one triangle only, each as the sides that it runs along; a loop that passes a vertex twice is two.
+// Loops of edges with one triangle only, each as the sides that it runs along; a loop that passes a vertex twice is
+// two.
 std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
-  std::multimap<std::uint32_t, Side> from;  // a hole runs against its rim's triangles: by the vertex where it comes to a side
+  std::multimap<std::uint32_t, Side>
+      from;  // a hole runs against its rim's triangles: by the vertex where it comes to a side
   each_edge(sides_of(mesh), [&](std::span<const Side> s) {
     if (s.size() == 1) from.emplace(mesh.triangles[s[0].triangle][(s[0].corner + 1) % 3], s[0]);
   });
@@ -150,7 +156,8 @@ std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
       if (const auto seen = place.find(v); seen != place.end()) {
         const std::size_t first = seen->second;
         rims.emplace_back(way.begin() + static_cast<std::ptrdiff_t>(first), way.end());
-        for (std::size_t i = first; i < way.size(); ++i) place.erase(mesh.triangles[way[i].triangle][(way[i].corner + 1) % 3]);
+        for (std::size_t i = first; i < way.size(); ++i)
+          place.erase(mesh.triangles[way[i].triangle][(way[i].corner + 1) % 3]);
         way.resize(first);
       }
       const auto next = from.find(v);
@@ -166,9 +173,12 @@ std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
 
 // Adds a patch over the hole that the rim runs along; what its corners have goes from the rim inwards.
 void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch& patch) {
-  const auto corners = static_cast<std::uint32_t>(rim.size()), first = static_cast<std::uint32_t>(mesh.vertices.size()), rows = static_cast<std::uint32_t>(mesh.triangles.size());
+  const auto corners = static_cast<std::uint32_t>(rim.size()), first = static_cast<std::uint32_t>(mesh.vertices.size()),
+             rows = static_cast<std::uint32_t>(mesh.triangles.size());
   mesh.vertices.insert(mesh.vertices.end(), patch.inner.begin(), patch.inner.end());
-  const auto vertex_of = [&](std::uint32_t c) { return c < corners ? mesh.triangles[rim[c].triangle][(rim[c].corner + 1) % 3] : first + c - corners; };
+  const auto vertex_of = [&](std::uint32_t c) {
+    return c < corners ? mesh.triangles[rim[c].triangle][(rim[c].corner + 1) % 3] : first + c - corners;
+  };
   const auto rim_of = [&](std::uint32_t c) {
     while (c >= corners) c = patch.between[c - corners][0];
     return rim[c].triangle;
@@ -186,9 +196,13 @@ void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch
   };
   Attributes& a = mesh.attributes;
   spread(a.uv, means), spread(a.color, means);
-  const auto normal_of = [&](std::uint32_t t) { return face_normal(mesh.vertices[mesh.triangles[t][0]], mesh.vertices[mesh.triangles[t][1]], mesh.vertices[mesh.triangles[t][2]]); };
+  const auto normal_of = [&](std::uint32_t t) {
+    return face_normal(mesh.vertices[mesh.triangles[t][0]], mesh.vertices[mesh.triangles[t][1]],
+                       mesh.vertices[mesh.triangles[t][2]]);
+  };
   if (patch.inner.empty()) {
-    for (auto t = rows; t < mesh.triangles.size() && !a.normal.empty(); ++t) a.normal.push_back({normal_of(t), normal_of(t), normal_of(t)});
+    for (auto t = rows; t < mesh.triangles.size() && !a.normal.empty(); ++t)
+      a.normal.push_back({normal_of(t), normal_of(t), normal_of(t)});
   } else {
     spread(a.normal, [&](auto& at) {
       at.resize(corners + patch.inner.size(), Vec3::Zero());
@@ -204,7 +218,8 @@ void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch
   }
 }
 
-// Smooth patches in place of flat ones, as long as no triangle comes to cross another one, and no edge has more than two.
+// Smooth patches in place of flat ones, as long as no triangle comes to cross another one, and no edge has more than
+// two.
 class SmoothPatches {
  public:
   explicit SmoothPatches(TriangleMesh& mesh) : mesh_(mesh), around_(mesh.vertices.size()) {
@@ -213,12 +228,17 @@ class SmoothPatches {
   /// The surface without patches: `rows` of it are there.
   void look_around(std::uint32_t rows) {
     for (std::uint32_t t = 0; t < rows; ++t)
-      for (int k = 0; k < 3; ++k) around_[mesh_.triangles[t][k]].insert({mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][(k + 2) % 3]});
+      for (int k = 0; k < 3; ++k)
+        around_[mesh_.triangles[t][k]].insert({mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][(k + 2) % 3]});
   }
-  /// Adds one for the hole whose flat patch is in rows `first` to `last`, which count no longer then; false: it does not fit.
-  bool replace(const std::vector<Side>& rim, const std::vector<std::uint32_t>& polygon, std::uint32_t first, std::uint32_t last) {
+  /// Adds one for the hole whose flat patch is in rows `first` to `last`, which count no longer then; false: it does
+  /// not fit.
+  bool replace(const std::vector<Side>& rim, const std::vector<std::uint32_t>& polygon, std::uint32_t first,
+               std::uint32_t last) {
     for (auto t = first; t < last; ++t) forget(t);
-    const FairPatch patch = fair_patch(positions(polygon), beyond(polygon), [&](std::uint32_t i, std::uint32_t j) { return edges_.count(std::minmax(polygon[i], polygon[j])) > 0; });
+    const FairPatch patch = fair_patch(positions(polygon), beyond(polygon), [&](std::uint32_t i, std::uint32_t j) {
+      return edges_.count(std::minmax(polygon[i], polygon[j])) > 0;
+    });
     if (!fits(polygon, patch)) {
       for (auto t = first; t < last; ++t) add(t);
       return false;
@@ -230,8 +250,13 @@ class SmoothPatches {
   }
 
  private:
-  std::array<Vec3, 3> corners(std::uint32_t t) const { return {mesh_.vertices[mesh_.triangles[t][0]], mesh_.vertices[mesh_.triangles[t][1]], mesh_.vertices[mesh_.triangles[t][2]]}; }
-  Edge edge(std::uint32_t t, int k) const { return std::minmax(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]); }
+  std::array<Vec3, 3> corners(std::uint32_t t) const {
+    return {mesh_.vertices[mesh_.triangles[t][0]], mesh_.vertices[mesh_.triangles[t][1]],
+            mesh_.vertices[mesh_.triangles[t][2]]};
+  }
+  Edge edge(std::uint32_t t, int k) const {
+    return std::minmax(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]);
+  }
   void add(std::uint32_t t) {
     const auto p = corners(t);
     index_.insert(t, box_of(p[0], p[1], p[2]));
@@ -257,21 +282,28 @@ class SmoothPatches {
   }
   // Adds the patch for as long as it takes to look.
   bool fits(const std::vector<std::uint32_t>& polygon, const FairPatch& patch) {
-    const auto n = static_cast<std::uint32_t>(polygon.size()), rows = static_cast<std::uint32_t>(mesh_.triangles.size());
+    const auto n = static_cast<std::uint32_t>(polygon.size()),
+               rows = static_cast<std::uint32_t>(mesh_.triangles.size());
     const auto vertices = mesh_.vertices.size();
     if (patch.triangles.empty()) return false;
     for (const auto& t : patch.triangles)
       for (int k = 0; k < 3; ++k)
-        if (const auto i = t[k], j = t[(k + 1) % 3]; i < n && j < n && (i + 1) % n != j && (j + 1) % n != i && edges_.count(std::minmax(polygon[i], polygon[j]))) return false;
+        if (const auto i = t[k], j = t[(k + 1) % 3];
+            i < n && j < n && (i + 1) % n != j && (j + 1) % n != i && edges_.count(std::minmax(polygon[i], polygon[j])))
+          return false;
     mesh_.vertices.insert(mesh_.vertices.end(), patch.inner.begin(), patch.inner.end());
-    const auto row_of = [&](std::uint32_t c) { return c < n ? polygon[c] : static_cast<std::uint32_t>(vertices) + c - n; };
+    const auto row_of = [&](std::uint32_t c) {
+      return c < n ? polygon[c] : static_cast<std::uint32_t>(vertices) + c - n;
+    };
     for (const auto& [a, b, c] : patch.triangles) mesh_.triangles.push_back({row_of(a), row_of(b), row_of(c)});
     auto t = rows;
     for (bool fit = true; fit && t < mesh_.triangles.size(); t += fit) {
       const auto p = corners(t);
       near_.clear();
       index_.find(box_of(p[0], p[1], p[2]), near_);
-      fit = !collinear(p[0], p[1], p[2]) && std::none_of(near_.begin(), near_.end(), [&](std::uint32_t other) { return faces_cross(mesh_.triangles[t], p, mesh_.triangles[other], corners(other)); });
+      fit = !collinear(p[0], p[1], p[2]) && std::none_of(near_.begin(), near_.end(), [&](std::uint32_t other) {
+        return faces_cross(mesh_.triangles[t], p, mesh_.triangles[other], corners(other));
+      });
       if (fit) index_.insert(t, box_of(p[0], p[1], p[2]));
     }
     const bool all = t == mesh_.triangles.size();
@@ -282,7 +314,7 @@ class SmoothPatches {
 
   TriangleMesh& mesh_;
   TriangleIndex index_;
-  std::map<Edge, int> edges_;                  // how many triangles they have
+  std::map<Edge, int> edges_;                    // how many triangles they have
   std::vector<std::set<std::uint32_t>> around_;  // of the vertices of the surface without patches
   std::vector<std::uint32_t> near_;
 };
@@ -306,7 +338,8 @@ void close_holes(TriangleMesh& mesh, Repairs& done, bool smooth) {
   patches.look_around(first[0]);
   std::vector<char> kept(count(), 1);
   for (std::size_t hole = 0; hole < rims.size(); ++hole) {
-    if (polygons[hole].size() == 3 || !patches.replace(rims[hole], polygons[hole], first[hole], first[hole + 1])) continue;
+    if (polygons[hole].size() == 3 || !patches.replace(rims[hole], polygons[hole], first[hole], first[hole + 1]))
+      continue;
     std::fill(kept.begin() + first[hole], kept.begin() + first[hole + 1], 0);
     ++done.smooth;
   }
@@ -315,7 +348,8 @@ void close_holes(TriangleMesh& mesh, Repairs& done, bool smooth) {
   keep(mesh, kept);
 }
 
-// Shells outwards; those wholly inside another are cavities where they ran the other way than that one, else hidden and left out.
+// Shells outwards; those wholly inside another are cavities where they ran the other way than that one, else hidden and
+// left out.
 void arrange_shells(TriangleMesh& mesh, const Parts& parts, Repairs& done) {
   struct Shell {
     std::vector<std::uint32_t> rows;
@@ -337,11 +371,16 @@ void arrange_shells(TriangleMesh& mesh, const Parts& parts, Repairs& done) {
   for (Shell& outer : shells) {
     TriangleBvh tree;
     for (Shell& s : shells) {
-      if (&s == &outer || !((outer.box.lo.array() < s.box.lo.array()).all() && (s.box.hi.array() < outer.box.hi.array()).all())) continue;
+      if (&s == &outer ||
+          !((outer.box.lo.array() < s.box.lo.array()).all() && (s.box.hi.array() < outer.box.hi.array()).all()))
+        continue;
       if (tree.empty()) tree = TriangleBvh(outer.corners);
-      if (!std::all_of(s.corners.begin(), s.corners.end(), [&](const auto& t) { return tree.inside(t[0]) && tree.inside(t[1]) && tree.inside(t[2]); })) continue;
+      if (!std::all_of(s.corners.begin(), s.corners.end(),
+                       [&](const auto& t) { return tree.inside(t[0]) && tree.inside(t[1]) && tree.inside(t[2]); }))
+        continue;
       ++s.depth;
-      if (s.within == ~0u || std::abs(outer.volume) < std::abs(shells[s.within].volume)) s.within = static_cast<std::uint32_t>(&outer - shells.data());
+      if (s.within == ~0u || std::abs(outer.volume) < std::abs(shells[s.within].volume))
+        s.within = static_cast<std::uint32_t>(&outer - shells.data());
     }
   }
   std::vector<char> kept(mesh.triangles.size(), 1);
@@ -349,8 +388,10 @@ void arrange_shells(TriangleMesh& mesh, const Parts& parts, Repairs& done) {
     const bool inner = s.depth % 2 == 1, hidden = inner && (s.volume > 0) == (shells[s.within].volume > 0);
     if (hidden) ++done.hidden;
     for (const auto t : s.rows)
-      if (hidden) kept[t] = 0;
-      else if ((s.volume > 0) == inner) turn(mesh, t), ++done.turned;
+      if (hidden)
+        kept[t] = 0;
+      else if ((s.volume > 0) == inner)
+        turn(mesh, t), ++done.turned;
   }
   keep(mesh, kept);
 }

@@ -5,7 +5,6 @@
 #include <map>
 #include <numbers>
 
-
 #include "kerf/error.h"
 
 namespace geo {
@@ -16,9 +15,10 @@ constexpr double golden = 1.618033988749895;
 constexpr double icosahedron_points[12][3] = {{-1, golden, 0}, {1, golden, 0}, {-1, -golden, 0}, {1, -golden, 0},
                                               {0, -1, golden}, {0, 1, golden}, {0, -1, -golden}, {0, 1, -golden},
                                               {golden, 0, -1}, {golden, 0, 1}, {-golden, 0, -1}, {-golden, 0, 1}};
-constexpr std::uint32_t icosahedron_faces[20][3] = {
-    {0, 11, 5}, {0, 5, 1}, {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-    {3, 9, 4},  {3, 4, 2}, {3, 2, 6},   {3, 6, 8},  {3, 8, 9},   {4, 9, 5}, {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+constexpr std::uint32_t icosahedron_faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                                    {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                                    {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                                    {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
 double bump(double x) { return std::exp(-x * x); }
 
@@ -29,9 +29,10 @@ TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& 
   TriangleMesh mesh;
   // A grid point is known by its integer weights at the icosahedron's corners, so that neighbours share it exactly.
   std::map<std::array<std::uint32_t, 6>, std::uint32_t> rows;
-  const auto row_of = [&](const std::uint32_t (&face)[3], int wa, int wb, int wc) {
-    std::array<std::pair<std::uint32_t, std::uint32_t>, 3> weights{
-        {{face[0], static_cast<std::uint32_t>(wa)}, {face[1], static_cast<std::uint32_t>(wb)}, {face[2], static_cast<std::uint32_t>(wc)}}};
+  const auto row_of = [&](const std::uint32_t(&face)[3], int wa, int wb, int wc) {
+    std::array<std::pair<std::uint32_t, std::uint32_t>, 3> weights{{{face[0], static_cast<std::uint32_t>(wa)},
+                                                                    {face[1], static_cast<std::uint32_t>(wb)},
+                                                                    {face[2], static_cast<std::uint32_t>(wc)}}};
     std::sort(weights.begin(), weights.end());
     std::array<std::uint32_t, 6> key;
     key.fill(99);
@@ -87,9 +88,9 @@ TriangleMesh make_apple(int frequency) {
 TriangleMesh make_polyp(int frequency) {
   // A surface of revolution over a geodesic sphere: the polar angle runs along a profile (radius, height) that is a
   // simple curve, the azimuth stays, and small bumps on the bulb keep it from looking turned.
-  constexpr double profile[][2] = {{0, 1.0},      {0.30, 0.95},  {0.52, 0.76},   {0.60, 0.48},  {0.52, 0.20}, {0.32, 0.0},
-                                   {0.19, -0.16}, {0.17, -0.38}, {0.20, -0.60}, {0.34, -0.80}, {0.46, -0.92}, {0.42, -1.0},
-                                   {0.2, -1.0},   {0, -1.0}};
+  constexpr double profile[][2] = {{0, 1.0},      {0.30, 0.95},  {0.52, 0.76},  {0.60, 0.48},  {0.52, 0.20},
+                                   {0.32, 0.0},   {0.19, -0.16}, {0.17, -0.38}, {0.20, -0.60}, {0.34, -0.80},
+                                   {0.46, -0.92}, {0.42, -1.0},  {0.2, -1.0},   {0, -1.0}};
   constexpr int last = static_cast<int>(std::size(profile)) - 1;
   TriangleMesh mesh = make_sphere(frequency);
   for (Vec3& p : mesh.vertices) {

@@ -24,7 +24,8 @@ class Sum {
 std::vector<std::array<Vec3, 3>> corners_of(const TriangleMesh& mesh) {
   std::vector<std::array<Vec3, 3>> corners;
   corners.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+  for (const auto& [a, b, c] : mesh.triangles)
+    corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
   return corners;
 }
 

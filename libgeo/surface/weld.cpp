@@ -32,7 +32,8 @@ void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open,
     const Vec3& p = mesh.vertices[v];
     const Vec3 cell = (p / reach).array().floor();
     for (int i = 0; i < 27; ++i)
-      if (const auto at = cells.find({cell.x() + i % 3 - 1, cell.y() + i / 3 % 3 - 1, cell.z() + i / 9 - 1}); at != cells.end())
+      if (const auto at = cells.find({cell.x() + i % 3 - 1, cell.y() + i / 3 % 3 - 1, cell.z() + i / 9 - 1});
+          at != cells.end())
         for (const auto other : at->second)
           if ((mesh.vertices[other] - p).norm() <= reach) joined.join(v, other);
     cells[{cell.x(), cell.y(), cell.z()}].push_back(v);
@@ -44,7 +45,9 @@ void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open,
 std::size_t weld_seams(TriangleMesh& mesh, double reach) {
   auto open = open_vertices(mesh);
   Joined joined(mesh.vertices.size());  // the vertex that each becomes
-  const auto place = [&](std::uint32_t v) { return std::tie(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()); };
+  const auto place = [&](std::uint32_t v) {
+    return std::tie(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z());
+  };
   if (reach > 0) {
     join_near(mesh, open, reach, joined);
   } else {

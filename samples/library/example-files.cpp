@@ -3,12 +3,12 @@
 #include <fstream>
 #include <sstream>
 
-#include <kerf/error.h>
 #include <kerf/body.h>
 #include <kerf/body_file.h>
-#include <kerf/surface_file.h>
+#include <kerf/error.h>
 #include <kerf/nodes.h>
 #include <kerf/shapes.h>
+#include <kerf/surface_file.h>
 
 int main() {
   const geo::TriangleMesh solid = geo::make_sphere(4);
@@ -19,7 +19,8 @@ int main() {
     geo::write_body(graph, body);
   }
   const geo::Body again = geo::read_body("sphere.kerf");
-  std::printf("%zu nodes, %zu edges, read back %s\n", again.nodes.size(), again.graph.edge_count(), again.graph == body.graph ? "equal" : "DIFFERENT");
+  std::printf("%zu nodes, %zu edges, read back %s\n", again.nodes.size(), again.graph.edge_count(),
+              again.graph == body.graph ? "equal" : "DIFFERENT");
 
   std::ostringstream bytes;
   geo::write_body(bytes, body);

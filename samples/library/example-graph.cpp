@@ -25,8 +25,10 @@ int main() {
 
   double nearest = body.nodes.radius[0];
   const geo::NodeId first(0u);
-  for (const geo::Neighbor& n : body.graph.neighbors(body.nodes, first)) nearest = std::min(nearest, double(n.distance));
-  std::printf("%zu edges cut, %zu nodes added; node 0 has %zu neighbours, the nearest %.4f away\n", cut, added, body.graph.neighbor_count(first), nearest);
+  for (const geo::Neighbor& n : body.graph.neighbors(body.nodes, first))
+    nearest = std::min(nearest, double(n.distance));
+  std::printf("%zu edges cut, %zu nodes added; node 0 has %zu neighbours, the nearest %.4f away\n", cut, added,
+              body.graph.neighbor_count(first), nearest);
 
   const geo::BodyReport report = geo::check_body(body);
   if (!report.good()) std::fprintf(stderr, "%s\n", report.first_problem.c_str());

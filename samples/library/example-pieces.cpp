@@ -15,8 +15,8 @@ int main() {
   for (int step = 1; step <= 12; ++step) {
     for (geo::Vec3& p : line) p.z() -= 0.25;
     const geo::CrackDelta delta = geo::advance(complex, front, line);
-    std::printf("step %2d: %zu faces gone, %zu new, %zu of them of the crack\n", step, delta.removed_faces.size(), delta.new_faces.size(),
-                delta.new_crack_faces.size());
+    std::printf("step %2d: %zu faces gone, %zu new, %zu of them of the crack\n", step, delta.removed_faces.size(),
+                delta.new_faces.size(), delta.new_crack_faces.size());
   }
 
   const geo::Pieces pieces = geo::find_pieces(complex);

@@ -13,23 +13,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> rooms{"base", "geometry", "surface",   "sampling", "graph",      "crack",
-                                     "score", "body", "mechanics", "contact", "simulation", "io"};
+const std::vector<std::string> rooms{"base",  "geometry", "surface",   "sampling", "graph",      "crack",
+                                     "score", "body",     "mechanics", "contact",  "simulation", "io"};
 // The paper's main claim is that surface and discretisation do not know each other.
 const std::set<std::pair<std::string, std::string>> strangers{{"crack", "graph"}, {"crack", "sampling"}};
 // Heavy libraries have one door each: the rooms whose sources may include them. No header may.
-const std::map<std::string, std::set<std::string>> doors{{"CGAL/", {"geometry"}},
-                                                         {"gmp", {"crack"}},
-                                                         {"openvdb/", {"io"}},
-                                                         {"pcl/", {"graph", "io"}},
-                                                         {"tbb/", {"base"}},
-                                                         {"hwy/", {"geometry", "graph", "mechanics", "contact"}},
-                                                         {"toml++/", {"io"}},
-                                                         {"nlohmann/", {"io"}},
-                                                         {"hdf5.h", {"io"}},
-                                                         {"CLI/", {}},
-                                                         {"embree3/", {}},
-                                                         {"png.h", {}}};
+const std::map<std::string, std::set<std::string>> doors{
+    {"CGAL/", {"geometry"}}, {"gmp", {"crack"}},
+    {"openvdb/", {"io"}},    {"pcl/", {"graph", "io"}},
+    {"tbb/", {"base"}},      {"hwy/", {"geometry", "graph", "mechanics", "contact"}},
+    {"toml++/", {"io"}},     {"nlohmann/", {"io"}},
+    {"hdf5.h", {"io"}},      {"CLI/", {}},
+    {"embree3/", {}},        {"png.h", {}}};
 
 struct Include {
   fs::path file;
@@ -103,7 +98,8 @@ TEST_CASE("heavy libraries stay behind their doors", "[architecture]") {
           if (include.name.rfind(prefix, 0) == 0) {
             INFO(file.string() << ":" << include.line << " includes " << include.name);
             CHECK(allowed.count(room) == 1);
-            const bool open_header = file.extension() == ".h" && file.stem().string().find("_internal") == std::string::npos &&
+            const bool open_header = file.extension() == ".h" &&
+                                     file.stem().string().find("_internal") == std::string::npos &&
                                      file.stem().string() != "exact";
             CHECK_FALSE(open_header);
           }

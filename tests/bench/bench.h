@@ -1,9 +1,9 @@
 // What the benchmarks share: CPU time, the least of several runs, figures by name.
 #pragma once
 
-#include <ctime>
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <string>
@@ -33,17 +33,20 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
 }
 
 /// How a time grows with a size: t ~ size^exponent, between two of them.
-inline double growth(double time, double later, double size, double larger) { return std::log(later / time) / std::log(larger / size); }
+inline double growth(double time, double later, double size, double larger) {
+  return std::log(later / time) / std::log(larger / size);
+}
 
 /// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn, with an untimed
 /// `prepare` before each. Leaves one thread.
-double threads_speedup(const std::function<void()>& work, const std::function<void()>& prepare = [] {});
+double threads_speedup(
+    const std::function<void()>& work, const std::function<void()>& prepare = [] {});
 
 struct Options {
-  std::vector<int> frequencies;       ///< of the pumpkin: 20 f² triangles
-  std::vector<std::string> models;    ///< closed meshes in files
-  std::vector<std::size_t> nodes;     ///< in the graph or the body
-  int cuts = 500;                     ///< through the block
+  std::vector<int> frequencies;     ///< of the pumpkin: 20 f² triangles
+  std::vector<std::string> models;  ///< closed meshes in files
+  std::vector<std::size_t> nodes;   ///< in the graph or the body
+  int cuts = 500;                   ///< through the block
   bool json = false;
 };
 

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <iostream>
 
-#include "kerf/error.h"
-#include "bench.h"
 #include "../crack/block_cuts.h"
+#include "bench.h"
+#include "kerf/error.h"
 #include "kerf/shapes.h"
 
 namespace bench {
@@ -25,7 +25,8 @@ int block(const Options& options) {
   const int cuts = options.cuts, edge = std::max(1, cuts / 50);
   Window first, last, here;
   int refused = 0;
-  if (!options.json) std::printf("%5s %8s %9s | %9s %9s %10s\n", "cuts", "faces", "1% angle", "met", "cut us", "remesh us");
+  if (!options.json)
+    std::printf("%5s %8s %9s | %9s %9s %10s\n", "cuts", "faces", "1% angle", "met", "cut us", "remesh us");
   for (int c = 1; c <= cuts; ++c) {
     const auto rows = block_cut(random);
     geo::FrontState front = geo::begin_front(rows[0], false, c);
@@ -47,16 +48,19 @@ int block(const Options& options) {
       if (w) w->cut += one.cut, w->remesh += one.remesh, w->met += one.met;
     if (!options.json && c % (5 * edge) == 0) {
       const double met = double(std::max<std::size_t>(here.met, 1));
-      std::printf("%5d %8u %9.2f | %9zu %9.1f %10.1f\n", c, k.live_face_count(), low_angle(k), here.met, 1e6 * here.cut / met, 1e6 * here.remesh / met);
+      std::printf("%5d %8u %9.2f | %9zu %9.1f %10.1f\n", c, k.live_face_count(), low_angle(k), here.met,
+                  1e6 * here.cut / met, 1e6 * here.remesh / met);
       std::fflush(stdout);
       here = {};
     }
   }
   const double ratio = last.per_face() / first.per_face();
   if (options.json)
-    std::cout << "{\"block_faces\":" << k.live_face_count() << ",\"block_low_angle\":" << low_angle(k) << ",\"block_last_to_first\":" << ratio << ",\"block_refused\":" << refused << "}\n";
+    std::cout << "{\"block_faces\":" << k.live_face_count() << ",\"block_low_angle\":" << low_angle(k)
+              << ",\"block_last_to_first\":" << ratio << ",\"block_refused\":" << refused << "}\n";
   else
-    std::printf("the last %d cuts cost %.2f times the first %d for each face met; %d refused\n", edge, ratio, edge, refused);
+    std::printf("the last %d cuts cost %.2f times the first %d for each face met; %d refused\n", edge, ratio, edge,
+                refused);
   return 0;
 }
 

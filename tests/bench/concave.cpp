@@ -1,13 +1,13 @@
 // Distances around concave edges, with guides and without, beside the shortest paths; and what guides cost (§ 8).
 #include <cstdio>
 
-#include "kerf/parallel.h"
 #include "graph.h"
 #include "graph/concave_shapes.h"
 #include "graph/guides.h"
-#include "kerf/graph.h"
 #include "graph/place_guides.h"
 #include "graph/update.h"
+#include "kerf/graph.h"
+#include "kerf/parallel.h"
 
 namespace bench {
 namespace {
@@ -30,7 +30,8 @@ ConcaveErrors errors_of(const Prism& prism, const geo::NodeSet& nodes, const std
     for (const auto& n : graph.neighbors(wide, NodeId(i))) {
       if (n.to.value < i) continue;
       const double exact = paths.length(nodes.position[i], nodes.position[n.to.index()]);
-      if (exact < nodes.radius[i] && tree.blocks(nodes.position[i], nodes.position[n.to.index()])) errors.add(n.distance, exact, nodes.radius[i]);
+      if (exact < nodes.radius[i] && tree.blocks(nodes.position[i], nodes.position[n.to.index()]))
+        errors.add(n.distance, exact, nodes.radius[i]);
     }
   return errors;
 }
@@ -38,7 +39,10 @@ ConcaveErrors errors_of(const Prism& prism, const geo::NodeSet& nodes, const std
 void measure_errors(const Options& options, Figures& figures) {
   constexpr int across = 24;
   if (!options.json) {
-    std::printf("distances of pairs that do not see each other, %d nodes a unit; error: longer than the shortest path; missed: no neighbours, but ought to be\n", across);
+    std::printf(
+        "distances of pairs that do not see each other, %d nodes a unit; error: longer than the shortest path; missed: "
+        "no neighbours, but ought to be\n",
+        across);
     std::printf("  %-8s %-22s %7s %8s %8s %8s %9s\n", "", "", "pairs", "mean", "worst", "missed", "guides");
   }
   for (const auto& prism : concave_prisms()) {
@@ -49,7 +53,8 @@ void measure_errors(const Options& options, Figures& figures) {
     const auto blocked = [&](const geo::Vec3& p, const geo::Vec3& q) { return tree.blocks(p, q); };
     const auto show = [&](const char* what, const ConcaveErrors& e, std::size_t guides) {
       if (options.json) return;
-      std::printf("  %-8s %-22s %7zu %7.2f%% %7.2f%% %7.2f%% %9zu\n", prism.name.c_str(), what, e.count, 100 * e.mean(), 100 * e.worst, 100.0 * double(e.missed) / double(e.count), guides);
+      std::printf("  %-8s %-22s %7zu %7.2f%% %7.2f%% %7.2f%% %9zu\n", prism.name.c_str(), what, e.count, 100 * e.mean(),
+                  100 * e.worst, 100.0 * double(e.missed) / double(e.count), guides);
     };
     const auto bare = errors_of(prism, nodes, {});
     show("without", bare, 0);
@@ -61,12 +66,16 @@ void measure_errors(const Options& options, Figures& figures) {
       std::snprintf(what, sizeof what, "guides %g spacings apart", spacing);
       show(what, with, guides.size());
       if (spacing != geo::GuideOptions().spacing) continue;
-      figures["concave_mean_error_" + prism.name] = bare.mean(), figures["concave_worst_error_" + prism.name] = bare.worst;
-      figures["concave_mean_error_guided_" + prism.name] = with.mean(), figures["concave_worst_error_guided_" + prism.name] = with.worst;
+      figures["concave_mean_error_" + prism.name] = bare.mean(),
+                                      figures["concave_worst_error_" + prism.name] = bare.worst;
+      figures["concave_mean_error_guided_" + prism.name] = with.mean(),
+                                             figures["concave_worst_error_guided_" + prism.name] = with.worst;
       figures["concave_missed_" + prism.name] = double(bare.missed) / double(bare.count);
       figures["concave_missed_guided_" + prism.name] = double(with.missed) / double(with.count);
-      for (const auto& [key, value] : {std::pair("concave_mean_error", bare.mean()), {"concave_worst_error", bare.worst},
-                                       {"concave_mean_error_guided", with.mean()}, {"concave_worst_error_guided", with.worst}})
+      for (const auto& [key, value] : {std::pair("concave_mean_error", bare.mean()),
+                                       {"concave_worst_error", bare.worst},
+                                       {"concave_mean_error_guided", with.mean()},
+                                       {"concave_worst_error_guided", with.worst}})
         figures[key] = std::max(figures[key], value);
     }
   }
@@ -87,12 +96,14 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
     for (const auto r : rows) out.push_back(surface[r]);
   };
   // A square of 16 by 16 spacings, and guides half a spacing apart ahead of its sides.
-  const geo::Vec3 middle(-0.4, 0.1, 0), u = geo::Vec3(0.3, 0.9, 0.1).normalized(), v = u.cross(geo::Vec3(1, 0.2, 0.1)).normalized();
+  const geo::Vec3 middle(-0.4, 0.1, 0), u = geo::Vec3(0.3, 0.9, 0.1).normalized(),
+                                        v = u.cross(geo::Vec3(1, 0.2, 0.1)).normalized();
   const auto point = [&](double s, double t) { return geo::Vec3(middle + 16 * h * ((s - 0.5) * u + (t - 0.5) * v)); };
   Soup crack;
   for (int k = 0; k < 16; ++k) {
     const double s0 = k / 16.0, s1 = (k + 1) / 16.0;
-    crack.push_back({point(s0, 0), point(s1, 0), point(s1, 1)}), crack.push_back({point(s0, 0), point(s1, 1), point(s0, 1)});
+    crack.push_back({point(s0, 0), point(s1, 0), point(s1, 1)}),
+        crack.push_back({point(s0, 0), point(s1, 1), point(s0, 1)});
   }
   std::vector<geo::Guide> front;
   for (int k = 0; k < 32; ++k)
@@ -124,7 +135,8 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
       timed(rows[with], [&] { geo::build_neighborhoods(c.nodes, graph, tree); });
       whole[with] = graph;
       timed(update[with], [&] {
-        const auto result = geo::update_graph(c.nodes, NodeId(c.nodes.size()), {}, crack, near, 26, grid, graph, {}, {with ? front : std::vector<geo::Guide>(), {}});
+        const auto result = geo::update_graph(c.nodes, NodeId(c.nodes.size()), {}, crack, near, 26, grid, graph, {},
+                                              {with ? front : std::vector<geo::Guide>(), {}});
         updated[with] = result.updated_nodes.size();
       });
     }

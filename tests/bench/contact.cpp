@@ -1,13 +1,14 @@
-// Self-contact of a sliced block that sags: what an implicit step costs with it, by number of triangles; and of a folded sheet.
+// Self-contact of a sliced block that sags: what an implicit step costs with it, by number of triangles; and of a
+// folded sheet.
 #include <cmath>
 
 #include "bench.h"
-#include "kerf/parallel.h"
 #include "body/agreement.h"
-#include "kerf/crossing.h"
 #include "contact/self_contact.h"
 #include "contact_peers.h"
+#include "kerf/crossing.h"
 #include "kerf/nodes.h"
+#include "kerf/parallel.h"
 #include "kerf/shapes.h"
 
 namespace bench {
@@ -18,27 +19,34 @@ int contact(const Options& options) {
   const geo::Vec3 size(2, 1, 1.2);
   for (const std::size_t count : options.nodes) {
     const double spacing = std::cbrt(size.prod() / double(count));
-    const geo::TriangleMesh mesh = geo::make_block(size, 0.62 * spacing);  // about six triangles a node, as a block of Jell-O has
+    const geo::TriangleMesh mesh =
+        geo::make_block(size, 0.62 * spacing);  // about six triangles a node, as a block of Jell-O has
     geo::SampleOptions sampling;
     sampling.spacing = spacing;
-    geo::Body body = geo::build_body(geo::Complex::from_skin(mesh), geo::sample_nodes(mesh, sampling), {26, geo::NeighborMethod::automatic});
+    geo::Body body = geo::build_body(geo::Complex::from_skin(mesh), geo::sample_nodes(mesh, sampling),
+                                     {26, geo::NeighborMethod::automatic});
     geo::Material material;
     material.young = 2e4, material.damping = 1;
     geo::Solid solid(body.nodes, body.graph, material);
-    geo::State state{std::vector<geo::Vec3>(solid.size(), geo::Vec3::Zero()), std::vector<geo::Vec3>(solid.size(), geo::Vec3::Zero())};
+    geo::State state{std::vector<geo::Vec3>(solid.size(), geo::Vec3::Zero()),
+                     std::vector<geo::Vec3>(solid.size(), geo::Vec3::Zero())};
     geo::SelfContact surface(body, solid);
     geo::Environment environment;
     double following = 0;
     for (int blade = 0; blade < 3; ++blade) {
       const auto edge = [&](double z) {
         std::vector<geo::Vec3> points;
-        for (int i = 0; i <= 12; ++i) points.push_back({0.52 + 0.48 * blade + 0.3 * (z - 0.6) + 0.02 * std::sin(7 * z + i), -0.2 + 1.4 * i / 12, z});
+        for (int i = 0; i <= 12; ++i)
+          points.push_back(
+              {0.52 + 0.48 * blade + 0.3 * (z - 0.6) + 0.02 * std::sin(7 * z + i), -0.2 + 1.4 * i / 12, z});
         return points;
       };
       geo::FrontState front = geo::begin_front(edge(1.3), false, blade + 1);
       for (int step = 1; step <= 8; ++step) {
         const geo::BodyDelta delta = geo::split(body, front, edge(1.3 - 0.14 * step), {}, nullptr,
-                                    [&](const geo::Complex& grown, const geo::CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
+                                                [&](const geo::Complex& grown, const geo::CrackDelta& crack) {
+                                                  surface.expect(body, solid, state, grown, crack);
+                                                });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         const double start = cpu_seconds();
         surface.follow(body, solid, delta);
@@ -55,7 +63,8 @@ int contact(const Options& options) {
       const std::vector<geo::Vec3> before = state.displacement;
       double start = cpu_seconds();
       environment.contact.clear();
-      if (geo::Potential* touch = surface.begin(body, solid, state, 1.0 / 24, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
+      if (geo::Potential* touch = surface.begin(body, solid, state, 1.0 / 24, environment.gravity, environment.fixed))
+        environment.contact.push_back(touch);
       double one = cpu_seconds() - start;
       start = cpu_seconds();
       solid.step_implicit(state, 1.0 / 24, environment);
@@ -66,10 +75,20 @@ int contact(const Options& options) {
     }
     geo::TriangleMesh end;
     end.vertices = surface.positions(), end.triangles = surface.surface().triangles, end.site = surface.surface().site;
-    print({{"nodes", double(solid.size())}, {"triangles", double(end.triangles.size())}, {"nodes_ms_a_step", 1e3 * moving / steps}, {"contact_ms_a_step", 1e3 * touching / steps},
-           {"contact_ms_worst", 1e3 * worst}, {"share", touching / (touching + moving)}, {"follow_ms_a_cut_step", 1e3 * following / 24}, {"watched_a_step", double(work.watched) / steps},
-           {"touching_a_step", double(work.touching) / steps}, {"in_zones_a_step", double(work.in_zones) / steps}, {"opened", double(work.opened)}, {"held", double(work.held)},
-           {"lag_in_spacings", work.lag / spacing}, {"crossings", double(geo::count_crossings(end))}},
+    print({{"nodes", double(solid.size())},
+           {"triangles", double(end.triangles.size())},
+           {"nodes_ms_a_step", 1e3 * moving / steps},
+           {"contact_ms_a_step", 1e3 * touching / steps},
+           {"contact_ms_worst", 1e3 * worst},
+           {"share", touching / (touching + moving)},
+           {"follow_ms_a_cut_step", 1e3 * following / 24},
+           {"watched_a_step", double(work.watched) / steps},
+           {"touching_a_step", double(work.touching) / steps},
+           {"in_zones_a_step", double(work.in_zones) / steps},
+           {"opened", double(work.opened)},
+           {"held", double(work.held)},
+           {"lag_in_spacings", work.lag / spacing},
+           {"crossings", double(geo::count_crossings(end))}},
           options.json);
   }
   return 0;

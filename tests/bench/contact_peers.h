@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "kerf/vec.h"
 #include "bench.h"
+#include "kerf/vec.h"
 
 namespace bench {
 

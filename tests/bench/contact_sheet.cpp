@@ -2,23 +2,26 @@
 #include <cmath>
 
 #include "contact/motion/bounded_motion.h"
-#include "kerf/crossing.h"
 #include "contact_peers.h"
+#include "kerf/crossing.h"
 
 namespace bench {
 namespace {
 
 constexpr std::size_t folds = 8;
 
-// n × n squares of edge 1 / n, bent in a zigzag whose folds open by `width`; in the middle each bulges by `bulge` towards the next.
+// n × n squares of edge 1 / n, bent in a zigzag whose folds open by `width`; in the middle each bulges by `bulge`
+// towards the next.
 std::vector<geo::Vec3> folded(std::size_t n, double width, double bulge) {
   const auto hump = [](double part) { return 0.5 - 0.5 * std::cos(2 * M_PI * part); };
   std::vector<geo::Vec3> at;
   for (std::size_t i = 0; i <= n; ++i)
     for (std::size_t j = 0; j <= n; ++j) {
-      const double s = double(i * folds) / double(n), part = s - std::floor(s), up = std::size_t(s) % 2 == 0 ? part : 1 - part;
+      const double s = double(i * folds) / double(n), part = s - std::floor(s),
+                   up = std::size_t(s) % 2 == 0 ? part : 1 - part;
       const double y = double(j) / double(n);
-      at.push_back({0.5 * width * s + (std::size_t(s) % 2 == 0 ? bulge : -bulge) * hump(part) * hump(y), y, up / double(folds)});
+      at.push_back(
+          {0.5 * width * s + (std::size_t(s) % 2 == 0 ? bulge : -bulge) * hump(part) * hump(y), y, up / double(folds)});
     }
   return at;
 }
@@ -30,7 +33,9 @@ void contact_of_sheet(const Options& options) {
     std::vector<geo::Triangle> triangles;
     const auto row = [&](std::size_t i, std::size_t j) { return static_cast<std::uint32_t>(i * (n + 1) + j); };
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) triangles.push_back({row(i, j), row(i + 1, j), row(i, j + 1)}), triangles.push_back({row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)});
+      for (std::size_t j = 0; j < n; ++j)
+        triangles.push_back({row(i, j), row(i + 1, j), row(i, j + 1)}),
+            triangles.push_back({row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)});
     const double edge = 1.0 / double(n), gap = 1e-4 * edge;
     // Folds half an edge apart where they open widest bulge into each other; all of it falls besides.
     const std::vector<geo::Vec3> from = folded(n, 0.5 * edge, 0);
@@ -46,10 +51,18 @@ void contact_of_sheet(const Options& options) {
     const geo::SurfaceMotion motion{triangles, together, from, to, gap, 2 * gap};
     const auto move = [&] { report = {}, at = geo::move_without_crossing(motion, false, &report); };
     const double moving = least([] {}, move, 5);
-    print({{"triangles", double(triangles.size())}, {"pairs", double(own_pairs)}, {"pairs_cgal", double(cgal_pairs)}, {"million_pairs_a_second", 1e-6 * double(own_pairs) / own},
-           {"million_pairs_a_second_cgal", 1e-6 * double(cgal_pairs) / cgal}, {"move_ms", 1e3 * moving}, {"move_us_a_triangle", 1e6 * moving / double(triangles.size())},
-           {"planes", double(report.planes)}, {"in_zones", double(report.in_zones)}, {"crossings_wanted", double(geo::find_crossings(triangles, to, together, false).size())},
-           {"crossings", double(geo::find_crossings(triangles, at, together, false).size())}, {"move_two_threads_speedup", threads_speedup(move)}},
+    print({{"triangles", double(triangles.size())},
+           {"pairs", double(own_pairs)},
+           {"pairs_cgal", double(cgal_pairs)},
+           {"million_pairs_a_second", 1e-6 * double(own_pairs) / own},
+           {"million_pairs_a_second_cgal", 1e-6 * double(cgal_pairs) / cgal},
+           {"move_ms", 1e3 * moving},
+           {"move_us_a_triangle", 1e6 * moving / double(triangles.size())},
+           {"planes", double(report.planes)},
+           {"in_zones", double(report.in_zones)},
+           {"crossings_wanted", double(geo::find_crossings(triangles, to, together, false).size())},
+           {"crossings", double(geo::find_crossings(triangles, at, together, false).size())},
+           {"move_two_threads_speedup", threads_speedup(move)}},
           options.json);
   }
 }

@@ -4,12 +4,12 @@
 #include <map>
 
 #include "bench.h"
-#include "kerf/crack.h"
 #include "crack_peers.h"
-#include "kerf/surface_file.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
+#include "kerf/surface_file.h"
 
 namespace bench {
 namespace {
@@ -18,7 +18,8 @@ constexpr int steps = 12, points = 40;
 
 // The front after `s` steps: a wavy sheet across the box, turned off the axes so that nothing is special.
 std::vector<geo::Vec3> front_at(const geo::Box3& box, int s) {
-  const geo::Vec3 u = geo::Vec3(0.62, -0.47, 0.31).normalized(), v = u.cross(geo::Vec3(0.2, 0.3, -0.9)).normalized(), n = u.cross(v);
+  const geo::Vec3 u = geo::Vec3(0.62, -0.47, 0.31).normalized(), v = u.cross(geo::Vec3(0.2, 0.3, -0.9)).normalized(),
+                  n = u.cross(v);
   const double half = 0.62 * box.diagonal(), a = 2.6 * (double(s) / steps - 0.5);
   std::vector<geo::Vec3> front;
   for (int i = 0; i < points; ++i) {
@@ -84,7 +85,8 @@ Row measure(const std::string& name, const geo::TriangleMesh& model) {
     lower(row.oneshot, least([&] { k = geo::Complex::from_skin(model); }, [&] { geo::insert_sheet(k, whole, 1); }, 5));
     k = geo::Complex::from_skin(model);
     geo::FrontState state;
-    lower(row.idle, least([&] { state = geo::begin_front(beside, false, 1); }, [&] { geo::advance(k, state, beyond); }, 200));
+    lower(row.idle,
+          least([&] { state = geo::begin_front(beside, false, 1); }, [&] { geo::advance(k, state, beyond); }, 200));
     lower(row.restarted, corefine_seconds(model, growing, 1));
     lower(row.corefine, corefine_seconds(model, {whole}, 2));
     lower(row.floor, floor_seconds(model, whole, 5, row.cut));
@@ -96,19 +98,29 @@ Row measure(const std::string& name, const geo::TriangleMesh& model) {
 
 int crack(const Options& options) {
   std::vector<Row> rows;
-  for (const int f : options.frequencies) rows.push_back(measure("pumpkin " + std::to_string(20 * f * f), geo::make_pumpkin(f)));
-  for (const auto& path : options.models) rows.push_back(measure(path.substr(path.find_last_of('/') + 1), geo::read_surface(path).mesh));
+  for (const int f : options.frequencies)
+    rows.push_back(measure("pumpkin " + std::to_string(20 * f * f), geo::make_pumpkin(f)));
+  for (const auto& path : options.models)
+    rows.push_back(measure(path.substr(path.find_last_of('/') + 1), geo::read_surface(path).mesh));
   if (!options.json) {
-    std::printf("CPU ms; 12 steps x 40 points\n%-18s %7s %6s | %8s = %5s %5s %5s %5s %6s %5s | %8s %6s | %9s %9s %7s | %9s %9s %7s\n", "model", "cut", "pieces",
-                "12 steps", "near", "meet", "split", "keep", "stitch", "guard", "one-shot", "idle", "restarted", "corefine", "floor", "x restart", "x corefi", "x floor");
+    std::printf(
+        "CPU ms; 12 steps x 40 points\n%-18s %7s %6s | %8s = %5s %5s %5s %5s %6s %5s | %8s %6s | %9s %9s %7s | %9s %9s "
+        "%7s\n",
+        "model", "cut", "pieces", "12 steps", "near", "meet", "split", "keep", "stitch", "guard", "one-shot", "idle",
+        "restarted", "corefine", "floor", "x restart", "x corefi", "x floor");
     for (const Row& r : rows)
-      std::printf("%-18s %7zu %6zu | %8.2f = %5.2f %5.2f %5.2f %5.2f %6.2f %5.2f | %8.2f %6.3f | %9.1f %9.1f %7.2f | %9.1f %9.2f %7.2f\n", r.name.c_str(), r.cut, r.pieces,
-                1e3 * r.progressive, 1e3 * r.work.near_seconds, 1e3 * r.work.meet_seconds, 1e3 * r.work.split_seconds, 1e3 * r.work.keep_seconds,
-                1e3 * r.work.stitch_seconds, 1e3 * r.work.guard_seconds, 1e3 * r.oneshot, 1e3 * r.idle, 1e3 * r.restarted, 1e3 * r.corefine, 1e3 * r.floor,
-                r.restarted / r.progressive, r.corefine / r.oneshot, r.progressive / r.floor);
+      std::printf(
+          "%-18s %7zu %6zu | %8.2f = %5.2f %5.2f %5.2f %5.2f %6.2f %5.2f | %8.2f %6.3f | %9.1f %9.1f %7.2f | %9.1f "
+          "%9.2f %7.2f\n",
+          r.name.c_str(), r.cut, r.pieces, 1e3 * r.progressive, 1e3 * r.work.near_seconds, 1e3 * r.work.meet_seconds,
+          1e3 * r.work.split_seconds, 1e3 * r.work.keep_seconds, 1e3 * r.work.stitch_seconds,
+          1e3 * r.work.guard_seconds, 1e3 * r.oneshot, 1e3 * r.idle, 1e3 * r.restarted, 1e3 * r.corefine, 1e3 * r.floor,
+          r.restarted / r.progressive, r.corefine / r.oneshot, r.progressive / r.floor);
   }
   Figures figures;
-  const auto size_name = [](std::size_t n) { return n > 300000 ? "640k" : n > 100000 ? "160k" : n > 20000 ? "40k" : n > 5000 ? "10k" : "2k"; };
+  const auto size_name = [](std::size_t n) {
+    return n > 300000 ? "640k" : n > 100000 ? "160k" : n > 20000 ? "40k" : n > 5000 ? "10k" : "2k";
+  };
   for (const Row& r : rows) {
     if (r.name.rfind("pumpkin", 0) != 0) continue;
     const std::string size = size_name(r.triangles);

@@ -53,7 +53,9 @@ double corefine_seconds(const geo::TriangleMesh& solid, const std::vector<geo::T
 
 double floor_seconds(const geo::TriangleMesh& solid, const geo::TriangleMesh& sheet, int runs, std::size_t& cut) {
   using Traits = CGAL::Projection_traits_3<Kernel>;
-  using Plane = CGAL::Constrained_Delaunay_triangulation_2<Traits, CGAL::Default, CGAL::No_constraint_intersection_requiring_constructions_tag>;
+  using Plane =
+      CGAL::Constrained_Delaunay_triangulation_2<Traits, CGAL::Default,
+                                                 CGAL::No_constraint_intersection_requiring_constructions_tag>;
   const geo::TriangleMesh* mesh[2] = {&solid, &sheet};
   std::vector<Kernel::Triangle_3> triangles[2];
   std::vector<std::array<geo::Vec3, 3>> soup;
@@ -78,7 +80,9 @@ double floor_seconds(const geo::TriangleMesh& solid, const geo::TriangleMesh& sh
       for (const auto f : near) {
         const auto& x = triangles[0][f];
         const auto o = CGAL::orientation(y[0], y[1], y[2], x[0]);
-        if (o != CGAL::COPLANAR && CGAL::orientation(y[0], y[1], y[2], x[1]) == o && CGAL::orientation(y[0], y[1], y[2], x[2]) == o) continue;
+        if (o != CGAL::COPLANAR && CGAL::orientation(y[0], y[1], y[2], x[1]) == o &&
+            CGAL::orientation(y[0], y[1], y[2], x[2]) == o)
+          continue;
         if (CGAL::do_intersect(x, y)) pairs.push_back({f, s});
       }
     }
@@ -97,9 +101,11 @@ double floor_seconds(const geo::TriangleMesh& solid, const geo::TriangleMesh& sh
           const Point p = point(mesh[i]->vertices[a]), q = point(mesh[i]->vertices[b]);
           const auto op = CGAL::orientation(t[0], t[1], t[2], p), oq = CGAL::orientation(t[0], t[1], t[2], q);
           if (op == oq) continue;
-          const auto a0 = CGAL::orientation(p, q, t[0], t[1]), a1 = CGAL::orientation(p, q, t[1], t[2]), a2 = CGAL::orientation(p, q, t[2], t[0]);
+          const auto a0 = CGAL::orientation(p, q, t[0], t[1]), a1 = CGAL::orientation(p, q, t[1], t[2]),
+                     a2 = CGAL::orientation(p, q, t[2], t[0]);
           if (!((a0 >= 0 && a1 >= 0 && a2 >= 0) || (a0 <= 0 && a1 <= 0 && a2 <= 0))) continue;
-          const std::uint64_t key = std::uint64_t(i) << 63 | std::uint64_t(a) << 42 | std::uint64_t(b) << 21 | pair[1 - i];
+          const std::uint64_t key =
+              std::uint64_t(i) << 63 | std::uint64_t(a) << 42 | std::uint64_t(b) << 21 | pair[1 - i];
           auto it = points.find(key);
           if (it == points.end()) {
             const auto n = CGAL::normal(t[0], t[1], t[2]);

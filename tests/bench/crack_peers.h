@@ -7,8 +7,8 @@
 
 namespace bench {
 
-/// CPU seconds of CGAL's corefine of a solid with each of these open sheets, each from a fresh copy of the solid (copying
-/// is not counted); the sum over the sheets, least of several runs.
+/// CPU seconds of CGAL's corefine of a solid with each of these open sheets, each from a fresh copy of the solid
+/// (copying is not counted); the sum over the sheets, least of several runs.
 double corefine_seconds(const geo::TriangleMesh& solid, const std::vector<geo::TriangleMesh>& sheets, int runs);
 
 /// The least that any exact method does for a whole sheet: candidate pairs from a tree that is there already, exact

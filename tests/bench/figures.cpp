@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include "bench.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
-#include "bench.h"
 
 namespace bench {
 
@@ -30,7 +30,8 @@ void print(const Figures& figures, bool json) {
   }
   std::cout << '{';
   bool first = true;
-  for (const auto& [key, value] : figures) std::cout << (first ? "" : ",") << '"' << key << "\":" << value, first = false;
+  for (const auto& [key, value] : figures)
+    std::cout << (first ? "" : ",") << '"' << key << "\":" << value, first = false;
   std::cout << "}\n";
 }
 

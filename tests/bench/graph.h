@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench.h"
-#include "kerf/nodes.h"
 #include "kerf/mesh.h"
+#include "kerf/nodes.h"
 
 namespace bench {
 

@@ -36,11 +36,13 @@ geo::TriangleMesh ribbed_ball() {
       if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mesh.triangles.push_back(t);
   };
   for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < columns; ++j) quad(vertex(i, j, 1), vertex(i + 1, j, 1), vertex(i + 1, j + 1, 1), vertex(i, j + 1, 1));
+    for (int j = 0; j < columns; ++j)
+      quad(vertex(i, j, 1), vertex(i + 1, j, 1), vertex(i + 1, j + 1, 1), vertex(i, j + 1, 1));
     for (int k = 0; k < depth; ++k) {
       const double near = double(k) / depth, far = double(k + 1) / depth;
       quad(vertex(i, 0, near), vertex(i + 1, 0, near), vertex(i + 1, 0, far), vertex(i, 0, far));
-      quad(vertex(i, columns, near), vertex(i, columns, far), vertex(i + 1, columns, far), vertex(i + 1, columns, near));
+      quad(vertex(i, columns, near), vertex(i, columns, far), vertex(i + 1, columns, far),
+           vertex(i + 1, columns, near));
     }
   }
   return mesh;

@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <nanoflann.hpp>
 
-#include "kerf/parallel.h"
-#include "kerf/progress.h"
 #include "graph.h"
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 
 namespace bench {
 namespace {
@@ -25,7 +25,8 @@ struct Cloud {
 
 void by_nanoflann(std::span<const geo::Vec3> x, geo::FreshArray<geo::NodeId>& rows) {
   const Cloud cloud{x};
-  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t> index(3, cloud);
+  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t> index(
+      3, cloud);
   std::uint32_t found[k + 1];
   double squares[k + 1];
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -64,7 +65,8 @@ void measure_nearest(const GraphCase& c, const Options& options, Figures& figure
   figures["emst_ns"] = 1e9 * t_tree / n;
   figures["knn_threads_speedup"] = speedup;
   if (options.json) return;
-  std::printf("nearest %d, ns a node: ours %.0f, nanoflann %.0f (%zu entries differ)\n", k, 1e9 * t_ours / n, 1e9 * t_theirs / n, differ);
+  std::printf("nearest %d, ns a node: ours %.0f, nanoflann %.0f (%zu entries differ)\n", k, 1e9 * t_ours / n,
+              1e9 * t_theirs / n, differ);
   std::printf("spanning tree after them, ns a node: %.0f (%zu edges more)\n", 1e9 * t_tree / n, beyond);
 }
 

@@ -3,16 +3,17 @@
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <cstdio>
 
-#include "kerf/parallel.h"
 #include "graph.h"
-#include "kerf/graph.h"
 #include "graph/reference_rows.h"
+#include "kerf/graph.h"
+#include "kerf/parallel.h"
 
 namespace bench {
 namespace {
 
 using geo::NodeId;
-using Peer = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property, boost::property<boost::edge_weight_t, std::uint32_t>,
+using Peer = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property,
+                                                boost::property<boost::edge_weight_t, std::uint32_t>,
                                                 boost::no_property, std::uint32_t, std::uint32_t>;
 
 struct Stop {};
@@ -27,9 +28,9 @@ struct Bounded : boost::default_dijkstra_visitor {
   }
 };
 
-// CPU seconds a pair of Boost's Dijkstra from some of the nodes, maps kept from one to the next. Its function of that name
-// fills a map of the heap's places with zeros for each source; `own_heap` keeps that map as well, and calls what the
-// function calls.
+// CPU seconds a pair of Boost's Dijkstra from some of the nodes, maps kept from one to the next. Its function of that
+// name fills a map of the heap's places with zeros for each source; `own_heap` keeps that map as well, and calls what
+// the function calls.
 double boost_seconds(const Peer& graph, std::size_t nodes, bool own_heap) {
   const auto index = boost::get(boost::vertex_index, graph);
   const auto weight = boost::get(boost::edge_weight, graph);
@@ -43,31 +44,39 @@ double boost_seconds(const Peer& graph, std::size_t nodes, bool own_heap) {
   visitor.touched = &touched, visitor.distance = distances.data();
   const std::size_t sources = std::min<std::size_t>(nodes, 20000);
   std::size_t pairs = 0;
-  const double seconds = least([&] { pairs = 0; }, [&] {
-    for (std::size_t q = 0; q < sources; ++q) {
-      // Runs of neighbouring nodes, as in a whole pass.
-      const auto source = static_cast<std::uint32_t>(q / 1000 * (nodes / ((sources + 999) / 1000)) + q % 1000);
-      touched.assign(1, source);
-      distances[source] = 0;
-      try {
-        if (own_heap) {
-          using Heap = boost::d_ary_heap_indirect<std::uint32_t, 4, decltype(place), decltype(distance), std::less<std::uint32_t>>;
-          Heap heap(distance, place, std::less<std::uint32_t>());
-          boost::detail::dijkstra_bfs_visitor<Bounded, Heap, decltype(weight), boost::dummy_property_map, decltype(distance), std::plus<std::uint32_t>, std::less<std::uint32_t>>
-              steps(visitor, heap, weight, boost::dummy_property_map(), distance, std::plus<std::uint32_t>(), std::less<std::uint32_t>(), 0u);
-          boost::breadth_first_visit(graph, &source, &source + 1, heap, steps, color);
-        } else {
-          boost::dijkstra_shortest_paths_no_init(graph, source, boost::dummy_property_map(), distance, weight, index, std::less<std::uint32_t>(),
-                                                 std::plus<std::uint32_t>(), 0u, visitor, color);
+  const double seconds = least(
+      [&] { pairs = 0; },
+      [&] {
+        for (std::size_t q = 0; q < sources; ++q) {
+          // Runs of neighbouring nodes, as in a whole pass.
+          const auto source = static_cast<std::uint32_t>(q / 1000 * (nodes / ((sources + 999) / 1000)) + q % 1000);
+          touched.assign(1, source);
+          distances[source] = 0;
+          try {
+            if (own_heap) {
+              using Heap = boost::d_ary_heap_indirect<std::uint32_t, 4, decltype(place), decltype(distance),
+                                                      std::less<std::uint32_t>>;
+              Heap heap(distance, place, std::less<std::uint32_t>());
+              boost::detail::dijkstra_bfs_visitor<Bounded, Heap, decltype(weight), boost::dummy_property_map,
+                                                  decltype(distance), std::plus<std::uint32_t>,
+                                                  std::less<std::uint32_t>>
+                  steps(visitor, heap, weight, boost::dummy_property_map(), distance, std::plus<std::uint32_t>(),
+                        std::less<std::uint32_t>(), 0u);
+              boost::breadth_first_visit(graph, &source, &source + 1, heap, steps, color);
+            } else {
+              boost::dijkstra_shortest_paths_no_init(graph, source, boost::dummy_property_map(), distance, weight,
+                                                     index, std::less<std::uint32_t>(), std::plus<std::uint32_t>(), 0u,
+                                                     visitor, color);
+            }
+          } catch (const Stop&) {
+          }
+          for (const auto v : touched) {
+            pairs += v != source && distances[v] < geo::unit_radius;
+            distances[v] = ~0u, colors[v] = boost::white_color;
+          }
         }
-      } catch (const Stop&) {
-      }
-      for (const auto v : touched) {
-        pairs += v != source && distances[v] < geo::unit_radius;
-        distances[v] = ~0u, colors[v] = boost::white_color;
-      }
-    }
-  }, 3);
+      },
+      3);
   return seconds / double(pairs);
 }
 
@@ -81,7 +90,10 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
   const geo::VisibilityGraph edges = geo::build_visibility_graph(c.nodes, surface, 26);
   geo::VisibilityGraph graph;
   const auto reset = [&] { graph = edges; };
-  const auto build = [&](const geo::TriangleBvh& obstacles) { return least(reset, [&] { geo::build_neighborhoods(c.nodes, graph, obstacles); }, 7); };
+  const auto build = [&](const geo::TriangleBvh& obstacles) {
+    return least(
+        reset, [&] { geo::build_neighborhoods(c.nodes, graph, obstacles); }, 7);
+  };
 
   // All methods ask the same question, who sees whom, of pairs without an edge: the search is compared without it.
   const double seen = build(surface);

@@ -2,19 +2,21 @@
 #include <chrono>
 #include <cstdio>
 
-#include "kerf/parallel.h"
 #include "graph.h"
-#include "kerf/graph.h"
 #include "graph/update.h"
+#include "kerf/graph.h"
+#include "kerf/parallel.h"
 
 namespace bench {
 namespace {
 
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
 
-// A strip of a plane through the middle of the body, from share `from` to share `to` of the way across: `columns` quads.
+// A strip of a plane through the middle of the body, from share `from` to share `to` of the way across: `columns`
+// quads.
 Soup strip(const geo::Vec3& at, double width, double from, double to, int columns) {
-  const geo::Vec3 normal = geo::Vec3(0.96, 0.25, 0.12).normalized(), u = normal.cross(geo::Vec3(0, 0, 1)).normalized(), v = normal.cross(u);
+  const geo::Vec3 normal = geo::Vec3(0.96, 0.25, 0.12).normalized(), u = normal.cross(geo::Vec3(0, 0, 1)).normalized(),
+                  v = normal.cross(u);
   const auto point = [&](double s, double t) { return geo::Vec3(at + width * ((s - 0.5) * u + (t - 0.5) * v)); };
   Soup faces;
   for (int k = 0; k < columns; ++k) {
@@ -52,7 +54,8 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
     return seconds;
   };
 
-  // In twelve steps through all of it; builds in turn with them, so that both meet a moment in which the machine does nothing else.
+  // In twelve steps through all of it; builds in turn with them, so that both meet a moment in which the machine does
+  // nothing else.
   constexpr int steps = 12;
   double rebuild = 1e300;
   std::vector<double> least_of(steps, 1e300);
@@ -61,7 +64,8 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
     graph = whole;
     cut = updated = 0;
     for (int s = 0; s < steps; ++s)
-      least_of[std::size_t(s)] = std::min(least_of[std::size_t(s)], step(strip({-0.2, 0, 0}, 2.3, double(s) / steps, double(s + 1) / steps, 40)));
+      least_of[std::size_t(s)] = std::min(least_of[std::size_t(s)],
+                                          step(strip({-0.2, 0, 0}, 2.3, double(s) / steps, double(s + 1) / steps, 40)));
   }
   const double worst = *std::max_element(least_of.begin(), least_of.end());
   double total = 0;
@@ -84,7 +88,8 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
   figures["fixed_crack_seconds"] = fixed;
   if (options.json) return;
   std::printf("  updates of graph and rows; built from nothing in %.1f ms\n", 1e3 * rebuild);
-  std::printf("    twelve steps through the body   %8.2f ms, %zu edges cut, %zu rows found anew (%.0f ns each)\n", 1e3 * total, total_cut, total_updated, 1e9 * total / double(total_updated));
+  std::printf("    twelve steps through the body   %8.2f ms, %zu edges cut, %zu rows found anew (%.0f ns each)\n",
+              1e3 * total, total_cut, total_updated, 1e9 * total / double(total_updated));
   std::printf("    the worst of them               %8.2f ms, %.2f %% of a build\n", 1e3 * worst, 100 * worst / rebuild);
   std::printf("    a crack of 16 x 16 spacings     %8.3f ms, %zu edges cut, %zu rows\n", 1e3 * fixed, cut, updated);
 }

@@ -1,5 +1,6 @@
-// Visibility of the edges of the graph of nearest nodes: ours beside Embree's occlusion (floats, robust) and CGAL's tree
-// of boxes (exact). Trees of boxes are made before the clock starts, for all three; there is nothing else to prepare.
+// Visibility of the edges of the graph of nearest nodes: ours beside Embree's occlusion (floats, robust) and CGAL's
+// tree of boxes (exact). Trees of boxes are made before the clock starts, for all three; there is nothing else to
+// prepare.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -8,11 +9,11 @@
 
 #include <cstdio>
 
-#include "kerf/parallel.h"
 #include "geometry/predicates.h"
 #include "graph.h"
 #include "graph/nearest.h"
 #include "graph/visibility.h"
+#include "kerf/parallel.h"
 
 namespace bench {
 namespace {
@@ -38,8 +39,10 @@ class Embree {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * soup.size()));
-    auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, soup.size()));
+    auto* v = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * soup.size()));
+    auto* t = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, soup.size()));
     for (std::size_t i = 0; i < 3 * soup.size(); ++i) {
       for (int d = 0; d < 3; ++d) v[3 * i + static_cast<std::size_t>(d)] = static_cast<float>(soup[i / 3][i % 3][d]);
       t[i] = static_cast<unsigned>(i);
@@ -55,9 +58,11 @@ class Embree {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     for (std::size_t e = 0; e < pairs.size(); ++e) {
-      const Eigen::Vector3f p = x[pairs[e].first.index()].cast<float>(), way = x[pairs[e].second.index()].cast<float>() - p;
+      const Eigen::Vector3f p = x[pairs[e].first.index()].cast<float>(),
+                            way = x[pairs[e].second.index()].cast<float>() - p;
       RTCRay ray{};
-      ray.org_x = p.x(), ray.org_y = p.y(), ray.org_z = p.z(), ray.dir_x = way.x(), ray.dir_y = way.y(), ray.dir_z = way.z();
+      ray.org_x = p.x(), ray.org_y = p.y(), ray.org_z = p.z(), ray.dir_x = way.x(), ray.dir_y = way.y(),
+      ray.dir_z = way.z();
       ray.tfar = 1, ray.mask = ~0u;
       rtcOccluded1(scene_, &context, &ray);
       result[e] = ray.tfar < 0;
@@ -84,7 +89,8 @@ class Cgal {
   /// Every `stride`-th pair.
   void blocked(const std::vector<geo::Vec3>& x, const Pairs& pairs, std::size_t stride, Answers& result) const {
     for (std::size_t e = 0; e < pairs.size(); e += stride)
-      result[e] = tree_.do_intersect(Kernel::Segment_3(point(x[pairs[e].first.index()]), point(x[pairs[e].second.index()])));
+      result[e] =
+          tree_.do_intersect(Kernel::Segment_3(point(x[pairs[e].first.index()]), point(x[pairs[e].second.index()])));
   }
 
  private:
@@ -123,7 +129,8 @@ std::size_t degenerate_disagreements(std::size_t& asked) {
   const auto ours = geo::Visibility(x, tree).blocked(pairs);
   asked = pairs.size();
   std::size_t wrong = 0;
-  for (std::size_t e = 0; e < pairs.size(); ++e) wrong += (ours[e] != 0) != touched(soup, x[pairs[e].first.index()], x[pairs[e].second.index()]);
+  for (std::size_t e = 0; e < pairs.size(); ++e)
+    wrong += (ours[e] != 0) != touched(soup, x[pairs[e].first.index()], x[pairs[e].second.index()]);
   return wrong;
 }
 
@@ -133,7 +140,9 @@ geo::NodeSet on_surface(const GraphCase& c) {
   for (std::size_t i = 0; i < nodes.size(); i += 7) {
     const auto& t = c.surface.triangles[i * 2654435761u % c.surface.triangles.size()];
     const auto& v = c.surface.vertices;
-    nodes.position[i] = i % 3 == 0 ? v[t[0]] : i % 3 == 1 ? geo::Vec3(0.5 * (v[t[0]] + v[t[1]])) : geo::Vec3((v[t[0]] + v[t[1]] + v[t[2]]) / 3);
+    nodes.position[i] = i % 3 == 0   ? v[t[0]]
+                        : i % 3 == 1 ? geo::Vec3(0.5 * (v[t[0]] + v[t[1]]))
+                                     : geo::Vec3((v[t[0]] + v[t[1]] + v[t[2]]) / 3);
   }
   return nodes;
 }
@@ -155,7 +164,8 @@ void measure_visibility(const GraphCase& c, const Options& options, Figures& fig
   const geo::TriangleBvh tree(soup);
   const geo::Visibility sight(x, tree);
   Answers ours;
-  const double speedup = threads_speedup([&] { ours = sight.blocked(pairs); });  // before Embree, which keeps all to one thread
+  const double speedup =
+      threads_speedup([&] { ours = sight.blocked(pairs); });  // before Embree, which keeps all to one thread
   const Embree embree(soup);
   const Cgal cgal(soup);
   Answers of_embree(pairs.size()), of_cgal(pairs.size());
@@ -175,7 +185,8 @@ void measure_visibility(const GraphCase& c, const Options& options, Figures& fig
   wrong += degenerate_disagreements(asked);
   const auto lying = on_surface(c);
   auto lying_pairs = edges_of(lying.position);  // CGAL does not answer for segments of no length
-  std::erase_if(lying_pairs, [&](const auto& e) { return lying.position[e.first.index()] == lying.position[e.second.index()]; });
+  std::erase_if(lying_pairs,
+                [&](const auto& e) { return lying.position[e.first.index()] == lying.position[e.second.index()]; });
   Answers of_lying(lying_pairs.size());
   cgal.blocked(lying.position, lying_pairs, stride, of_lying);
   const auto ours_lying = geo::Visibility(lying.position, tree).blocked(lying_pairs);
@@ -190,9 +201,13 @@ void measure_visibility(const GraphCase& c, const Options& options, Figures& fig
   figures["visibility_threads_speedup"] = speedup;
   if (options.json) return;
   std::printf("visibility, ns a segment (%zu, %.1f %% blocked): ours %.1f, Embree %.1f, CGAL %.1f\n", pairs.size(),
-              100 * double(std::count(ours.begin(), ours.end(), 1)) / n, 1e9 * t_ours / n, 1e9 * t_embree / n, 1e9 * t_cgal / n);
-  std::printf("  differ from exact predicates: ours %zu, Embree %zu; %zu more on a lattice and with nodes on the surface, where Embree %zu of %zu\n", generic,
-              differences(of_embree, of_cgal, stride), wrong - generic, differences(embree_lying, of_lying, stride), lying_pairs.size());
+              100 * double(std::count(ours.begin(), ours.end(), 1)) / n, 1e9 * t_ours / n, 1e9 * t_embree / n,
+              1e9 * t_cgal / n);
+  std::printf(
+      "  differ from exact predicates: ours %zu, Embree %zu; %zu more on a lattice and with nodes on the surface, "
+      "where Embree %zu of %zu\n",
+      generic, differences(of_embree, of_cgal, stride), wrong - generic, differences(embree_lying, of_lying, stride),
+      lying_pairs.size());
 }
 
 }  // namespace bench

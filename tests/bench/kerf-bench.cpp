@@ -3,19 +3,30 @@
 #include "tool.h"
 
 int main(int argc, char** argv) {
-  tool::Tool t("kerf-bench", "Measures parts of Kerf beside other libraries, in one run.",
-               "  kerf-bench crack\n  kerf-bench crack --frequency 11 --frequency 45 --json\n  kerf-bench crack --frequency 22 --model bear.off\n  kerf-bench block --cuts 100\n  kerf-bench graph --nodes 100000 --json");
+  tool::Tool t(
+      "kerf-bench", "Measures parts of Kerf beside other libraries, in one run.",
+      "  kerf-bench crack\n  kerf-bench crack --frequency 11 --frequency 45 --json\n  kerf-bench crack --frequency 22 "
+      "--model bear.off\n  kerf-bench block --cuts 100\n  kerf-bench graph --nodes 100000 --json");
   std::string what;
   bench::Options options;
   std::vector<std::string> frequencies, nodes;
-  t.argument("WHAT", what, "crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its parts beside other libraries; concave: distances around concave edges; contact: self-contact of a sliced block; mechanics: time steps beside Bullet; validate: mechanics against formulas");
+  t.argument("WHAT", what,
+             "crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its parts beside other "
+             "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; mechanics: "
+             "time steps beside Bullet; validate: mechanics against formulas");
   t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
-  t.option("--nodes", nodes, "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700)");
+  t.option("--nodes", nodes,
+           "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700)");
   t.option("--cuts", options.cuts, "How many cuts go through the block");
   t.option("--model", options.models, "Closed meshes to measure as well");
   return t.run(argc, argv, [&] {
-    const std::map<std::string, int (*)(const bench::Options&)> known{{"crack", bench::crack}, {"block", bench::block}, {"graph", bench::graph}, {"concave", bench::concave}, {"contact", bench::contact}, {"mechanics", bench::mechanics}, {"validate", bench::validate}};
-    if (!known.count(what)) throw tool::UsageError("nothing is known about '" + what + "'; there are crack, block, graph, concave, contact, mechanics and validate");
+    const std::map<std::string, int (*)(const bench::Options&)> known{
+        {"crack", bench::crack},      {"block", bench::block},     {"graph", bench::graph},
+        {"concave", bench::concave},  {"contact", bench::contact}, {"mechanics", bench::mechanics},
+        {"validate", bench::validate}};
+    if (!known.count(what))
+      throw tool::UsageError("nothing is known about '" + what +
+                             "'; there are crack, block, graph, concave, contact, mechanics and validate");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));
     for (const int f : options.frequencies)
@@ -24,7 +35,11 @@ int main(int argc, char** argv) {
     for (const auto& n : nodes) options.nodes.push_back(std::strtoul(n.c_str(), nullptr, 10));
     for (const auto n : options.nodes)
       if (n < 100 || n > 100000000) throw tool::UsageError("--nodes is from 100 to 100000000");
-    if (nodes.empty()) options.nodes = what == "concave" ? std::vector<std::size_t>{100000} : what == "contact" ? std::vector<std::size_t>{230, 920, 3700} : what == "mechanics" ? std::vector<std::size_t>{4000, 27000} : std::vector<std::size_t>{10000, 100000, 1000000};
+    if (nodes.empty())
+      options.nodes = what == "concave"     ? std::vector<std::size_t>{100000}
+                      : what == "contact"   ? std::vector<std::size_t>{230, 920, 3700}
+                      : what == "mechanics" ? std::vector<std::size_t>{4000, 27000}
+                                            : std::vector<std::size_t>{10000, 100000, 1000000};
     options.json = t.json;
     known.at(what)(options);
   });

@@ -2,10 +2,10 @@
 
 #include <cstdio>
 
-#include "kerf/parallel.h"
 #include "bench.h"
-#include "mechanics/bodies.h"
+#include "kerf/parallel.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 
 namespace bench {
 namespace {
@@ -41,7 +41,8 @@ Run bend(const Body& body, const Solid& solid, const Beam& beam) {
   const double start = cpu_seconds();
   for (int f = 0; f < beam.frames; ++f) {
     const StepReport r = solid.step_implicit(state, beam.dt, env);
-    run.newton += double(r.newton) / beam.frames, run.cg += double(r.cg) / beam.frames, run.substeps += double(r.substeps) / beam.frames;
+    run.newton += double(r.newton) / beam.frames, run.cg += double(r.cg) / beam.frames,
+        run.substeps += double(r.substeps) / beam.frames;
   }
   run.bent.seconds = cpu_seconds() - start;
   double tips = 0;
@@ -73,7 +74,8 @@ int mechanics(const Options& options) {
     const auto rate = [&](const Bent& b) { return double(b.nodes) * beam.frames / b.seconds; };
     Figures f;
     f["nodes"] = double(ours.bent.nodes), f["points"] = double(ours.points), f["build_seconds"] = built;
-    f["frame_ms"] = 1e3 * ours.bent.seconds / beam.frames, f["newton"] = ours.newton, f["cg"] = ours.cg, f["substeps"] = ours.substeps;
+    f["frame_ms"] = 1e3 * ours.bent.seconds / beam.frames, f["newton"] = ours.newton, f["cg"] = ours.cg,
+    f["substeps"] = ours.substeps;
     f["node_steps_per_second"] = rate(ours.bent), f["tip"] = ours.bent.tip, f["two_threads"] = speedup;
     f["bullet_nodes"] = double(theirs.nodes), f["bullet_frame_ms"] = 1e3 * theirs.seconds / beam.frames;
     f["bullet_node_steps_per_second"] = rate(theirs), f["bullet_tip"] = theirs.tip;

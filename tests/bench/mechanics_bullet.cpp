@@ -1,6 +1,6 @@
 // Bullet's deformable body: linear tetrahedra, backward Euler, as its own example of a neo-Hookean body sets it up.
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableGravityForce.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
@@ -48,15 +48,18 @@ Bent bend_with_bullet(const Beam& beam) {
         }
   std::vector<double> mass(points.size(), 0);
   for (int t = 0; t < body->m_tetras.size(); ++t)
-    for (const auto* node : body->m_tetras[t].m_n) mass[std::size_t(node - &body->m_nodes[0])] += beam.density * h * h * h / 24;
-  for (int i = 0; i < int(points.size()); ++i) body->setMass(i, points[std::size_t(i)].x() < 0.1 ? btScalar(0) : btScalar(mass[std::size_t(i)]));
+    for (const auto* node : body->m_tetras[t].m_n)
+      mass[std::size_t(node - &body->m_nodes[0])] += beam.density * h * h * h / 24;
+  for (int i = 0; i < int(points.size()); ++i)
+    body->setMass(i, points[std::size_t(i)].x() < 0.1 ? btScalar(0) : btScalar(mass[std::size_t(i)]));
   body->initializeDmInverse();
   body->m_tetraScratches.resize(body->m_tetras.size()), body->m_tetraScratchesTn.resize(body->m_tetras.size());
   body->m_cfg.drag = 0, body->m_cfg.kDP = 0;
   body->setDampingCoefficient(0);
   body->m_cfg.collisions = 0, body->m_sleepingThreshold = 0;
   world.addSoftBody(body);
-  const double mu = beam.young / (2 * (1 + beam.poisson)), lambda = beam.young * beam.poisson / ((1 + beam.poisson) * (1 - 2 * beam.poisson));
+  const double mu = beam.young / (2 * (1 + beam.poisson)),
+               lambda = beam.young * beam.poisson / ((1 + beam.poisson) * (1 - 2 * beam.poisson));
   btDeformableNeoHookeanForce elastic{btScalar(mu), btScalar(lambda), btScalar(0)};
   btDeformableGravityForce weight(gravity);
   world.addForce(body, &elastic);
@@ -68,7 +71,8 @@ Bent bend_with_bullet(const Beam& beam) {
   bent.seconds = cpu_seconds() - start;
   int tips = 0;
   for (int i = 0; i < body->m_nodes.size(); ++i)
-    if (points[std::size_t(i)].x() > 4 - 0.5 * h) bent.tip += body->m_nodes[i].m_x.z() - points[std::size_t(i)].z(), ++tips;
+    if (points[std::size_t(i)].x() > 4 - 0.5 * h)
+      bent.tip += body->m_nodes[i].m_x.z() - points[std::size_t(i)].z(), ++tips;
   bent.tip /= tips;
   world.removeSoftBody(body);
   delete body;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "kerf/error.h"
-#include "kerf/body.h"
 #include "body/locate.h"
 #include "invariants/cut_bodies.h"
+#include "kerf/body.h"
+#include "kerf/error.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
 
@@ -23,7 +23,8 @@ Body make_body(const TriangleMesh& mesh, double spacing, double guides) {
 
 std::size_t guides_in_use(const Body& body) {
   std::size_t count = 0;
-  for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) count += !body.graph.entries(VisibilityGraph::first_guide + g).to.empty();
+  for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g)
+    count += !body.graph.entries(VisibilityGraph::first_guide + g).to.empty();
   return count;
 }
 
@@ -84,7 +85,8 @@ TEST_CASE("Guides follow the front of a crack", "[body]") {
       CHECK(body.graph.guides().position(g).z() < z + 0.01);
       bool left = false, right = false;
       for (const auto j : row.to)
-        if (!VisibilityGraph::is_guide(j) && body.nodes.position[j].z() < z - 0.03) (body.nodes.position[j].x() < 0.477 ? left : right) = true;
+        if (!VisibilityGraph::is_guide(j) && body.nodes.position[j].z() < z - 0.03)
+          (body.nodes.position[j].x() < 0.477 ? left : right) = true;
       CHECK((left && right));
     }
     CHECK(used >= 8);

@@ -3,14 +3,14 @@
 
 #include <numeric>
 
-#include "kerf/error.h"
-#include "kerf/body.h"
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "cases.h"
 #include "geometry/bvh.h"
-#include "kerf/graph.h"
 #include "invariants/cut_bodies.h"
+#include "kerf/body.h"
+#include "kerf/error.h"
+#include "kerf/graph.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
 
@@ -102,7 +102,9 @@ TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[b
   CHECK(check_body(body).graph_components == 2);
 }
 
-TEST_CASE("Following a surface goes as well far off the origin, where corners of divided faces are off them by rounding", "[body]") {
+TEST_CASE(
+    "Following a surface goes as well far off the origin, where corners of divided faces are off them by rounding",
+    "[body]") {
   const Vec3 there(0x1p30, 0, -0x1p30);
   TriangleMesh pumpkin = make_pumpkin(5);
   for (Vec3& v : pumpkin.vertices) v += there;
@@ -127,10 +129,13 @@ TEST_CASE("Following a surface tells how far it is, and stops where it is asked 
     if (phases.empty() || phases.back() != phase) phases.emplace_back(phase);
     return true;
   });
-  CHECK(phases == std::vector<std::string>{"surface", "new nodes", "cut edges", "new edges", "neighbourhoods", "binding"});
+  CHECK(phases ==
+        std::vector<std::string>{"surface", "new nodes", "cut edges", "new edges", "neighbourhoods", "binding"});
   for (const std::string& last : phases) {
     body = model;
-    CHECK_THROWS_AS(follow(body, cut, nullptr, [&](std::string_view phase, std::size_t, std::size_t) { return phase != last; }), Interrupted);
+    CHECK_THROWS_AS(
+        follow(body, cut, nullptr, [&](std::string_view phase, std::size_t, std::size_t) { return phase != last; }),
+        Interrupted);
   }
 }
 
@@ -186,7 +191,8 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
     // Of those that were there before: at least half as far apart as the closest ones, no farther than the farthest.
     double least = coarsest, most = 0;
     for (std::size_t j = 0; j < before.size(); ++j)
-      if ((before.position[j] - x).norm() < 2 * coarsest) least = std::min(least, before.spacing[j]), most = std::max(most, before.spacing[j]);
+      if ((before.position[j] - x).norm() < 2 * coarsest)
+        least = std::min(least, before.spacing[j]), most = std::max(most, before.spacing[j]);
     CHECK(spacing >= std::max(body.finest, 0.5 * least));
     CHECK(spacing <= most);
     if (std::min({x.y(), 1 - x.y(), x.z(), 1 - x.z()}) > 0.35) {
@@ -208,7 +214,10 @@ TEST_CASE("Segments in a box are blocked by the faces read for the box as by the
     CAPTURE(seed);
     Random random(static_cast<std::uint64_t>(seed));
     // Every other box on a lattice, where segments touch faces, edges and corners.
-    const auto any = [&] { return seed % 2 ? Vec3(random.uniform(0, 2), random.uniform(), random.uniform()) : Vec3(0.25 * Vec3(random.below(9), random.below(5), random.below(5))); };
+    const auto any = [&] {
+      return seed % 2 ? Vec3(random.uniform(0, 2), random.uniform(), random.uniform())
+                      : Vec3(0.25 * Vec3(random.below(9), random.below(5), random.below(5)));
+    };
     Box3 box;
     box.add(any()), box.add(any());
     const SightIn sight(complex, box);

@@ -4,12 +4,12 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "contact/detection/watch.h"
 #include "contact/motion/bounded_motion.h"
-#include "kerf/crossing.h"
 #include "contact/motion/straight_motion.h"
 #include "contact/response/touching.h"
-#include "contact/detection/watch.h"
 #include "geometry/predicates.h"
+#include "kerf/crossing.h"
 #include "kerf/shapes.h"
 
 using namespace geo;
@@ -22,10 +22,13 @@ struct Soup {
   std::vector<Vec3> from, to;
   void add(const TriangleMesh& m, const Vec3& at, double size) {
     const auto base = static_cast<std::uint32_t>(from.size());
-    for (const Vec3& p : m.vertices) together.push_back(static_cast<std::uint32_t>(from.size())), from.push_back(at + size * p);
+    for (const Vec3& p : m.vertices)
+      together.push_back(static_cast<std::uint32_t>(from.size())), from.push_back(at + size * p);
     for (const auto& [a, b, c] : m.triangles) triangles.push_back({a + base, b + base, c + base});
   }
-  std::vector<Vec3> move(BoundedMotion* report = nullptr) const { return move_without_crossing({triangles, together, from, to, 1e-4, 2e-3}, false, report); }
+  std::vector<Vec3> move(BoundedMotion* report = nullptr) const {
+    return move_without_crossing({triangles, together, from, to, 1e-4, 2e-3}, false, report);
+  }
   std::size_t crossings(const std::vector<Vec3>& at) const {
     const std::vector<std::uint8_t> all(triangles.size(), 1);  // pair by pair
     return find_crossings(triangles, at, together, false, &all).size();
@@ -52,10 +55,13 @@ struct Sheets : Soup {
         }
       const auto v = [&](int i, int j) { return base + static_cast<std::uint32_t>(i * (n + 1) + j); };
       for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) triangles.push_back({v(i, j), v(i + 1, j), v(i + 1, j + 1)}), triangles.push_back({v(i, j), v(i + 1, j + 1), v(i, j + 1)});
+        for (int j = 0; j < n; ++j)
+          triangles.push_back({v(i, j), v(i + 1, j), v(i + 1, j + 1)}),
+              triangles.push_back({v(i, j), v(i + 1, j + 1), v(i, j + 1)});
     }
     to = from;
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += i < half() ? Vec3(0, 0, 0.5 * (depth + 0.06 * edge)) : Vec3(slide, 0, -0.5 * (depth + 0.06 * edge));
+    for (std::size_t i = 0; i < to.size(); ++i)
+      to[i] += i < half() ? Vec3(0, 0, 0.5 * (depth + 0.06 * edge)) : Vec3(slide, 0, -0.5 * (depth + 0.06 * edge));
   }
   std::size_t half() const { return from.size() / 2; }
 };
@@ -77,10 +83,11 @@ TEST_CASE("whatever a motion wants, nothing crosses at its end", "[campaign]") {
     for (std::size_t v = 0; v < s.from.size(); ++v) {
       const Vec3& x = s.from[v];
       const bool ball = v < 42;
-      s.to.push_back(kind == 0 ? Vec3(x + (ball ? blow : Vec3(-blow)))                             // thrown on each other
-                     : kind == 1 ? Vec3(x + random.uniform(0, 0.3) * random.direction())          // every vertex for itself
-                     : kind == 2 ? Vec3(turn * x + Vec3(ball ? 0.3 : -0.3, 0, 0))                 // turning and pressed
-                                 : Vec3(x.x() > 1 ? Vec3(2 - x.x(), x.y(), x.z()) : x));          // folded over: coplanar in part
+      s.to.push_back(kind == 0   ? Vec3(x + (ball ? blow : Vec3(-blow)))                  // thrown on each other
+                     : kind == 1 ? Vec3(x + random.uniform(0, 0.3) * random.direction())  // every vertex for itself
+                     : kind == 2
+                         ? Vec3(turn * x + Vec3(ball ? 0.3 : -0.3, 0, 0))         // turning and pressed
+                         : Vec3(x.x() > 1 ? Vec3(2 - x.x(), x.y(), x.z()) : x));  // folded over: coplanar in part
     }
     const auto end = s.move();
     CHECK(s.crossings(end) == 0);
@@ -95,13 +102,16 @@ TEST_CASE("a guess where nothing fails is the end, and one where something does 
     Random random(seed);
     const Sheets s(random);
     const auto end = s.move();
-    const auto again = [&](const std::vector<Vec3>& guess) { return move_without_crossing({s.triangles, s.together, s.from, s.to, 1e-4, 2e-3, &guess}, false); };
+    const auto again = [&](const std::vector<Vec3>& guess) {
+      return move_without_crossing({s.triangles, s.together, s.from, s.to, 1e-4, 2e-3, &guess}, false);
+    };
     held += again(end) == end;
     std::vector<Vec3> worse = s.to;
     for (Vec3& x : worse) x += 0.01 * Sheets::edge * random.direction();
     CHECK(s.crossings(again(worse)) == 0);
   }
-  CHECK(held > static_cast<std::size_t>(count) * 9 / 10);  // where all gave way; what was carried along did not end as it was mended
+  CHECK(held > static_cast<std::size_t>(count) * 9 /
+                   10);  // where all gave way; what was carried along did not end as it was mended
 }
 
 TEST_CASE("what is clear of everything goes where it wants to, to the bit") {
@@ -123,7 +133,8 @@ TEST_CASE("each goes straight on where nothing is in its way, and nothing goes t
   const std::size_t third = s.from.size();
   s.add(make_block({1, 1, 1}, 0.5), {0, 0, 3}, 1);
   // The first wants to be beyond the second, which stays; the third is free.
-  for (std::size_t v = 0; v < s.from.size(); ++v) s.to.push_back(s.from[v] + (v < second ? Vec3(2.6, 0, 0) : v < third ? Vec3(0, 0, 0) : Vec3(0.3, 0.1, 0.7)));
+  for (std::size_t v = 0; v < s.from.size(); ++v)
+    s.to.push_back(s.from[v] + (v < second ? Vec3(2.6, 0, 0) : v < third ? Vec3(0, 0, 0) : Vec3(0.3, 0.1, 0.7)));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t i = 0; i < s.triangles.size(); ++i)
     for (std::uint32_t j = i + 1; j < s.triangles.size(); ++j) pairs.push_back({i, j});
@@ -145,11 +156,13 @@ TEST_CASE("each goes straight on where nothing is in its way, and nothing goes t
 }
 
 TEST_CASE("nothing gets out of a shell however fast it is, nor through a triangle in its own plane") {
-  const auto times_around = [](const Soup& s, const std::vector<Vec3>& at, std::size_t shell, const Vec3& p) {  // van Oosterom and Strackee 1983
+  const auto times_around = [](const Soup& s, const std::vector<Vec3>& at, std::size_t shell,
+                               const Vec3& p) {  // van Oosterom and Strackee 1983
     double angle = 0;
     for (std::size_t t = 0; t < shell; ++t) {
       const Vec3 a = at[s.triangles[t][0]] - p, b = at[s.triangles[t][1]] - p, c = at[s.triangles[t][2]] - p;
-      angle += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() + b.dot(c) * a.norm() + c.dot(a) * b.norm());
+      angle += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                     b.dot(c) * a.norm() + c.dot(a) * b.norm());
     }
     return angle / (4 * 3.14159265358979323846);
   };
@@ -163,10 +176,13 @@ TEST_CASE("nothing gets out of a shell however fast it is, nor through a triangl
       s.add(kind == 0 ? make_sphere(1) : make_block({1, 1, 1}, 0.5), {0.3, 0.2, 0}, 0.3);
       REQUIRE(s.crossings(s.from) == 0);
       s.to = s.from;
-      for (std::size_t v = first; v < s.to.size(); ++v) s.to[v] += speed * (kind == 2 ? Vec3(s.from[v] - Vec3(0.4, 0.3, 0.1)) : Vec3(0.6, 0.8, 0.2));  // flies, or bursts
+      for (std::size_t v = first; v < s.to.size(); ++v)
+        s.to[v] +=
+            speed * (kind == 2 ? Vec3(s.from[v] - Vec3(0.4, 0.3, 0.1)) : Vec3(0.6, 0.8, 0.2));  // flies, or bursts
       const auto end = s.move();
       CHECK(s.crossings(end) == 0);
-      for (std::size_t v = first; v < end.size(); ++v) CHECK(times_around(s, end, shell, end[v]) == Approx(1).margin(1e-6));
+      for (std::size_t v = first; v < end.size(); ++v)
+        CHECK(times_around(s, end, shell, end[v]) == Approx(1).margin(1e-6));
     }
     // Side by side in one plane, one wants to be inside the other.
     Soup s;
@@ -188,9 +204,12 @@ TEST_CASE("parts that a fixed direction parts at both ends do not meet in betwee
     Random random(seed);
     Soup s;
     s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.together = {0, 1, 2, 3, 4, 5};
-    for (int v = 0; v < 6; ++v) s.from.push_back(Vec3(v < 3 ? 0 : 1, 0, 0) + random.uniform(0, 0.5) * random.direction());
+    for (int v = 0; v < 6; ++v)
+      s.from.push_back(Vec3(v < 3 ? 0 : 1, 0, 0) + random.uniform(0, 0.5) * random.direction());
     const Vec3 closer = Vec3(0.4, 0, 0) + random.uniform(0, 0.5) * random.direction();
-    for (int v = 0; v < 6; ++v) s.to.push_back(s.from[static_cast<std::size_t>(v)] + (v < 3 ? closer : Vec3(-closer)) + random.uniform(0, 0.3) * random.direction());
+    for (int v = 0; v < 6; ++v)
+      s.to.push_back(s.from[static_cast<std::size_t>(v)] + (v < 3 ? closer : Vec3(-closer)) +
+                     random.uniform(0, 0.3) * random.direction());
     if (s.crossings(s.from) > 0) continue;
     Soup held = s;  // what stands still about them, so that the surface as a whole does not move
     held.add(make_sphere(2), {0, 0, 0}, 100);
@@ -227,17 +246,30 @@ TEST_CASE("what touches does not depend on what the list of near pairs was used 
     // The same triangles were elsewhere.
     std::vector<Vec3> elsewhere;
     for (const Vec3& p : soup.from) elsewhere.push_back({p.y(), random.uniform(), -p.x()});
-    used.cover(soup.triangles, [&](std::size_t t) { return box_of(elsewhere[soup.triangles[t][0]], elsewhere[soup.triangles[t][1]], elsewhere[soup.triangles[t][2]]); }, 0);
+    used.cover(
+        soup.triangles,
+        [&](std::size_t t) {
+          return box_of(elsewhere[soup.triangles[t][0]], elsewhere[soup.triangles[t][1]],
+                        elsewhere[soup.triangles[t][2]]);
+        },
+        0);
     used.forget();
-    const SurfaceMotion motion{soup.triangles, soup.together, soup.from, soup.to, 0.05 * Sheets::edge, 0.1 * Sheets::edge};
+    const SurfaceMotion motion{soup.triangles, soup.together,       soup.from,
+                               soup.to,        0.05 * Sheets::edge, 0.1 * Sheets::edge};
     const auto of_fresh = watch(motion, fresh, owner, 2), of_used = watch(motion, used, owner, 2);
-    for (std::size_t i = 0; i < std::min(of_fresh.size(), of_used.size()); ++i) in_another_order += !std::equal(of_fresh[i].a.v, of_fresh[i].a.v + 3, of_used[i].a.v);
-    const auto a = touching_places(of_fresh, motion, {0.01, 0, 0.1 * Sheets::edge}), b = touching_places(of_used, motion, {0.01, 0, 0.1 * Sheets::edge});
+    for (std::size_t i = 0; i < std::min(of_fresh.size(), of_used.size()); ++i)
+      in_another_order += !std::equal(of_fresh[i].a.v, of_fresh[i].a.v + 3, of_used[i].a.v);
+    const auto a = touching_places(of_fresh, motion, {0.01, 0, 0.1 * Sheets::edge}),
+               b = touching_places(of_used, motion, {0.01, 0, 0.1 * Sheets::edge});
     REQUIRE(a.size() == b.size());
     found += a.size();
-    const auto same = [](const SurfacePlace& p, const SurfacePlace& q) { return p.size == q.size && std::equal(p.vertex, p.vertex + p.size, q.vertex) && std::equal(p.weight, p.weight + p.size, q.weight); };
+    const auto same = [](const SurfacePlace& p, const SurfacePlace& q) {
+      return p.size == q.size && std::equal(p.vertex, p.vertex + p.size, q.vertex) &&
+             std::equal(p.weight, p.weight + p.size, q.weight);
+    };
     for (std::size_t i = 0; i < a.size(); ++i)
-      CHECK((same(a[i].a, b[i].a) && same(a[i].b, b[i].b) && a[i].normal == b[i].normal && a[i].depth == b[i].depth && a[i].approach == b[i].approach));
+      CHECK((same(a[i].a, b[i].a) && same(a[i].b, b[i].b) && a[i].normal == b[i].normal && a[i].depth == b[i].depth &&
+             a[i].approach == b[i].approach));
   }
   CHECK(found > 200);
   CHECK(in_another_order > 200);
@@ -268,7 +300,8 @@ TEST_CASE("places so near each other that no direction is seen to part them are 
     Random random(seed);
     Sheets soup(random);
     const std::vector<Vec3> otherwise = soup.move();
-    // A vertex of the upper sheet comes down on a triangle of the lower one, all but a few times what rounding would hide of it.
+    // A vertex of the upper sheet comes down on a triangle of the lower one, all but a few times what rounding would
+    // hide of it.
     const auto v = soup.half() + (Sheets::n + 1) * (4 + random.below(5)) + 4 + random.below(5);
     double low = -1, high = soup.from[v].z();
     for (double middle; low < (middle = 0.5 * (low + high)) && middle < high;) {

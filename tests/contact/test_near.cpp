@@ -7,9 +7,9 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "kerf/crossing.h"
 #include "contact/detection/near_pairs.h"
 #include "contact/detection/vertex_fans.h"
+#include "kerf/crossing.h"
 
 using namespace geo;
 
@@ -25,9 +25,14 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
     }
     // Some triangles share a corner.
     std::vector<Triangle> triangles;
-    for (std::uint32_t t = 0; t < boxes.size(); ++t) triangles.push_back({3 * t, 3 * t + 1, random.below(2) == 0 ? 3 * t + 2 : 3 * random.below(static_cast<std::uint32_t>(boxes.size()))});
+    for (std::uint32_t t = 0; t < boxes.size(); ++t)
+      triangles.push_back(
+          {3 * t, 3 * t + 1,
+           random.below(2) == 0 ? 3 * t + 2 : 3 * random.below(static_cast<std::uint32_t>(boxes.size()))});
     const auto neighbours = [&](std::uint32_t i, std::uint32_t j) {
-      return std::any_of(triangles[i].begin(), triangles[i].end(), [&](auto v) { return std::find(triangles[j].begin(), triangles[j].end(), v) != triangles[j].end(); });
+      return std::any_of(triangles[i].begin(), triangles[i].end(), [&](auto v) {
+        return std::find(triangles[j].begin(), triangles[j].end(), v) != triangles[j].end();
+      });
     };
     NearPairs near;
     std::vector<std::uint8_t> changed(boxes.size(), 1);
@@ -35,18 +40,23 @@ TEST_CASE("pairs that are kept from call to call have all whose boxes meet, each
       const bool anew = random.below(3) == 0;  // another step
       if (anew) near.forget();
       if (random.below(5) == 0) {  // other triangles, as many
-        for (Triangle& t : triangles) std::swap(t[2], triangles[random.below(static_cast<std::uint32_t>(triangles.size()))][2]);
+        for (Triangle& t : triangles)
+          std::swap(t[2], triangles[random.below(static_cast<std::uint32_t>(triangles.size()))][2]);
         near.forget_triangles();
       }
       const bool told = call > 0 && random.below(2) == 0;
-      near.cover(triangles, [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1), told ? &changed : nullptr);
+      near.cover(
+          triangles, [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1), told ? &changed : nullptr);
       const std::set<NearPairs::Pair> pairs(near.pairs().begin(), near.pairs().end());
       CHECK(pairs.size() == near.pairs().size());
       std::size_t missing = 0;
       for (std::uint32_t i = 0; i < boxes.size(); ++i)
-        for (std::uint32_t j = i + 1; j < boxes.size(); ++j) missing += boxes[i].meets(boxes[j]) && !neighbours(i, j) && !pairs.contains({i, j});
+        for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
+          missing += boxes[i].meets(boxes[j]) && !neighbours(i, j) && !pairs.contains({i, j});
       CHECK(missing == 0);
-      if (anew) CHECK(std::all_of(pairs.begin(), pairs.end(), [&](const auto& p) { return boxes[p.first].meets(boxes[p.second]); }));
+      if (anew)
+        CHECK(std::all_of(pairs.begin(), pairs.end(),
+                          [&](const auto& p) { return boxes[p.first].meets(boxes[p.second]); }));
       CHECK(std::none_of(pairs.begin(), pairs.end(), [&](const auto& p) { return neighbours(p.first, p.second); }));
       // Few or many go elsewhere.
       const double share = random.below(3) == 0 ? 0.5 : 0.03;
@@ -70,10 +80,17 @@ TEST_CASE("fans name each pair of triangles that share a vertex once") {
   const VertexFans fans(triangles, vertices);
   std::vector<NearPairs::Pair> named, wanted;
   for (std::uint32_t v = 0; v < vertices; ++v)
-    fans.each_pair(v, [v](std::uint32_t w) { return w < v; }, [&](std::uint32_t s, std::uint32_t t) { named.push_back({s, t}); });
+    fans.each_pair(
+        v, [v](std::uint32_t w) { return w < v; },
+        [&](std::uint32_t s, std::uint32_t t) {
+          named.push_back({s, t});
+        });
   for (std::uint32_t s = 0; s < triangles.size(); ++s)
     for (std::uint32_t t = s + 1; t < triangles.size(); ++t)
-      if (std::any_of(triangles[s].begin(), triangles[s].end(), [&](auto v) { return std::find(triangles[t].begin(), triangles[t].end(), v) != triangles[t].end(); })) wanted.push_back({s, t});
+      if (std::any_of(triangles[s].begin(), triangles[s].end(), [&](auto v) {
+            return std::find(triangles[t].begin(), triangles[t].end(), v) != triangles[t].end();
+          }))
+        wanted.push_back({s, t});
   std::sort(named.begin(), named.end());
   CHECK(named == wanted);
 }
@@ -93,19 +110,22 @@ TEST_CASE("no two triangles of a fan that opens out cross, but those of one that
     std::vector<std::uint32_t> together{0};
     for (std::uint32_t i = 0; i < n; ++i) {
       const double angle = 2 * M_PI * rounds * (i + random.uniform(-0.4, 0.4)) / n;
-      at.push_back(turn * (random.uniform(0.5, 2) * Vec3(std::cos(angle), std::sin(angle), rough * random.uniform(-1, 1))));
+      at.push_back(turn *
+                   (random.uniform(0.5, 2) * Vec3(std::cos(angle), std::sin(angle), rough * random.uniform(-1, 1))));
       triangles.push_back({0, 1 + i, 1 + (i + 1) % n}), together.push_back(1 + i);
     }
     const auto opens_out = [&] {
       std::vector<std::uint8_t> result(at.size(), 0);
-      const auto shut = VertexFans(triangles, at.size()).find_shut(std::vector<std::uint8_t>(triangles.size(), 1), together, at, result);
+      const auto shut = VertexFans(triangles, at.size())
+                            .find_shut(std::vector<std::uint8_t>(triangles.size(), 1), together, at, result);
       CHECK((std::find(shut.begin(), shut.end(), 0u) == shut.end()) == (result[0] != 0));
       return result[0] != 0;
     };
     const bool opens = opens_out();
     std::size_t crossings = 0;
     for (std::size_t s = 0; s < triangles.size(); ++s)
-      for (std::size_t t = s + 1; t < triangles.size(); ++t) crossings += triangles_cross(triangles[s], triangles[t], at, false);
+      for (std::size_t t = s + 1; t < triangles.size(); ++t)
+        crossings += triangles_cross(triangles[s], triangles[t], at, false);
     if (opens) CHECK(crossings == 0);
     if (rounds == 2) CHECK(!opens);
     open += opens, twice_round += rounds == 2;

@@ -5,10 +5,10 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "kerf/crossing.h"
 #include "contact/detection/parting_lanes.h"
 #include "contact/detection/triangle_planes.h"
 #include "contact/detection/triangle_sides.h"
+#include "kerf/crossing.h"
 #include "vectors.h"
 
 using namespace geo;
@@ -23,13 +23,15 @@ struct Soup {
   explicit Soup(Random& random) {
     const bool grid = random.below(2) == 0;
     for (int v = 0; v < 24; ++v) {
-      from.push_back(grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3))) : Vec3(random.uniform(0, 2) * random.direction()));
-      to.push_back(grid && random.below(2) == 0 ? from.back() : Vec3(from.back() + random.uniform(0, 0.5) * random.direction()));
+      from.push_back(grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3)))
+                          : Vec3(random.uniform(0, 2) * random.direction()));
+      to.push_back(grid && random.below(2) == 0 ? from.back()
+                                                : Vec3(from.back() + random.uniform(0, 0.5) * random.direction()));
     }
     for (int t = 0; t < 24; ++t) {
       Triangle one;
-      for (int k = 0; k < 3; ++k)
-        do one[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(random.below(24));
+      for (int k = 0; k < 3; ++k) do
+          one[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(random.below(24));
         while ((k > 0 && one[static_cast<std::size_t>(k)] == one[0]) || (k > 1 && one[2] == one[1]));
       triangles.push_back(one);
     }
@@ -44,7 +46,9 @@ Simplex simplex_of(const Triangle& t) { return {{t[0], t[1], t[2]}, 3}; }
 
 }  // namespace
 
-TEST_CASE("planes of triangles, and ways between their middles, part those pairs that they should, the same for all vectors") {
+TEST_CASE(
+    "planes of triangles, and ways between their middles, part those pairs that they should, the same for all "
+    "vectors") {
   const auto [first, count] = seeds(40);
   std::size_t parted_by_planes = 0, parted_across = 0, unparted = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
@@ -67,18 +71,25 @@ TEST_CASE("planes of triangles, and ways between their middles, part those pairs
       for (const auto& [a, b] : {std::pair(s, t), std::pair(t, s)}) {
         Vec3 n = (soup.from[a[1]] - soup.from[a[0]]).cross(soup.from[a[2]] - soup.from[a[0]]);
         if (n.norm() > 0) n.normalize();
-        for (const double sign : {1.0, -1.0}) any |= parted(sign * n, simplex_of(b), simplex_of(a), soup.from) > at_first && parted(sign * n, simplex_of(b), simplex_of(a), soup.to) > at_last;
+        for (const double sign : {1.0, -1.0})
+          any |= parted(sign * n, simplex_of(b), simplex_of(a), soup.from) > at_first &&
+                 parted(sign * n, simplex_of(b), simplex_of(a), soup.to) > at_last;
         // Only rounding could tell the side else.
         const double side = n.dot(middle_of(b, soup.from) - middle_of(a, soup.from));
-        farthest = std::abs(side) > 1e-9 ? std::max(farthest, parted(side > 0 ? n : Vec3(-n), simplex_of(b), simplex_of(a), soup.to)) : 1e300;
+        farthest = std::abs(side) > 1e-9
+                       ? std::max(farthest, parted(side > 0 ? n : Vec3(-n), simplex_of(b), simplex_of(a), soup.to))
+                       : 1e300;
       }
       if (farthest < 1e300) CHECK(std::abs(left[i] - farthest) < 1e-12);
       if (!any) by_planes.push_back(soup.pairs[i]);
       CHECK(planes.part(p, q, at_first, at_last) == any);
       const Vec3 way = middle_of(s, soup.from) - middle_of(t, soup.from);
-      if (!(parted(way, simplex_of(s), simplex_of(t), soup.from) > at_first * way.norm() && parted(way, simplex_of(s), simplex_of(t), soup.to) > at_last * way.norm())) across.push_back(soup.pairs[i]);
+      if (!(parted(way, simplex_of(s), simplex_of(t), soup.from) > at_first * way.norm() &&
+            parted(way, simplex_of(s), simplex_of(t), soup.to) > at_last * way.norm()))
+        across.push_back(soup.pairs[i]);
     }
-    parted_by_planes += soup.pairs.size() - by_planes.size(), parted_across += soup.pairs.size() - across.size(), unparted += by_planes.size();
+    parted_by_planes += soup.pairs.size() - by_planes.size(), parted_across += soup.pairs.size() - across.size(),
+        unparted += by_planes.size();
     on_every_target([&] {
       auto kept = soup.pairs;
       planes.keep_unparted(kept, at_first, at_last);
@@ -94,7 +105,9 @@ TEST_CASE("planes of triangles, and ways between their middles, part those pairs
   CHECK(unparted > 100);
 }
 
-TEST_CASE("pairs of triangles that are clear by the sides of their planes and edges do not cross, most that do not are clear, the same for all vectors") {
+TEST_CASE(
+    "pairs of triangles that are clear by the sides of their planes and edges do not cross, most that do not are "
+    "clear, the same for all vectors") {
   const auto [first, count] = seeds(100);
   std::size_t clear = 0, clear_when_seen = 0, neighbours = 0, neither = 0, crossing = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
@@ -118,10 +131,13 @@ TEST_CASE("pairs of triangles that are clear by the sides of their planes and ed
     for (const auto& pair : soup.pairs) {
       const Triangle &s = standing[pair.first], &t = standing[pair.second];
       if (s[0] == s[1] || s[1] == s[2] || s[2] == s[0] || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-      const bool is_clear = !std::binary_search(kept.begin(), kept.end(), pair), crosses = triangles_cross(s, t, soup.from, true);
+      const bool is_clear = !std::binary_search(kept.begin(), kept.end(), pair),
+                 crosses = triangles_cross(s, t, soup.from, true);
       if (is_clear) CHECK_FALSE(crosses);
-      const auto common = std::count_if(s.begin(), s.end(), [&](auto v) { return v == t[0] || v == t[1] || v == t[2]; });
-      clear += is_clear, clear_when_seen += is_clear && flat, neighbours += is_clear && common > 0, neither += !is_clear && !crosses, crossing += crosses;
+      const auto common =
+          std::count_if(s.begin(), s.end(), [&](auto v) { return v == t[0] || v == t[1] || v == t[2]; });
+      clear += is_clear, clear_when_seen += is_clear && flat, neighbours += is_clear && common > 0,
+          neither += !is_clear && !crosses, crossing += crosses;
     }
     on_every_target([&] {
       auto same = soup.pairs;
@@ -146,12 +162,15 @@ TEST_CASE("directions part eight couples as far as they say, the closest places'
     std::vector<Vec3> from, to;
     std::vector<Couple> couples;
     const auto somewhere = [&](double scale) {
-      return grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3))) : Vec3(scale * random.uniform(0, 1) * random.direction());
+      return grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3)))
+                  : Vec3(scale * random.uniform(0, 1) * random.direction());
     };
     for (std::uint32_t c = 0; c < 1 + random.below(Partings::width); ++c) {
       const auto simplex = [&](double x) {
         Simplex s{{}, 1 + static_cast<int>(random.below(3))};
-        for (int k = 0; k < s.size; ++k) s.v[k] = static_cast<std::uint32_t>(from.size()), from.push_back(Vec3(x, 0, 0) + somewhere(1)), to.push_back(from.back() + somewhere(0.3));
+        for (int k = 0; k < s.size; ++k)
+          s.v[k] = static_cast<std::uint32_t>(from.size()), from.push_back(Vec3(x, 0, 0) + somewhere(1)),
+          to.push_back(from.back() + somewhere(0.3));
         return s;
       };
       const Simplex a = simplex(0), b = simplex(grid ? random.below(4) : random.uniform(0.5, 2.5));
@@ -170,7 +189,7 @@ TEST_CASE("directions part eight couples as far as they say, the closest places'
         CHECK(p.first[k][lane] <= std::max(0.0, p.first[Partings::closest][lane]) + 1e-9);
         CHECK(p.last[k][lane] <= std::max(0.0, p.last[Partings::closest_at_end][lane]) + 1e-9);
       }
-      const auto corners = [&](const Simplex& s, Vec3 (&out)[3]) {
+      const auto corners = [&](const Simplex& s, Vec3(&out)[3]) {
         for (int k = 0; k < 3; ++k) out[k] = from[s.v[std::min(k, s.size - 1)]];
       };
       Vec3 s[3], t[3], between = Vec3::Zero();
@@ -191,9 +210,12 @@ TEST_CASE("directions part eight couples as far as they say, the closest places'
     TiltedPartings tilted;
     find_tilted(couples[0], p, 0, from, to, tilted);
     const auto direction = [&](int k) { return Vec3(p.normal[k][0][0], p.normal[k][1][0], p.normal[k][2][0]); };
-    const Vec3 normals[] = {direction(Partings::a_normal), direction(Partings::b_normal), direction(Partings::a_normal) + direction(Partings::b_normal)};
+    const Vec3 normals[] = {direction(Partings::a_normal), direction(Partings::b_normal),
+                            direction(Partings::a_normal) + direction(Partings::b_normal)};
     for (int k = 0; k < TiltedPartings::count; ++k) {
-      const Vec3 n(tilted.normal[0][k], tilted.normal[1][k], tilted.normal[2][k]), wanted = normals[k % 3] + std::array{0.0, 0.01, 0.03, 0.09, 0.27}[static_cast<std::size_t>(k / 3)] * direction(Partings::closest);
+      const Vec3 n(tilted.normal[0][k], tilted.normal[1][k], tilted.normal[2][k]),
+          wanted = normals[k % 3] + std::array{0.0, 0.01, 0.03, 0.09, 0.27}[static_cast<std::size_t>(k / 3)] *
+                                        direction(Partings::closest);
       CHECK((n - wanted.normalized()).norm() < 1e-12);
       CHECK(std::abs(parted(n, couples[0].a, couples[0].b, from) - tilted.first[k]) < 1e-12);
       CHECK(std::abs(parted(n, couples[0].a, couples[0].b, to) - tilted.last[k]) < 1e-12);

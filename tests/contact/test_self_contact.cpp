@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
-#include "cases.h"
 #include "body/agreement.h"
-#include "kerf/crossing.h"
+#include "cases.h"
 #include "contact/self_contact.h"
+#include "kerf/crossing.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
 
@@ -49,15 +49,17 @@ TEST_CASE("random steps of cut bodies never make the surface cross itself", "[ca
     for (int step = 0; step < 14; ++step) {
       if (step < depth) {
         const double z = 1.1 - 0.22 * (step + 1), sway = random.uniform(-0.05, 0.05);
-        const auto delta = split(body, front, {{-0.3, y + sway, z}, {0.5, y + sway + 0.05, z}, {1.3, y + sway, z}}, {}, nullptr,
-                                 [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
+        const auto delta = split(
+            body, front, {{-0.3, y + sway, z}, {0.5, y + sway + 0.05, z}, {1.3, y + sway, z}}, {}, nullptr,
+            [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         contact.follow(body, solid, delta);
         CHECK(count_crossings(surface_of(contact)) == 0);
       }
       const Vec3 push = random.uniform(0, 0.3) * random.direction();
       for (std::size_t i = 0; i < solid.size(); ++i)
-        state.velocity[i] += (body.nodes.position[i].y() < y ? 1 : -1) * push + 0.2 * random.uniform(0, 1) * random.direction();
+        state.velocity[i] +=
+            (body.nodes.position[i].y() < y ? 1 : -1) * push + 0.2 * random.uniform(0, 1) * random.direction();
       const std::vector<Vec3> before = state.displacement;
       solid.step_implicit(state, 0.02, environment);
       Vec3 momentum = solid.momentum(state);

@@ -16,7 +16,8 @@ inline std::vector<std::vector<geo::Vec3>> block_cut(geo::Random& random) {
   const double size = 0.5 * random.uniform(0.5, 1);
   std::vector<std::vector<Vec3>> rows(5);
   for (int s = 0; s <= 4; ++s)
-    for (int i = 0; i <= 5; ++i) rows[static_cast<std::size_t>(s)].push_back(p + size * ((s / 4.0 - 0.5) * u + (i / 5.0 - 0.5) * v));
+    for (int i = 0; i <= 5; ++i)
+      rows[static_cast<std::size_t>(s)].push_back(p + size * ((s / 4.0 - 0.5) * u + (i / 5.0 - 0.5) * v));
   return rows;
 }
 

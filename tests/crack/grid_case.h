@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "kerf/error.h"
 #include "base/random.h"
-#include "kerf/crack.h"
-#include "kerf/front_file.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
+#include "kerf/front_file.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
 
@@ -54,14 +54,15 @@ inline GridCase random_case(std::uint64_t seed) {
   return grid;
 }
 
-/// What does not hold after a step: structure and volumes of the whole, crossings of the faces that the step made, which
-/// are the only ones that can cross anything; without `made`, of all faces.
+/// What does not hold after a step: structure and volumes of the whole, crossings of the faces that the step made,
+/// which are the only ones that can cross anything; without `made`, of all faces.
 inline std::string fault_of(const geo::Complex& k, double volume, const std::vector<geo::FaceId>* made = nullptr) {
   const auto report = geo::check_complex(k, made == nullptr);
   if (!report.good()) return report.first_problem;
   if (made)
     if (const auto pairs = geo::self_intersections(k, made); !pairs.empty())
-      return "faces " + std::to_string(pairs[0].first.value) + " and " + std::to_string(pairs[0].second.value) + " intersect each other";
+      return "faces " + std::to_string(pairs[0].first.value) + " and " + std::to_string(pairs[0].second.value) +
+             " intersect each other";
   const geo::Pieces pieces = geo::find_pieces(k);
   const double sum = std::accumulate(pieces.volume.begin(), pieces.volume.end(), 0.0);
   return std::abs(sum - volume) <= 1e-11 * volume ? std::string() : "the pieces' volumes sum to " + std::to_string(sum);
@@ -71,8 +72,10 @@ inline std::string fault_of(const geo::Complex& k, double volume, const std::vec
 inline std::string kind_of(const std::string& text) {
   std::string kind;
   for (const char c : text)
-    if (!std::isdigit(static_cast<unsigned char>(c))) kind += c;
-    else if (kind.empty() || kind.back() != '#') kind += '#';
+    if (!std::isdigit(static_cast<unsigned char>(c)))
+      kind += c;
+    else if (kind.empty() || kind.back() != '#')
+      kind += '#';
   return kind;
 }
 
@@ -99,7 +102,8 @@ inline GridOutcome outcome(const GridCase& grid, bool strict = false) {
     const GridCrack& crack = grid.cracks[c];
     FrontState front = begin_front(crack.rows.at(0), crack.closed, static_cast<std::int32_t>(c + 1));
     for (std::size_t s = 1; s < crack.rows.size(); ++s) {
-      const std::array<std::uint32_t, 4> counts{k.vertex_count(), k.face_count(), k.live_face_count(), k.surface_vertex_count()};
+      const std::array<std::uint32_t, 4> counts{k.vertex_count(), k.face_count(), k.live_face_count(),
+                                                k.surface_vertex_count()};
       const TriangleMesh before = strict ? k.two_sided() : TriangleMesh{};
       ++result.steps;
       try {
@@ -110,8 +114,10 @@ inline GridOutcome outcome(const GridCase& grid, bool strict = false) {
         const std::string what = e.what();
         ++result.reasons[kind_of(what.substr(what.find(": ") + 2))];
         const TriangleMesh after = strict ? k.two_sided() : TriangleMesh{};
-        if (counts != std::array<std::uint32_t, 4>{k.vertex_count(), k.face_count(), k.live_face_count(), k.surface_vertex_count()} ||
-            before.vertices != after.vertices || before.triangles != after.triangles || before.patch != after.patch || before.site != after.site)
+        if (counts != std::array<std::uint32_t, 4>{k.vertex_count(), k.face_count(), k.live_face_count(),
+                                                   k.surface_vertex_count()} ||
+            before.vertices != after.vertices || before.triangles != after.triangles || before.patch != after.patch ||
+            before.site != after.site)
           return violation(c, s, "a refused step changed the complex");
         break;
       }

@@ -6,9 +6,9 @@
 
 #include "crack/grid_case.h"
 
-/// The smallest case that `fails` holds of and that is found by dropping cracks, steps and points, and by simplify(case, attempt),
-/// as long as any of these helps. attempt() takes a simpler case over where it fails, too, and returns whether it did; simplify()
-/// returns whether any attempt succeeded. `fails` holds of `small`.
+/// The smallest case that `fails` holds of and that is found by dropping cracks, steps and points, and by
+/// simplify(case, attempt), as long as any of these helps. attempt() takes a simpler case over where it fails, too, and
+/// returns whether it did; simplify() returns whether any attempt succeeded. `fails` holds of `small`.
 template <class Case, class Simplify>
 Case shrink(Case small, const std::function<bool(const Case&)>& fails, const Simplify& simplify) {
   const auto attempt = [&](const Case& smaller) {

@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "kerf/crack.h"
 #include "crack/grid_case.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
 
@@ -83,7 +83,8 @@ TEST_CASE("a crack may begin inside, stand still in part, turn back, and reach n
   CHECK(advance(k, front, same).empty());
   advance(k, front, std::vector<Vec3>{{1.1, 1.2, 2.1}, {1.5, 2.0, 2.4}, {2.2, 2.9, 2.3}});
   require_sound(k, 64);
-  CHECK(k.two_sided().triangles.size() == make_block({4, 4, 4}, 1).triangles.size() + 2 * (k.live_face_count() - make_block({4, 4, 4}, 1).triangles.size()));
+  CHECK(k.two_sided().triangles.size() == make_block({4, 4, 4}, 1).triangles.size() +
+                                              2 * (k.live_face_count() - make_block({4, 4, 4}, 1).triangles.size()));
 }
 
 TEST_CASE("a crack that meets an older one is joined to it: T and X") {
@@ -130,10 +131,13 @@ TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
     Complex k = Complex::from_skin(mesh);
     for (int cut = 1; cut <= 2; ++cut) {
       const Vec3 d1 = random.direction(), d2 = d1.cross(random.direction()).normalized(), n = d1.cross(d2);
-      const double offset = random.uniform(-0.5, 0.5), bend = random.below(2) ? 0.15 : 0, whole = random.below(2) ? 1.0 : random.uniform();
+      const double offset = random.uniform(-0.5, 0.5), bend = random.below(2) ? 0.15 : 0,
+                   whole = random.below(2) ? 1.0 : random.uniform();
       const auto row = [&](double s) {
         std::vector<Vec3> p;
-        for (int j = 0; j <= 8; ++j) p.push_back(offset * n + 3.2 * (s * whole - 0.5) * d1 + 3.2 * (j / 8.0 - 0.5) * d2 + bend * std::sin(4 * s + j) * n);
+        for (int j = 0; j <= 8; ++j)
+          p.push_back(offset * n + 3.2 * (s * whole - 0.5) * d1 + 3.2 * (j / 8.0 - 0.5) * d2 +
+                      bend * std::sin(4 * s + j) * n);
         return p;
       };
       const int count = random.below(2) ? 12 : 1 + static_cast<int>(random.below(3));
@@ -165,7 +169,8 @@ void require_same(const Complex& a, const Complex& b) {
   std::vector<std::uint32_t> rows_a, rows_b;
   const TriangleMesh ma = a.two_sided(&rows_a), mb = b.two_sided(&rows_b);
   REQUIRE(rows_a == rows_b);
-  REQUIRE((ma.vertices == mb.vertices && ma.triangles == mb.triangles && ma.patch == mb.patch && ma.site == mb.site && ma.source == mb.source));
+  REQUIRE((ma.vertices == mb.vertices && ma.triangles == mb.triangles && ma.patch == mb.patch && ma.site == mb.site &&
+           ma.source == mb.source));
   bool rings = true, fans = true, near = true;
   std::vector<FaceId> near_a, near_b;
   for (std::uint32_t f = 0; f < a.face_count(); ++f) {
@@ -201,7 +206,8 @@ TEST_CASE("skin along the axes stays exactly flat") {
     Complex k = Complex::from_skin(block);
     const Vec3 middle = corner + Vec3::Ones(), across = 4 * random.direction(), along = 4 * across.unitOrthogonal();
     FrontState front = begin_front(line(middle - along - across, middle - along + across, 3), false, 1);
-    for (const double at : {-0.2, 0.3, 1.0}) advance(k, front, line(middle + at * along - across, middle + at * along + across, 3));
+    for (const double at : {-0.2, 0.3, 1.0})
+      advance(k, front, line(middle + at * along - across, middle + at * along + across, 3));
     REQUIRE(find_pieces(k).count == 2);
     for (std::uint32_t f = 0; f < k.face_count(); ++f) {
       if (!k.alive(FaceId(f)) || k.face(FaceId(f)).crack != 0) continue;
@@ -219,7 +225,8 @@ TEST_CASE("a step that is taken back leaves the complex as it was, and what come
   for (auto seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     CAPTURE(seed);
     const GridCase grid = random_case(seed);
-    Complex k = Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / grid.divisions)), plain = k;
+    Complex k = Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / grid.divisions)),
+            plain = k;
     REQUIRE_THROWS_AS(k.take_back(), GeometryError);
     for (std::size_t c = 0; c < grid.cracks.size(); ++c) {
       FrontState front = begin_front(grid.cracks[c].rows[0], grid.cracks[c].closed, static_cast<std::int32_t>(c + 1));

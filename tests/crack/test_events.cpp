@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "kerf/error.h"
-#include "kerf/crack.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
 
@@ -39,7 +39,8 @@ std::size_t sweep(Complex& k, const std::vector<Row>& rows, std::int32_t crack, 
   std::size_t tips = 0;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     for (int e = 0; e < 3 && k.alive(FaceId(f)); ++e)
-      if (k.face(FaceId(f)).crack > 0) tips += k.around(k.face(FaceId(f)).v[e], k.face(FaceId(f)).v[(e + 1) % 3]).size() == 1;
+      if (k.face(FaceId(f)).crack > 0)
+        tips += k.around(k.face(FaceId(f)).v[e], k.face(FaceId(f)).v[(e + 1) % 3]).size() == 1;
   return tips;
 }
 
@@ -83,7 +84,9 @@ TEST_CASE("event: merging of two fronts, front to front") {
 TEST_CASE("event: merging of a front with an older sheet") {
   Complex k = cube();
   sweep(k, {across(-1, 2.0), across(5, 2.0)}, 1);
-  CHECK(sweep(k, {line({1.5, -1, 5}, {1.5, 5, 5}), line({1.7, -1, 3}, {1.7, 5, 3}), line({1.8, -1, 1.2}, {1.8, 5, 1.2})}, 2) > 0);
+  CHECK(sweep(k,
+              {line({1.5, -1, 5}, {1.5, 5, 5}), line({1.7, -1, 3}, {1.7, 5, 3}), line({1.8, -1, 1.2}, {1.8, 5, 1.2})},
+              2) > 0);
   CHECK(pieces(k) == 3);
 }
 
@@ -102,7 +105,8 @@ TEST_CASE("event: a ring inside and a core that is drilled") {
   Complex k = cube();
   const auto ring = [](double radius, double z) {
     Row p;
-    for (int i = 0; i < 9; ++i) p.push_back({2.03 + radius * std::cos(0.698 * i), 2.01 + radius * std::sin(0.698 * i), z});
+    for (int i = 0; i < 9; ++i)
+      p.push_back({2.03 + radius * std::cos(0.698 * i), 2.01 + radius * std::sin(0.698 * i), z});
     return p;
   };
   CHECK(sweep(k, {ring(0.4, 2.1), ring(0.9, 2.2), ring(1.3, 2.4)}, 1, true) > 0);  // grows like an opening flaw
@@ -114,7 +118,8 @@ TEST_CASE("event: a ring inside and a core that is drilled") {
 TEST_CASE("event: three sheets that meet in a line") {
   Complex k = cube();
   TriangleMesh sheet;
-  sheet.vertices = {{2.1, -1, 2}, {2.1, 5, 2}, {-1, -1, 2.3}, {-1, 5, 2.3}, {5, -1, 3.1}, {5, 5, 3.1}, {3, -1, -1}, {3, 5, -1}};
+  sheet.vertices = {{2.1, -1, 2}, {2.1, 5, 2}, {-1, -1, 2.3}, {-1, 5, 2.3},
+                    {5, -1, 3.1}, {5, 5, 3.1}, {3, -1, -1},   {3, 5, -1}};
   sheet.triangles = {{0, 1, 2}, {1, 3, 2}, {0, 1, 4}, {1, 5, 4}, {0, 1, 6}, {1, 7, 6}};
   insert_sheet(k, sheet, 1);
   CHECK(check_complex(k, true).first_problem == "");
@@ -123,18 +128,22 @@ TEST_CASE("event: three sheets that meet in a line") {
 
 TEST_CASE("event: a sweep that crosses itself") {
   Complex k = cube();
-  CHECK_NOTHROW(sweep(k, {line({1, 0.5, 1}, {3, 3.5, 1.2}, 3), line({3, 0.5, 2}, {1, 3.5, 2.2}, 3), line({1, 0.7, 3}, {3, 3.2, 3.1}, 3)}, 1));
+  CHECK_NOTHROW(sweep(
+      k,
+      {line({1, 0.5, 1}, {3, 3.5, 1.2}, 3), line({3, 0.5, 2}, {1, 3.5, 2.2}, 3), line({1, 0.7, 3}, {3, 3.2, 3.1}, 3)},
+      1));
   CHECK(pieces(k) == 1);
 }
 
 TEST_CASE("event: T, Y and X with older cracks, along one, and at its tip") {
   Complex k = cube();
-  sweep(k, {across(-1, 2), across(2.5, 2)}, 1);                                                    // ends inside
-  sweep(k, {line({1, -1, 5}, {1, 5, 5}), line({1, -1, 2}, {1, 5, 2})}, 2);                         // T
-  sweep(k, {line({2.5, -1, 2}, {2.5, 5, 2}), line({3.5, -1, 1}, {3.5, 5, 1})}, 3);                 // goes on at the tip
-  sweep(k, {line({2.5, -1, 2}, {2.5, 5, 2}), line({5, -1, 3}, {5, 5, 3})}, 4);                     // Y at the tip
-  sweep(k, {line({-1, -1, 2}, {-1, 5, 2}), line({0.7, -1, 2}, {0.7, 5, 2})}, 5);                   // along the first
-  sweep(k, {line({1.7, -1, 5}, {1.7, 5, 5}), line({1.9, -1, 3}, {1.9, 5, 3}), line({1.6, -1, -1}, {1.6, 5, -1})}, 6);  // X
+  sweep(k, {across(-1, 2), across(2.5, 2)}, 1);                                     // ends inside
+  sweep(k, {line({1, -1, 5}, {1, 5, 5}), line({1, -1, 2}, {1, 5, 2})}, 2);          // T
+  sweep(k, {line({2.5, -1, 2}, {2.5, 5, 2}), line({3.5, -1, 1}, {3.5, 5, 1})}, 3);  // goes on at the tip
+  sweep(k, {line({2.5, -1, 2}, {2.5, 5, 2}), line({5, -1, 3}, {5, 5, 3})}, 4);      // Y at the tip
+  sweep(k, {line({-1, -1, 2}, {-1, 5, 2}), line({0.7, -1, 2}, {0.7, 5, 2})}, 5);    // along the first
+  sweep(k, {line({1.7, -1, 5}, {1.7, 5, 5}), line({1.9, -1, 3}, {1.9, 5, 3}), line({1.6, -1, -1}, {1.6, 5, -1})},
+        6);  // X
   CHECK(pieces(k) >= 4);
 }
 
@@ -177,7 +186,8 @@ TEST_CASE("event: coordinates scaled by a millionth and a million, and moved far
       for (int s = 0; s <= 6; ++s) {
         rows.emplace_back();
         for (int i = 0; i <= 8; ++i)
-          rows.back().push_back(scale * Vec3(-1.7 + 3.4 * i / 8.0, -1.7 + 3.4 * s / 6.0, 0.1 * std::sin(i + 0.5 * s)) + Vec3::Constant(shift));
+          rows.back().push_back(scale * Vec3(-1.7 + 3.4 * i / 8.0, -1.7 + 3.4 * s / 6.0, 0.1 * std::sin(i + 0.5 * s)) +
+                                Vec3::Constant(shift));
       }
       sweep(k, rows, 1);
       CHECK(pieces(k) == 2);

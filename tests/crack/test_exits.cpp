@@ -1,13 +1,13 @@
 // Where a front's line leaves the material.
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "kerf/crack.h"
 #include "crack/exits.h"
 #include "crack/keep_internal.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
 
@@ -25,7 +25,9 @@ std::vector<std::array<Vec3, 3>> fan_of(const TriangleMesh& mesh, std::uint32_t 
 
 // A bar along y with a valley in its upper face, turned and moved somewhere.
 struct Bar {
-  explicit Bar(Random& random) : turn(Eigen::AngleAxisd(random.uniform(0, 6), random.direction()).toRotationMatrix()), off(random.uniform(), random.uniform(), random.uniform()) {
+  explicit Bar(Random& random)
+      : turn(Eigen::AngleAxisd(random.uniform(0, 6), random.direction()).toRotationMatrix()),
+        off(random.uniform(), random.uniform(), random.uniform()) {
     const double outline[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {0, 0}, {-1, 1}};
     for (int end = 0; end < 2; ++end)
       for (const auto& p : outline) mesh.vertices.push_back(at(p[0], 2 * end, p[1]));
@@ -55,7 +57,8 @@ TEST_CASE("a line begins inside where points near its beginning are", "[exits]")
   for (int i = 0; i < count; ++i) {
     const std::uint32_t v = random.below(static_cast<std::uint32_t>(mesh.vertices.size()));
     const Vec3 way = random.direction();
-    const bool begins = begins_inside(mesh.vertices[v], mesh.vertices[v] + random.uniform(0.1, 3) * way, fan_of(mesh, v));
+    const bool begins =
+        begins_inside(mesh.vertices[v], mesh.vertices[v] + random.uniform(0.1, 3) * way, fan_of(mesh, v));
     CAPTURE(i, v);
     CHECK(begins == crack::inside_material(k, mesh.vertices[v] + 1e-6 * way));
     inside += begins;
@@ -81,7 +84,8 @@ TEST_CASE("a line along a face or an edge does not begin inside, one beside them
 }
 
 TEST_CASE("a complete cut that grazes a valley separates", "[exits]") {
-  // In some of these (the first is 50) rounding would move the front's line through the valley, a hundred last places long, into the material.
+  // In some of these (the first is 50) rounding would move the front's line through the valley, a hundred last places
+  // long, into the material.
   const Seeds which = seeds(600);
   int refused = 0;
   for (int i = 0; i < which.count; ++i) {
@@ -90,7 +94,10 @@ TEST_CASE("a complete cut that grazes a valley separates", "[exits]") {
     Random random(seed);
     const Bar bar(random);
     const double slope = random.uniform(0.4, 0.8), middle = random.uniform(0.7, 1.3);
-    const auto row = [&](double y) { return std::vector<Vec3>{bar.at(-1.5 - 0.1 * random.uniform(), y, slope * (y - middle)), bar.at(1.5, y, slope * (y - middle))}; };
+    const auto row = [&](double y) {
+      return std::vector<Vec3>{bar.at(-1.5 - 0.1 * random.uniform(), y, slope * (y - middle)),
+                               bar.at(1.5, y, slope * (y - middle))};
+    };
     Complex k = Complex::from_skin(bar.mesh);
     FrontState front = begin_front(row(-0.3), false, 1);
     try {

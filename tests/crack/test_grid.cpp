@@ -1,15 +1,15 @@
 // Insertion on an integer grid: small bodies, fronts through grid points only, so that vertices, edges, faces, old
 // fronts and old cracks are met exactly, and sweeps fold back over themselves.
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "kerf/parallel.h"
-#include "kerf/progress.h"
 #include "cases.h"
 #include "crack/grid_case.h"
-#include "kerf/crack.h"
 #include "crack/shrink.h"
+#include "kerf/crack.h"
+#include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "kerf/stream.h"
 
 using namespace geo;
@@ -25,22 +25,29 @@ TEST_CASE("random fronts on an integer grid keep every invariant after every ste
   std::vector<GridOutcome> outcomes(batch);
   for (int c = 0; c < which.count; ++c) {
     if (c % batch == 0)
-      parallel_for(static_cast<std::size_t>(std::min(batch, which.count - c)), 4, [&](std::size_t from, std::size_t to) {
-        for (auto i = from; i < to; ++i) outcomes[i] = outcome(random_case(which.first + static_cast<std::uint64_t>(c) + i));
-      });
+      parallel_for(static_cast<std::size_t>(std::min(batch, which.count - c)), 4,
+                   [&](std::size_t from, std::size_t to) {
+                     for (auto i = from; i < to; ++i)
+                       outcomes[i] = outcome(random_case(which.first + static_cast<std::uint64_t>(c) + i));
+                   });
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(c);
     const GridOutcome& result = outcomes[static_cast<std::size_t>(c % batch)];
     steps += result.steps, refused += result.refused;
     for (const auto& [reason, times] : result.reasons) reasons[reason] += times;
     if (result.violation.empty()) continue;
     const std::string kind = kind_of(result.violation), file = "grid-" + std::to_string(seed) + ".front";
-    const GridCase small = shrink(random_case(seed), [&](const GridCase& g) { return kind_of(outcome(g).violation) == kind; });
-    write_all(file, [&](std::ostream& out) { write_case(out, small, "expect: good; found with seed " + std::to_string(seed) + ": " + result.violation); });
-    FAIL_CHECK("seed " << seed << ", " << result.where << ": " << result.violation << "; the smallest such case is in " << file);
+    const GridCase small =
+        shrink(random_case(seed), [&](const GridCase& g) { return kind_of(outcome(g).violation) == kind; });
+    write_all(file, [&](std::ostream& out) {
+      write_case(out, small, "expect: good; found with seed " + std::to_string(seed) + ": " + result.violation);
+    });
+    FAIL_CHECK("seed " << seed << ", " << result.where << ": " << result.violation << "; the smallest such case is in "
+                       << file);
   }
   const double seconds = watch.lap();
   for (const auto& [reason, times] : reasons) WARN(times << " of " << steps << " steps refused: " << reason);
-  if (std::getenv("KERF_CASES")) WARN(which.count / seconds << " cases and " << static_cast<double>(steps) / seconds << " steps a second");
+  if (std::getenv("KERF_CASES"))
+    WARN(which.count / seconds << " cases and " << static_cast<double>(steps) / seconds << " steps a second");
   // Where an older repair has left a point a last place beside a plane of the grid, a few steps cannot be rounded.
   CHECK(refused * 200 <= std::max<std::size_t>(steps, 200));
 }
@@ -57,7 +64,8 @@ TEST_CASE("refusals of each kind, shrunk into files", "[.refusals]") {
       const std::string& reason = refusal.first;
       if (++known[reason] > 3) continue;
       const GridCase small = shrink(grid, [&](const GridCase& g) { return outcome(g).reasons.count(reason) > 0; });
-      write_all("refused-" + std::to_string(seed) + ".front", [&](std::ostream& out) { write_case(out, small, "expect: refused; " + reason); });
+      write_all("refused-" + std::to_string(seed) + ".front",
+                [&](std::ostream& out) { write_case(out, small, "expect: refused; " + reason); });
     }
   }
   for (const auto& [reason, times] : known) WARN(times << " times: " << reason);
@@ -127,7 +135,8 @@ TEST_CASE("a sheet in one step cuts as its front does in twelve") {
     for (int s = 0; s <= 12; ++s) {
       rows.emplace_back();
       for (int i = 0; i <= 10; ++i)
-        rows.back().push_back(3.4 * (s / 12.0 - 0.5) * u + 3.4 * (i / 10.0 - 0.5) * v + (0.1 * std::sin(s * 0.7) + 0.1 * std::cos(i * 0.9)) * n);
+        rows.back().push_back(3.4 * (s / 12.0 - 0.5) * u + 3.4 * (i / 10.0 - 0.5) * v +
+                              (0.1 * std::sin(s * 0.7) + 0.1 * std::cos(i * 0.9)) * n);
       sheet.vertices.insert(sheet.vertices.end(), rows.back().begin(), rows.back().end());
     }
     // The same triangles as the sweep's: a fan around the new left point, closed by the one that holds the new front.

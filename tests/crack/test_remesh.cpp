@@ -1,18 +1,18 @@
 // Local edits: remeshing between steps, jagged cracks, decimation.
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <numeric>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
 #include "crack/block_cuts.h"
-#include "kerf/crack_edits.h"
 #include "geometry/distance.h"
 #include "kerf/check.h"
-#include "surface/delta_sum.h"
+#include "kerf/crack_edits.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
+#include "surface/delta_sum.h"
 
 using namespace geo;
 
@@ -123,7 +123,8 @@ TEST_CASE("a front goes on after remeshing and separates what it would have sepa
       CHECK(work.flips + work.collapses + work.moves > 0);
       // As far from where the crack was as one may be, and no farther.
       const Pieces p = find_pieces(plain), q = find_pieces(better);
-      for (std::size_t i = 0; i < p.count && i < 2; ++i) CHECK(std::abs(p.volume[i] - q.volume[i]) < 1e-3 * signed_volume(model));
+      for (std::size_t i = 0; i < p.count && i < 2; ++i)
+        CHECK(std::abs(p.volume[i] - q.volume[i]) < 1e-3 * signed_volume(model));
     }
   }
 }
@@ -148,7 +149,15 @@ TEST_CASE("jagged cracks leave the skin to the bit, and the same seed gives the 
     options.seed = static_cast<std::uint64_t>(seed);
     FrontState* const fronts[] = {&front};
     RoughenWork work;
-    const double flat = [&] { double sum = 0; for (const FaceId f : alive(k)) if (k.face(f).crack > 0) { const auto c = k.corners(f); sum += (c[1] - c[0]).cross(c[2] - c[0]).norm(); } return sum; }();
+    const double flat = [&] {
+      double sum = 0;
+      for (const FaceId f : alive(k))
+        if (k.face(f).crack > 0) {
+          const auto c = k.corners(f);
+          sum += (c[1] - c[0]).cross(c[2] - c[0]).norm();
+        }
+      return sum;
+    }();
     roughen(k, fronts, options, &work);
     roughen(again, fronts, options);
     CHECK(skin(k) == before);
@@ -199,7 +208,8 @@ TEST_CASE("decimation stays as close as it is told, closed and free of crossings
       for (const FaceId f : alive(k)) {
         if (k.face(f).crack > 0) continue;
         const auto c = k.corners(f);
-        nearest = std::min(nearest, (closest_point_on_triangle(model.vertices[v], c[0], c[1], c[2]) - model.vertices[v]).norm());
+        nearest = std::min(nearest,
+                           (closest_point_on_triangle(model.vertices[v], c[0], c[1], c[2]) - model.vertices[v]).norm());
       }
       most = std::max(most, nearest);
     }

@@ -29,8 +29,10 @@ int attempt(const std::uint8_t* data, std::size_t size, const Read& read) {
 /// The first folder of the command line, where it is empty, is filled with samples.
 inline void begin_with(int argc, char** argv, const std::vector<std::string>& samples) {
   for (int i = 1; i < argc; ++i)
-    if (const std::filesystem::path folder = argv[i]; std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder)) {
-      for (std::size_t s = 0; s < samples.size(); ++s) std::ofstream(folder / ("sample-" + std::to_string(s)), std::ios::binary) << samples[s];
+    if (const std::filesystem::path folder = argv[i];
+        std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder)) {
+      for (std::size_t s = 0; s < samples.size(); ++s)
+        std::ofstream(folder / ("sample-" + std::to_string(s)), std::ios::binary) << samples[s];
       return;
     }
 }

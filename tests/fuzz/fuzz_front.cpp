@@ -7,5 +7,6 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz::attempt(data, size, [](const std::string& bytes, const std::string& name) { geo::parse_fronts(bytes, name); });
+  return fuzz::attempt(data, size,
+                       [](const std::string& bytes, const std::string& name) { geo::parse_fronts(bytes, name); });
 }

@@ -10,7 +10,8 @@ using namespace geo;
 
 namespace {
 
-// Closed, of one shell (Euler), and nothing before any triangle among those of its own corners or, where `all`, of the points.
+// Closed, of one shell (Euler), and nothing before any triangle among those of its own corners or, where `all`, of the
+// points.
 void check_hull(const std::vector<Vec3>& points, const std::vector<Triangle>& hull, bool all) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   std::vector<char> used(points.size());
@@ -42,7 +43,8 @@ TEST_CASE("Nothing is outside of a convex hull", "[hull]") {
     for (Vec3& p : points) {
       p = random.direction();
       if (seed % 3 == 0) p *= random.uniform();
-      if (seed % 3 == 1) p = Vec3(random.below(4), random.below(4), random.below(4));  // many in one plane, many at one place
+      if (seed % 3 == 1)
+        p = Vec3(random.below(4), random.below(4), random.below(4));  // many in one plane, many at one place
     }
     const auto hull = convex_hull(points);
     if (hull.empty()) {

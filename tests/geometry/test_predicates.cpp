@@ -17,12 +17,18 @@ using Rational = CGAL::Exact_rational;
 
 int oracle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   Rational m[3][3];
-  for (int i = 0; i < 3; ++i) m[0][i] = Rational(b[i]) - Rational(a[i]), m[1][i] = Rational(c[i]) - Rational(a[i]), m[2][i] = Rational(d[i]) - Rational(a[i]);
-  const Rational det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  for (int i = 0; i < 3; ++i)
+    m[0][i] = Rational(b[i]) - Rational(a[i]), m[1][i] = Rational(c[i]) - Rational(a[i]),
+    m[2][i] = Rational(d[i]) - Rational(a[i]);
+  const Rational det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                       m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                       m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   return det > 0 ? 1 : det < 0 ? -1 : 0;
 }
 
-Vec3 grid_point(Random& random, int n) { return {double(random.below(n)), double(random.below(n)), double(random.below(n))}; }
+Vec3 grid_point(Random& random, int n) {
+  return {double(random.below(n)), double(random.below(n)), double(random.below(n))};
+}
 
 }  // namespace
 
@@ -52,18 +58,22 @@ TEST_CASE("sides of many points at once are those of each, or not told") {
   for (int i = 0; i < cases(100); ++i) {
     const bool grid = random.below(2);
     const double scale = std::pow(10.0, random.uniform(-6, 6)), shift = random.below(3) ? 0 : 1e6;
-    const auto point = [&] { return grid ? grid_point(random, 5) : Vec3(scale * random.direction() + Vec3::Constant(shift)); };
+    const auto point = [&] {
+      return grid ? grid_point(random, 5) : Vec3(scale * random.direction() + Vec3::Constant(shift));
+    };
     const std::array<Vec3, 3> t{point(), point(), point()};
     std::vector<double> x(128), y(128), z(128);
     for (std::size_t k = 0; k < 128; ++k) {
-      const Vec3 p = random.below(3) ? point() : Vec3(t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]));
+      const Vec3 p =
+          random.below(3) ? point() : Vec3(t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]));
       x[k] = p.x(), y[k] = p.y(), z[k] = p.z();
     }
     const double* const at[3] = {x.data(), y.data(), z.data()};
     std::uint64_t above[2], below[2];
     clear_sides(t, at, 2, above, below);
     for (std::size_t k = 0; k < 128; ++k) {
-      const int side = oracle(t[0], t[1], t[2], {x[k], y[k], z[k]}), over = above[k / 64] >> k % 64 & 1, under = below[k / 64] >> k % 64 & 1;
+      const int side = oracle(t[0], t[1], t[2], {x[k], y[k], z[k]}), over = above[k / 64] >> k % 64 & 1,
+                under = below[k / 64] >> k % 64 & 1;
       CAPTURE(i, k);
       CHECK((over + under == 0 || over - under == side));
       ++asked, told += static_cast<std::size_t>(over + under), flat += side == 0;
@@ -76,9 +86,9 @@ TEST_CASE("sides of many points at once are those of each, or not told") {
 TEST_CASE("a closed segment meets a closed triangle where it touches it") {
   const Vec3 a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
   CHECK(segment_meets_triangle({1, 1, -1}, {1, 1, 1}, a, b, c));
-  CHECK(segment_meets_triangle({1, 1, 0}, {1, 1, 1}, a, b, c));    // its end on the face
-  CHECK(segment_meets_triangle({0, 0, -1}, {0, 0, 1}, a, b, c));   // through a corner
-  CHECK(segment_meets_triangle({2, -1, 0}, {2, 5, 0}, a, b, c));   // in its plane
+  CHECK(segment_meets_triangle({1, 1, 0}, {1, 1, 1}, a, b, c));   // its end on the face
+  CHECK(segment_meets_triangle({0, 0, -1}, {0, 0, 1}, a, b, c));  // through a corner
+  CHECK(segment_meets_triangle({2, -1, 0}, {2, 5, 0}, a, b, c));  // in its plane
   CHECK_FALSE(segment_meets_triangle({5, 5, -1}, {5, 5, 1}, a, b, c));
   CHECK_FALSE(segment_meets_triangle({1, 1, 0.5}, {1, 1, 1}, a, b, c));
   CHECK_FALSE(segment_meets_triangle({5, 0, 0}, {6, 0, 0}, a, b, c));
@@ -90,7 +100,8 @@ TEST_CASE("segment and triangle agree with exact signs on grid points") {
   Random random(seed);
   int hits = 0;
   for (int i = 0; i < cases(4000); ++i) {
-    const Vec3 a = grid_point(random, 5), b = grid_point(random, 5), c = grid_point(random, 5), p = grid_point(random, 5), q = grid_point(random, 5);
+    const Vec3 a = grid_point(random, 5), b = grid_point(random, 5), c = grid_point(random, 5),
+               p = grid_point(random, 5), q = grid_point(random, 5);
     const int sp = oracle(a, b, c, p), sq = oracle(a, b, c, q);
     if (sp * sq >= 0 || collinear(a, b, c)) continue;  // the generic part of the oracle
     const int e0 = oracle(p, q, a, b), e1 = oracle(p, q, b, c), e2 = oracle(p, q, c, a);

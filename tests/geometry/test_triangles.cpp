@@ -1,4 +1,5 @@
-// Triangle against triangle, against CGAL's exact kernel on random and on grid triangles, where every degeneracy occurs.
+// Triangle against triangle, against CGAL's exact kernel on random and on grid triangles, where every degeneracy
+// occurs.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
@@ -22,10 +23,10 @@ Exact::Triangle_3 exact(const Vec3 (&t)[3]) {
 void random_pair(Random& random, Vec3 (&s)[3], Vec3 (&t)[3]) {
   const int grid = random.below(3) ? 3 : 0;  // 0: anywhere
   const auto point = [&] {
-    return grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3))) : Vec3(random.uniform(), random.uniform(), random.uniform());
+    return grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3)))
+                : Vec3(random.uniform(), random.uniform(), random.uniform());
   };
-  for (auto* x : {&s, &t})
-    do
+  for (auto* x : {&s, &t}) do
       for (Vec3& p : *x) p = point();
     while (collinear((*x)[0], (*x)[1], (*x)[2]));
   const int shared = static_cast<int>(random.below(3));
@@ -72,7 +73,8 @@ TEST_CASE("triangles that are said to share corners only have nothing else in co
         if (p == q) shared.push_back(p);
     const auto common = CGAL::intersection(exact(s), exact(t));
     const auto is_shared = [&](const Exact::Point_3& p) {
-      return std::any_of(shared.begin(), shared.end(), [&](const Vec3& v) { return Exact::Point_3(v.x(), v.y(), v.z()) == p; });
+      return std::any_of(shared.begin(), shared.end(),
+                         [&](const Vec3& v) { return Exact::Point_3(v.x(), v.y(), v.z()) == p; });
     };
     if (!common) {
       REQUIRE(shared.empty());

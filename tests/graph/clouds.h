@@ -19,18 +19,42 @@ inline std::vector<geo::Vec3> cloud(geo::Random& random, int kind, int count) {
   for (int i = 0; i < count; ++i) {
     const double level = std::exp2(-double(random.below(60)));
     switch (kind) {
-      case 0: p.push_back(any()); break;
-      case 1: p.push_back(level * any()); break;                                       // graded towards a corner
-      case 2: p.push_back(centers[random.below(4)] + std::exp2(-double(random.below(40))) * random.direction()); break;
-      case 3: p.push_back(any().x() * normal + Vec3(7, 8, 9)); break;                  // about a line
-      case 4: p.push_back(Vec3(random.uniform(), random.uniform(), 0.3)); break;
-      case 5: p.push_back(Vec3(random.below(side), random.below(side), random.below(side))); break;  // ties, duplicates
-      case 6: p.push_back(Vec3::Constant(random.below(3))); break;                     // three places
-      case 7: p.push_back(Vec3(1e9, -1e9, 1e9) + 1e-6 * any()); break;
-      case 8: p.push_back(1e55 * any()); break;
-      case 9: p.push_back(1e-170 * any()); break;                                      // squares underflow
-      case 10: p.push_back(i % 2 ? any() : Vec3(0.5, 0.5, 0.5)); break;                // half at one place
-      default: p.push_back(random.direction()); break;
+      case 0:
+        p.push_back(any());
+        break;
+      case 1:
+        p.push_back(level * any());
+        break;  // graded towards a corner
+      case 2:
+        p.push_back(centers[random.below(4)] + std::exp2(-double(random.below(40))) * random.direction());
+        break;
+      case 3:
+        p.push_back(any().x() * normal + Vec3(7, 8, 9));
+        break;  // about a line
+      case 4:
+        p.push_back(Vec3(random.uniform(), random.uniform(), 0.3));
+        break;
+      case 5:
+        p.push_back(Vec3(random.below(side), random.below(side), random.below(side)));
+        break;  // ties, duplicates
+      case 6:
+        p.push_back(Vec3::Constant(random.below(3)));
+        break;  // three places
+      case 7:
+        p.push_back(Vec3(1e9, -1e9, 1e9) + 1e-6 * any());
+        break;
+      case 8:
+        p.push_back(1e55 * any());
+        break;
+      case 9:
+        p.push_back(1e-170 * any());
+        break;  // squares underflow
+      case 10:
+        p.push_back(i % 2 ? any() : Vec3(0.5, 0.5, 0.5));
+        break;  // half at one place
+      default:
+        p.push_back(random.direction());
+        break;
     }
   }
   return p;

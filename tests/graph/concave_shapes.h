@@ -11,8 +11,8 @@
 
 #include "base/random.h"
 #include "graph/place_guides.h"
-#include "kerf/nodes.h"
 #include "kerf/mesh.h"
+#include "kerf/nodes.h"
 
 using Point2 = std::array<double, 2>;
 
@@ -47,12 +47,15 @@ inline geo::TriangleMesh walls_of(const Prism& prism) {
 inline std::vector<geo::SurfaceEdge> edges_of(const geo::TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::pair<std::uint32_t, std::size_t>>> halves;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) halves[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back({t, k});
+    for (std::size_t k = 0; k < 3; ++k)
+      halves[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back({t, k});
   std::vector<geo::SurfaceEdge> edges;
   for (const auto& entry : halves) {
     const auto& at = entry.second;
     if (at.size() != 2) continue;
-    const auto corner = [&](std::size_t half, std::size_t k) { return mesh.vertices[mesh.triangles[at[half].first][(at[half].second + k) % 3]]; };
+    const auto corner = [&](std::size_t half, std::size_t k) {
+      return mesh.vertices[mesh.triangles[at[half].first][(at[half].second + k) % 3]];
+    };
     edges.push_back({corner(0, 0), corner(0, 1), corner(0, 2), corner(1, 2)});
   }
   return edges;
@@ -77,7 +80,8 @@ class PrismPaths {
     for (const auto i : prism_.concave)
       for (const auto j : prism_.concave) {
         const auto &a = prism_.polygon[i], &b = prism_.polygon[j];
-        if (clear(from, a) && clear(a, b) && clear(b, to)) best = std::min(best, distance(from, a) + distance(a, b) + distance(b, to));
+        if (clear(from, a) && clear(a, b) && clear(b, to))
+          best = std::min(best, distance(from, a) + distance(a, b) + distance(b, to));
       }
     return std::hypot(best, p.z() - q.z());
   }
@@ -95,7 +99,9 @@ class PrismPaths {
   }
 
  private:
-  static double turn(const Point2& a, const Point2& b, const Point2& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); }
+  static double turn(const Point2& a, const Point2& b, const Point2& c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  }
   static double distance(const Point2& a, const Point2& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
   const Prism& prism_;
 };
@@ -112,7 +118,8 @@ struct ConcaveErrors {
   }
 };
 
-/// Jittered nodes in a prism, `across` of them a unit, a sixth of their spacing or more off its walls; supports of 2.4 spacings.
+/// Jittered nodes in a prism, `across` of them a unit, a sixth of their spacing or more off its walls; supports of 2.4
+/// spacings.
 inline geo::NodeSet nodes_in(const Prism& prism, int across, std::uint64_t seed) {
   geo::Random random(seed);
   const PrismPaths paths(prism);

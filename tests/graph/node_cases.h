@@ -10,14 +10,15 @@
 
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
 
-/// n³ nodes around the points of a grid in the unit cube, off them by up to `jitter` spacings; supports 1.8 to 2.2 wide,
-/// times up to `graded` along x.
+/// n³ nodes around the points of a grid in the unit cube, off them by up to `jitter` spacings; supports 1.8 to 2.2
+/// wide, times up to `graded` along x.
 inline geo::NodeSet jittered(geo::Random& random, int n, double jitter, double graded = 1) {
   geo::NodeSet nodes;
   const double h = 1.0 / n;
   for (int i = 0; i < n * n * n; ++i) {
     const geo::Vec3 p = h * (geo::Vec3(i % n, i / n % n, i / n / n) + geo::Vec3::Constant(0.5));
-    nodes.position.push_back(p + jitter * h * geo::Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+    nodes.position.push_back(p + jitter * h *
+                                     geo::Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
     nodes.radius.push_back(h * (1.8 + 0.4 * p.x()) * (1 + (graded - 1) * p.x()));
     nodes.spacing.push_back(h);
     nodes.volume.push_back(h * h * h);

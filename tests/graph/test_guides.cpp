@@ -3,21 +3,22 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "kerf/error.h"
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "concave_shapes.h"
 #include "graph/guides.h"
 #include "graph/lane_search.h"
-#include "kerf/graph.h"
 #include "graph/place_guides.h"
+#include "kerf/error.h"
+#include "kerf/graph.h"
+#include "kerf/parallel.h"
 #include "node_cases.h"
 
 using namespace geo;
 
 namespace {
 
-VisibilityGraph guided(const NodeSet& nodes, const TriangleBvh& tree, const std::vector<Guide>& guides, NeighborMethod method = NeighborMethod::automatic) {
+VisibilityGraph guided(const NodeSet& nodes, const TriangleBvh& tree, const std::vector<Guide>& guides,
+                       NeighborMethod method = NeighborMethod::automatic) {
   VisibilityGraph graph = build_visibility_graph(nodes, tree, 26);
   add_guides(nodes, NodeGrid(0.125, nodes.position), tree, guides, graph);
   build_neighborhoods(nodes, graph, tree, method);
@@ -97,7 +98,9 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
     for (const auto& g : guides) {
       CHECK(paths.inside({g.position.x(), g.position.y()}, 1e-6));
       double nearest = 1;
-      for (const auto c : prism.concave) nearest = std::min(nearest, std::hypot(g.position.x() - prism.polygon[c][0], g.position.y() - prism.polygon[c][1]));
+      for (const auto c : prism.concave)
+        nearest =
+            std::min(nearest, std::hypot(g.position.x() - prism.polygon[c][0], g.position.y() - prism.polygon[c][1]));
       CHECK(nearest < 0.125 / 60);
     }
     CHECK(place_guides(edges_of(mesh), nodes, grid, blocked, {1.0, 20}).size() == 8 * prism.concave.size());
@@ -114,7 +117,8 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
     const auto mesh = walls_of(prisms[p]);
     const TriangleBvh tree(corners_of(mesh));
     const NodeSet nodes = nodes_in(prisms[p], 8, 3);
-    CHECK(place_guides(edges_of(mesh), nodes, NodeGrid(0.125, nodes.position), sight_in(tree), {0.5, 100}).empty() == (p == 0));
+    CHECK(place_guides(edges_of(mesh), nodes, NodeGrid(0.125, nodes.position), sight_in(tree), {0.5, 100}).empty() ==
+          (p == 0));
   }
 }
 
@@ -129,19 +133,23 @@ TEST_CASE("with guides, distances of nodes that do not see each other are near t
       // With supports of twice the size rows tell distances of those, too, that ought to be neighbours and are not.
       NodeSet wide = nodes;
       for (double& r : wide.radius) r *= 2;
-      const auto bare = guided(wide, tree, {}), with = guided(wide, tree, place_guides(edges_of(mesh), nodes, NodeGrid(0.1, nodes.position), sight_in(tree)));
+      const auto bare = guided(wide, tree, {}),
+                 with = guided(wide, tree,
+                               place_guides(edges_of(mesh), nodes, NodeGrid(0.1, nodes.position), sight_in(tree)));
       const PrismPaths paths(prism);
       ConcaveErrors errors, errors_with;
       for (std::uint32_t i = 0; i < nodes.size(); ++i) {
         const auto add = [&](const VisibilityGraph& graph, ConcaveErrors& to) {
           for (const auto& n : graph.neighbors(wide, NodeId(i))) {
             const double exact = paths.length(nodes.position[i], nodes.position[n.to.index()]);
-            if (exact < nodes.radius[i] && tree.blocks(nodes.position[i], nodes.position[n.to.index()])) to.add(n.distance, exact, nodes.radius[i]);
+            if (exact < nodes.radius[i] && tree.blocks(nodes.position[i], nodes.position[n.to.index()]))
+              to.add(n.distance, exact, nodes.radius[i]);
           }
         };
         add(bare, errors), add(with, errors_with);
       }
-      CAPTURE(errors.count, errors_with.count, errors.mean(), errors_with.mean(), errors.worst, errors_with.worst, errors.missed, errors_with.missed);
+      CAPTURE(errors.count, errors_with.count, errors.mean(), errors_with.mean(), errors.worst, errors_with.worst,
+              errors.missed, errors_with.missed);
       REQUIRE(errors.count > 0);
       pairs += errors.count;
       CHECK(errors_with.count >= errors.count);

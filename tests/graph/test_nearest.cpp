@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "clouds.h"
-#include "vectors.h"
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"
+#include "kerf/parallel.h"
+#include "vectors.h"
 
 using namespace geo;
 
@@ -19,7 +19,8 @@ std::vector<NodeId> by_full_scan(const std::vector<Vec3>& x, int k) {
     for (std::uint32_t j = 0; j < x.size(); ++j)
       if (j != i) all.push_back({squared_distance(x[i], x[j]), j});
     std::sort(all.begin(), all.end());
-    for (std::size_t q = 0; q < static_cast<std::size_t>(k); ++q) rows.push_back(q < all.size() ? NodeId(all[q].second) : NodeId());
+    for (std::size_t q = 0; q < static_cast<std::size_t>(k); ++q)
+      rows.push_back(q < all.size() ? NodeId(all[q].second) : NodeId());
   }
   return rows;
 }
@@ -110,7 +111,8 @@ TEST_CASE("the tree over nodes is the same for any number of threads, and holds 
       const NodeTree tree(x);
       REQUIRE(std::ranges::equal(tree.nodes(), one.nodes()));
       REQUIRE(std::ranges::equal(tree.cells(), one.cells(), [](const auto& a, const auto& b) {
-        return a.begin == b.begin && a.end == b.end && a.parent == b.parent && a.children == b.children && std::equal(a.lo, a.lo + 3, b.lo) && std::equal(a.hi, a.hi + 3, b.hi);
+        return a.begin == b.begin && a.end == b.end && a.parent == b.parent && a.children == b.children &&
+               std::equal(a.lo, a.lo + 3, b.lo) && std::equal(a.hi, a.hi + 3, b.hi);
       }));
     }
     set_threads(0);
@@ -122,10 +124,12 @@ TEST_CASE("the tree over nodes is the same for any number of threads, and holds 
       const auto& cell = one.cells()[c];
       Box3 box;
       for (auto slot = cell.begin; slot < cell.end; ++slot) box.add(x[one.nodes()[slot]]);
-      for (int axis = 0; axis < 3; ++axis) tight = tight && box.lo[axis] == cell.lo[axis] && box.hi[axis] == cell.hi[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        tight = tight && box.lo[axis] == cell.lo[axis] && box.hi[axis] == cell.hi[axis];
       if (cell.leaf()) continue;
       const auto &l = one.cells()[cell.children], &r = one.cells()[cell.children + 1];
-      parted = parted && cell.children > c && l.parent == c && r.parent == c && l.begin == cell.begin && l.end == r.begin && r.end == cell.end;
+      parted = parted && cell.children > c && l.parent == c && r.parent == c && l.begin == cell.begin &&
+               l.end == r.begin && r.end == cell.end;
     }
     CHECK(nodes.size() == x.size());
     CHECK(once);

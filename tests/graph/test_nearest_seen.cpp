@@ -1,11 +1,11 @@
 // The nearest nodes that are seen, of nodes together and apart, against all triangles one by one.
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "clouds.h"
 #include "geometry/predicates.h"
 #include "graph/nearest_seen.h"
+#include "kerf/parallel.h"
 
 using namespace geo;
 
@@ -41,9 +41,12 @@ TEST_CASE("the nearest seen nodes are those of every triangle asked for every pa
       REQUIRE(found.size() == ids.size());
       for (std::size_t n = 0; n < ids.size(); ++n) {
         std::vector<std::uint32_t> expected;
-        for (const auto j : grid.nearest(nodes.position, nodes.position[ids[n]], static_cast<std::size_t>(3 * k), ids[n], [](auto) { return true; })) {
+        for (const auto j : grid.nearest(nodes.position, nodes.position[ids[n]], static_cast<std::size_t>(3 * k),
+                                         ids[n], [](auto) { return true; })) {
           if (expected.size() == static_cast<std::size_t>(k)) break;
-          const bool open = std::none_of(soup.begin(), soup.end(), [&](const auto& t) { return segment_meets_triangle(nodes.position[ids[n]], nodes.position[j], t[0], t[1], t[2]); });
+          const bool open = std::none_of(soup.begin(), soup.end(), [&](const auto& t) {
+            return segment_meets_triangle(nodes.position[ids[n]], nodes.position[j], t[0], t[1], t[2]);
+          });
           if (open) expected.push_back(j);
           ++(open ? seen : hidden);
         }

@@ -1,6 +1,6 @@
 // What an old row tells of a new one, beside looking each entry up.
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 #include "base/random.h"
 #include "graph/old_sight.h"
@@ -23,7 +23,9 @@ Row random_row(Random& random, std::uint32_t most, double chance) {
   for (std::uint32_t i = 0; i < most; ++i) {
     if (random.uniform() >= chance) continue;
     row.to.push_back(i);
-    row.bits.push_back(static_cast<std::uint16_t>((random.below(3) ? 0 : VisibilityGraph::edge_bit) | (random.below(6) ? 0 : VisibilityGraph::path_bit) | random.below(1 << 10)));
+    row.bits.push_back(static_cast<std::uint16_t>((random.below(3) ? 0 : VisibilityGraph::edge_bit) |
+                                                  (random.below(6) ? 0 : VisibilityGraph::path_bit) |
+                                                  random.below(1 << 10)));
   }
   return row;
 }
@@ -54,7 +56,8 @@ TEST_CASE("What was seen and is still is told from rows of any kind, whatever th
       const auto news = now;
       now = {};
       for (const auto i : old.to)
-        if (random.uniform() < stays) now.to.push_back(i), now.bits.push_back(random.below(2) ? VisibilityGraph::edge_bit : 0);
+        if (random.uniform() < stays)
+          now.to.push_back(i), now.bits.push_back(random.below(2) ? VisibilityGraph::edge_bit : 0);
       for (const auto i : news.to)
         if (random.below(20) == 0 && !std::binary_search(now.to.begin(), now.to.end(), i)) {
           const auto at = std::lower_bound(now.to.begin(), now.to.end(), i) - now.to.begin();

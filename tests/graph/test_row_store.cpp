@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "kerf/graph.h"
 #include "graph/row_store.h"
+#include "kerf/error.h"
+#include "kerf/graph.h"
 #include "node_cases.h"
 
 using namespace geo;
@@ -90,7 +90,8 @@ TEST_CASE("edges added and removed are those of a map") {
       const bool there = model[{i, j}];
       REQUIRE(graph.has(NodeId(i), NodeId(j)) == there);
       const bool wanted = random.below(2);
-      REQUIRE((wanted ? graph.add(nodes, NodeId(i), NodeId(j)) : graph.remove(NodeId(i), NodeId(j))) == (wanted != there));
+      REQUIRE((wanted ? graph.add(nodes, NodeId(i), NodeId(j)) : graph.remove(NodeId(i), NodeId(j))) ==
+              (wanted != there));
       edges = edges + (wanted && !there) - (!wanted && there);
       model[{i, j}] = model[{j, i}] = wanted;
       REQUIRE(graph.edge_count() == edges);
@@ -120,7 +121,9 @@ TEST_CASE("rows survive a trip through flat arrays, and damaged arrays are refus
     flat.paths.insert(flat.paths.end(), row.paths.begin(), row.paths.end());
     counts.push_back(static_cast<std::uint32_t>(row.to.size()));
   }
-  const auto read = [&] { return VisibilityGraph::from_rows(nodes, graph.plain_unit(), counts, flat.to, flat.bits, flat.paths); };
+  const auto read = [&] {
+    return VisibilityGraph::from_rows(nodes, graph.plain_unit(), counts, flat.to, flat.bits, flat.paths);
+  };
   const auto again = read();
   CHECK(again == graph);
   CHECK(again.edge_count() == graph.edge_count());
@@ -132,11 +135,20 @@ TEST_CASE("rows survive a trip through flat arrays, and damaged arrays are refus
     const auto e = random.below(static_cast<std::uint32_t>(flat.to.size()));
     const auto i = random.below(static_cast<std::uint32_t>(counts.size()));
     switch (damage % 5) {
-      case 0: flat.to[e] ^= 1u << random.below(32); break;
-      case 1: flat.bits[e] ^= static_cast<std::uint16_t>(1u << random.below(16)); break;
-      case 2: counts[i] += random.below(2) ? 1 : ~0u; break;
-      case 3: flat.paths[random.below(static_cast<std::uint32_t>(flat.paths.size()))] = -1; break;
-      default: flat.paths.pop_back();
+      case 0:
+        flat.to[e] ^= 1u << random.below(32);
+        break;
+      case 1:
+        flat.bits[e] ^= static_cast<std::uint16_t>(1u << random.below(16));
+        break;
+      case 2:
+        counts[i] += random.below(2) ? 1 : ~0u;
+        break;
+      case 3:
+        flat.paths[random.below(static_cast<std::uint32_t>(flat.paths.size()))] = -1;
+        break;
+      default:
+        flat.paths.pop_back();
     }
     REQUIRE_THROWS_AS(read(), InputError);
     flat = kept, counts = kept_counts;

@@ -2,19 +2,20 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "geometry/predicates.h"
 #include "graph/lane_search.h"
-#include "kerf/graph.h"
 #include "graph/row_search.h"
+#include "kerf/graph.h"
+#include "kerf/parallel.h"
 #include "node_cases.h"
 
 using namespace geo;
 
 namespace {
 
-VisibilityGraph with_rows(const NodeSet& nodes, VisibilityGraph graph, const TriangleBvh& tree, NeighborMethod method = NeighborMethod::automatic) {
+VisibilityGraph with_rows(const NodeSet& nodes, VisibilityGraph graph, const TriangleBvh& tree,
+                          NeighborMethod method = NeighborMethod::automatic) {
   build_neighborhoods(nodes, graph, tree, method);
   return graph;
 }
@@ -39,12 +40,14 @@ TEST_CASE("every method gives the same rows, with cracks and graded supports") {
         hidden += RowStore::has_path(row.bits[k]);
         long_edges += !VisibilityGraph::is_neighbor(row.bits[k]);
         REQUIRE(VisibilityGraph::is_edge(row.bits[k]) == graph.has(NodeId(i), NodeId(row.to[k])));
-        REQUIRE((VisibilityGraph::is_edge(row.bits[k]) || RowStore::has_path(row.bits[k]) ==
-                tree.blocks(nodes.position[std::min(i, row.to[k])], nodes.position[std::max(i, row.to[k])])));
+        REQUIRE((VisibilityGraph::is_edge(row.bits[k]) ||
+                 RowStore::has_path(row.bits[k]) ==
+                     tree.blocks(nodes.position[std::min(i, row.to[k])], nodes.position[std::max(i, row.to[k])])));
       }
       for (const auto& n : rows.neighbors(nodes, NodeId(i))) {
         bool back = false;
-        for (const auto& m : rows.neighbors(nodes, n.to)) back = back || (m.to == NodeId(i) && m.distance == n.distance && m.warped == n.warped);
+        for (const auto& m : rows.neighbors(nodes, n.to))
+          back = back || (m.to == NodeId(i) && m.distance == n.distance && m.warped == n.warped);
         REQUIRE(back);
         REQUIRE(double(n.distance) >= (nodes.position[i] - nodes.position[n.to.index()]).norm() * (1 - 1e-6));
       }
@@ -70,7 +73,9 @@ TEST_CASE("every vector width and number of threads gives the same rows") {
     for (int n = 0; n < 40; ++n) {
       std::vector<double> squared, radius;
       std::vector<std::uint32_t> lengths(static_cast<std::size_t>(n) + 8);
-      for (int k = 0; k < n; ++k) squared.push_back(k % 7 == 0 ? 0 : std::exp(random.uniform(-40, 40))), radius.push_back(std::exp(random.uniform(-3, 3)));
+      for (int k = 0; k < n; ++k)
+        squared.push_back(k % 7 == 0 ? 0 : std::exp(random.uniform(-40, 40))),
+            radius.push_back(std::exp(random.uniform(-3, 3)));
       auto padded_squared = squared, padded_radius = radius;
       padded_squared.resize(lengths.size(), 1), padded_radius.resize(lengths.size(), 1);
       warped_lengths(padded_squared.data(), padded_radius.data(), squared.size(), lengths.data());
@@ -107,7 +112,8 @@ TEST_CASE("a search from scattered nodes finds their rows of a build") {
 
 TEST_CASE("nodes at one place, in one line and alone have rows") {
   NodeSet nodes;
-  for (int i = 0; i < 60; ++i) nodes.position.push_back(i < 20 ? Vec3(0.5, 0.5, 0.5) : i < 59 ? Vec3(0.01 * i, 0, 0) : Vec3(90, 0, 0));
+  for (int i = 0; i < 60; ++i)
+    nodes.position.push_back(i < 20 ? Vec3(0.5, 0.5, 0.5) : i < 59 ? Vec3(0.01 * i, 0, 0) : Vec3(90, 0, 0));
   nodes.radius.assign(60, 0.2), nodes.spacing.assign(60, 0.1), nodes.volume.assign(60, 1e-3);
   const auto graph = build_visibility_graph(nodes, TriangleBvh(), 5);
   const auto rows = with_rows(nodes, graph, TriangleBvh());

@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "graph/guides.h"
-#include "kerf/graph.h"
 #include "graph/update.h"
+#include "kerf/graph.h"
+#include "kerf/parallel.h"
 #include "node_cases.h"
 
 using namespace geo;
@@ -29,12 +29,14 @@ struct Cut {
     build_neighborhoods(nodes, graph, tree);
   }
   NodeId insert(const Vec3& p, double radius) {
-    nodes.position.push_back(p), nodes.radius.push_back(radius), nodes.spacing.push_back(0.1), nodes.volume.push_back(1e-4);
+    nodes.position.push_back(p), nodes.radius.push_back(radius), nodes.spacing.push_back(0.1),
+        nodes.volume.push_back(1e-4);
     grid.insert(nodes.position, static_cast<std::uint32_t>(nodes.size() - 1));
     return NodeId(nodes.size() - 1);
   }
-  GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh, const std::vector<std::pair<NodeId, NodeId>>& joins = {},
-                   const GuideChange& guides = {}, const std::vector<NodeId>& resized = {}) {
+  GraphUpdate step(NodeId first, const std::vector<NodeId>& moved, const Soup& fresh,
+                   const std::vector<std::pair<NodeId, NodeId>>& joins = {}, const GuideChange& guides = {},
+                   const std::vector<NodeId>& resized = {}) {
     all.insert(all.end(), fresh.begin(), fresh.end());
     const auto near = [&](const Box3& box, Soup& out) {
       for (const auto& t : all)
@@ -67,7 +69,8 @@ VisibilityGraph edges_alone(const NodeSet& nodes, const VisibilityGraph& graph) 
 }
 
 // Edges that are right, and rows that a build along them finds.
-void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const VisibilityGraph& before, std::size_t& rows_compared) {
+void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const VisibilityGraph& before,
+                             std::size_t& rows_compared) {
   const TriangleBvh tree(cut.all);
   const auto& x = cut.nodes.position;
   std::size_t edges = 0;
@@ -83,9 +86,13 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
     const Vec3& p = guides.position(g);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < cut.nodes.size(); ++i)
-      if (!guides.retired(g) && squared_distance(p, x[i]) <= guides.radius(g) * guides.radius(g) && !tree.blocks(x[i], p)) expected.push_back(i);
+      if (!guides.retired(g) && squared_distance(p, x[i]) <= guides.radius(g) * guides.radius(g) &&
+          !tree.blocks(x[i], p))
+        expected.push_back(i);
     for (std::uint32_t h = 0; h < guides.size(); ++h)
-      if (const double r = std::max(guides.radius(g), guides.radius(h)); h != g && !guides.retired(g) && !guides.retired(h) && squared_distance(p, guides.position(h)) <= r * r && !tree.blocks(guides.position(h), p))
+      if (const double r = std::max(guides.radius(g), guides.radius(h));
+          h != g && !guides.retired(g) && !guides.retired(h) && squared_distance(p, guides.position(h)) <= r * r &&
+          !tree.blocks(guides.position(h), p))
         expected.push_back(VisibilityGraph::first_guide + h);
     const auto row = cut.graph.entries(VisibilityGraph::first_guide + g);
     CAPTURE(g);
@@ -120,7 +127,10 @@ TEST_CASE("incremental updates equal a build from scratch, bit for bit") {
     Random random(static_cast<std::uint64_t>(seed));
     Cut cut(jittered(random, 8, 0.35, seed % 3 == 0 ? 2 : 1), {}, 26);
     const Vec3 n = random.direction(), a = n.cross(random.direction()).normalized(), b = n.cross(a);
-    const auto at = [&](double u, double v) { return Vec3(Vec3::Constant(0.5) + (u - 0.6) * a * 1.6 + (v - 0.5) * b * 1.8 + 0.05 * std::sin(5 * u + 3 * v) * n + 0.003 * n); };
+    const auto at = [&](double u, double v) {
+      return Vec3(Vec3::Constant(0.5) + (u - 0.6) * a * 1.6 + (v - 0.5) * b * 1.8 + 0.05 * std::sin(5 * u + 3 * v) * n +
+                  0.003 * n);
+    };
     const int columns = seed % 2 ? 6 : 1;
     for (int step = 0; step < 8; ++step) {
       Soup fresh;
@@ -132,7 +142,8 @@ TEST_CASE("incremental updates equal a build from scratch, bit for bit") {
       const NodeId first(cut.nodes.size());
       const VisibilityGraph before = cut.graph;
       if (seed % 2 == 0)
-        for (int i = 0; i < 3; ++i) cut.insert({random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9)}, 0.22);
+        for (int i = 0; i < 3; ++i)
+          cut.insert({random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9)}, 0.22);
       require_as_from_scratch(cut, cut.step(first, {}, fresh), before, rows_compared);
     }
   }
@@ -173,8 +184,8 @@ TEST_CASE("updates with any faces, and nodes inserted, moved, resized and joined
     Random random(static_cast<std::uint64_t>(seed));
     const Soup walls = random_faces(random, seed % 4);
     const bool guided = seed % 2 == 0;
-    Cut cut(jittered(random, 5 + seed % 4, seed % 5 == 0 ? 0 : 0.4, 1 + 2 * random.uniform()), walls, 8 + static_cast<int>(random.below(25)),
-            random_guides(random, guided ? 12 : 0, walls));
+    Cut cut(jittered(random, 5 + seed % 4, seed % 5 == 0 ? 0 : 0.4, 1 + 2 * random.uniform()), walls,
+            8 + static_cast<int>(random.below(25)), random_guides(random, guided ? 12 : 0, walls));
     for (int step = 0; step < 8; ++step) {
       CAPTURE(step);
       const NodeId first(cut.nodes.size());
@@ -198,12 +209,14 @@ TEST_CASE("updates with any faces, and nodes inserted, moved, resized and joined
         const NodeId j(random.below(first.value));
         Soup faces = cut.all;
         faces.insert(faces.end(), fresh.begin(), fresh.end());
-        if (!TriangleBvh(faces).blocks(cut.nodes.position[j.index()], cut.nodes.position[i.index()])) joins.push_back({j, i});
+        if (!TriangleBvh(faces).blocks(cut.nodes.position[j.index()], cut.nodes.position[i.index()]))
+          joins.push_back({j, i});
       }
       GuideChange guides{random_guides(random, guided ? static_cast<int>(random.below(6)) : 0, fresh), {}};
       for (std::uint32_t m = guided ? random.below(3) : 0; m > 0; --m) {
         const auto g = VisibilityGraph::first_guide + random.below(cut.graph.guides().size());
-        if (std::find(guides.retired.begin(), guides.retired.end(), g) == guides.retired.end()) guides.retired.push_back(g);
+        if (std::find(guides.retired.begin(), guides.retired.end(), g) == guides.retired.end())
+          guides.retired.push_back(g);
       }
       // Radii alone: of a few anywhere, or of all in a ball.
       std::vector<NodeId> resized;
@@ -236,16 +249,20 @@ TEST_CASE("updates where a face cuts hardly more than one edge of a guide") {
     CAPTURE(seed);
     Random random(static_cast<std::uint64_t>(seed));
     const Soup walls = random_faces(random, 5);
-    Cut body(jittered(random, 6, 0.4, 1 + random.uniform()), walls, 4 + static_cast<int>(random.below(6)), random_guides(random, 60, walls));
+    Cut body(jittered(random, 6, 0.4, 1 + random.uniform()), walls, 4 + static_cast<int>(random.below(6)),
+             random_guides(random, 60, walls));
     for (int step = 0; step < 12; ++step) {
       CAPTURE(step);
       const auto g = VisibilityGraph::first_guide + random.below(body.graph.guides().size());
       const auto row = body.graph.entries(g);
       if (row.to.empty()) continue;
-      const Vec3 p = body.graph.position(body.nodes, g), q = body.graph.position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
-      const Vec3 at = p + random.uniform(0.2, 0.8) * (q - p), u = (q - p).unitOrthogonal(), v = u.cross((q - p).normalized());
+      const Vec3 p = body.graph.position(body.nodes, g),
+                 q = body.graph.position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
+      const Vec3 at = p + random.uniform(0.2, 0.8) * (q - p), u = (q - p).unitOrthogonal(),
+                 v = u.cross((q - p).normalized());
       const VisibilityGraph before = body.graph;
-      const auto update = body.step(NodeId(body.nodes.size()), {}, {{at + 0.002 * u, at + 0.002 * (v - u), at - 0.002 * (v + u)}});
+      const auto update =
+          body.step(NodeId(body.nodes.size()), {}, {{at + 0.002 * u, at + 0.002 * (v - u), at - 0.002 * (v + u)}});
       cut += !(before.entries(g).to.size() == body.graph.entries(g).to.size());
       require_as_from_scratch(body, update, before, rows_compared);
     }

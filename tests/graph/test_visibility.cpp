@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "clouds.h"
-#include "vectors.h"
 #include "geometry/predicates.h"
 #include "graph/visibility.h"
+#include "kerf/parallel.h"
+#include "vectors.h"
 
 using namespace geo;
 
@@ -27,7 +27,8 @@ Pairs some_pairs(Random& random, std::size_t nodes, int count) {
   Pairs pairs;
   while (pairs.size() < static_cast<std::size_t>(count)) {
     const NodeId i(random.below(static_cast<std::uint32_t>(nodes)));
-    for (auto q = random.below(70); q-- > 0;) pairs.push_back({i, NodeId(random.below(static_cast<std::uint32_t>(nodes)))});
+    for (auto q = random.below(70); q-- > 0;)
+      pairs.push_back({i, NodeId(random.below(static_cast<std::uint32_t>(nodes)))});
   }
   return pairs;
 }
@@ -40,8 +41,8 @@ TEST_CASE("segments are blocked where exact predicates on all triangles say so, 
   for (auto seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     Random random(seed);
     CAPTURE(seed);
-    // Half of them on a lattice of few points: segments through edges and corners, in planes, along edges, of no length;
-    // triangles without area. The others at random, near or far, large or small; some nodes are far outside.
+    // Half of them on a lattice of few points: segments through edges and corners, in planes, along edges, of no
+    // length; triangles without area. The others at random, near or far, large or small; some nodes are far outside.
     const bool lattice = seed % 2 == 0;
     const double size = std::pow(10, random.uniform(-40, 40)), away = seed % 3 == 0 ? 1e6 : 0;
     const double most = seed % 4 == 1 ? 0.3 : 1;
@@ -57,7 +58,8 @@ TEST_CASE("segments are blocked where exact predicates on all triangles say so, 
     std::vector<Vec3> x;
     for (int i = 0; i < 60; ++i) {
       x.push_back(any());
-      if (!soup.empty() && i % 5 == 0) x.back() = soup[random.below(static_cast<std::uint32_t>(soup.size()))][random.below(3)];
+      if (!soup.empty() && i % 5 == 0)
+        x.back() = soup[random.below(static_cast<std::uint32_t>(soup.size()))][random.below(3)];
       if (!lattice && i % 7 == 0) x.back() *= std::pow(10, random.uniform(-1, 12));
     }
     const auto pairs = some_pairs(random, x.size(), 300);

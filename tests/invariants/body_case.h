@@ -9,11 +9,11 @@
 #include <string>
 
 #include "base/random.h"
-#include "kerf/body.h"
-#include "kerf/crack_edits.h"
 #include "crack/grid_case.h"
 #include "crack/shrink.h"
 #include "invariants/models.h"
+#include "kerf/body.h"
+#include "kerf/crack_edits.h"
 #include "kerf/nodes.h"
 
 struct BodyCase {
@@ -27,7 +27,8 @@ struct BodyCase {
 
   std::string recipe() const {
     std::ostringstream text;
-    text << "model=" << model << " faces=" << faces << " nodes=" << nodes << " jitter=" << jitter << " guides=" << guides;
+    text << "model=" << model << " faces=" << faces << " nodes=" << nodes << " jitter=" << jitter
+         << " guides=" << guides;
     return text.str();
   }
 };
@@ -46,9 +47,11 @@ inline Body make_block_body(const BodyCase& c, const BodyOptions& options) {
     for (int y = 1; y <= along; ++y)
       for (int x = 1; x <= along; ++x) {
         nodes.position.push_back(h * Vec3(x, y, z));
-        nodes.spacing.push_back(h), nodes.radius.push_back(2 * h), nodes.volume.push_back(std::pow(GridCase::size / along, 3));
+        nodes.spacing.push_back(h), nodes.radius.push_back(2 * h),
+            nodes.volume.push_back(std::pow(GridCase::size / along, 3));
       }
-  return build_body(Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / c.faces)), nodes, options);
+  return build_body(Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / c.faces)), nodes,
+                    options);
 }
 
 /// A model decimated to about so many faces; kept.
@@ -94,7 +97,8 @@ inline void write_body_case(std::ostream& out, const BodyCase& c, const std::str
   if (c.resize) out << " resize=" << c.resize;
   out << '\n';
   std::vector<Front> fronts;
-  for (const auto& crack : c.cracks) fronts.push_back({"crack" + std::to_string(fronts.size() + 1), crack.closed, crack.rows});
+  for (const auto& crack : c.cracks)
+    fronts.push_back({"crack" + std::to_string(fronts.size() + 1), crack.closed, crack.rows});
   write_fronts(out, fronts);
 }
 
@@ -107,13 +111,20 @@ inline BodyCase read_body_case(const std::string& text, const std::string& name)
   for (std::string word; words >> word;) {
     const auto equals = word.find('=');
     const std::string key = word.substr(0, equals), value = word.substr(equals + 1);
-    if (key == "model") c.model = value;
-    else if (key == "faces") c.faces = std::stoi(value);
-    else if (key == "nodes") c.nodes = std::stoi(value);
-    else if (key == "jitter") c.jitter = std::stod(value);
-    else if (key == "resize") c.resize = std::stoi(value);
-    else if (key == "guides") c.guides = std::stod(value);
-    else throw InputError(name + ": " + key + " is not known of a body");
+    if (key == "model")
+      c.model = value;
+    else if (key == "faces")
+      c.faces = std::stoi(value);
+    else if (key == "nodes")
+      c.nodes = std::stoi(value);
+    else if (key == "jitter")
+      c.jitter = std::stod(value);
+    else if (key == "resize")
+      c.resize = std::stoi(value);
+    else if (key == "guides")
+      c.guides = std::stod(value);
+    else
+      throw InputError(name + ": " + key + " is not known of a body");
   }
   for (const auto& f : parse_fronts(text, name)) c.cracks.push_back({f.closed, f.steps});
   return c;
@@ -130,7 +141,8 @@ inline std::vector<std::pair<NodeId, double>> other_radii(const Body& body, std:
   body.grid.within(nodes.position, middle, around, near);
   std::vector<std::pair<NodeId, double>> radii;
   for (const auto i : near)
-    radii.push_back({NodeId(i), std::clamp(nodes.radius[i] * (alike ? by : random.uniform(0.4, 1.6)), nodes.spacing[i], 1.2 * body.widest)});
+    radii.push_back({NodeId(i), std::clamp(nodes.radius[i] * (alike ? by : random.uniform(0.4, 1.6)), nodes.spacing[i],
+                                           1.2 * body.widest)});
   return radii;
 }
 
@@ -152,8 +164,10 @@ inline BodyCase shrink(BodyCase given, const std::function<bool(const BodyCase&)
       for (const int nodes : {1, 8, 27, 64, 125})
         if (nodes < c.nodes && attempt_with([&](BodyCase& s) { s.nodes = nodes; })) break;
     } else {
-      while (c.nodes > 60 && attempt_with([](BodyCase& s) { s.nodes = s.nodes * 6 / 10; })) {}
-      while (c.faces > 60 && attempt_with([](BodyCase& s) { s.faces = s.faces * 6 / 10; })) {}
+      while (c.nodes > 60 && attempt_with([](BodyCase& s) { s.nodes = s.nodes * 6 / 10; })) {
+      }
+      while (c.faces > 60 && attempt_with([](BodyCase& s) { s.faces = s.faces * 6 / 10; })) {
+      }
     }
     for (std::size_t i = 0; i < c.cracks.size(); ++i) {
       if (c.cracks[i].closed) attempt_with([&](BodyCase& s) { s.cracks[i].closed = false; });

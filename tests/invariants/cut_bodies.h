@@ -4,15 +4,16 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "kerf/body.h"
 #include "invariants/random_cuts.h"
+#include "kerf/body.h"
 
 namespace random_cuts {
 
-/// Cuts copies of a body twice each, in one step or in twelve. `look` sees the body after every step that cut something,
-/// `finish` when it is done.
-inline void cut_bodies(const geo::Body& model, int count, std::uint64_t stream, const std::function<void(const geo::Body&)>& look,
-                       const std::function<void(const geo::Body&)>& finish = [](const geo::Body&) {}) {
+/// Cuts copies of a body twice each, in one step or in twelve. `look` sees the body after every step that cut
+/// something, `finish` when it is done.
+inline void cut_bodies(
+    const geo::Body& model, int count, std::uint64_t stream, const std::function<void(const geo::Body&)>& look,
+    const std::function<void(const geo::Body&)>& finish = [](const geo::Body&) {}) {
   for (int c = 0; c < cases(count); ++c) {
     const auto seed = static_cast<std::uint64_t>(c) + 1;
     geo::Random random(seed * stream);

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "kerf/error.h"
-#include "kerf/surface_file.h"
 #include "kerf/shapes.h"
+#include "kerf/surface_file.h"
 
 namespace invariants {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/random.h"
-#include "kerf/crack.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
 #include "kerf/pieces.h"
 
 namespace random_cuts {

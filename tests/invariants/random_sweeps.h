@@ -47,7 +47,8 @@ inline Sweep make_sweep(const Complex& k, Random& random, int usual = 12) {
     const Vec3 way = random.direction(), u = way.unitOrthogonal(), v = way.cross(u);
     const Vec3 from = k.extent().center() + random.uniform(0, 0.3) * size * random.direction() - 0.8 * size * way;
     const int count = 3 + static_cast<int>(random.below(12));
-    const double radius = random.uniform(0.02, 0.3) * size, length = random.uniform(0.5, 1.6) * size, twist = random.uniform(-1, 1);
+    const double radius = random.uniform(0.02, 0.3) * size, length = random.uniform(0.5, 1.6) * size,
+                 twist = random.uniform(-1, 1);
     for (int s = 0; s <= steps; ++s) {
       sweep.rows.emplace_back();
       for (int i = 0; i < count; ++i) {
@@ -68,8 +69,7 @@ inline Sweep make_sweep(const Complex& k, Random& random, int usual = 12) {
   if (random.below(3) == 0) {
     sweep.kind = "snapped " + sweep.kind;
     for (auto& row : sweep.rows)
-      for (Vec3& p : row)
-        p = snapped(k, p, random);
+      for (Vec3& p : row) p = snapped(k, p, random);
   }
   return sweep;
 }

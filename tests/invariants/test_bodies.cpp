@@ -1,17 +1,17 @@
 // Bodies cut at random: after every step graph, rows and binding are those of scratch, components are pieces, nodes are
-// inside, whatever the number of threads and the vectors. A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]';
-// one case of it: KERF_CASE=7000123 and the name of the test; KERF_TELL=1 tells of every step.
+// inside, whatever the number of threads and the vectors. A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants
+// '[bodies]'; one case of it: KERF_CASE=7000123 and the name of the test; KERF_TELL=1 tells of every step.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
 #include <map>
 
-#include "kerf/error.h"
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "invariants/body_case.h"
 #include "invariants/body_faults.h"
 #include "invariants/random_sweeps.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "kerf/stream.h"
 #include "vectors.h"
 
@@ -43,22 +43,27 @@ Outcome cut(const BodyCase& c, bool check) {
         const BodyDelta delta = split(result.body, front, crack.rows[result.step], {}, &work);
         result.parted += delta.parted.size();
         if (check && std::getenv("KERF_TELL"))
-          WARN("crack " << result.crack + 1 << " step " << result.step << ": " << delta.crack.new_crack_faces.size() << " crack faces, " << result.body.nodes.size()
-                        << " nodes, " << delta.parted.size() << " pieces more, " << work.resample_seconds << " + " << work.graph_seconds << " + " << work.binding_seconds << " s");
+          WARN("crack " << result.crack + 1 << " step " << result.step << ": " << delta.crack.new_crack_faces.size()
+                        << " crack faces, " << result.body.nodes.size() << " nodes, " << delta.parted.size()
+                        << " pieces more, " << work.resample_seconds << " + " << work.graph_seconds << " + "
+                        << work.binding_seconds << " s");
         if (delta.crack.empty()) continue;
         ++result.cutting;
         if (check) result.fault = body_faults::fault_of(before, result.body, delta, work.nodes_mended, volume);
         if (c.resize && result.fault.empty()) {
           const Body uncut = check ? result.body : Body();
-          const BodyDelta other = resize_nodes(result.body, body_cases::other_radii(result.body, static_cast<std::uint64_t>(c.resize) * 1000 + result.steps));
+          const BodyDelta other = resize_nodes(
+              result.body,
+              body_cases::other_radii(result.body, static_cast<std::uint64_t>(c.resize) * 1000 + result.steps));
           result.resized += other.resized_nodes.size();
           if (check) result.fault = body_faults::fault_of(uncut, result.body, other, 0, volume);
           if (!result.fault.empty()) result.fault = "other radii: " + result.fault;
         }
       } catch (const GeometryError&) {
         ++result.refused;
-        if (!check || (result.body.nodes.position == before.nodes.position && result.body.graph == before.graph &&
-                       result.body.binding == before.binding && result.body.surface.face_count() == before.surface.face_count()))
+        if (!check ||
+            (result.body.nodes.position == before.nodes.position && result.body.graph == before.graph &&
+             result.body.binding == before.binding && result.body.surface.face_count() == before.surface.face_count()))
           break;
         result.fault = "a refused step changed the body";
       }
@@ -74,15 +79,17 @@ bool same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 bool same(const Body& a, const Body& b) {
-  return same(a.nodes.position, b.nodes.position) && a.nodes.volume == b.nodes.volume && a.nodes.radius == b.nodes.radius && a.graph == b.graph && a.binding == b.binding && a.debris == b.debris;
+  return same(a.nodes.position, b.nodes.position) && a.nodes.volume == b.nodes.volume &&
+         a.nodes.radius == b.nodes.radius && a.graph == b.graph && a.binding == b.binding && a.debris == b.debris;
 }
 
 class Campaign {
  public:
   ~Campaign() {
     if (std::getenv("KERF_CASES"))
-      WARN(cases_ << " sequences, " << steps_ << " steps, " << cutting_ << " of them cut something, " << refused_ << " refused, " << parted_ << " pieces came off, "
-                  << resized_ << " other radii, " << guided_ << " sequences with guides, " << varied_ << " runs with other threads and vectors");
+      WARN(cases_ << " sequences, " << steps_ << " steps, " << cutting_ << " of them cut something, " << refused_
+                  << " refused, " << parted_ << " pieces came off, " << resized_ << " other radii, " << guided_
+                  << " sequences with guides, " << varied_ << " runs with other threads and vectors");
   }
 
   /// Cuts with two threads, and with one and four and other vectors again.
@@ -91,7 +98,8 @@ class Campaign {
     INFO("KERF_CASE=" << seed << ", " << c.recipe());
     if (made_.insert(c.recipe()).second) require_good_model(c);
     const Outcome two = cut(c, true);
-    ++cases_, steps_ += two.steps, cutting_ += two.cutting, refused_ += two.refused, parted_ += two.parted, guided_ += c.guides > 0, resized_ += two.resized;
+    ++cases_, steps_ += two.steps, cutting_ += two.cutting, refused_ += two.refused, parted_ += two.parted,
+        guided_ += c.guides > 0, resized_ += two.resized;
     if (!two.fault.empty()) keep(c, seed, two);
     if (two.fault.empty()) vary([&] { CHECK(same(two.body, cut(c, false).body)); });
     set_threads(0);
@@ -119,7 +127,8 @@ class Campaign {
 
   // Shrinks what fails, where it is not known yet, into a file.
   void keep(const BodyCase& c, std::uint64_t seed, const Outcome& outcome) {
-    const std::string kind = kind_of(outcome.fault), where = "crack " + std::to_string(outcome.crack + 1) + ", step " + std::to_string(outcome.step);
+    const std::string kind = kind_of(outcome.fault),
+                      where = "crack " + std::to_string(outcome.crack + 1) + ", step " + std::to_string(outcome.step);
     if (++kinds_[kind] > 2) {
       FAIL_CHECK(where << ": " << outcome.fault);
       return;
@@ -128,8 +137,11 @@ class Campaign {
     BodyCase small = c;
     small.cracks.resize(outcome.crack + 1);
     small.cracks.back().rows.resize(outcome.step + 1);
-    if (!std::getenv("KERF_WHOLE")) small = body_cases::shrink(small, [&](const BodyCase& s) { return fails_alike(s, kind); });
-    write_all(file, [&](std::ostream& out) { body_cases::write_body_case(out, small, "found with seed " + std::to_string(seed) + ": " + outcome.fault); });
+    if (!std::getenv("KERF_WHOLE"))
+      small = body_cases::shrink(small, [&](const BodyCase& s) { return fails_alike(s, kind); });
+    write_all(file, [&](std::ostream& out) {
+      body_cases::write_body_case(out, small, "found with seed " + std::to_string(seed) + ": " + outcome.fault);
+    });
     FAIL_CHECK(where << ": " << outcome.fault << "; the smallest such case is in " << file);
   }
 
@@ -174,7 +186,8 @@ std::vector<GridCrack> random_cracks(const Complex& surface, Random& random) {
   return cracks;
 }
 
-const std::vector<std::string> model_names{"bear", "elephant", "dino", "hand", "femur", "bull", "homer", "knot1", "eight", "couplingdown", "pumpkin"};
+const std::vector<std::string> model_names{"bear",  "elephant", "dino",  "hand",         "femur",  "bull",
+                                           "homer", "knot1",    "eight", "couplingdown", "pumpkin"};
 
 /// Thin slits beside each other: what lies between two of them holds few nodes or none.
 std::vector<GridCrack> random_slits(const Complex& surface, Random& random) {
@@ -189,11 +202,13 @@ std::vector<GridCrack> random_slits(const Complex& surface, Random& random) {
   for (int c = 0; c < 4; ++c) {
     GridCrack crack;
     at += std::pow(10, random.uniform(-5, -1.2)) * size;
-    const double depth = complete ? 2.4 : random.uniform(0.9, 1.5), tilt = random.below(3) ? 0.0 : random.uniform(-0.01, 0.01);
+    const double depth = complete ? 2.4 : random.uniform(0.9, 1.5),
+                 tilt = random.below(3) ? 0.0 : random.uniform(-0.01, 0.01);
     for (int s = 0; s <= steps; ++s) {
       crack.rows.emplace_back();
       for (int i = 0; i < 3; ++i)
-        crack.rows.back().push_back(middle + (at + tilt * i * size) * n + 1.2 * size * (i - 1) * u + size * (depth * s / steps - 1.2) * v);
+        crack.rows.back().push_back(middle + (at + tilt * i * size) * n + 1.2 * size * (i - 1) * u +
+                                    size * (depth * s / steps - 1.2) * v);
     }
     cracks.push_back(crack);
   }
@@ -234,7 +249,13 @@ TEST_CASE("Cut bodies are as from scratch after every step: slits beside each ot
   Campaign campaign;
   for (int i = 0; i < which.count; ++i) {
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
-    BodyCase c{.model = "pumpkin", .faces = 800, .nodes = 700, .jitter = 0.3, .guides = guides_for(seed), .resize = resize_for(seed), .cracks = {}};
+    BodyCase c{.model = "pumpkin",
+               .faces = 800,
+               .nodes = 700,
+               .jitter = 0.3,
+               .guides = guides_for(seed),
+               .resize = resize_for(seed),
+               .cracks = {}};
     Random random(seed * 15485863);
     c.cracks = random_slits(body_cases::body_of(c).surface, random);
     campaign.run(c, seed);
@@ -247,7 +268,12 @@ TEST_CASE("Cut bodies are as from scratch after every step: cracks through nodes
   for (int i = 0; i < which.count; ++i) {
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
     const GridCase grid = random_case(seed);
-    campaign.run({.faces = grid.divisions, .nodes = 343, .guides = guides_for(seed), .resize = resize_for(seed), .cracks = grid.cracks}, seed);
+    campaign.run({.faces = grid.divisions,
+                  .nodes = 343,
+                  .guides = guides_for(seed),
+                  .resize = resize_for(seed),
+                  .cracks = grid.cracks},
+                 seed);
   }
 }
 

@@ -13,16 +13,18 @@
 #include <map>
 #include <string>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
 #include "io/mutate.h"
+#include "kerf/error.h"
 #include "kerf/stream.h"
 
 // What sanitizers call, where there are any: a case that they stop is told of, too.
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());
 extern "C" const char* __ubsan_default_options();
-extern "C" __attribute__((used)) inline const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
+extern "C" __attribute__((used)) inline const char* __ubsan_default_options() {
+  return "abort_on_error=1:print_stacktrace=1";
+}
 
 namespace fuzz {
 
@@ -47,7 +49,10 @@ struct Case {
 };
 inline Case current;
 
-inline void tell_and_die() { std::fprintf(stderr, "fuzz: %s, seed %llu: crashed or hangs; its bytes are in %s\n", current.family.c_str(), static_cast<unsigned long long>(current.seed), current.save().c_str()); }
+inline void tell_and_die() {
+  std::fprintf(stderr, "fuzz: %s, seed %llu: crashed or hangs; its bytes are in %s\n", current.family.c_str(),
+               static_cast<unsigned long long>(current.seed), current.save().c_str());
+}
 
 inline void on_signal(int signal) {
   tell_and_die();
@@ -69,14 +74,15 @@ inline double peak_memory() {
 }
 
 inline std::string fault_of_message(const std::string& message, const std::string& name) {
-  if (message.size() <= name.size() + 2 || message.compare(0, name.size() + 1, name + ":") != 0) return "a message that does not begin with the file's name: ";
+  if (message.size() <= name.size() + 2 || message.compare(0, name.size() + 1, name + ":") != 0)
+    return "a message that does not begin with the file's name: ";
   if (message.size() > 400) return "a message of " + std::to_string(message.size()) + " characters: ";
   for (const char c : message)
     if (static_cast<unsigned char>(c) < 32 || c == 127) return "a message with a control character: ";
   return {};
 }
 
-using Use = std::function<void()>;                                                ///< what is done with what was read
+using Use = std::function<void()>;  ///< what is done with what was read
 using Read = std::function<Use(const std::string& bytes, const std::string& name)>;  ///< may throw InputError only
 using Damage = std::function<std::string(geo::Random&)>;
 
@@ -111,7 +117,8 @@ inline Outcome outcome_of(const std::string& bytes, const std::string& name, con
   }
   // What is read may be hard to cut, so that its use may take longer than any reading.
   const double done = seconds();
-  if (o.fault.empty() && (read_by > 2 * slower || done > 8 * slower)) o.fault = "took " + std::to_string(read_by) + " s to read, " + std::to_string(done) + " s in all";
+  if (o.fault.empty() && (read_by > 2 * slower || done > 8 * slower))
+    o.fault = "took " + std::to_string(read_by) + " s to read, " + std::to_string(done) + " s in all";
   if (o.fault.empty() && peak_memory() > 1000 * larger) o.fault = "took " + std::to_string(peak_memory()) + " MB";
   return o;
 }
@@ -132,7 +139,8 @@ inline void campaign(const std::string& family, int base, const Read& read, cons
     guard_time();
     const Outcome o = outcome_of(current.bytes, "damaged." + family, read);
     read_count += o.read, used_count += o.used;
-    if (!o.fault.empty()) FAIL_CHECK(family << ", seed " << current.seed << ": " << o.fault << "; the bytes are in " << current.save());
+    if (!o.fault.empty())
+      FAIL_CHECK(family << ", seed " << current.seed << ": " << o.fault << "; the bytes are in " << current.save());
   }
   const itimerval none{};
   setitimer(ITIMER_PROF, &none, nullptr);
@@ -143,7 +151,8 @@ inline void campaign(const std::string& family, int base, const Read& read, cons
     CHECK(used_count * 100 > which.count);
     CHECK(read_count < which.count);
   }
-  if (std::getenv("KERF_CASES")) WARN(family << ": " << which.count << " cases, " << read_count << " read, " << used_count << " of use");
+  if (std::getenv("KERF_CASES"))
+    WARN(family << ": " << which.count << " cases, " << read_count << " read, " << used_count << " of use");
 }
 
 }  // namespace fuzz

@@ -69,15 +69,19 @@ inline std::string resealed(std::string bytes) {
   for (std::size_t at = 0; at + sizeof(Head) <= bytes.size();) {
     Head head;
     std::memcpy(&head, bytes.data() + at, sizeof head);
-    if (head.table < at + sizeof head || head.table > bytes.size() || head.table_length > bytes.size() - head.table) break;
+    if (head.table < at + sizeof head || head.table > bytes.size() || head.table_length > bytes.size() - head.table)
+      break;
     const std::size_t commit_at = aligned(head.table + head.table_length);
     if (commit_at + sizeof last > bytes.size()) break;
     try {
       auto table = nlohmann::ordered_json::parse(bytes.substr(head.table, head.table_length));
       for (auto& row : table) {
-        const std::string values = state[row.at("name")] = result(row, bytes.substr(std::min(bytes.size(), row.at("offset").get<std::size_t>()), row.at("length").get<std::size_t>()));
+        const std::string values = state[row.at("name")] =
+            result(row, bytes.substr(std::min(bytes.size(), row.at("offset").get<std::size_t>()),
+                                     row.at("length").get<std::size_t>()));
         std::vector<std::uint64_t> blocks;
-        for (std::size_t b = 0; b < values.size(); b += hash_block) blocks.push_back(hash_of(values.data() + b, std::min(hash_block, values.size() - b)));
+        for (std::size_t b = 0; b < values.size(); b += hash_block)
+          blocks.push_back(hash_of(values.data() + b, std::min(hash_block, values.size() - b)));
         row["xxh3"] = hex(hash_of(blocks));
       }
       const std::string text = table.dump();
@@ -105,7 +109,9 @@ inline KerfState state_of(const geo::KerfFile& file) {
     std::string shape = s.dtype;
     for (const auto d : s.shape) shape += " " + std::to_string(d);
     std::ostringstream bytes;
-    geo::KerfSink sink([&](std::span<const std::byte> block) { bytes.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size())); });
+    geo::KerfSink sink([&](std::span<const std::byte> block) {
+      bytes.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
+    });
     file.stream(name, sink);
     sink.finish();
     std::string again(s.bytes, '\0');

@@ -20,9 +20,14 @@ struct Values {
   std::vector<std::uint8_t> mark;
   std::vector<float> none;
   std::vector<geo::KerfArray> arrays() const {
-    return {geo::kerf_array("position", std::span<const double>(position), 3), geo::kerf_array("count", std::span<const std::uint32_t>(count)),
-            geo::kerf_array<std::uint32_t>("to", to.size(), 1, [this](geo::KerfSink& sink) { for (const auto x : to) sink.put(x); }),
-            geo::kerf_array("mark", std::span<const std::uint8_t>(mark)), geo::kerf_array("none", std::span<const float>(none))};
+    return {geo::kerf_array("position", std::span<const double>(position), 3),
+            geo::kerf_array("count", std::span<const std::uint32_t>(count)),
+            geo::kerf_array<std::uint32_t>("to", to.size(), 1,
+                                           [this](geo::KerfSink& sink) {
+                                             for (const auto x : to) sink.put(x);
+                                           }),
+            geo::kerf_array("mark", std::span<const std::uint8_t>(mark)),
+            geo::kerf_array("none", std::span<const float>(none))};
   }
   std::string bytes() const {
     std::ostringstream out;
@@ -49,19 +54,23 @@ inline void change(Values& v, geo::Random& random, int changes) {
     std::size_t at = 0;
     for (std::uint32_t i = 0; i < row; ++i) at += v.count[i];
     const std::uint32_t count = random.below(60);
-    v.to.erase(v.to.begin() + static_cast<std::ptrdiff_t>(at), v.to.begin() + static_cast<std::ptrdiff_t>(at + v.count[row]));
+    v.to.erase(v.to.begin() + static_cast<std::ptrdiff_t>(at),
+               v.to.begin() + static_cast<std::ptrdiff_t>(at + v.count[row]));
     std::vector<std::uint32_t> other(v.count[row] = count);
     for (auto& x : other) x = random.below(1000000);
     v.to.insert(v.to.begin() + static_cast<std::ptrdiff_t>(at), other.begin(), other.end());
     v.position[3 * row + random.below(3)] = random.uniform();
     v.mark[row] = 1;
-    if (random.below(3) == 0) v.position.insert(v.position.end(), {1, 2, 3}), v.count.push_back(1), v.to.push_back(row), v.mark.push_back(0);
+    if (random.below(3) == 0)
+      v.position.insert(v.position.end(), {1, 2, 3}), v.count.push_back(1), v.to.push_back(row), v.mark.push_back(0);
   }
 }
 
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("kerf-file-" + std::to_string(std::random_device{}()))) { std::filesystem::create_directory(path_); }
+  Folder() : path_(std::filesystem::temp_directory_path() / ("kerf-file-" + std::to_string(std::random_device{}()))) {
+    std::filesystem::create_directory(path_);
+  }
   ~Folder() { std::filesystem::remove_all(path_); }
   std::string file(const std::string& name, const std::string& bytes = {}) const {
     const std::string path = (path_ / name).string();
@@ -73,7 +82,9 @@ class Folder {
   std::filesystem::path path_;
 };
 
-inline std::uint64_t update(const std::string& path, const Values& v) { return geo::KerfUpdate(path).commit(v.arrays()); }
+inline std::uint64_t update(const std::string& path, const Values& v) {
+  return geo::KerfUpdate(path).commit(v.arrays());
+}
 
 inline std::string refusal(const std::function<void()>& call) {
   try {

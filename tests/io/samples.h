@@ -13,11 +13,11 @@
 #include "kerf/body_file.h"
 #include "kerf/front_file.h"
 #include "kerf/node_file.h"
+#include "kerf/nodes.h"
 #include "kerf/run_files.h"
+#include "kerf/shapes.h"
 #include "kerf/stream.h"
 #include "kerf/surface_file.h"
-#include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 template <class Write>
 std::string bytes_of(const Write& write) {
@@ -35,7 +35,10 @@ class PlyText {
     std::string header = bytes_of([&](auto& out) { geo::write_ply(out, mesh, fronts); });
     header.resize(header.find("end_header\n") + 11);
     const std::string written = "binary_little_endian";
-    p.out_ = header.replace(header.find(written), written.size(), format == ascii ? "ascii" : format == big ? "binary_big_endian" : written);
+    p.out_ = header.replace(header.find(written), written.size(),
+                            format == ascii ? "ascii"
+                            : format == big ? "binary_big_endian"
+                                            : written);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
       p.point(mesh.vertices[v]);
       if (mesh.two_sided()) p.put(mesh.site[v]);
@@ -51,7 +54,8 @@ class PlyText {
     for (const auto& f : fronts) p.put(f.crack), p.put(f.step), p.put<std::uint8_t>(f.closed), p.end();
     for (std::uint32_t i = 0; i < fronts.size(); ++i)
       for (std::uint32_t s = 0; s < fronts[i].segments.size(); ++s)
-        for (const auto& q : fronts[i].segments[s]) p.put(i), p.put(s), p.put(static_cast<std::int32_t>(q.id.value)), p.point(q.position), p.end();
+        for (const auto& q : fronts[i].segments[s])
+          p.put(i), p.put(s), p.put(static_cast<std::int32_t>(q.id.value)), p.point(q.position), p.end();
     return p.out_;
   }
 
@@ -121,18 +125,26 @@ inline std::vector<std::string> sample_surfaces() {
     stl << "endloop\nendfacet\n";
   }
   stl << "endsolid ball\n";
-  return {PlyText::of(PlyText::ascii, block), PlyText::of(PlyText::little, ball), PlyText::of(PlyText::big, block),
-          bytes_of([&](auto& out) { geo::write_obj(out, ball); }), off.str(), stl.str(), binary,
-          PlyText::of(PlyText::ascii, sides, cut.fronts), PlyText::of(PlyText::little, sides, cut.fronts),
+  return {PlyText::of(PlyText::ascii, block),
+          PlyText::of(PlyText::little, ball),
+          PlyText::of(PlyText::big, block),
+          bytes_of([&](auto& out) { geo::write_obj(out, ball); }),
+          off.str(),
+          stl.str(),
+          binary,
+          PlyText::of(PlyText::ascii, sides, cut.fronts),
+          PlyText::of(PlyText::little, sides, cut.fronts),
           PlyText::of(PlyText::big, sides, cut.fronts)};
 }
 
 inline std::vector<std::string> sample_fronts() {
-  return {"# two fronts\nfront knife\nstep 0\n-1 -1 1.3\n-1 5 1.3\nstep 1\n2 -1 1.4\n2 5 1.3\nstep 2\n5 -1 1.5\n5 5 1.3\n"
-          "front ring closed\nstep 0\n1 1 -1\n3 1 -1\n2 3 -1\nstep 0.5\n1 1 5\n3 1 5\n2 3 5\n2 2 5\n",
-          "sheet two\nv -1 -1 1.3\nv 5 -1 1.4\nv 5 5 1.3\nf 1 2 3\nv -1 5 1.2\nf 1 3 4\nfront a\nstep 0\n1.1 -1 -1\n1.1 -1 5\nstep 1\n1.1 5 -1\n1.2 5 5\n",
-          "v -1 -1 1.3\nv -1 5 1.3\nv 2 -1 1.4\nv 2 5 1.3\no step1\nl 1 2\no step2\nl 3 -1\n",
-          "o a\nv 1 1 -1\nv 3 1 -1\nv 2 3 -1\nl 1 2 3 1\no b\nv 1 1 5\nv 3 1 5\nv 2 3 5\nl 4/1 5/2 6 4\n"};
+  return {
+      "# two fronts\nfront knife\nstep 0\n-1 -1 1.3\n-1 5 1.3\nstep 1\n2 -1 1.4\n2 5 1.3\nstep 2\n5 -1 1.5\n5 5 1.3\n"
+      "front ring closed\nstep 0\n1 1 -1\n3 1 -1\n2 3 -1\nstep 0.5\n1 1 5\n3 1 5\n2 3 5\n2 2 5\n",
+      "sheet two\nv -1 -1 1.3\nv 5 -1 1.4\nv 5 5 1.3\nf 1 2 3\nv -1 5 1.2\nf 1 3 4\nfront a\nstep 0\n1.1 -1 -1\n1.1 -1 "
+      "5\nstep 1\n1.1 5 -1\n1.2 5 5\n",
+      "v -1 -1 1.3\nv -1 5 1.3\nv 2 -1 1.4\nv 2 5 1.3\no step1\nl 1 2\no step2\nl 3 -1\n",
+      "o a\nv 1 1 -1\nv 3 1 -1\nv 2 3 -1\nl 1 2 3 1\no b\nv 1 1 5\nv 3 1 5\nv 2 3 5\nl 4/1 5/2 6 4\n"};
 }
 
 inline geo::Body cut_body() {
@@ -156,7 +168,9 @@ inline BodyFiles sample_body_files() {
   geo::Body body = cut_body();
   BodyFiles files;
   files.whole = bytes_of([&](auto& out) { geo::write_body(out, body); });
-  const std::string path = (std::filesystem::temp_directory_path() / ("kerf-sample-" + std::to_string(std::random_device{}()) + ".kerf")).string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("kerf-sample-" + std::to_string(std::random_device{}()) + ".kerf"))
+          .string();
   geo::write_all(path, [&](std::ostream& out) { out << files.whole; });
   geo::FrontState front = geo::begin_front(std::vector<geo::Vec3>{{0.512, -0.5, -0.5}, {0.52, 1.5, -0.5}}, false, 2);
   geo::split(body, front, {{0.53, -0.5, 0.3}, {0.5, 1.5, 0.31}});
@@ -171,26 +185,33 @@ inline BodyFiles sample_body_files() {
 
 inline std::vector<std::string> sample_nodes_files(const geo::NodeSet& nodes) {
   std::ostringstream pcd, ply;
-  pcd << "VERSION 0.7\nFIELDS x y z radius spacing volume\nSIZE 4 4 4 4 4 8\nTYPE F F F F F F\nWIDTH " << nodes.size() << "\nHEIGHT 1\nPOINTS "
-      << nodes.size() << "\nDATA ascii\n";
+  pcd << "VERSION 0.7\nFIELDS x y z radius spacing volume\nSIZE 4 4 4 4 4 8\nTYPE F F F F F F\nWIDTH " << nodes.size()
+      << "\nHEIGHT 1\nPOINTS " << nodes.size() << "\nDATA ascii\n";
   ply << "ply\nformat ascii 1.0\nelement vertex " << nodes.size() << '\n';
   for (const char* field : {"x", "y", "z", "radius", "spacing", "volume"}) ply << "property double " << field << '\n';
   ply << "end_header\n";
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (auto* out : {&pcd, &ply})
-      *out << nodes.position[i].x() << ' ' << nodes.position[i].y() << ' ' << nodes.position[i].z() << ' ' << nodes.radius[i] << ' ' << nodes.spacing[i]
-           << ' ' << nodes.volume[i] << '\n';
-  return {bytes_of([&](auto& out) { geo::write_pcd(out, nodes); }), bytes_of([&](auto& out) { geo::write_nodes_ply(out, nodes); }), pcd.str(), ply.str()};
+      *out << nodes.position[i].x() << ' ' << nodes.position[i].y() << ' ' << nodes.position[i].z() << ' '
+           << nodes.radius[i] << ' ' << nodes.spacing[i] << ' ' << nodes.volume[i] << '\n';
+  return {bytes_of([&](auto& out) { geo::write_pcd(out, nodes); }),
+          bytes_of([&](auto& out) { geo::write_nodes_ply(out, nodes); }), pcd.str(), ply.str()};
 }
 
 inline std::vector<std::string> sample_scenes() {
-  return {"gravity = [0, 0, -9.81]\n[body]\nmesh = \"block.ply\"\nspacing_percent = 5.0\nlevels = 2\nk = 26\nvelocity = [0, 0, 1]\n"
-          "fixed = [[0, 0, 0, 1, 1, 0.1]]\n[material]\nmodel = \"stvk\"\nyoung = 1e5\npoisson = 0.3\ndensity = 1000\n[ground]\npoint = [0, 0, -1]\n"
-          "normal = [0, 0, 1]\nfriction = 0.5\n[time]\nframes = 4\nframe_rate = 24\nstep = 0.01\nintegrator = \"leapfrog\"\nseed = 3\n"
-          "[[blade]]\nname = \"knife\"\npoints = [[0, 0, 0], [0, 1, 0]]\ndivide = 4\nkeys = [[0, -1, 0, 0, 0, 0, 1, 0], [1, 1, 0, 0, 0, 0, 1, 45]]\n",
-          "[body]\nmesh = 'a.off'\nnodes = 500\n[[blade]]\nclosed = true\npoints = [[0, 0, 0], [0, 1, 0], [1, 1, 0]]\n"
-          "keys = [[0.5, 0, 0, -1, 0, 0, 1, 0], [1.5, 0, 0, 1, 0, 1, 0, 360]] # ring\n"
-          "[[obstacle]]\nnormal = [0, 0.1, 1]\nposition = [0, 0, -1]\nfriction = 0.4\nkeys = [[0, 0, 0, 0, 0, 0, 1, 0]]\n[contact]\nbodies = true\nstiffness = 1e4\n"};
+  return {
+      "gravity = [0, 0, -9.81]\n[body]\nmesh = \"block.ply\"\nspacing_percent = 5.0\nlevels = 2\nk = 26\nvelocity = "
+      "[0, 0, 1]\n"
+      "fixed = [[0, 0, 0, 1, 1, 0.1]]\n[material]\nmodel = \"stvk\"\nyoung = 1e5\npoisson = 0.3\ndensity = "
+      "1000\n[ground]\npoint = [0, 0, -1]\n"
+      "normal = [0, 0, 1]\nfriction = 0.5\n[time]\nframes = 4\nframe_rate = 24\nstep = 0.01\nintegrator = "
+      "\"leapfrog\"\nseed = 3\n"
+      "[[blade]]\nname = \"knife\"\npoints = [[0, 0, 0], [0, 1, 0]]\ndivide = 4\nkeys = [[0, -1, 0, 0, 0, 0, 1, 0], "
+      "[1, 1, 0, 0, 0, 0, 1, 45]]\n",
+      "[body]\nmesh = 'a.off'\nnodes = 500\n[[blade]]\nclosed = true\npoints = [[0, 0, 0], [0, 1, 0], [1, 1, 0]]\n"
+      "keys = [[0.5, 0, 0, -1, 0, 0, 1, 0], [1.5, 0, 0, 1, 0, 1, 0, 360]] # ring\n"
+      "[[obstacle]]\nnormal = [0, 0.1, 1]\nposition = [0, 0, -1]\nfriction = 0.4\nkeys = [[0, 0, 0, 0, 0, 0, 1, "
+      "0]]\n[contact]\nbodies = true\nstiffness = 1e4\n"};
 }
 
 inline std::string sample_checkpoint(const geo::Body& body) {

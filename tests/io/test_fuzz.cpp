@@ -4,13 +4,13 @@
 
 #include <memory>
 
-#include "kerf/crack.h"
 #include "io/kerf_bytes.h"
-#include "kerf/body_file.h"
 #include "io/samples.h"
-#include "kerf/scene_file.h"
+#include "kerf/body_file.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
 #include "kerf/pieces.h"
+#include "kerf/scene_file.h"
 
 using namespace geo;
 using fuzz::Use;
@@ -33,15 +33,29 @@ std::string sealed(Random& random, const std::string& good) {
     return with_table(good, mutator.damaged(table, {table}));
   }
   for (auto changes = 1 + random.below(2); changes-- > 0;) {
-    const auto pick = [&] { return std::next(sections.begin(), random.below(static_cast<std::uint32_t>(sections.size()))); };
+    const auto pick = [&] {
+      return std::next(sections.begin(), random.below(static_cast<std::uint32_t>(sections.size())));
+    };
     auto& [name, s] = *pick();
     const std::size_t size = s.bytes.size();
     switch (random.below(10)) {
-      case 3: case 4: case 5: case 6: mutator.damage_number(s.bytes, s.dtype == "f8" ? 8 : s.dtype == "u1" || s.dtype == "json" ? 1 : 4); break;
-      case 0: s.bytes = pick()->second.bytes; break;
-      case 1: s = pick()->second; break;
-      case 2: s.dtype = random.below(2) ? "u4" : "f8"; break;
-      default: s.bytes = mutator.damaged(s.bytes, {s.bytes, pick()->second.bytes});
+      case 3:
+      case 4:
+      case 5:
+      case 6:
+        mutator.damage_number(s.bytes, s.dtype == "f8" ? 8 : s.dtype == "u1" || s.dtype == "json" ? 1 : 4);
+        break;
+      case 0:
+        s.bytes = pick()->second.bytes;
+        break;
+      case 1:
+        s = pick()->second;
+        break;
+      case 2:
+        s.dtype = random.below(2) ? "u4" : "f8";
+        break;
+      default:
+        s.bytes = mutator.damaged(s.bytes, {s.bytes, pick()->second.bytes});
     }
     // Most keep their size; what fits no shape is for the table above.
     if (random.below(4)) s.bytes.resize(size);
@@ -90,28 +104,38 @@ Use use_fronts(std::vector<Front> fronts) {
 }  // namespace
 
 TEST_CASE("damaged surfaces are read or refused", "[fuzz]") {
-  fuzz::campaign("surface", 3000, [](const auto& bytes, const auto& name) { return use_surface(parse_surface(bytes, name)); }, damage_to(sample_surfaces()));
+  fuzz::campaign(
+      "surface", 3000, [](const auto& bytes, const auto& name) { return use_surface(parse_surface(bytes, name)); },
+      damage_to(sample_surfaces()));
 }
 
 TEST_CASE("damaged fronts are read or refused", "[fuzz]") {
-  fuzz::campaign("front", 3000, [](const auto& bytes, const auto& name) { return use_fronts(parse_fronts(bytes, name)); }, damage_to(sample_fronts()));
+  fuzz::campaign(
+      "front", 3000, [](const auto& bytes, const auto& name) { return use_fronts(parse_fronts(bytes, name)); },
+      damage_to(sample_fronts()));
 }
 
 TEST_CASE("damaged nodes are read or refused", "[fuzz]") {
   const Body body = cut_body();
   const Complex skin = Complex::from_skin(make_block({1, 1, 1}, 0.5));
-  fuzz::campaign("nodes", 3000, [&](const auto& bytes, const auto& name) -> Use {
-    return [&skin, nodes = parse_nodes(bytes, name)] { build_body(skin, nodes); };
-  }, damage_to(sample_nodes_files(body.nodes)));
+  fuzz::campaign(
+      "nodes", 3000,
+      [&](const auto& bytes, const auto& name) -> Use {
+        return [&skin, nodes = parse_nodes(bytes, name)] { build_body(skin, nodes); };
+      },
+      damage_to(sample_nodes_files(body.nodes)));
 }
 
 TEST_CASE("damaged scenes are read or refused", "[fuzz]") {
-  fuzz::campaign("scene", 3000, [](const auto& bytes, const auto& name) -> Use {
-    return [scene = parse_scene(bytes, name)] {
-      for (const auto& blade : scene.blades)
-        for (const auto& key : blade.motion.keys) blade.at(key.time);
-    };
-  }, damage_to(sample_scenes()));
+  fuzz::campaign(
+      "scene", 3000,
+      [](const auto& bytes, const auto& name) -> Use {
+        return [scene = parse_scene(bytes, name)] {
+          for (const auto& blade : scene.blades)
+            for (const auto& key : blade.motion.keys) blade.at(key.time);
+        };
+      },
+      damage_to(sample_scenes()));
 }
 
 TEST_CASE("damaged bodies are read or refused", "[fuzz]") {
@@ -137,7 +161,12 @@ TEST_CASE("damaged bodies are read or refused", "[fuzz]") {
 
 TEST_CASE("damaged checkpoints are read or refused", "[fuzz]") {
   const std::string good = sample_checkpoint(cut_body());
-  fuzz::campaign("run", 3000, [](const auto& bytes, const auto& name) -> Use {
-    return [c = read_checkpoint(KerfFile(Input(bytes, name)))] { bytes_of([&](auto& out) { write_checkpoint(out, c.body, c.state, c.scene); }); };
-  }, [&](Random& random) { return sealed(random, good); });
+  fuzz::campaign(
+      "run", 3000,
+      [](const auto& bytes, const auto& name) -> Use {
+        return [c = read_checkpoint(KerfFile(Input(bytes, name)))] {
+          bytes_of([&](auto& out) { write_checkpoint(out, c.body, c.state, c.scene); });
+        };
+      },
+      [&](Random& random) { return sealed(random, good); });
 }

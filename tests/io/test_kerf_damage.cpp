@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "kerf/error.h"
 #include "cases.h"
 #include "io/kerf_bytes.h"
 #include "io/kerf_values.h"
+#include "kerf/error.h"
 
 using namespace geo;
 
@@ -54,7 +54,8 @@ TEST_CASE("an appended file cut off at any byte is in the state before, and can 
     CAPTURE(n);
     REQUIRE(state_of(a.after.substr(0, n)) == a.old_state);
     // Room that the system made, and did not fill.
-    if (n + 64 <= a.after.size() && n % 64 == 0) REQUIRE(state_of(a.after.substr(0, n) + std::string(a.after.size() - n, '\0')) == a.old_state);
+    if (n + 64 <= a.after.size() && n % 64 == 0)
+      REQUIRE(state_of(a.after.substr(0, n) + std::string(a.after.size() - n, '\0')) == a.old_state);
   }
   CHECK(state_of(a.after) == a.new_state);
   for (std::size_t n = 64; n < a.before.size(); n += 97) {
@@ -142,9 +143,12 @@ TEST_CASE("impossible tables are refused") {
     return refusal([&] { state_of(with_table(bytes, text.replace(at, from.size(), to))); });
   };
   CHECK(with(good, table, "f8", "f8") == "read");
-  CHECK(with(good, table, "\"name\":\"mark\",\"dtype\":\"u1\"", "\"name\":\"mark\",\"dtype\":\"c16\"") == "read");  // unknown, perhaps of a later version
-  CHECK_THAT(with(good, table, "\"shape\":[100,3]", "\"shape\":[18446744073709551615,3]"), Catch::Contains("larger than"));
-  CHECK_THAT(with(good, table, "\"shape\":[100,3]", "\"shape\":[4294967296,4294967296]"), Catch::Contains("larger than"));
+  CHECK(with(good, table, "\"name\":\"mark\",\"dtype\":\"u1\"", "\"name\":\"mark\",\"dtype\":\"c16\"") ==
+        "read");  // unknown, perhaps of a later version
+  CHECK_THAT(with(good, table, "\"shape\":[100,3]", "\"shape\":[18446744073709551615,3]"),
+             Catch::Contains("larger than"));
+  CHECK_THAT(with(good, table, "\"shape\":[100,3]", "\"shape\":[4294967296,4294967296]"),
+             Catch::Contains("larger than"));
   CHECK_THAT(with(good, table, "\"shape\":[100,3]", "\"shape\":[-1,3]"), Catch::Contains("malformed"));
   CHECK_THAT(with(good, table, "\"shape\":[100,3]", "\"shape\":[99,3]"), Catch::Contains("another size"));
   CHECK_THAT(with(good, table, "\"offset\":64", "\"offset\":0"), Catch::Contains("outside"));
@@ -177,6 +181,13 @@ TEST_CASE("impossible runs are refused") {
   std::memcpy(&first, a.after.data() + offset, sizeof first);
   CHECK(with(0, first) == "read");
   const std::uint64_t huge = ~std::uint64_t(0);
-  for (const auto& run : std::vector<kerf::Run>{{0, 0}, {0, huge}, {1, huge}, {huge - 1, 1}, {huge, huge / 24}, {huge, 1u << 30}, {0, 1u << 30}, {1u << 30, 1}})
+  for (const auto& run : std::vector<kerf::Run>{{0, 0},
+                                                {0, huge},
+                                                {1, huge},
+                                                {huge - 1, 1},
+                                                {huge, huge / 24},
+                                                {huge, 1u << 30},
+                                                {0, 1u << 30},
+                                                {1u << 30, 1}})
     for (const std::size_t which : {0, 1}) CHECK_THAT(with(which, run), Catch::Contains("section 'position'"));
 }

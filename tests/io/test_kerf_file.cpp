@@ -6,18 +6,19 @@
 #include <fstream>
 #include <thread>
 
-#include "kerf/error.h"
-#include "kerf/parallel.h"
 #include "cases.h"
 #include "io/kerf_bytes.h"
 #include "io/kerf_delta_internal.h"
 #include "io/kerf_values.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 
 using namespace geo;
 
 namespace {
 
-std::vector<std::byte> applied(const std::vector<kerf::Run>& runs, std::span<const std::byte> before, std::span<const std::byte> after, std::size_t width) {
+std::vector<std::byte> applied(const std::vector<kerf::Run>& runs, std::span<const std::byte> before,
+                               std::span<const std::byte> after, std::size_t width) {
   std::vector<std::byte> result;
   std::uint64_t used = 0;
   for (const auto& run : runs) {
@@ -27,7 +28,8 @@ std::vector<std::byte> applied(const std::vector<kerf::Run>& runs, std::span<con
       REQUIRE(run.from >= used);
       used = run.from + run.count;
     }
-    const auto source = given ? after.subspan(result.size(), run.count * width) : before.subspan(run.from * width, run.count * width);
+    const auto source =
+        given ? after.subspan(result.size(), run.count * width) : before.subspan(run.from * width, run.count * width);
     result.insert(result.end(), source.begin(), source.end());
   }
   return result;
@@ -52,10 +54,13 @@ TEST_CASE("what changed in an array is found, in place or moved") {
     after = before;
     const int edits = static_cast<int>(random.below(6));
     for (int e = 0; e < edits; ++e) {
-      const std::size_t at = width * random.below(static_cast<std::uint32_t>(after.size() / width + 1)), n = std::min(after.size() - at, width * random.below(30));
+      const std::size_t at = width * random.below(static_cast<std::uint32_t>(after.size() / width + 1)),
+                        n = std::min(after.size() - at, width * random.below(30));
       std::vector<std::byte> more;
       for (auto k = random.below(30); k-- > 0;) row(more);
-      if (random.below(3)) after.erase(after.begin() + static_cast<std::ptrdiff_t>(at), after.begin() + static_cast<std::ptrdiff_t>(at + n));
+      if (random.below(3))
+        after.erase(after.begin() + static_cast<std::ptrdiff_t>(at),
+                    after.begin() + static_cast<std::ptrdiff_t>(at + n));
       if (random.below(3)) after.insert(after.begin() + static_cast<std::ptrdiff_t>(at), more.begin(), more.end());
     }
     const auto runs = kerf::difference(before, after, width);

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "kerf/error.h"
-#include "kerf/surface_file.h"
 #include "kerf/check.h"
+#include "kerf/error.h"
 #include "kerf/shapes.h"
+#include "kerf/surface_file.h"
 
 using namespace geo;
 
@@ -13,12 +13,14 @@ TEST_CASE("vertices that a file has apart at seams are one, and keep their textu
   // Each triangle has vertices of its own.
   std::ostringstream ply;
   const TriangleMesh ball = make_sphere(4);
-  ply << "ply\nformat ascii 1.0\nelement vertex " << 3 * ball.triangles.size() << "\nproperty double x\nproperty double y\nproperty double z\nproperty float u\nproperty float v\nelement face "
+  ply << "ply\nformat ascii 1.0\nelement vertex " << 3 * ball.triangles.size()
+      << "\nproperty double x\nproperty double y\nproperty double z\nproperty float u\nproperty float v\nelement face "
       << ball.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
   ply.precision(17);
   for (std::size_t t = 0; t < ball.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) ply << ball.vertices[ball.triangles[t][k]].transpose() << ' ' << t << ' ' << k << '\n';
-  for (std::size_t t = 0; t < ball.triangles.size(); ++t) ply << "3 " << 3 * t << ' ' << 3 * t + 1 << ' ' << 3 * t + 2 << '\n';
+  for (std::size_t t = 0; t < ball.triangles.size(); ++t)
+    ply << "3 " << 3 * t << ' ' << 3 * t + 1 << ' ' << 3 * t + 2 << '\n';
   const TriangleMesh mesh = parse_surface(ply.str(), "soup.ply").mesh;
   CHECK(mesh.vertices.size() == ball.vertices.size());
   CHECK(check_surface(mesh, true).first_problem.empty());
@@ -31,22 +33,27 @@ TEST_CASE("vertices that a file has apart at seams are one, and keep their textu
 
 TEST_CASE("what is closed and touches stays apart") {
   const std::string box = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", other = "f 5 6 7\nf 5 8 6\nf 6 8 7\nf 5 7 8\n";
-  const TriangleMesh mesh = parse_surface("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv -1 0 0\nv 0 1 0\nv 0 0 1\n" + box + other, "two.obj").mesh;
+  const TriangleMesh mesh =
+      parse_surface("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv -1 0 0\nv 0 1 0\nv 0 0 1\n" + box + other,
+                    "two.obj")
+          .mesh;
   CHECK(mesh.vertices.size() == 8);
 }
 
 TEST_CASE("a polygon that is not convex becomes triangles that do not fold over") {
   // A prism over an L that begins beside its dent, over a comb, and over a square with a point within a side.
-  const std::vector<std::vector<std::array<double, 2>>> outlines{{{1, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 1}, {1, 1}},
-                                                                 {{0, 0}, {5, 0}, {5, 3}, {4, 1}, {3, 3}, {2.5, 1}, {2, 3}, {1, 1}, {0, 3}},
-                                                                 {{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}};
+  const std::vector<std::vector<std::array<double, 2>>> outlines{
+      {{1, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 1}, {1, 1}},
+      {{0, 0}, {5, 0}, {5, 3}, {4, 1}, {3, 3}, {2.5, 1}, {2, 3}, {1, 1}, {0, 3}},
+      {{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}};
   for (const auto& outline : outlines) {
     const std::size_t n = outline.size();
     std::ostringstream obj;
     double twice = 0;
     for (const double z : {0.0, 1.0})
       for (const auto& [x, y] : outline) obj << "v " << x << ' ' << y << ' ' << z << '\n';
-    for (std::size_t i = 0; i < n; ++i) twice += outline[i][0] * outline[(i + 1) % n][1] - outline[i][1] * outline[(i + 1) % n][0];
+    for (std::size_t i = 0; i < n; ++i)
+      twice += outline[i][0] * outline[(i + 1) % n][1] - outline[i][1] * outline[(i + 1) % n][0];
     obj << "f";
     for (std::size_t i = n; i > 0; --i) obj << ' ' << i;
     obj << "\nf";
@@ -61,13 +68,19 @@ TEST_CASE("a polygon that is not convex becomes triangles that do not fold over"
 }
 
 TEST_CASE("texture coordinates follow the triangles of a polygon that is not convex") {
-  const TriangleMesh mesh = parse_surface("v 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nvt 1 2\nvt 0 2\nvt 0 0\nvt 2 0\nvt 2 1\nvt 1 1\nf 1/1 2/2 3/3 4/4 5/5 6/6\n", "l.obj").mesh;
+  const TriangleMesh mesh = parse_surface(
+                                "v 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nvt 1 2\nvt 0 2\nvt 0 0\nvt 2 "
+                                "0\nvt 2 1\nvt 1 1\nf 1/1 2/2 3/3 4/4 5/5 6/6\n",
+                                "l.obj")
+                                .mesh;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) CHECK(mesh.attributes.uv[t][k] == Vec2(mesh.vertices[mesh.triangles[t][k]].head<2>()));
   CHECK(area(mesh) == Approx(3));
 }
 
 TEST_CASE("other formats are named, with a way to convert them") {
-  for (const auto& [bytes, what] : {std::pair<std::string, std::string>{"glTF\2\0\0\0", "a glTF file"}, {"Kaydara FBX Binary  ", "an FBX file"}})
-    CHECK_THROWS_WITH(parse_surface(bytes, "a.bin"), Catch::Contains(what) && Catch::Contains("assimp export a.bin model.obj"));
+  for (const auto& [bytes, what] :
+       {std::pair<std::string, std::string>{"glTF\2\0\0\0", "a glTF file"}, {"Kaydara FBX Binary  ", "an FBX file"}})
+    CHECK_THROWS_WITH(parse_surface(bytes, "a.bin"),
+                      Catch::Contains(what) && Catch::Contains("assimp export a.bin model.obj"));
 }

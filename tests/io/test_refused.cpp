@@ -1,11 +1,11 @@
 // Files that were once read wrongly, each refused now in one line.
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
-#include "kerf/body_file.h"
 #include "io/samples.h"
-#include "kerf/scene_file.h"
+#include "kerf/body_file.h"
 #include "kerf/check.h"
+#include "kerf/error.h"
+#include "kerf/scene_file.h"
 
 using namespace geo;
 
@@ -22,7 +22,8 @@ std::string refusal(const Call& call) {
 }
 
 bool one_line(const std::string& message) {
-  return message != "read" && message.size() <= 400 && std::none_of(message.begin(), message.end(), [](unsigned char c) { return c < 32 || c == 127; });
+  return message != "read" && message.size() <= 400 &&
+         std::none_of(message.begin(), message.end(), [](unsigned char c) { return c < 32 || c == 127; });
 }
 
 // The bytes of a container whose section holds other values.
@@ -33,7 +34,8 @@ std::string with_section(const std::string& good, const std::string& section, co
   return bytes_of([&](auto& out) { write_kerf(out, sections); });
 }
 
-std::string with_about(const std::string& good, const std::string& from, const std::string& to, const std::string& section = "about") {
+std::string with_about(const std::string& good, const std::string& from, const std::string& to,
+                       const std::string& section = "about") {
   KerfSections sections = parse_kerf(good, "good");
   KerfSection& s = sections.at(section);
   const auto at = s.bytes.find(from);
@@ -49,7 +51,10 @@ TEST_CASE("what a file says is shown in part and without control characters") {
   CHECK(one_line(refusal([] { parse_fronts("\x1b[31m" + std::string(5000, 'x') + "\n", "f"); })));
   CHECK(one_line(refusal([] { parse_fronts("front a\nstep 0\n0 0 1\v2\n", "f"); })));
   CHECK(one_line(refusal([] { parse_surface("ply\nformat " + std::string(5000, 'x') + "\n", "f"); })));
-  CHECK(one_line(refusal([] { parse_surface("ply\nformat ascii 1.0\nelement a\x7f" + std::string(5000, 'x') + " 3\nproperty int x\nend_header\n", "f"); })));
+  CHECK(one_line(refusal([] {
+    parse_surface("ply\nformat ascii 1.0\nelement a\x7f" + std::string(5000, 'x') + " 3\nproperty int x\nend_header\n",
+                  "f");
+  })));
   CHECK(one_line(refusal([] { parse_nodes("VERSION 0.7\nFI\x01" + std::string(5000, 'x') + "\n", "f"); })));
   CHECK(one_line(refusal([] { parse_scene("\"a\\n" + std::string(5000, 'x') + "\" = 1\n", "f"); })));
 }
@@ -60,17 +65,20 @@ TEST_CASE("numbers that no crack, site or point has are refused") {
     change(mesh);
     return refusal([&] { Complex::from_two_sided(mesh); });
   };
-  CHECK_THAT(sides([](auto& m) { m.patch[0] = std::numeric_limits<std::int32_t>::min(); }), Catch::Contains("out of range"));
+  CHECK_THAT(sides([](auto& m) { m.patch[0] = std::numeric_limits<std::int32_t>::min(); }),
+             Catch::Contains("out of range"));
   CHECK_THAT(sides([](auto& m) { m.site[0] = 60000000; }), Catch::Contains("out of range"));
   CHECK_THAT(sides([](auto& m) { m.vertices[0].x() = 1e308; }), Catch::Contains("sensible size"));
-  CHECK_THAT(sides([](auto& m) { std::fill(m.vertices.begin(), m.vertices.end(), Vec3::Zero()); }), Catch::Contains("no extent"));
+  CHECK_THAT(sides([](auto& m) { std::fill(m.vertices.begin(), m.vertices.end(), Vec3::Zero()); }),
+             Catch::Contains("no extent"));
   TriangleMesh far = make_block({1, 1, 1}, 1);
   far.vertices[3].y() = -1e200;
   CHECK_THAT(check_surface(far, true).first_problem, Catch::Contains("sensible size"));
   TriangleMesh twice = make_block({1, 1, 1}, 1);
   twice.triangles[0] = {0, 0, 0}, twice.triangles[1] = {0, 0, 1};
   CHECK_THAT(check_surface(twice, true).first_problem, Catch::Contains("degenerate"));
-  CHECK_THAT(refusal([] { parse_fronts("front a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1e308 0 1\n", "f"); }), Catch::Contains("sensible size"));
+  CHECK_THAT(refusal([] { parse_fronts("front a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1e308 0 1\n", "f"); }),
+             Catch::Contains("sensible size"));
 }
 
 TEST_CASE("fronts of a surface file that cannot be continued are refused") {
@@ -98,13 +106,19 @@ TEST_CASE("bodies and checkpoints with impossible numbers are refused") {
   const auto refused = [](const std::string& bytes) { return refusal([&] { parse_body(bytes, "b.kerf"); }); };
   CHECK(refused(good) == "read");
   const std::size_t rows = body.surface.two_sided().vertices.size();
-  CHECK_THAT(refused(with_section(good, "surface/vertices", std::vector<double>(3 * rows, 0.0))), Catch::Contains("no extent"));
-  CHECK_THAT(refused(with_section(good, "nodes/radius", std::vector<double>(body.nodes.size(), 1e300))), Catch::Contains("sensible size"));
+  CHECK_THAT(refused(with_section(good, "surface/vertices", std::vector<double>(3 * rows, 0.0))),
+             Catch::Contains("no extent"));
+  CHECK_THAT(refused(with_section(good, "nodes/radius", std::vector<double>(body.nodes.size(), 1e300))),
+             Catch::Contains("sensible size"));
   CHECK_THAT(refused(with_about(good, "\"k\":26", "\"k\":1e300")), Catch::Contains("impossible"));
   const std::string run = sample_checkpoint(body);
-  const auto run_refused = [](const std::string& bytes) { return refusal([&] { read_checkpoint(KerfFile(Input(bytes, "r"))); }); };
+  const auto run_refused = [](const std::string& bytes) {
+    return refusal([&] { read_checkpoint(KerfFile(Input(bytes, "r"))); });
+  };
   CHECK(run_refused(run) == "read");
   CHECK_THAT(run_refused(good), Catch::Contains("no checkpoint"));
-  CHECK_THAT(run_refused(with_about(run, "\"frame\":12", "\"frame\":1e300", "run/about")), Catch::Contains("run/about"));
-  CHECK_THAT(run_refused(with_about(run, "\"crack\":2", "\"crack\":99999999999", "run/about")), Catch::Contains("run/about"));
+  CHECK_THAT(run_refused(with_about(run, "\"frame\":12", "\"frame\":1e300", "run/about")),
+             Catch::Contains("run/about"));
+  CHECK_THAT(run_refused(with_about(run, "\"crack\":2", "\"crack\":99999999999", "run/about")),
+             Catch::Contains("run/about"));
 }

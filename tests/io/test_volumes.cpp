@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "kerf/error.h"
 #include "geometry/bvh.h"
-#include "kerf/surface_file.h"
-#include "kerf/nodes.h"
 #include "kerf/check.h"
+#include "kerf/error.h"
+#include "kerf/nodes.h"
 #include "kerf/shapes.h"
+#include "kerf/surface_file.h"
 
 using namespace geo;
 
@@ -19,7 +19,9 @@ namespace {
 
 /// A file in a folder of its own, removed at the end.
 struct Scratch {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("kerf-volumes-" + std::to_string(std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName())));
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() /
+      ("kerf-volumes-" + std::to_string(std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName())));
   std::string file = (folder / "v.vdb").string();
   Scratch() { std::filesystem::create_directories(folder); }
   ~Scratch() { std::filesystem::remove_all(folder); }
@@ -38,7 +40,8 @@ typename Grid::Ptr ball(const char* name, double value) {
   for (int x = -8; x <= 8; ++x)
     for (int y = -8; y <= 8; ++y)
       for (int z = -8; z <= 8; ++z)
-        if (const double d = 7 - std::sqrt(double(x * x + y * y + z * z)); d > 0) accessor.setValue({x, y, z}, static_cast<typename Grid::ValueType>(value * std::min(1.0, d / 4)));
+        if (const double d = 7 - std::sqrt(double(x * x + y * y + z * z)); d > 0)
+          accessor.setValue({x, y, z}, static_cast<typename Grid::ValueType>(value * std::min(1.0, d / 4)));
   return grid;
 }
 
@@ -46,7 +49,12 @@ typename Grid::Ptr ball(const char* name, double value) {
 
 TEST_CASE("a level set and a fog volume come back as the solid that was written, and nodes are inside it") {
   const Scratch scratch;
-  for (const auto& [name, mesh] : std::vector<std::pair<std::string, TriangleMesh>>{{"sphere", make_sphere(8)}, {"block", make_block({2, 1, 1}, 0.25)}, {"pumpkin", make_pumpkin(8)}, {"polyp", make_polyp(8)}, {"letter", make_letter('K', 0.25, 12)}})
+  for (const auto& [name, mesh] :
+       std::vector<std::pair<std::string, TriangleMesh>>{{"sphere", make_sphere(8)},
+                                                         {"block", make_block({2, 1, 1}, 0.25)},
+                                                         {"pumpkin", make_pumpkin(8)},
+                                                         {"polyp", make_polyp(8)},
+                                                         {"letter", make_letter('K', 0.25, 12)}})
     for (const bool fog : {false, true}) {
       INFO(name << (fog ? ", fog" : ", level set"));
       const double voxel = 0.012 * bounding_box(mesh).diagonal();
@@ -54,8 +62,10 @@ TEST_CASE("a level set and a fog volume come back as the solid that was written,
       const TriangleMesh surface = read_volume(scratch.file);
       require_solid(surface);
       // A fog volume is full three voxels deep: its half-density level lies that much further in.
-      if (!fog) CHECK(signed_volume(surface) == Approx(signed_volume(mesh)).epsilon(0.03));
-      else CHECK(signed_volume(surface) < signed_volume(mesh));
+      if (!fog)
+        CHECK(signed_volume(surface) == Approx(signed_volume(mesh)).epsilon(0.03));
+      else
+        CHECK(signed_volume(surface) < signed_volume(mesh));
       SampleOptions options;
       options.count = 800, options.across = 3;
       const NodeSet nodes = sample_nodes(surface, options);
@@ -70,7 +80,8 @@ TEST_CASE("a surface is wrapped around parts that overlap, and has their dress")
   const auto n = static_cast<std::uint32_t>(boxes.vertices.size());
   const auto rows = boxes.triangles.size();
   for (std::uint32_t v = 0; v < n; ++v) boxes.vertices.push_back(boxes.vertices[v] + Vec3(0.5, 0.5, 0.5));
-  for (std::size_t t = 0; t < rows; ++t) boxes.triangles.push_back({boxes.triangles[t][0] + n, boxes.triangles[t][1] + n, boxes.triangles[t][2] + n});
+  for (std::size_t t = 0; t < rows; ++t)
+    boxes.triangles.push_back({boxes.triangles[t][0] + n, boxes.triangles[t][1] + n, boxes.triangles[t][2] + n});
   for (Vec3& p : boxes.vertices) p += Vec3(1e7, 0, 0);
   boxes.attributes.group_names = {"first", "second"};
   for (std::size_t t = 0; t < 2 * rows; ++t) boxes.attributes.group.push_back(t >= rows);
@@ -88,16 +99,20 @@ TEST_CASE("a surface is wrapped around parts that overlap, and has their dress")
 TEST_CASE("a grid is chosen by name, its surface by level") {
   const Scratch scratch;
   openvdb::initialize();
-  scratch.write({ball<openvdb::FloatGrid>("density", 1), ball<openvdb::DoubleGrid>("heat", 5), openvdb::BoolGrid::create()});
+  scratch.write(
+      {ball<openvdb::FloatGrid>("density", 1), ball<openvdb::DoubleGrid>("heat", 5), openvdb::BoolGrid::create()});
   CHECK_THROWS_WITH(read_volume(scratch.file), Catch::Contains("several grids, 'density', 'heat'"));
-  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "smoke"}), Catch::Contains("'smoke'") && Catch::Contains("'density', 'heat'"));
+  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "smoke"}),
+                    Catch::Contains("'smoke'") && Catch::Contains("'density', 'heat'"));
   const double half = signed_volume(read_volume(scratch.file, {.grid = "density"}));
   CHECK(half == Approx(4.0 / 3 * 3.14159 * 125).epsilon(0.06));  // 0.5 is two voxels deep in a ball of radius 7
   CHECK(signed_volume(read_volume(scratch.file, {.grid = "heat", .iso = 2.5})) == Approx(half).epsilon(1e-6));
   CHECK(signed_volume(read_volume(scratch.file, {.grid = "density", .iso = 0.2})) > 1.3 * half);
-  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "density", .iso = 2}), Catch::Contains("no surface at the level"));
+  CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "density", .iso = 2}),
+                    Catch::Contains("no surface at the level"));
   CHECK_THROWS_WITH(read_volume(scratch.file, {.grid = "density", .iso = -1}), Catch::Contains("choose another"));
-  const auto fine = read_volume(scratch.file, {.grid = "density"}), rough = read_volume(scratch.file, {.grid = "density", .adaptivity = 1});
+  const auto fine = read_volume(scratch.file, {.grid = "density"}),
+             rough = read_volume(scratch.file, {.grid = "density", .adaptivity = 1});
   CHECK(rough.triangles.size() < fine.triangles.size());
 }
 

@@ -26,7 +26,9 @@ TEST_CASE("validation: cantilever, converging") {
 }
 TEST_CASE("validation: first bending frequency") { check(validation::frequency(0)); }
 TEST_CASE("validation: cut bar in free fall") { check(validation::free_fall(0)); }
-TEST_CASE("validation: what spins, however stiff it is and however little accuracy is asked for") { check(validation::spin(0)); }
+TEST_CASE("validation: what spins, however stiff it is and however little accuracy is asked for") {
+  check(validation::spin(0));
+}
 TEST_CASE("validation: slit bar") { check(validation::slit_bar(0)); }
 TEST_CASE("validation: bar cut half through") { check(validation::notched_bar(0)); }
 TEST_CASE("validation: Hertz, converging") {

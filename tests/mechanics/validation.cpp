@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "mechanics/bodies.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 
 namespace validation {
 namespace {
@@ -26,7 +26,8 @@ State at_rest(const Body& body) {
   return {zero, zero};
 }
 
-// A bar along x of unit section, as long as whole cells make it, held over the two cells at its foot, which come on top.
+// A bar along x of unit section, as long as whole cells make it, held over the two cells at its foot, which come on
+// top.
 struct Bar {
   Body body;
   double foot, length;
@@ -44,7 +45,8 @@ struct Bar {
     environment.load.assign(body.nodes.size(), Vec3::Zero());
     double total = 0, place = 0;
     for (std::size_t i = 0; i < body.nodes.size(); ++i)
-      if (at_tip(body.nodes.position[i])) total += body.nodes.volume[i], place += body.nodes.volume[i] * (body.nodes.position[i].x() - foot);
+      if (at_tip(body.nodes.position[i]))
+        total += body.nodes.volume[i], place += body.nodes.volume[i] * (body.nodes.position[i].x() - foot);
     for (std::size_t i = 0; i < body.nodes.size(); ++i)
       if (at_tip(body.nodes.position[i])) environment.load[i] = body.nodes.volume[i] / total * force;
     return place / total;
@@ -64,7 +66,10 @@ struct Bar {
 
  private:
   // The cells are centred on the block, which ends a little within the outermost.
-  Bar(double h, long cells) : body(block_body({h * (double(cells) - 0.05), 1, 1}, h, 0.5)), foot(1.975 * h), length(h * (double(cells) - 2.025)) {
+  Bar(double h, long cells)
+      : body(block_body({h * (double(cells) - 0.05), 1, 1}, h, 0.5)),
+        foot(1.975 * h),
+        length(h * (double(cells) - 2.025)) {
     environment.gravity.setZero();
   }
 };
@@ -93,7 +98,8 @@ std::vector<Finding> patch(int size) {
     Body body = block_body({1, 1, 1}, size ? 0.08 : 0.16);
     if (cracked) {
       auto front = begin_front(blade_at({0.46, -0.2, 1.2}, {0.53, 1.2, 1.2}, {0.01, 0, -0.25}, 0), false, 1);
-      for (int k = 1; k <= 3; ++k) split(body, front, blade_at({0.46, -0.2, 1.2}, {0.53, 1.2, 1.2}, {0.01, 0, -0.25}, k));
+      for (int k = 1; k <= 3; ++k)
+        split(body, front, blade_at({0.46, -0.2, 1.2}, {0.53, 1.2, 1.2}, {0.01, 0, -0.25}, k));
     }
     const Solid solid(body, steel_like());
     Mat3 linear;
@@ -105,7 +111,9 @@ std::vector<Finding> patch(int size) {
       const auto g = solid.points().gradients(b, u);
       for (std::size_t i = 0; i < g.size(); ++i) worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
     }
-    found.push_back({cracked ? "Patch test, with a crack half way through: worst error of ∇u" : "Patch test: worst error of ∇u", "u = G x: ∇u = G", worst, 0, 1e-10, true});
+    found.push_back(
+        {cracked ? "Patch test, with a crack half way through: worst error of ∇u" : "Patch test: worst error of ∇u",
+         "u = G x: ∇u = G", worst, 0, 1e-10, true});
   }
   return found;
 }
@@ -141,7 +149,8 @@ std::vector<Finding> cantilever(int size) {
     bar.hold();
     const double force = 2e-5 * m.young, at = bar.load_tip({0, 0, -force});
     const double tip = force * at * at * at / (3 * m.young * inertia) + force * at / (shear_factor(m.poisson) * m.mu());
-    found.push_back({"Cantilever, 8 long, " + std::to_string(across) + " cells across: tip, m", "w = P L³ / (3 E I) + P L / (κ G A)", bar.along_load(bar.rest(Solid(bar.body, m))), tip,
+    found.push_back({"Cantilever, 8 long, " + std::to_string(across) + " cells across: tip, m",
+                     "w = P L³ / (3 E I) + P L / (κ G A)", bar.along_load(bar.rest(Solid(bar.body, m))), tip,
                      across == 11 ? 0.03 : 0.1});
   }
   return found;
@@ -160,20 +169,26 @@ std::vector<Finding> frequency(int size) {
     double most = 0, stiff = 0, inert = 0;
     for (const Vec3& u : shape) most = std::max(most, u.norm());
     bar.environment.load.clear();
-    for (std::size_t i = 0; i < shape.size(); ++i) bar.environment.load.push_back(bar.environment.fixed[i] ? Vec3(Vec3::Zero()) : Vec3(1e-5 / most * solid.mass(NodeId(i)) * shape[i]));
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      bar.environment.load.push_back(bar.environment.fixed[i] ? Vec3(Vec3::Zero())
+                                                              : Vec3(1e-5 / most * solid.mass(NodeId(i)) * shape[i]));
     shape = bar.rest(solid);
-    for (std::size_t i = 0; i < shape.size(); ++i) stiff += shape[i].dot(bar.environment.load[i]), inert += solid.mass(NodeId(i)) * shape[i].squaredNorm();
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      stiff += shape[i].dot(bar.environment.load[i]), inert += solid.mass(NodeId(i)) * shape[i].squaredNorm();
     lambda = stiff / inert;
   }
-  const double exact = 1.8751 * 1.8751 / (2 * std::numbers::pi * bar.length * bar.length) * std::sqrt(m.young * inertia / m.density);
-  return {{"Cantilever, 10 long: first bending frequency, Hz", "f = 1.875² / (2π L²) √(E I / ρ A)", std::sqrt(lambda) / (2 * std::numbers::pi), exact, 0.05}};
+  const double exact =
+      1.8751 * 1.8751 / (2 * std::numbers::pi * bar.length * bar.length) * std::sqrt(m.young * inertia / m.density);
+  return {{"Cantilever, 10 long: first bending frequency, Hz", "f = 1.875² / (2π L²) √(E I / ρ A)",
+           std::sqrt(lambda) / (2 * std::numbers::pi), exact, 0.05}};
 }
 
 std::vector<Finding> free_fall(int size) {
   Body body = block_body({2, 0.6, 0.6}, size ? 0.1 : 0.16);
   Solid solid(body, steel_like());
   State state = at_rest(body);
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) state.velocity[i] = Vec3(1, 0.5, 2) + Vec3(0.4, 1, -0.3).cross(body.nodes.position[i] - Vec3(1, 0.3, 0.3));
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    state.velocity[i] = Vec3(1, 0.5, 2) + Vec3(0.4, 1, -0.3).cross(body.nodes.position[i] - Vec3(1, 0.3, 0.3));
   Environment env;
   const double dt = 0.02;
   const auto middles = [&] {
@@ -183,7 +198,8 @@ std::vector<Finding> free_fall(int size) {
     for (std::size_t i = 0; i < body.nodes.size(); ++i) {
       const std::size_t side = body.nodes.position[i].x() > 0.93;
       const double m = solid.mass(NodeId(i));
-      mass[side] += m, sums[2 * side] += m * (body.nodes.position[i] + state.displacement[i]), sums[2 * side + 1] += m * state.velocity[i];
+      mass[side] += m, sums[2 * side] += m * (body.nodes.position[i] + state.displacement[i]),
+          sums[2 * side + 1] += m * state.velocity[i];
     }
     for (std::size_t side = 0; side < 2; ++side) sums[2 * side] /= mass[side], sums[2 * side + 1] /= mass[side];
     return sums;
@@ -199,10 +215,12 @@ std::vector<Finding> free_fall(int size) {
   const auto end = middles();
   double worst = 0;
   for (std::size_t side = 0; side < 2; ++side) {
-    const Vec3 there = begin[2 * side] + steps * dt * begin[2 * side + 1] + 0.5 * steps * (steps + 1) * dt * dt * env.gravity;
+    const Vec3 there =
+        begin[2 * side] + steps * dt * begin[2 * side + 1] + 0.5 * steps * (steps + 1) * dt * dt * env.gravity;
     worst = std::max(worst, (end[2 * side] - there).norm());
   }
-  return {{"Bar cut through while it falls and spins: worst distance of the two middles from their parabolas, m", "xₙ = x₀ + n Δt v₀ + ½ g Δt² n (n + 1)", worst, 0, 1e-9, true}};
+  return {{"Bar cut through while it falls and spins: worst distance of the two middles from their parabolas, m",
+           "xₙ = x₀ + n Δt v₀ + ½ g Δt² n (n + 1)", worst, 0, 1e-9, true}};
 }
 
 // Slit along its middle plane from the free end: two leaves, which share the load.
@@ -210,19 +228,23 @@ std::vector<Finding> slit_bar(int size) {
   const Material m = steel_like();
   Bar bar(8, size ? 8 : 6);
   const double open = 0.5 * bar.length;
-  const Vec3 a(bar.foot + bar.length + 0.4, -0.3, 0.503), b(bar.foot + bar.length + 0.4, 1.3, 0.503), step(-(open + 0.4) / 9, 0, 0);
+  const Vec3 a(bar.foot + bar.length + 0.4, -0.3, 0.503), b(bar.foot + bar.length + 0.4, 1.3, 0.503),
+      step(-(open + 0.4) / 9, 0, 0);
   auto front = begin_front(blade_at(a, b, step, 0, 4), false, 1);
   for (int k = 1; k <= 9; ++k) split(bar.body, front, blade_at(a, b, step, k, 4));
   bar.hold();
-  const double force = 1e-5 * m.young, at = bar.load_tip({0, 0, -force}), leaf = at - (bar.length - open), whole = bar.length - open, ei = m.young * inertia;
+  const double force = 1e-5 * m.young, at = bar.load_tip({0, 0, -force}), leaf = at - (bar.length - open),
+               whole = bar.length - open, ei = m.young * inertia;
   const double shear = force * at / (shear_factor(m.poisson) * m.mu());
-  const double root = force * whole * whole * whole / (3 * ei) + force * leaf * whole * whole / (2 * ei), slope = force * whole * whole / (2 * ei) + force * leaf * whole / ei;
+  const double root = force * whole * whole * whole / (3 * ei) + force * leaf * whole * whole / (2 * ei),
+               slope = force * whole * whole / (2 * ei) + force * leaf * whole / ei;
   const double expected = root + slope * leaf + force * leaf * leaf * leaf / (3 * ei / 4) + shear;
-  return {{"Bar slit half its length along its middle: tip, m", "two leaves of I / 8 on the foot's end", bar.along_load(bar.rest(Solid(bar.body, m))), expected, 0.1}};
+  return {{"Bar slit half its length along its middle: tip, m", "two leaves of I / 8 on the foot's end",
+           bar.along_load(bar.rest(Solid(bar.body, m))), expected, 0.1}};
 }
 
-// Cut half through across, near mid-length: how much that adds. Where the crack lies between nodes changes that, so at four
-// places.
+// Cut half through across, near mid-length: how much that adds. Where the crack lies between nodes changes that, so at
+// four places.
 std::vector<Finding> notched_bar(int) {
   const Material m = steel_like();
   const double force = 1e-5 * m.young;
@@ -237,11 +259,16 @@ std::vector<Finding> notched_bar(int) {
     for (int k = 1; k <= 3; ++k) split(bar.body, front, blade_at(a, b, step, k, 4));
     bar.hold();
     bar.load_tip({0, 0, -force});
-    // Rotation of an edge crack of half the depth in bending, plane strain to plane stress (Tada, Paris and Irwin 2000, 2.14).
-    const double s = 5.93 - 19.69 * 0.5 + 37.14 * 0.25 - 35.84 * 0.125 + 13.12 * 0.0625, arm = at - place, moment = force * arm;
+    // Rotation of an edge crack of half the depth in bending, plane strain to plane stress (Tada, Paris and Irwin
+    // 2000, 2.14).
+    const double s = 5.93 - 19.69 * 0.5 + 37.14 * 0.25 - 35.84 * 0.125 + 13.12 * 0.0625, arm = at - place,
+                 moment = force * arm;
     const double rotation = 4 * 6 * moment / m.young * s;
-    found.push_back({"Bar cut half through " + std::to_string(place).substr(0, 4) + " from its foot: what the cut adds to the tip, m", "Δw = (L − x) · 24 M S(½) / E, S(½) = 1.71 (Tada)",
-                     bar.along_load(bar.rest(Solid(bar.body, m))) - uncut, arm * rotation * (1 - 0.5 * m.poisson * m.poisson), 0.1});
+    found.push_back({"Bar cut half through " + std::to_string(place).substr(0, 4) +
+                         " from its foot: what the cut adds to the tip, m",
+                     "Δw = (L − x) · 24 M S(½) / E, S(½) = 1.71 (Tada)",
+                     bar.along_load(bar.rest(Solid(bar.body, m))) - uncut,
+                     arm * rotation * (1 - 0.5 * m.poisson * m.poisson), 0.1});
   }
   return found;
 }

@@ -9,7 +9,7 @@ namespace validation {
 struct Finding {
   std::string what, formula;
   double measured = 0, expected = 0;
-  double bound = 0;      ///< of the error
+  double bound = 0;       ///< of the error
   bool absolute = false;  ///< the error is |measured − expected|, else relative to the expected
   double error() const;
   bool good() const { return error() <= bound; }

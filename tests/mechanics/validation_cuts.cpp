@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "mechanics/bodies.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 #include "mechanics/validation.h"
 
 namespace validation {
@@ -35,7 +35,8 @@ Changes cut_at_random(double spacing, double most_bend, std::uint64_t first, int
       const Vec3 x = body.nodes.position[i] - Vec3(0.5, 0.5, 0.5);
       state.displacement[i] = linear * x + bend * std::pow(along.dot(x), 2);
     }
-    const Vec3 normal = random.direction(), side = normal.unitOrthogonal(), way = normal.cross(side), middle = Vec3(0.5, 0.5, 0.5) + random.uniform(-0.3, 0.3) * normal;
+    const Vec3 normal = random.direction(), side = normal.unitOrthogonal(), way = normal.cross(side),
+               middle = Vec3(0.5, 0.5, 0.5) + random.uniform(-0.3, 0.3) * normal;
     const int steps = 3 + int(random.below(5));
     const Vec3 a = middle - side - way, b = middle + side - way, step = random.uniform(0.4, 2.4) / steps * way;
     auto front = begin_front(blade_at(a, b, step, 0, 3), false, 1);
@@ -54,11 +55,14 @@ Changes cut_at_random(double spacing, double most_bend, std::uint64_t first, int
 std::vector<Finding> energy_at_cuts(int) {
   std::vector<Finding> found;
   const Changes linear = cut_at_random(0.2, 0, 1, 60);
-  found.push_back({std::to_string(linear.cuts) + " cuts of blocks under linear strain: largest change of the energy, relative", "U after = U before", linear.most, 0, 1e-4, true});
+  found.push_back(
+      {std::to_string(linear.cuts) + " cuts of blocks under linear strain: largest change of the energy, relative",
+       "U after = U before", linear.most, 0, 1e-4, true});
   const Changes bent = cut_at_random(0.2, 0.3, 1, 60);
   const std::string cuts = std::to_string(bent.cuts) + " cuts of bent blocks, nodes 0.2 apart: ";
   found.push_back({cuts + "largest rise of the energy, relative", "U after ≤ U before", bent.most, 0, 0.04, true});
-  found.push_back({cuts + "mean change of the energy, relative", "≤ 0, to what the sampling tells", bent.sum / bent.cuts, 0, 0.002, true});
+  found.push_back({cuts + "mean change of the energy, relative", "≤ 0, to what the sampling tells",
+                   bent.sum / bent.cuts, 0, 0.002, true});
   return found;
 }
 

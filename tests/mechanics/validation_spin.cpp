@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "mechanics/bodies.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 #include "mechanics/validation.h"
 
 namespace validation {
@@ -14,8 +14,9 @@ using namespace geo;
 constexpr double dt = 0.04, rate = 2;
 constexpr int steps = 40;
 
-// Of what is rigid, backward Euler makes the turn that is nearest to where every node would go straight on. After one by φ that is where it was once more, and
-// on by as much: by tan φ' = sin φ / (2 − cos φ). Velocities are from where nodes were, so the momentum is that of sin φ.
+// Of what is rigid, backward Euler makes the turn that is nearest to where every node would go straight on. After one
+// by φ that is where it was once more, and on by as much: by tan φ' = sin φ / (2 − cos φ). Velocities are from where
+// nodes were, so the momentum is that of sin φ.
 double kept() {
   double turn = std::atan(rate * dt);
   for (int k = 1; k < steps; ++k) turn = std::atan2(std::sin(turn), 2 - std::cos(turn));
@@ -35,7 +36,8 @@ double left(const Body& body, double young, double poisson, double accuracy) {
   const auto momentum = [&] {
     Vec3 middle = Vec3::Zero();
     double mass = 0;
-    for (std::uint32_t i = 0; i < n; ++i) middle += solid.mass(NodeId(i)) * (body.nodes.position[i] + state.displacement[i]), mass += solid.mass(NodeId(i));
+    for (std::uint32_t i = 0; i < n; ++i)
+      middle += solid.mass(NodeId(i)) * (body.nodes.position[i] + state.displacement[i]), mass += solid.mass(NodeId(i));
     return (solid.angular_momentum(state) - (middle / mass).cross(solid.momentum(state))).z();
   };
   const double before = momentum();
@@ -53,8 +55,11 @@ std::vector<Finding> spin(int size) {
       for (const double accuracy : {1e-3, 4e-3, 0.02}) {
         if (size > 0 && (poisson != 0.3 || accuracy == 4e-3)) continue;
         char what[120];
-        std::snprintf(what, sizeof what, "Bar that spins, E = %.0e Pa, ν = %.3g, accuracy %.3g: angular momentum left after 40 steps", young, poisson, accuracy);
-        found.push_back({what, "sin φₙ / (ω Δt), tan φₙ₊₁ = sin φₙ / (2 − cos φₙ)", left(body, young, poisson, accuracy), kept(), 0.01});
+        std::snprintf(what, sizeof what,
+                      "Bar that spins, E = %.0e Pa, ν = %.3g, accuracy %.3g: angular momentum left after 40 steps",
+                      young, poisson, accuracy);
+        found.push_back({what, "sin φₙ / (ω Δt), tan φₙ₊₁ = sin φₙ / (2 − cos φₙ)",
+                         left(body, young, poisson, accuracy), kept(), 0.01});
       }
   return found;
 }

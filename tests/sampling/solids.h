@@ -35,8 +35,13 @@ inline geo::TriangleMesh shell(double thickness) {
 }
 
 inline std::vector<std::pair<std::string, geo::TriangleMesh>> all() {
-  return {{"pumpkin", geo::make_pumpkin(8)}, {"apple", geo::make_apple(8)}, {"polyp", geo::make_polyp(8)}, {"block", geo::make_block({2, 1, 1}, 0.5)},
-          {"letter", geo::make_letter('K', 0.25, 12)}, {"turned block", turned(geo::make_block({2, 1, 1}, 0.5))}, {"shell", shell(0.1)}};
+  return {{"pumpkin", geo::make_pumpkin(8)},
+          {"apple", geo::make_apple(8)},
+          {"polyp", geo::make_polyp(8)},
+          {"block", geo::make_block({2, 1, 1}, 0.5)},
+          {"letter", geo::make_letter('K', 0.25, 12)},
+          {"turned block", turned(geo::make_block({2, 1, 1}, 0.5))},
+          {"shell", shell(0.1)}};
 }
 
 }  // namespace solids

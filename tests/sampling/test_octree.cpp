@@ -33,7 +33,9 @@ bool touch(const Cell& a, const Cell& b) {
 TEST_CASE("a cell has one name") {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    const std::array<std::int32_t, 3> c{static_cast<std::int32_t>(random.below(1 << 21)), static_cast<std::int32_t>(random.below(1 << 21)), static_cast<std::int32_t>(random.below(1 << 21))};
+    const std::array<std::int32_t, 3> c{static_cast<std::int32_t>(random.below(1 << 21)),
+                                        static_cast<std::int32_t>(random.below(1 << 21)),
+                                        static_cast<std::int32_t>(random.below(1 << 21))};
     REQUIRE(corner_of(morton(c)) == c);
   }
 }
@@ -48,7 +50,8 @@ TEST_CASE("leaves are in order, apart, and differ from those they touch by one l
         INFO(name << ", across " << across << ", levels " << levels << ", " << leaves.size() << " leaves");
         REQUIRE(leaves.size() > 100);
         for (std::size_t i = 0; i + 1 < leaves.size(); ++i)
-          REQUIRE(morton(leaves[i].cell.corner) + (std::uint64_t(1) << 3 * leaves[i].cell.level) <= morton(leaves[i + 1].cell.corner));
+          REQUIRE(morton(leaves[i].cell.corner) + (std::uint64_t(1) << 3 * leaves[i].cell.level) <=
+                  morton(leaves[i + 1].cell.corner));
         std::size_t graded = 0;
         if (leaves.size() < 4000)
           for (std::size_t i = 0; i < leaves.size(); ++i)
@@ -88,7 +91,8 @@ TEST_CASE("regions know exactly what is inside, on faces and edges too") {
     std::size_t asked = 0, inside = 0;
     const auto descend = [&](const auto& self, const Region& region) -> void {
       REQUIRE(region.inside == tree.tree().inside(region.probe));
-      if (region.cell.level > 2 || (region.cell.level > 0 && random.below(4) == 0)) return tree.divide(lattice, region, [&](Region&& part) { self(self, part); });
+      if (region.cell.level > 2 || (region.cell.level > 0 && random.below(4) == 0))
+        return tree.divide(lattice, region, [&](Region&& part) { self(self, part); });
       if (random.below(8) != 0) return;
       const Box3 b = lattice.box(region.cell);
       std::vector<Vec3> points;
@@ -136,7 +140,8 @@ TEST_CASE("the leaves around a cell are those that touch it") {
   const auto leaves = in_one(leaves_of(mesh, options).lists);
   std::vector<std::uint64_t> codes;
   std::vector<std::uint8_t> levels;
-  for (const Leaf& leaf : leaves) codes.push_back(morton(leaf.cell.corner)), levels.push_back(static_cast<std::uint8_t>(leaf.cell.level));
+  for (const Leaf& leaf : leaves)
+    codes.push_back(morton(leaf.cell.corner)), levels.push_back(static_cast<std::uint8_t>(leaf.cell.level));
   const LeafIndex index(codes, levels);
   Random random(3);
   for (int k = 0; k < 300; ++k) {
@@ -149,7 +154,8 @@ TEST_CASE("the leaves around a cell are those that touch it") {
       bool meets = true;
       for (int i = 0; i < 3; ++i) {
         const int at = cell.corner[i] >> level << level, edge = 1 << level;
-        meets &= leaves[row].cell.corner[i] < at + 2 * edge && leaves[row].cell.corner[i] + (1 << leaves[row].cell.level) > at - edge;
+        meets &= leaves[row].cell.corner[i] < at + 2 * edge &&
+                 leaves[row].cell.corner[i] + (1 << leaves[row].cell.level) > at - edge;
       }
       if (meets) expected.push_back(row);
     }

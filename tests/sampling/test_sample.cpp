@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "kerf/error.h"
-#include "kerf/parallel.h"
 #include "geometry/bvh.h"
+#include "kerf/error.h"
 #include "kerf/nodes.h"
+#include "kerf/parallel.h"
 #include "solids.h"
 
 using namespace geo;
@@ -22,7 +22,9 @@ void require_sound(const TriangleMesh& mesh, const NodeSet& nodes) {
   CHECK(std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0) == Approx(signed_volume(mesh)).epsilon(1e-10));
 }
 
-bool same(const NodeSet& a, const NodeSet& b) { return a.position == b.position && a.radius == b.radius && a.spacing == b.spacing && a.volume == b.volume; }
+bool same(const NodeSet& a, const NodeSet& b) {
+  return a.position == b.position && a.radius == b.radius && a.spacing == b.spacing && a.volume == b.volume;
+}
 
 /// The distance from each node to the nearest other, over the smaller of their spacings: the least and the mean.
 std::pair<double, double> nearest_other(const NodeSet& nodes) {
@@ -30,7 +32,9 @@ std::pair<double, double> nearest_other(const NodeSet& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     double best = 1e300;
     for (std::size_t j = 0; j < nodes.size(); ++j)
-      if (j != i) best = std::min(best, (nodes.position[i] - nodes.position[j]).norm() / std::min(nodes.spacing[i], nodes.spacing[j]));
+      if (j != i)
+        best = std::min(best,
+                        (nodes.position[i] - nodes.position[j]).norm() / std::min(nodes.spacing[i], nodes.spacing[j]));
     least = std::min(least, best), sum += best;
   }
   return {least, sum / double(nodes.size())};
@@ -100,7 +104,8 @@ TEST_CASE("a thin curved shell is sampled across, and what is too thin is told")
   CHECK(report.unresolved == 0);
   // Three layers: about as many nodes in each third of the wall.
   std::array<std::size_t, 3> third{};
-  for (const Vec3& p : nodes.position) ++third[static_cast<std::size_t>(std::clamp(int((p.norm() - 0.92) / 0.08 * 3), 0, 2))];
+  for (const Vec3& p : nodes.position)
+    ++third[static_cast<std::size_t>(std::clamp(int((p.norm() - 0.92) / 0.08 * 3), 0, 2))];
   for (const auto n : third) CHECK(double(n) > 0.2 * double(nodes.size()));
   options.spacing = 0.5;
   const TriangleMesh skin = solids::shell(0.004);
@@ -153,7 +158,8 @@ TEST_CASE("support radii change gradually and hold a dozen nodes") {
     for (std::size_t j = 0; j < nodes.size(); ++j) {
       const double d = (nodes.position[i] - nodes.position[j]).norm();
       within += j != i && d <= nodes.radius[i];
-      if (j != i && d < nearest) nearest = d, ratio = std::max(nodes.radius[i] / nodes.radius[j], nodes.radius[j] / nodes.radius[i]);
+      if (j != i && d < nearest)
+        nearest = d, ratio = std::max(nodes.radius[i] / nodes.radius[j], nodes.radius[j] / nodes.radius[i]);
     }
     worst = std::max(worst, ratio);
     REQUIRE(within >= 12);
@@ -180,7 +186,9 @@ TEST_CASE("blue noise keeps nodes apart") {
 
 TEST_CASE("hostile sampling options are refused") {
   const TriangleMesh mesh = make_block({1, 1, 1}, 1);
-  const auto refuses = [&](SampleOptions options, const char* word) { CHECK_THROWS_WITH(sample_nodes(mesh, options), Catch::Contains(word)); };
+  const auto refuses = [&](SampleOptions options, const char* word) {
+    CHECK_THROWS_WITH(sample_nodes(mesh, options), Catch::Contains(word));
+  };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refuses({.spacing = 1e-9}, "0.01 %");
   refuses({.spacing = nan}, "positive");

@@ -2,21 +2,22 @@
 #include <catch2/catch.hpp>
 #include <iostream>
 
-#include "kerf/error.h"
 #include "cases.h"
-#include "kerf/crack.h"
 #include "invariants/models.h"
-#include "kerf/score.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
+#include "kerf/score.h"
 
 using namespace geo;
 
 namespace {
 
 // Small ones first, which the suite takes; those with lower-case names of files are real.
-const std::vector<std::string> models{"joint",  "apple", "cactus",       "letter K", "helmet", "rotor", "polyp",       "spool", "plate", "hand",
-                                      "pumpkin", "knot1", "couplingdown", "elephant", "dino",   "femur", "triceratops", "homer", "retinal", "bear"};
+const std::vector<std::string> models{
+    "joint",   "apple", "cactus",       "letter K", "helmet", "rotor", "polyp",       "spool", "plate",   "hand",
+    "pumpkin", "knot1", "couplingdown", "elephant", "dino",   "femur", "triceratops", "homer", "retinal", "bear"};
 const std::vector<std::string> patterns{"voronoi", "planes", "wood", "bricks", "glass"};
 
 TriangleMesh model_of(const std::string& name) {
@@ -32,8 +33,8 @@ double area_of(const TriangleMesh& mesh, std::size_t t) {
   return 0.5 * (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]).norm();
 }
 
-// The pieces of a model that was cut: each closed and without self-intersection; their volumes sum to the model's, the bonds'
-// areas to half that of all crack sheets, both within 1e-12.
+// The pieces of a model that was cut: each closed and without self-intersection; their volumes sum to the model's, the
+// bonds' areas to half that of all crack sheets, both within 1e-12.
 void check_pieces(const TriangleMesh& model, const Complex& cut, const Pieces& pieces) {
   const auto bonds = find_bonds(cut, pieces);
   const double had = signed_volume(model);
@@ -46,7 +47,8 @@ void check_pieces(const TriangleMesh& model, const Complex& cut, const Pieces& p
     mesh.patch.clear(), mesh.site.clear();  // as a mesh of its own
     const auto whole = check_surface(mesh, true);
     INFO("piece " << p << ": " << whole.first_problem);
-    CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 && whole.self_intersections == 0));
+    CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
+           whole.self_intersections == 0));
   }
   for (const Bond& bond : bonds) {
     CHECK((bond.a < bond.b && bond.b < pieces.count && bond.area > 0));
@@ -82,6 +84,8 @@ TEST_CASE("Models fall into whole pieces", "[score][models]") {
     CHECK(pieces.count == score.pieces);
     CHECK(pieces.count > 1);
     check_pieces(mesh, cut, pieces);
-    if (std::getenv("KERF_TELL")) std::cout << "case " << c + 1 << ": " << name << ", " << pattern << ": " << pieces.count << " pieces" << std::endl;
+    if (std::getenv("KERF_TELL"))
+      std::cout << "case " << c + 1 << ": " << name << ", " << pattern << ": " << pieces.count << " pieces"
+                << std::endl;
   }
 }

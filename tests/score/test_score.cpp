@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
 #include "cases.h"
-#include "kerf/crack.h"
-#include "kerf/shapes.h"
-#include "kerf/score.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
+#include "kerf/score.h"
+#include "kerf/shapes.h"
 
 using namespace geo;
 
@@ -33,21 +33,24 @@ void check_score(const Complex& model, const ScoreOptions& options) {
   }
   CHECK(pieces.count == score.pieces);
   for (std::uint32_t f = 0; f < cut.face_count(); ++f)
-    if (cut.alive(FaceId(f)) && cut.face(FaceId(f)).crack > model.crack_count()) REQUIRE(pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]);
+    if (cut.alive(FaceId(f)) && cut.face(FaceId(f)).crack > model.crack_count())
+      REQUIRE(pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]);
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
     TriangleMesh mesh = piece_mesh(cut, pieces, p);
     CHECK(std::abs(signed_volume(mesh) - pieces.volume[p]) <= 1e-12 * had);
     mesh.patch.clear(), mesh.site.clear();  // as a mesh of its own
     const auto whole = check_surface(mesh, true);
     INFO("piece " << p << " " << whole.first_problem);
-    CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 && whole.self_intersections == 0));
+    CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
+           whole.self_intersections == 0));
   }
 }
 
 }  // namespace
 
 TEST_CASE("Each pattern parts a ball into as many pieces as wanted", "[score]") {
-  const Complex ball = Complex::from_skin(make_star(6, [](const Vec3& d) { return 1 + 0.2 * d.x() + 0.3 * d.z() * d.z(); }));
+  const Complex ball =
+      Complex::from_skin(make_star(6, [](const Vec3& d) { return 1 + 0.2 * d.x() + 0.3 * d.z() * d.z(); }));
   const auto [first, count] = seeds(1);
   for (int c = 0; c < count; ++c)
     for (const auto& name : patterns)

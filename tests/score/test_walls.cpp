@@ -2,19 +2,19 @@
 #include <map>
 #include <set>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
-#include "kerf/crack.h"
 #include "geometry/predicates.h"
+#include "kerf/check.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
+#include "kerf/pieces.h"
+#include "kerf/shapes.h"
 #include "score/jagged.h"
 #include "score/join.h"
 #include "score/partial.h"
 #include "score/voronoi.h"
 #include "score/walls.h"
-#include "kerf/check.h"
-#include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 
@@ -54,7 +54,8 @@ TEST_CASE("Voronoi walls stand where the nearest site changes", "[voronoi]") {
     for (Vec3& s : sites)
       for (int k = 0; k < 3; ++k) s[k] = random.uniform(0, k + 1);
     if (seed % 4 == 0)  // on a lattice: many cells meet in each corner
-      for (std::size_t i = 0; i < sites.size(); ++i) sites[i] = Vec3(double(i % 3) * 0.3 + 0.1, double(i / 3 % 3) * 0.5 + 0.2, double(i / 9) * 0.7 + 0.3);
+      for (std::size_t i = 0; i < sites.size(); ++i)
+        sites[i] = Vec3(double(i % 3) * 0.3 + 0.1, double(i / 3 % 3) * 0.5 + 0.2, double(i / 9) * 0.7 + 0.3);
     const Box3 box{{0, 0, 0}, {1, 2, 3}};
     const TriangleMesh walls = voronoi_walls(sites, box);
     REQUIRE_FALSE(cross_each_other(walls));
@@ -68,7 +69,8 @@ TEST_CASE("Voronoi walls stand where the nearest site changes", "[voronoi]") {
     TriangleMesh block = make_block({0.98, 1.96, 2.94}, 10);
     for (Vec3& p : block.vertices) p += Vec3(0.01, 0.02, 0.03);
     std::set<std::size_t> met;
-    for (int i = 0; i < 2000; ++i) met.insert(nearest(sites, {random.uniform(0.01, 0.99), random.uniform(0.02, 1.98), random.uniform(0.03, 2.97)}));
+    for (int i = 0; i < 2000; ++i)
+      met.insert(nearest(sites, {random.uniform(0.01, 0.99), random.uniform(0.02, 1.98), random.uniform(0.03, 2.97)}));
     Complex complex = Complex::from_skin(block);
     insert_sheet(complex, walls, 1);
     CHECK(find_pieces(complex).count >= met.size());
@@ -92,7 +94,9 @@ TEST_CASE("Sheets that cross are divided where they do", "[walls]") {
     m.triangles = {{0, 1, 2}, {0, 2, 3}};
     return m;
   };
-  const std::vector<TriangleMesh> sheets{square({-1, -1, 0.1}, {2, 0, 0}, {0, 2, 0}), square({-1, 0.2, -1}, {2, 0, 0}, {0, 0, 2}), square({0.3, 0.2, 0.1}, {0, 0.5, 0}, {0, 0, 0.5})};
+  const std::vector<TriangleMesh> sheets{square({-1, -1, 0.1}, {2, 0, 0}, {0, 2, 0}),
+                                         square({-1, 0.2, -1}, {2, 0, 0}, {0, 0, 2}),
+                                         square({0.3, 0.2, 0.1}, {0, 0.5, 0}, {0, 0, 0.5})};
   const TriangleMesh walls = divided_by_each_other(sheets, {{-2, -2, -2}, {2, 2, 2}});
   CHECK(area(walls) == Approx(4 + 4 + 0.25));
   CHECK_FALSE(cross_each_other(walls));
@@ -109,9 +113,13 @@ TEST_CASE("A grid has walls only where labels differ", "[walls]") {
   CHECK((frame.transpose() * frame - Mat3::Identity()).norm() < 1e-14);
   CHECK(frame.determinant() == Approx(1));
   CHECK(frame.col(2).dot(Vec3(1, 2, 3).normalized()) == Approx(1));
-  CHECK(area(grid_walls(at, [](int i, int, int) { return i; }, frame)) == Approx(8));
-  CHECK(area(grid_walls(at, [](int i, int, int) { return i / 2; }, frame)) == Approx(4));
-  CHECK(grid_walls(at, [](int, int, int) { return 7; }, frame).triangles.empty());
+  CHECK(area(grid_walls(
+            at, [](int i, int, int) { return i; }, frame)) == Approx(8));
+  CHECK(area(grid_walls(
+            at, [](int i, int, int) { return i / 2; }, frame)) == Approx(4));
+  CHECK(grid_walls(
+            at, [](int, int, int) { return 7; }, frame)
+            .triangles.empty());
   CHECK_THROWS_AS(frame_along({0, 0, 0}), InputError);
 }
 
@@ -138,14 +146,16 @@ TEST_CASE("Jagged walls meet where flat ones did and do not cross", "[jagged]") 
     CHECK_FALSE(cross_each_other(walls));
     // No edge inside is open: walls end where they meet or in air.
     for (const auto& [edge, times] : of_edges(walls))
-      if (times == 1) CHECK_FALSE((skin.inside(walls.vertices[edge.first]) && skin.inside(walls.vertices[edge.second])));
+      if (times == 1)
+        CHECK_FALSE((skin.inside(walls.vertices[edge.first]) && skin.inside(walls.vertices[edge.second])));
     Complex complex = Complex::from_skin(ball);
     insert_sheet(complex, walls, 1);
     CHECK(check_complex(complex, true).good());
     const Pieces pieces = find_pieces(complex);
     CHECK(pieces.count >= 2);
     for (std::uint32_t f = 0; f < complex.face_count(); ++f)
-      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0) REQUIRE(pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]);
+      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0)
+        REQUIRE(pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]);
     // Small pieces are joined one by one, down to one, and no wall is left over.
     for (std::uint32_t wanted = pieces.count; wanted >= 1; --wanted) {
       TriangleMesh fewer = walls;
@@ -157,7 +167,8 @@ TEST_CASE("Jagged walls meet where flat ones did and do not cross", "[jagged]") 
       CHECK(promised >= wanted);
       if (wanted == pieces.count) CHECK(fewer.triangles == walls.triangles);
       for (std::uint32_t f = 0; f < joined.face_count(); ++f)
-        if (joined.alive(FaceId(f)) && joined.face(FaceId(f)).crack > 0) REQUIRE(left.of_side[2 * f] != left.of_side[2 * f + 1]);
+        if (joined.alive(FaceId(f)) && joined.face(FaceId(f)).crack > 0)
+          REQUIRE(left.of_side[2 * f] != left.of_side[2 * f + 1]);
     }
   }
   TriangleMesh none;
@@ -184,7 +195,8 @@ TEST_CASE("A partial score ends in an even line, at the depth wanted", "[partial
       CHECK(times <= 2);
       if (times == 1 && skin.inside(kept.vertices[edge.first]) && skin.inside(kept.vertices[edge.second])) {
         ++rim;
-        for (const auto v : {edge.first, edge.second}) CHECK(skin.closest(kept.vertices[v]).distance == Approx(depth).margin(0.06 * longest + 0.02));
+        for (const auto v : {edge.first, edge.second})
+          CHECK(skin.closest(kept.vertices[v]).distance == Approx(depth).margin(0.06 * longest + 0.02));
       }
     }
     CHECK(rim > 12);

@@ -3,16 +3,18 @@
 
 #include "kerf/body.h"
 #include "kerf/nodes.h"
-#include "simulation/fracture_front.h"
 #include "kerf/shapes.h"
+#include "simulation/fracture_front.h"
 
 struct Notched {
   geo::Body body;
   geo::GrowingFront front;
 };
 
-/// The block [0, size] is cut in the plane y = `height` from x = 0 to x = `depth`; the front runs along -z, its normal is +y.
-inline Notched notched_block(const geo::Vec3& size, double spacing, double depth, double height, std::uint64_t seed = 1) {
+/// The block [0, size] is cut in the plane y = `height` from x = 0 to x = `depth`; the front runs along -z, its normal
+/// is +y.
+inline Notched notched_block(const geo::Vec3& size, double spacing, double depth, double height,
+                             std::uint64_t seed = 1) {
   using namespace geo;
   SampleOptions sampling;
   sampling.spacing = spacing, sampling.levels = 1, sampling.seed = seed;

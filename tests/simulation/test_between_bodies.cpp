@@ -4,8 +4,8 @@
 
 #include "kerf/parallel.h"
 #include "kerf/scene_file.h"
-#include "simulation/kept_run.h"
 #include "kerf/shapes.h"
+#include "simulation/kept_run.h"
 
 using namespace geo;
 
@@ -21,7 +21,8 @@ Middle middle_of(const Simulation& sim, int part) {
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
     if (part >= 0 && sim.state().part[i] != std::uint32_t(part)) continue;
     const double mass = sim.solid().mass(NodeId(i));
-    const Vec3 x = sim.body().nodes.position[i] + sim.state().motion.displacement[i], v = sim.state().motion.velocity[i];
+    const Vec3 x = sim.body().nodes.position[i] + sim.state().motion.displacement[i],
+               v = sim.state().motion.velocity[i];
     m.mass += mass, m.place += mass * x, m.momentum += mass * v, m.turning += mass * x.cross(v);
   }
   m.place /= m.mass;
@@ -35,8 +36,11 @@ std::string two_bodies(const std::string& first, const std::string& second) {
 }  // namespace
 
 TEST_CASE("of two blocks, one on the other, each carries what is above it") {
-  const Scene scene = parse_scene(two_bodies("", "position = [0.11, 0.13, 0.501]\n") + "[material]\nyoung = 2e5\ndamping = 6\n[time]\nframes = 24\nframe_rate = 20\nstep = 0.025\n"
-                                  "[contact]\nstiffness = 2e4\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 2e4\n", "s.toml");
+  const Scene scene =
+      parse_scene(two_bodies("", "position = [0.11, 0.13, 0.501]\n") +
+                      "[material]\nyoung = 2e5\ndamping = 6\n[time]\nframes = 24\nframe_rate = 20\nstep = 0.025\n"
+                      "[contact]\nstiffness = 2e4\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 2e4\n",
+                  "s.toml");
   Simulation sim(scene, place_models(scene, {make_block({1, 1, 0.5}, 0.125), make_block({0.8, 0.8, 0.5}, 0.125)}));
   FrameWork work;
   for (int i = 0; i < 24; ++i) work = sim.advance_frame();
@@ -45,14 +49,20 @@ TEST_CASE("of two blocks, one on the other, each carries what is above it") {
   // The penalty gives way by g / stiffness times the cells on top of each other, the blocks by their own weight.
   CHECK(upper.place.z() - lower.place.z() == Approx(0.5).margin(0.025));
   CHECK((upper.momentum / upper.mass).norm() < 0.01);
-  CHECK((upper.place - lower.place).head<2>().norm() == Approx(Vec2(0.01, 0.03).norm()).margin(0.005));  // friction holds it
+  CHECK((upper.place - lower.place).head<2>().norm() ==
+        Approx(Vec2(0.01, 0.03).norm()).margin(0.005));  // friction holds it
 }
 
 TEST_CASE("bodies that collide keep their momentum, and part again") {
   for (const std::string integrator : {"implicit", "leapfrog"}) {
     INFO(integrator);
-    const Scene scene = parse_scene("gravity = [0, 0, 0]\n" + two_bodies("velocity = [1, 0, 0]\n", "velocity = [-1, 0.2, 0]\nposition = [1.05, 0.23, 0.11]\n") +
-                                        "[material]\nyoung = 1e5\ndamping = 0\n[time]\nframes = 16\nframe_rate = 40\nstep = 0.0125\naccuracy = 1e-6\nintegrator = '" + integrator + "'\n[contact]\nstiffness = 2e4\n", "s.toml");
+    const Scene scene = parse_scene(
+        "gravity = [0, 0, 0]\n" +
+            two_bodies("velocity = [1, 0, 0]\n", "velocity = [-1, 0.2, 0]\nposition = [1.05, 0.23, 0.11]\n") +
+            "[material]\nyoung = 1e5\ndamping = 0\n[time]\nframes = 16\nframe_rate = 40\nstep = 0.0125\naccuracy = "
+            "1e-6\nintegrator = '" +
+            integrator + "'\n[contact]\nstiffness = 2e4\n",
+        "s.toml");
     Simulation sim(scene, place_models(scene, {make_block({1, 1, 1}, 0.125), make_block({1, 0.7, 0.8}, 0.125)}));
     const Middle before = middle_of(sim, -1);
     double nearest = 1e300;
@@ -70,10 +80,14 @@ TEST_CASE("bodies that collide keep their momentum, and part again") {
   }
 }
 
-TEST_CASE("a body that lies on another is cut, and that one with it: the same with any threads and after a checkpoint") {
-  const Scene scene = parse_scene(two_bodies("", "position = [0.11, 0.13, 0.501]\n") + "[material]\nyoung = 5e4\n[time]\nframes = 8\nframe_rate = 20\nstep = 0.025\n"
-                                  "[[obstacle]]\nnormal = [0, 0, 1]\n[[blade]]\npoints = [[-0.2, 0, 0], [1.2, 0, 0]]\ndivide = 8\n"
-                                  "keys = [[0.0, 0.013, 0.507, 1.2, 0, 0, 1, 2], [0.3, 0.013, 0.511, 0.2, 0, 0, 1, 3]]\n", "s.toml");
+TEST_CASE(
+    "a body that lies on another is cut, and that one with it: the same with any threads and after a checkpoint") {
+  const Scene scene =
+      parse_scene(two_bodies("", "position = [0.11, 0.13, 0.501]\n") +
+                      "[material]\nyoung = 5e4\n[time]\nframes = 8\nframe_rate = 20\nstep = 0.025\n"
+                      "[[obstacle]]\nnormal = [0, 0, 1]\n[[blade]]\npoints = [[-0.2, 0, 0], [1.2, 0, 0]]\ndivide = 8\n"
+                      "keys = [[0.0, 0.013, 0.507, 1.2, 0, 0, 1, 2], [0.3, 0.013, 0.511, 0.2, 0, 0, 1, 3]]\n",
+                  "s.toml");
   const Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25), make_block({0.8, 0.8, 0.5}, 0.2)});
   set_threads(2);
   Simulation sim(scene, model);

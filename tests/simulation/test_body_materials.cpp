@@ -3,8 +3,8 @@
 
 #include "kerf/error.h"
 #include "kerf/scene_file.h"
-#include "simulation/kept_run.h"
 #include "kerf/shapes.h"
+#include "simulation/kept_run.h"
 
 using namespace geo;
 
@@ -41,7 +41,9 @@ divide = 10
 keys = [[0.0, 0.013, 0.507, 1.3, 0, 0, 1, 2], [0.2, 0.013, 0.511, -0.7, 0, 0, 1, 3]]
 )";
 
-Model cubes(const Scene& scene) { return place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)}); }
+Model cubes(const Scene& scene) {
+  return place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
+}
 
 }  // namespace
 
@@ -57,8 +59,10 @@ TEST_CASE("a body's material has the scene's where it says nothing") {
   const Scene one = parse_scene("[body]\nmesh = 'a'\nmaterial = { poisson = 0.1 }\n[material]\nyoung = 7\n", "s.toml");
   CHECK(one.bodies[0].material->poisson == 0.1);
   CHECK(one.bodies[0].material->young == 7);
-  CHECK(parse_scene("[body]\nmesh = 'a'\n[body.material]\nmodel = 'stvk'\n", "s.toml").bodies[0].material->model == ElasticModel::saint_venant_kirchhoff);
-  const Scene set = parse_scene(two, "s.toml", {{"body.0.material.young", "9"}, {"body.1.material.young", "8"}, {"material.viscosity", "0"}});
+  CHECK(parse_scene("[body]\nmesh = 'a'\n[body.material]\nmodel = 'stvk'\n", "s.toml").bodies[0].material->model ==
+        ElasticModel::saint_venant_kirchhoff);
+  const Scene set = parse_scene(
+      two, "s.toml", {{"body.0.material.young", "9"}, {"body.1.material.young", "8"}, {"material.viscosity", "0"}});
   CHECK(set.bodies[0].material->young == 9);
   CHECK(set.bodies[0].material->damping == 3);
   CHECK(set.bodies[1].material->young == 8);
@@ -68,13 +72,20 @@ TEST_CASE("a body's material has the scene's where it says nothing") {
 }
 
 TEST_CASE("what a body's material cannot have is refused with its line") {
-  const auto parse = [](const std::string& keys) { return parse_scene("[body]\nmesh = 'a'\n[body.material]\n" + keys, "s.toml"); };
+  const auto parse = [](const std::string& keys) {
+    return parse_scene("[body]\nmesh = 'a'\n[body.material]\n" + keys, "s.toml");
+  };
   CHECK_THROWS_WITH(parse("yuong = 3\n"), "s.toml:4:9: unknown key 'body.material.yuong'; did you mean 'young'?");
-  CHECK_THROWS_WITH(parse("poisson = 0.5\n"), Catch::Contains("s.toml:4:") && Catch::Contains("'body.material.poisson' is out of range"));
-  CHECK_THROWS_WITH(parse("model = 'jelly'\n"), Catch::Contains("s.toml:4:") && Catch::Contains("'body.material.model' must be"));
-  CHECK_THROWS_WITH(parse("discretisation = 'galerkin'\n"), Catch::Contains("s.toml:4:") && Catch::Contains("same for all bodies"));
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = 'a'\nmaterial = 3\n", "s.toml"), Catch::Contains("'body.material' must be a table"));
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = 'a'\nmaterail = { young = 3 }\n", "s.toml"), Catch::Contains("did you mean 'material'?"));
+  CHECK_THROWS_WITH(parse("poisson = 0.5\n"),
+                    Catch::Contains("s.toml:4:") && Catch::Contains("'body.material.poisson' is out of range"));
+  CHECK_THROWS_WITH(parse("model = 'jelly'\n"),
+                    Catch::Contains("s.toml:4:") && Catch::Contains("'body.material.model' must be"));
+  CHECK_THROWS_WITH(parse("discretisation = 'galerkin'\n"),
+                    Catch::Contains("s.toml:4:") && Catch::Contains("same for all bodies"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = 'a'\nmaterial = 3\n", "s.toml"),
+                    Catch::Contains("'body.material' must be a table"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = 'a'\nmaterail = { young = 3 }\n", "s.toml"),
+                    Catch::Contains("did you mean 'material'?"));
   CHECK_THROWS_WITH(parse_scene(two, "s.toml", {{"body.2.material.young", "1"}}), Catch::Contains("body.2"));
 }
 
@@ -109,8 +120,13 @@ TEST_CASE("cut bodies of two materials keep theirs, and a run taken up goes on w
 
 TEST_CASE("a heavy body among light ones does not sink into an obstacle") {
   for (const std::string integrator : {"implicit", "leapfrog"}) {
-    const Scene scene = parse_scene("[material]\nyoung = 1e6\ndamping = 8\ndensity = 10\n[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = 'b'\nspacing = 0.25\nposition = [2, 0, 0]\n"
-                                    "[body.material]\nyoung = 1e8\ndensity = 8000\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 1e4\n[time]\nframe_rate = 10\nstep = 0.02\nintegrator = '" + integrator + "'\n", "s.toml");
+    const Scene scene = parse_scene(
+        "[material]\nyoung = 1e6\ndamping = 8\ndensity = 10\n[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = "
+        "'b'\nspacing = 0.25\nposition = [2, 0, 0]\n"
+        "[body.material]\nyoung = 1e8\ndensity = 8000\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = "
+        "1e4\n[time]\nframe_rate = 10\nstep = 0.02\nintegrator = '" +
+            integrator + "'\n",
+        "s.toml");
     Simulation sim(scene, cubes(scene));
     for (int frame = 0; frame < 6; ++frame) sim.advance_frame();
     double deepest[2] = {0, 0};
@@ -122,10 +138,16 @@ TEST_CASE("a heavy body among light ones does not sink into an obstacle") {
   }
 }
 
-TEST_CASE("surfaces of a hard and a soft body that meet do not cross, nor do they with a penalty between bodies go far") {
+TEST_CASE(
+    "surfaces of a hard and a soft body that meet do not cross, nor do they with a penalty between bodies go far") {
   for (const bool self : {true, false}) {
-    const Scene scene = parse_scene(std::string("[material]\nyoung = 2e4\ndamping = 4\n[[body]]\nmesh = 'a'\nspacing = 0.25\nfixed = [[-1, -1, -1, 3, 3, 0.2]]\n[[body]]\nmesh = 'b'\nspacing = 0.25\n"
-                                                "scale = 0.5\nposition = [0.23, 0.27, 1.02]\n[body.material]\nyoung = 1e7\ndensity = 600\n[contact]\nself = ") + (self ? "true" : "false") + "\n[time]\nframe_rate = 20\nstep = 0.025\n", "s.toml");
+    const Scene scene =
+        parse_scene(std::string("[material]\nyoung = 2e4\ndamping = 4\n[[body]]\nmesh = 'a'\nspacing = 0.25\nfixed = "
+                                "[[-1, -1, -1, 3, 3, 0.2]]\n[[body]]\nmesh = 'b'\nspacing = 0.25\n"
+                                "scale = 0.5\nposition = [0.23, 0.27, 1.02]\n[body.material]\nyoung = 1e7\ndensity = "
+                                "600\n[contact]\nself = ") +
+                        (self ? "true" : "false") + "\n[time]\nframe_rate = 20\nstep = 0.025\n",
+                    "s.toml");
     Simulation sim(scene, cubes(scene));
     FrameWork work;
     for (int frame = 0; frame < 8; ++frame) work += sim.advance_frame();
@@ -144,9 +166,15 @@ TEST_CASE("surfaces of a hard and a soft body that meet do not cross, nor do the
 
 TEST_CASE("bodies pulled alike break where their own strength says", "[fracture]") {
   const auto broken = [](const std::string& all, const std::string& of_second) {
-    const Scene scene = parse_scene("gravity = [0, 0, 0]\n[material]\nyoung = 1e6\ndamping = 30\n[fracture]\ncracks = 2\nstrength = " + all + "\n[[body]]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 0.2, 9, 9]]\n"
-                                    "[[body]]\nmesh = 'b'\nspacing = 0.2\nposition = [0, 1, 0]\n[body.material]\ndensity = 1200\n[body.fracture]\n" + of_second + "\n[[grip]]\nbox = [1.8, -1, -1, 3, 9, 9]\n"
-                                    "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.1, 0.08, 0, 0, 0, 0, 1, 0]]\n[time]\nframe_rate = 20\nstep = 0.025\n", "s.toml");
+    const Scene scene = parse_scene(
+        "gravity = [0, 0, 0]\n[material]\nyoung = 1e6\ndamping = 30\n[fracture]\ncracks = 2\nstrength = " + all +
+            "\n[[body]]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 0.2, 9, 9]]\n"
+            "[[body]]\nmesh = 'b'\nspacing = 0.2\nposition = [0, 1, 0]\n[body.material]\ndensity = "
+            "1200\n[body.fracture]\n" +
+            of_second +
+            "\n[[grip]]\nbox = [1.8, -1, -1, 3, 9, 9]\n"
+            "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.1, 0.08, 0, 0, 0, 0, 1, 0]]\n[time]\nframe_rate = 20\nstep = 0.025\n",
+        "s.toml");
     const TriangleMesh bar = make_block({2, 0.5, 0.5}, 0.25);
     Simulation sim(scene, place_models(scene, {bar, bar}));
     std::string kept;
@@ -176,7 +204,11 @@ TEST_CASE("how strong a body is has the scene's fracture to go by") {
   CHECK(s.fracture.own[0].strength == 3);
   CHECK(s.fracture.own[0].toughness == 5);
   CHECK(s.fracture.toughness == 0);
-  CHECK_THROWS_WITH(parse("fracture = { strength = 1 }\n"), Catch::Contains("s.toml:3:") && Catch::Contains("give the scene a [fracture]"));
-  CHECK_THROWS_WITH(parse("fracture = { speed = 1 }\n[fracture]\n"), Catch::Contains("s.toml:3:") && Catch::Contains("'body.fracture.speed' is the same for all bodies"));
-  CHECK_THROWS_WITH(parse("fracture = { strenght = 1 }\n[fracture]\n"), Catch::Contains("'body.fracture.strenght'; did you mean 'strength'?"));
+  CHECK_THROWS_WITH(parse("fracture = { strength = 1 }\n"),
+                    Catch::Contains("s.toml:3:") && Catch::Contains("give the scene a [fracture]"));
+  CHECK_THROWS_WITH(
+      parse("fracture = { speed = 1 }\n[fracture]\n"),
+      Catch::Contains("s.toml:3:") && Catch::Contains("'body.fracture.speed' is the same for all bodies"));
+  CHECK_THROWS_WITH(parse("fracture = { strenght = 1 }\n[fracture]\n"),
+                    Catch::Contains("'body.fracture.strenght'; did you mean 'strength'?"));
 }

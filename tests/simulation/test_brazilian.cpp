@@ -4,18 +4,24 @@
 #include <numbers>
 
 #include "kerf/scene_file.h"
-#include "mechanics/disk.h"
 #include "kerf/simulation.h"
+#include "mechanics/disk.h"
 
 using namespace geo;
 
-TEST_CASE("the first crack of a pressed disk runs along the loaded diameter, at the load that its strength asks for", "[fracture]") {
+TEST_CASE("the first crack of a pressed disk runs along the loaded diameter, at the load that its strength asks for",
+          "[fracture]") {
   const double strength = 2e4, thickness = 0.2;
   // Cracks begin where theory has the disk pulled, away from the plates.
-  const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.05\nlevels = 1\n[material]\nyoung = 2e6\ndensity = 1000\ndamping = 30\n"
-                                  "[fracture]\nstrength = 2e4\nvariation = 0\ncracks = 1\noff = [[-1, -1, -1, 2, 2, 0.2], [-1, -1, 0.8, 2, 2, 2]]\n"
-                                  "[time]\nframes = 60\nframe_rate = 60\nstep = 0.00417\n[[obstacle]]\nname = 'below'\nnormal = [0, 0, 1]\nstiffness = 1e7\nfriction = 0\n"
-                                  "[[obstacle]]\nname = 'above'\nnormal = [0, 0, -1]\nposition = [0, 0, 1]\nstiffness = 1e7\nfriction = 0\nkeys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, -0.08, 0, 0, 1, 0]]\n", "s.toml");
+  const Scene scene = parse_scene(
+      "gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.05\nlevels = 1\n[material]\nyoung = 2e6\ndensity = "
+      "1000\ndamping = 30\n"
+      "[fracture]\nstrength = 2e4\nvariation = 0\ncracks = 1\noff = [[-1, -1, -1, 2, 2, 0.2], [-1, -1, 0.8, 2, 2, 2]]\n"
+      "[time]\nframes = 60\nframe_rate = 60\nstep = 0.00417\n[[obstacle]]\nname = 'below'\nnormal = [0, 0, "
+      "1]\nstiffness = 1e7\nfriction = 0\n"
+      "[[obstacle]]\nname = 'above'\nnormal = [0, 0, -1]\nposition = [0, 0, 1]\nstiffness = 1e7\nfriction = 0\nkeys = "
+      "[[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, -0.08, 0, 0, 1, 0]]\n",
+      "s.toml");
   Simulation sim(scene, make_disk(thickness, 0.05));
   double force = 0;
   std::size_t begun = 0;

@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "cases.h"
-#include "simulation/notched_block.h"
-#include "kerf/simulation.h"
 #include "kerf/check.h"
 #include "kerf/pieces.h"
+#include "kerf/simulation.h"
+#include "simulation/notched_block.h"
 
 using namespace geo;
 
@@ -52,7 +52,8 @@ TEST_CASE("mode I: a notch in tension runs straight through and parts the plate"
   Scene scene = brittle();
   scene.grips = {{Vec3(-1, -1, -1), Vec3(2, 0.08, 1), {}, false}, {Vec3(-1, 0.92, -1), Vec3(2, 2, 1), {}, false}};
   scene.fracture.cracks = 0;
-  Simulation sim = gripped(scene, notched_block({1, 1, 0.16}, 0.06, 0.31, 0.507, static_cast<std::uint64_t>(seed)), 0.02 * Vec3::UnitY() * Vec3::UnitY().transpose());
+  Simulation sim = gripped(scene, notched_block({1, 1, 0.16}, 0.06, 0.31, 0.507, static_cast<std::uint64_t>(seed)),
+                           0.02 * Vec3::UnitY() * Vec3::UnitY().transpose());
   FrameWork work;
   double before = sim.solid().energy(sim.state().motion.displacement);
   for (int i = 0; i < 60 && !sim.state().fracture.fronts.empty(); ++i) work += sim.advance_frame();
@@ -66,20 +67,24 @@ TEST_CASE("mode I: a notch in tension runs straight through and parts the plate"
   CHECK(worst < 0.06);
 }
 
-
 TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fracture]") {
-  // Displacements of pure mode II around the notch are held on the plate's rim; what is inside finds its own balance. Without
-  // lateral contraction plane strain and plane stress are one.
+  // Displacements of pure mode II around the notch are held on the plate's rim; what is inside finds its own balance.
+  // Without lateral contraction plane strain and plane stress are one.
   const auto seed = GENERATE(1, 2);
   const double sense = GENERATE(1.0, -1.0), spacing = 0.06, rim = 1.5 * spacing, depth = 0.493, height = 0.507;
   Scene scene = brittle();
   scene.material.poisson = 0, scene.material.damping = 60;
   scene.fracture.cracks = 0, scene.fracture.start = 0.1, scene.fracture.strength = 1e3;
-  scene.grips = {{Vec3(-1, -1, -1), Vec3(2, rim, 1), {}, false}, {Vec3(-1, 1 - rim, -1), Vec3(2, 2, 1), {}, false}, {Vec3(-1, -1, -1), Vec3(rim, 2, 1), {}, false}, {Vec3(1 - rim, -1, -1), Vec3(2, 2, 1), {}, false}};
+  scene.grips = {{Vec3(-1, -1, -1), Vec3(2, rim, 1), {}, false},
+                 {Vec3(-1, 1 - rim, -1), Vec3(2, 2, 1), {}, false},
+                 {Vec3(-1, -1, -1), Vec3(rim, 2, 1), {}, false},
+                 {Vec3(1 - rim, -1, -1), Vec3(2, 2, 1), {}, false}};
   Notched n = notched_block({1, 1, 0.2}, spacing, depth, height, static_cast<std::uint64_t>(seed));
   RunState state;
   for (const Vec3& x : n.body.nodes.position)
-    state.motion.displacement.push_back(mode_displacement(scene.material, std::hypot(x.x() - depth, x.y() - height), std::atan2(x.y() - height, x.x() - depth)) * Vec3(0, sense * 2e3, 0));
+    state.motion.displacement.push_back(mode_displacement(scene.material, std::hypot(x.x() - depth, x.y() - height),
+                                                          std::atan2(x.y() - height, x.x() - depth)) *
+                                        Vec3(0, sense * 2e3, 0));
   state.motion.velocity.assign(n.body.nodes.size(), Vec3::Zero());
   state.fracture.fronts.push_back(std::move(n.front)), state.fracture.cracks = 1;
   Simulation sim(scene, std::move(n.body), std::move(state));
@@ -106,7 +111,9 @@ Simulation stretched_bar(const Scene& scene, double stretch) {
   const TriangleMesh mesh = make_block({2, 0.5, 0.5}, 0.2);
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   RunState state;
-  for (const Vec3& x : body.nodes.position) state.motion.displacement.push_back(stretch * Vec3(x.x() - 1, -scene.material.poisson * (x.y() - 0.25), -scene.material.poisson * (x.z() - 0.25)));
+  for (const Vec3& x : body.nodes.position)
+    state.motion.displacement.push_back(
+        stretch * Vec3(x.x() - 1, -scene.material.poisson * (x.y() - 0.25), -scene.material.poisson * (x.z() - 0.25)));
   state.motion.velocity.assign(body.nodes.size(), Vec3::Zero());
   return Simulation(scene, std::move(body), std::move(state));
 }
@@ -121,7 +128,8 @@ Scene bar_scene(std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same seed breaks it the same way", "[fracture]") {
+TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same seed breaks it the same way",
+          "[fracture]") {
   std::vector<std::vector<Vec3>> broken;
   for (const std::uint64_t seed : {1, 2, 7, 8, 1}) {
     Scene scene = bar_scene(seed);
@@ -131,7 +139,8 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
     while (sim.state().frame < 40 && (sim.state().frame == 0 || !sim.state().fracture.fronts.empty())) {
       sim.advance_frame();
       double all = sim.solid().energy(sim.state().motion.displacement);
-      for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) all += 0.5 * sim.solid().mass(NodeId(i)) * sim.state().motion.velocity[i].squaredNorm();
+      for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
+        all += 0.5 * sim.solid().mass(NodeId(i)) * sim.state().motion.velocity[i].squaredNorm();
       CHECK(all < energy);
     }
     INFO("seed " << seed << " frame " << sim.state().frame);
@@ -152,7 +161,8 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
     double weakest = 2, there = 2;
     for (const Vec3& x : sim.body().nodes.position) {
       if (!may_break(scene.fracture, x)) continue;
-      const double strength = strength_factor(scene.fracture, scene.fracture.seed, sim.body().surface.extent().diagonal(), x);
+      const double strength =
+          strength_factor(scene.fracture, scene.fracture.seed, sim.body().surface.extent().diagonal(), x);
       weakest = std::min(weakest, strength);
       if (x.x() > lo - 0.1 && x.x() < hi + 0.1) there = std::min(there, strength);
     }
@@ -162,7 +172,8 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
   CHECK(broken[0] != broken[1]);
 }
 
-TEST_CASE("nothing breaks below the strength, before the start, or where it is off, and numbers of cracks are limited", "[fracture]") {
+TEST_CASE("nothing breaks below the strength, before the start, or where it is off, and numbers of cracks are limited",
+          "[fracture]") {
   const auto begun = [](const Scene& scene, int frames) {
     Simulation sim = stretched_bar(scene, 0.02);
     FrameWork work;

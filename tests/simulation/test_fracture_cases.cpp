@@ -1,13 +1,13 @@
-// Random bodies that break: every invariant after every frame, and the same bytes with other threads and after a checkpoint.
+// Random bodies that break: every invariant after every frame, and the same bytes with other threads and after a
+// checkpoint.
 #include <catch2/catch.hpp>
 
-
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
-#include "simulation/kept_run.h"
 #include "kerf/check.h"
+#include "kerf/parallel.h"
 #include "kerf/shapes.h"
+#include "simulation/kept_run.h"
 
 using namespace geo;
 
@@ -55,7 +55,8 @@ Simulation begin(const RandomCase& c) {
 
 }  // namespace
 
-TEST_CASE("random bodies break and keep every invariant, the same with any threads and after a checkpoint", "[fracture]") {
+TEST_CASE("random bodies break and keep every invariant, the same with any threads and after a checkpoint",
+          "[fracture]") {
   const auto [first, count] = seeds(4);
   std::size_t begun = 0, divided = 0, advanced = 0;
   const int frames = 10;

@@ -1,16 +1,16 @@
 // From the world back to the material, and the fronts that blades leave.
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
+#include "kerf/check.h"
+#include "kerf/parallel.h"
+#include "kerf/pieces.h"
 #include "kerf/scene_file.h"
+#include "kerf/shapes.h"
+#include "kerf/simulation.h"
 #include "mechanics/discretisation/deformation.h"
 #include "simulation/point_map.h"
-#include "kerf/simulation.h"
-#include "kerf/check.h"
-#include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 
@@ -52,7 +52,8 @@ TEST_CASE("inside, the inverse of Eq. 1 leads back to the point") {
     const Vec3 x(random.uniform(0.25, 0.75), random.uniform(0.25, 0.75), random.uniform(0.25, 1.75));
     std::vector<std::pair<NodeId, double>> nodes;
     for (std::uint32_t n = 0; n < b.body.nodes.size(); ++n)
-      if (const double d = (b.body.nodes.position[n] - x).norm(); d < b.body.nodes.radius[n]) nodes.push_back({NodeId(n), d});
+      if (const double d = (b.body.nodes.position[n] - x).norm(); d < b.body.nodes.radius[n])
+        nodes.push_back({NodeId(n), d});
     const PointMap::Place place = map.material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
     REQUIRE(place.within);
     CHECK((place.material - x).norm() < 1e-10);
@@ -84,7 +85,8 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) {
       const Vec3 x(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 2));
-      points.push_back(x + b.u[b.body.grid.nearest(b.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; })[0]]);
+      points.push_back(
+          x + b.u[b.body.grid.nearest(b.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; })[0]]);
     }
     const Box3 all{Vec3::Constant(-9), Vec3::Constant(9)};
     const PointMap map(b.body, b.u, b.gradient, all);
@@ -111,8 +113,10 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
 TEST_CASE("a blade that meets two bodies cuts both, wherever they have moved") {
   // The second block was modelled far away, and stands behind the first one.
   const Scene scene = parse_scene(
-      "gravity = [0, 0, 0]\n[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = 'b'\nspacing = 0.25\nposition = [0, 3, 0]\nvelocity = [0, -4, 0]\n"
-      "[time]\nframes = 2\nframe_rate = 4\nstep = 0.05\n[[blade]]\npoints = [[0.507, -0.4, 0], [0.503, 8.4, 0]]\ndivide = 24\nlimit = 0.5\n"
+      "gravity = [0, 0, 0]\n[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = 'b'\nspacing = 0.25\nposition = [0, "
+      "3, 0]\nvelocity = [0, -4, 0]\n"
+      "[time]\nframes = 2\nframe_rate = 4\nstep = 0.05\n[[blade]]\npoints = [[0.507, -0.4, 0], [0.503, 8.4, "
+      "0]]\ndivide = 24\nlimit = 0.5\n"
       "keys = [[0.25, 0, 0, 1.3, 0, 0, 1, 0], [0.4, 0.01, 0, -0.4, 0, 0, 1, 0]]\n",
       "s.toml");
   Simulation sim(scene, place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)}));
@@ -130,8 +134,12 @@ TEST_CASE("a blade that meets two bodies cuts both, wherever they have moved") {
 
 TEST_CASE("a step is cut in as many parts as its blade's limit asks for") {
   const auto run = [](const std::string& limit) {
-    const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.25\n[time]\nframe_rate = 4\nstep = 0.25\n[[blade]]\npoints = [[-0.3, 0.4, 0], [1.3, 0.41, 0]]\ndivide = 8\n"
-                                    "keys = [[0, 0.01, 0, 1.2, 1, 0, 0, 0], [0.25, 0, 0.1, -0.3, 1, 0, 0, 20]]\nlimit = " + limit, "s.toml");
+    const Scene scene = parse_scene(
+        "gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.25\n[time]\nframe_rate = 4\nstep = "
+        "0.25\n[[blade]]\npoints = [[-0.3, 0.4, 0], [1.3, 0.41, 0]]\ndivide = 8\n"
+        "keys = [[0, 0.01, 0, 1.2, 1, 0, 0, 0], [0.25, 0, 0.1, -0.3, 1, 0, 0, 20]]\nlimit = " +
+            limit,
+        "s.toml");
     Simulation sim(scene, make_block({1, 1, 1}, 0.25));
     const FrameWork work = sim.advance_frame();
     CHECK(work.refused == 0);

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "io/kerf_reader.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
-#include "io/kerf_reader.h"
 #include "kerf/scene_file.h"
-#include "simulation/kept_run.h"
 #include "kerf/shapes.h"
+#include "simulation/kept_run.h"
 
 using namespace geo;
 
@@ -29,7 +29,8 @@ Middle middle_of(const Simulation& sim) {
   Middle m;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
     const double mass = sim.solid().mass(NodeId(i));
-    m.mass += mass, m.place += mass * (sim.body().nodes.position[i] + sim.state().motion.displacement[i]), m.velocity += mass * sim.state().motion.velocity[i];
+    m.mass += mass, m.place += mass * (sim.body().nodes.position[i] + sim.state().motion.displacement[i]),
+        m.velocity += mass * sim.state().motion.velocity[i];
   }
   m.place /= m.mass, m.velocity /= m.mass;
   return m;
@@ -43,8 +44,13 @@ TEST_CASE("a block on an inclined obstacle stays below the angle of friction, an
     for (const double degrees : {15.0, 40.0}) {
       INFO(integrator << ", " << degrees << " degrees");
       const std::string turn = "[0, 1, 0, " + std::to_string(degrees) + "]";
-      Scene scene = scene_of("rotation = " + turn + "\n[material]\nyoung = 1e5\ndamping = 3\n[time]\nframes = 10\nframe_rate = 20\nstep = 0.01\nintegrator = '" + std::string(integrator) +
-                             "'\n[[obstacle]]\nnormal = [0, 0, 1]\nposition = [0, 0, 0]\nrotation = " + turn + "\nstiffness = 1e4\nfriction = 0.4\n", {make_block({20, 20, 1}, 5)});
+      Scene scene = scene_of("rotation = " + turn +
+                                 "\n[material]\nyoung = 1e5\ndamping = 3\n[time]\nframes = 10\nframe_rate = 20\nstep = "
+                                 "0.01\nintegrator = '" +
+                                 std::string(integrator) +
+                                 "'\n[[obstacle]]\nnormal = [0, 0, 1]\nposition = [0, 0, 0]\nrotation = " + turn +
+                                 "\nstiffness = 1e4\nfriction = 0.4\n",
+                             {make_block({20, 20, 1}, 5)});
       for (Vec3& p : scene.obstacles[0].mesh.vertices) p -= Vec3(10, 10, 1);
       Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
       Simulation sim(scene, model);
@@ -68,9 +74,13 @@ TEST_CASE("a block on an inclined obstacle stays below the angle of friction, an
 TEST_CASE("what obstacles take in a frame is what the body's momentum lacks, with either integrator") {
   for (const char* integrator : {"implicit", "leapfrog"}) {
     INFO(integrator);
-    const Scene scene = scene_of("velocity = [0.6, 0.2, -1]\nposition = [-0.5, -0.5, 1.05]\n[material]\nyoung = 5e4\ndamping = 0\n[time]\nframes = 8\nframe_rate = 40\nstep = 0.0125\naccuracy = 1e-6\nintegrator = '" + std::string(integrator) +
-                                     "'\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 1e4\nkeys = [[0, 0, 0, 0, 0, 1, 0, 0], [1, 0.2, 0, 0.1, 0, 1, 0, 20]]\n",
-                                 {make_sphere(8)});
+    const Scene scene = scene_of(
+        "velocity = [0.6, 0.2, -1]\nposition = [-0.5, -0.5, 1.05]\n[material]\nyoung = 5e4\ndamping = "
+        "0\n[time]\nframes = 8\nframe_rate = 40\nstep = 0.0125\naccuracy = 1e-6\nintegrator = '" +
+            std::string(integrator) +
+            "'\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 1e4\nkeys = [[0, 0, 0, 0, 0, 1, 0, 0], [1, 0.2, 0, 0.1, "
+            "0, 1, 0, 20]]\n",
+        {make_sphere(8)});
     Simulation sim(scene, place_models(scene, {make_block({1, 1, 1}, 0.125)}));
     double most = 0;
     for (int i = 0; i < 8; ++i) {
@@ -80,19 +90,24 @@ TEST_CASE("what obstacles take in a frame is what the body's momentum lacks, wit
       const Vec3 weight = before.mass * scene.gravity, gained = before.mass * (after.velocity - before.velocity) * 40;
       REQUIRE(work.obstacle_force.size() == 1);
       most = std::max(most, work.obstacle_force[0].norm());
-      CHECK((gained - weight + work.obstacle_force[0]).norm() < (integrator[0] == 'i' ? 2e-3 : 1e-9) * (weight.norm() + most));
+      CHECK((gained - weight + work.obstacle_force[0]).norm() <
+            (integrator[0] == 'i' ? 2e-3 : 1e-9) * (weight.norm() + most));
     }
     CHECK(most > 500);  // of 9.8 kN
   }
 }
 
 TEST_CASE("a cut body on obstacles: the same with any threads, and after a checkpoint") {
-  for (const std::string& contact : {std::string(), std::string("[contact]\nself = true\n[ground]\npoint = [0, 0, 0]\n")}) {
-    const Scene scene = scene_of("position = [-0.5, -0.5, 1]\n[material]\nyoung = 2e4\n" + contact +
-                                     "[time]\nframes = 8\nframe_rate = 20\nstep = 0.025\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 1e4\n[[obstacle]]\nnormal = [0, 0.2, -1]\nposition = [0, 0, 2.2]\n"
-                                     "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, -1.6, 0, 0, 1, 0]]\n[[blade]]\npoints = [[-0.9, 0, 0], [0.9, 0, 0]]\ndivide = 6\n"
-                                     "keys = [[0.0, 0.013, 0.007, 2.3, 0, 0, 1, 2], [0.3, 0.013, 0.011, 1.3, 0, 0, 1, 3]]\n",
-                                 {make_sphere(6)});
+  for (const std::string& contact :
+       {std::string(), std::string("[contact]\nself = true\n[ground]\npoint = [0, 0, 0]\n")}) {
+    const Scene scene =
+        scene_of("position = [-0.5, -0.5, 1]\n[material]\nyoung = 2e4\n" + contact +
+                     "[time]\nframes = 8\nframe_rate = 20\nstep = 0.025\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = "
+                     "1e4\n[[obstacle]]\nnormal = [0, 0.2, -1]\nposition = [0, 0, 2.2]\n"
+                     "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, -1.6, 0, 0, 1, 0]]\n[[blade]]\npoints = [[-0.9, 0, "
+                     "0], [0.9, 0, 0]]\ndivide = 6\n"
+                     "keys = [[0.0, 0.013, 0.007, 2.3, 0, 0, 1, 2], [0.3, 0.013, 0.011, 1.3, 0, 0, 1, 3]]\n",
+                 {make_sphere(6)});
     const Model model = place_models(scene, {make_block({1, 1, 1}, 0.2)});
     set_threads(2);
     Simulation sim(scene, model);
@@ -142,19 +157,24 @@ TEST_CASE("obstacles that are none are refused in one line") {
     }
     return "";
   };
-  CHECK(refused("friction = 1\n") == "s.toml:3:1: an obstacle is a 'mesh' or the 'normal' of a plane: give one of them");
+  CHECK(refused("friction = 1\n") ==
+        "s.toml:3:1: an obstacle is a 'mesh' or the 'normal' of a plane: give one of them");
   CHECK(refused("normal = [0, 0, 1]\nmesh = 'a'\n").find("give one of them") != std::string::npos);
   CHECK(refused("normal = [0, 0, 0]\n") == "s.toml:4:10: 'obstacle.normal' has no direction");
   CHECK(refused("normal = [0, 0, nan]\n") == "s.toml:4:17: 'obstacle.normal' must be 3 finite numbers");
-  CHECK(refused("normal = [0, 0, 1]\nstiffness = -1\n") == "s.toml:5:13: 'obstacle.stiffness' is out of range: it must be from 0 to 1e+12");
+  CHECK(refused("normal = [0, 0, 1]\nstiffness = -1\n") ==
+        "s.toml:5:13: 'obstacle.stiffness' is out of range: it must be from 0 to 1e+12");
   CHECK(refused("normal = [0, 0, 1]\nhard = 1\n") == "s.toml:5:8: unknown key 'obstacle.hard'");
-  CHECK(refused("normal = [0, 0, 1]\nkeys = [[1, 0, 0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0, 1, 0]]\n").find("must ascend in time") != std::string::npos);
+  CHECK(refused("normal = [0, 0, 1]\nkeys = [[1, 0, 0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0, 1, 0]]\n")
+            .find("must ascend in time") != std::string::npos);
   CHECK(refused("mesh = 'no such file.ply'\n").find("no such file.ply") != std::string::npos);
 }
 
 TEST_CASE("a plane is shown as a square that moves with it, beside the bodies and wider than they are") {
-  Scene scene = scene_of("position = [3, 1, 2]\n[[obstacle]]\nnormal = [0.5, 0.2, 1]\nposition = [0, 0, -0.5]\nrotation = [1, 0, 0, 20]\nscale = 2\n"
-                         "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, 0.7, 0, 0, 1, 30]]\n");
+  Scene scene = scene_of(
+      "position = [3, 1, 2]\n[[obstacle]]\nnormal = [0.5, 0.2, 1]\nposition = [0, 0, -0.5]\nrotation = [1, 0, 0, "
+      "20]\nscale = 2\n"
+      "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, 0.7, 0, 0, 1, 30]]\n");
   const Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
   const Box3 bodies = bounding_box(model.mesh);
   for (const double time : {0.0, 0.4, 2.0}) {

@@ -1,15 +1,18 @@
 #include <catch2/catch.hpp>
 
-#include "kerf/simulation.h"
 #include "kerf/check.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
+#include "kerf/simulation.h"
 
 using namespace geo;
 
 TEST_CASE("a body that a sheet has scored begins in pieces") {
   // Two planes in one sheet, which cross inside of the cube.
-  Front sheet{"cells", false, {{{-1, -1, 0.43}, {3, -1, 0.45}, {-1, 3, 0.52}, {0.41, -1, -1}, {0.44, 3, -1}, {0.55, -1, 3}}}, {{0, 1, 2}, {3, 4, 5}}};
+  Front sheet{"cells",
+              false,
+              {{{-1, -1, 0.43}, {3, -1, 0.45}, {-1, 3, 0.52}, {0.41, -1, -1}, {0.44, 3, -1}, {0.55, -1, 3}}},
+              {{0, 1, 2}, {3, 4, 5}}};
   Scene scene;
   scene.bodies.resize(1);
   scene.bodies[0].sampling.spacing = 0.2;

@@ -2,11 +2,11 @@
 #include <string>
 
 #include "kerf/crossing.h"
-#include "kerf/scene_file.h"
-#include "simulation/collide.h"
-#include "kerf/simulation.h"
 #include "kerf/pieces.h"
+#include "kerf/scene_file.h"
 #include "kerf/shapes.h"
+#include "kerf/simulation.h"
+#include "simulation/collide.h"
 
 using namespace geo;
 
@@ -20,7 +20,8 @@ gravity = [0, 6, -9]
 mesh = "cube.ply"
 spacing = 0.25
 [material]
-young = )" + young + R"(
+young = )" +
+         young + R"(
 damping = 1.0
 [ground]
 point = [0, 0, -0.05]
@@ -30,7 +31,8 @@ self = true
 [time]
 frames = 8
 frame_rate = 24
-step = )" + step + R"(
+step = )" +
+         step + R"(
 [[blade]]
 points = [[-0.4, 0, 0], [1.4, 0, 0]]
 divide = 6
@@ -70,7 +72,8 @@ TEST_CASE("what a crack step needs of contact before it is made counts as contac
   Collisions collisions(scene, body, solid, {});
   double seconds = 0;
   auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 1.3, 0.53}}, false, 1);
-  split(body, front, {{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}}, {}, nullptr, collisions.agreement(body, solid, state, seconds));
+  split(body, front, {{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}}, {}, nullptr,
+        collisions.agreement(body, solid, state, seconds));
   CHECK(seconds > 0);
 }
 
@@ -87,7 +90,8 @@ TEST_CASE("nor with the time step doubled or halved, nor in softer or stiffer ma
   }
 }
 
-// Two crossed blades go down into Jell-O, turning: the second crack goes across the first, whose sheets slide and press on each other.
+// Two crossed blades go down into Jell-O, turning: the second crack goes across the first, whose sheets slide and press
+// on each other.
 TEST_CASE("no crack step is refused where soft sheets that lie on each other are cut across") {
   const Scene scene = parse_scene(R"(
 gravity = [0, 0, -9.81]
@@ -115,7 +119,8 @@ keys = [[0.05, 1.003, 0.507, 1.15, 0, 0, 1, 12], [0.65, 1.007, 0.503, -0.15, 0, 
 points = [[0, -1.6, 0], [0.01, 1.6, 0]]
 divide = 32
 keys = [[0.07, 1.003, 0.507, 1.15, 0, 0, 1, 12], [0.67, 1.007, 0.503, -0.15, 0, 0, 1, 72]]
-)", "s.toml");
+)",
+                                  "s.toml");
   Simulation sim(scene, make_block({2, 1, 1}, 0.25));
   for (int i = 0; i < scene.frames; ++i) {
     CHECK(sim.advance_frame().refused == 0);

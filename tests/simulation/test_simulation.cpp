@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
-#include "kerf/scene_file.h"
-#include "kerf/simulation.h"
 #include "kerf/check.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
+#include "kerf/scene_file.h"
 #include "kerf/shapes.h"
+#include "kerf/simulation.h"
 
 using namespace geo;
 
@@ -37,18 +37,27 @@ TEST_CASE("a scene is read, overridden, and refused with line and column") {
   CHECK(s.frames == 3);
   REQUIRE(s.blades.size() == 1);
   CHECK(s.blades[0].points.size() == 7);
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\ncolour = 3\n", "s.toml"), Catch::Contains("s.toml:3:") && Catch::Contains("unknown key 'body.colour'"));
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[material]\nyoung = \"stiff\"\n", "s.toml"), Catch::Contains("s.toml:4:"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\ncolour = 3\n", "s.toml"),
+                    Catch::Contains("s.toml:3:") && Catch::Contains("unknown key 'body.colour'"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[material]\nyoung = \"stiff\"\n", "s.toml"),
+                    Catch::Contains("s.toml:4:"));
   CHECK_THROWS_WITH(parse_scene("[body\n", "s.toml"), Catch::Contains("s.toml:1:"));
   CHECK_THROWS_AS(parse_scene("", "s.toml"), InputError);
   // What was meant, where a key is misspelt; what a number may be; what cannot be given together.
-  CHECK_THROWS_WITH(parse_scene("[body]\nmsh = \"a\"\n", "s.toml"), "s.toml:2:7: unknown key 'body.msh'; did you mean 'mesh'?");
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[fracture]\nstrenght = 1\n", "s.toml"), Catch::Contains("'fracture.strenght'; did you mean 'strength'?"));
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n", "s.toml", {{"materail.young", "1"}}), Catch::Contains("did you mean 'material'?"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmsh = \"a\"\n", "s.toml"),
+                    "s.toml:2:7: unknown key 'body.msh'; did you mean 'mesh'?");
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[fracture]\nstrenght = 1\n", "s.toml"),
+                    Catch::Contains("'fracture.strenght'; did you mean 'strength'?"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n", "s.toml", {{"materail.young", "1"}}),
+                    Catch::Contains("did you mean 'material'?"));
   CHECK_THROWS_WITH(parse_scene("[bodi]\nmesh = \"a\"\n", "s.toml"), Catch::Contains("did you mean 'body'?"));
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[material]\npoisson = 0.5\n", "s.toml"), Catch::Contains("from -0.99 to 0.4999"));
-  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\nnodes = 5\nspacing = 0.1\n", "s.toml"), Catch::Contains("one of 'spacing'"));
-  CHECK(parse_scene("[body]\nmesh = \"a\"\nnodes = 5\n", "s.toml", {{"body.spacing", "0.5"}}).bodies[0].sampling.count == 0);
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[material]\npoisson = 0.5\n", "s.toml"),
+                    Catch::Contains("from -0.99 to 0.4999"));
+  CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\nnodes = 5\nspacing = 0.1\n", "s.toml"),
+                    Catch::Contains("one of 'spacing'"));
+  CHECK(
+      parse_scene("[body]\nmesh = \"a\"\nnodes = 5\n", "s.toml", {{"body.spacing", "0.5"}}).bodies[0].sampling.count ==
+      0);
 }
 
 TEST_CASE("a blade turns and moves by its keys") {
@@ -85,8 +94,13 @@ TEST_CASE("a falling cube is halved and both halves go on falling as one") {
 
 TEST_CASE("a thick blade pushes the sheets apart, and feels them") {
   const auto run = [](const std::string& thickness) {
-    const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 2, 2, 0.15]]\n[time]\nframe_rate = 10\nstep = 0.05\n[[blade]]\n"
-                                    "points = [[0, -0.3, 0], [0, 1.3, 0]]\ndivide = 8\nkeys = [[0, 0.507, 0, 1.2, 0, 0, 1, 2], [0.4, 0.503, 0, 0.4, 0, 0, 1, 2]]\nback = [0, 0, 1]\nthickness = " + thickness, "s.toml");
+    const Scene scene = parse_scene(
+        "gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 2, 2, "
+        "0.15]]\n[time]\nframe_rate = 10\nstep = 0.05\n[[blade]]\n"
+        "points = [[0, -0.3, 0], [0, 1.3, 0]]\ndivide = 8\nkeys = [[0, 0.507, 0, 1.2, 0, 0, 1, 2], [0.4, 0.503, 0, "
+        "0.4, 0, 0, 1, 2]]\nback = [0, 0, 1]\nthickness = " +
+            thickness,
+        "s.toml");
     Simulation sim(scene, make_block({1, 1, 1}, 0.2));
     Vec3 force = Vec3::Zero();
     for (int i = 0; i < 4; ++i) {
@@ -96,7 +110,9 @@ TEST_CASE("a thick blade pushes the sheets apart, and feels them") {
     }
     double left = 0, right = 0;
     for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
-      if (sim.body().nodes.position[i].z() > 0.7) (sim.body().nodes.position[i].x() < 0.5 ? left : right) += sim.state().motion.displacement[i].x() * sim.body().nodes.volume[i];
+      if (sim.body().nodes.position[i].z() > 0.7)
+        (sim.body().nodes.position[i].x() < 0.5 ? left : right) +=
+            sim.state().motion.displacement[i].x() * sim.body().nodes.volume[i];
     return std::tuple(left, right, force);
   };
   const auto [left, right, force] = run("0.3");
@@ -110,8 +126,11 @@ TEST_CASE("a thick blade pushes the sheets apart, and feels them") {
 }
 
 TEST_CASE("a grip carries the nodes that it holds, and lets go") {
-  const Scene scene = parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.25\n[time]\nframe_rate = 10\nstep = 0.05\n[[grip]]\nbox = [-1, -1, 0.8, 2, 2, 2]\n"
-                                  "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.2, 0, 0, 0.1, 0, 0, 1, 0]]\nrelease = true\n", "s.toml");
+  const Scene scene = parse_scene(
+      "gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.25\n[time]\nframe_rate = 10\nstep = 0.05\n[[grip]]\nbox = "
+      "[-1, -1, 0.8, 2, 2, 2]\n"
+      "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.2, 0, 0, 0.1, 0, 0, 1, 0]]\nrelease = true\n",
+      "s.toml");
   Simulation sim(scene, make_block({1, 1, 1}, 0.25));
   sim.advance_frame(), sim.advance_frame();
   std::size_t held = 0;
@@ -128,7 +147,10 @@ TEST_CASE("a grip carries the nodes that it holds, and lets go") {
 }
 
 TEST_CASE("bodies with velocities and prescored fronts begin as the scene says") {
-  Scene scene = parse_scene("gravity = [0, 0, 0]\n[[body]]\nmesh = 'a'\nspacing = 0.25\nvelocity = [0, 0, 1]\n[[body]]\nmesh = 'b'\nspacing = 0.25\nscale = 0.5\nposition = [3, 0, 0]\nrotation = [0, 0, 1, 90]\nspin = [0, 0, 2]\n", "s.toml");
+  Scene scene = parse_scene(
+      "gravity = [0, 0, 0]\n[[body]]\nmesh = 'a'\nspacing = 0.25\nvelocity = [0, 0, 1]\n[[body]]\nmesh = 'b'\nspacing "
+      "= 0.25\nscale = 0.5\nposition = [3, 0, 0]\nrotation = [0, 0, 1, 90]\nspin = [0, 0, 2]\n",
+      "s.toml");
   Front front{"score", false, {{{-0.3, 0.507, 1.3}, {1.3, 0.503, 1.3}}, {{-0.3, 0.511, -0.3}, {1.3, 0.509, -0.3}}}};
   Front sheet{"sheet", false, {{{2, 0.213, -1}, {4, 0.213, -1}, {3, 0.219, 2}}}, {{0, 1, 2}}};
   scene.scores = {front, sheet};
@@ -143,8 +165,10 @@ TEST_CASE("bodies with velocities and prescored fronts begin as the scene says")
   Vec3 turning = Vec3::Zero();
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
     const Vec3& v = sim.state().motion.velocity[i];
-    if (sim.state().part[i] == 0) CHECK(v == Vec3(0, 0, 1));
-    else turning += (sim.body().nodes.position[i] - Vec3(2.75, 0.25, 0.25)).cross(v);
+    if (sim.state().part[i] == 0)
+      CHECK(v == Vec3(0, 0, 1));
+    else
+      turning += (sim.body().nodes.position[i] - Vec3(2.75, 0.25, 0.25)).cross(v);
   }
   CHECK(turning.z() > 0);
 }

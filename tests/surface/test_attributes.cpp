@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "kerf/error.h"
 #include "invariants/random_cuts.h"
+#include "kerf/error.h"
 #include "kerf/mesh.h"
 #include "kerf/shapes.h"
 
@@ -11,8 +11,12 @@ using random_cuts::cases;
 
 namespace {
 
-Vec2 affine_uv(const Vec3& p) { return {0.3 + 0.21 * p.x() - 0.4 * p.y() + 0.05 * p.z(), -0.1 + 0.33 * p.z() + 0.17 * p.x()}; }
-Color affine_color(const Vec3& p) { return {0.5 + 0.1 * p.x(), 0.4 - 0.12 * p.y(), 0.5 + 0.2 * p.z(), 0.75 + 0.01 * (p.x() + p.y())}; }
+Vec2 affine_uv(const Vec3& p) {
+  return {0.3 + 0.21 * p.x() - 0.4 * p.y() + 0.05 * p.z(), -0.1 + 0.33 * p.z() + 0.17 * p.x()};
+}
+Color affine_color(const Vec3& p) {
+  return {0.5 + 0.1 * p.x(), 0.4 - 0.12 * p.y(), 0.5 + 0.2 * p.z(), 0.75 + 0.01 * (p.x() + p.y())};
+}
 
 // Affine texture coordinates and colours, smooth normals, groups in three stripes.
 TriangleMesh dressed(TriangleMesh mesh) {
@@ -42,7 +46,8 @@ void cut(Complex& complex, Random& random, std::int32_t crack) {
 }
 
 std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t t) {
-  return {mesh.vertices[mesh.triangles[t][0]], mesh.vertices[mesh.triangles[t][1]], mesh.vertices[mesh.triangles[t][2]]};
+  return {mesh.vertices[mesh.triangles[t][0]], mesh.vertices[mesh.triangles[t][1]],
+          mesh.vertices[mesh.triangles[t][2]]};
 }
 
 // How far p is from being inside triangle t.
@@ -110,7 +115,8 @@ Seen require_carried(const TriangleMesh& model, const TriangleMesh& surface) {
 }  // namespace
 
 TEST_CASE("affine attributes of the skin stay affine under any cut, and what is not cut keeps its bits") {
-  const TriangleMesh models[] = {dressed(make_pumpkin(6)), dressed(make_block({2, 1, 1.5}, 0.25)), dressed(make_letter('B', 0.3, 14))};
+  const TriangleMesh models[] = {dressed(make_pumpkin(6)), dressed(make_block({2, 1, 1.5}, 0.25)),
+                                 dressed(make_letter('B', 0.3, 14))};
   Random random(20240711);
   Seen all;
   for (int i = 0; i < cases(30); ++i) {
@@ -145,7 +151,8 @@ TEST_CASE("a surface that is cut again names triangles of the first one, and old
     // Paint both sides of the first crack, each in its own colour, before the second cut is carried.
     TriangleMesh painted = once;
     for (std::size_t t = 0; t < once.triangles.size(); ++t)
-      if (once.patch[t] != 0) painted.attributes.color[t].fill(once.patch[t] > 0 ? Color(1, 0, 0, 1) : Color(0, 0, 1, 1));
+      if (once.patch[t] != 0)
+        painted.attributes.color[t].fill(once.patch[t] > 0 ? Color(1, 0, 0, 1) : Color(0, 0, 1, 1));
     TriangleMesh again = twice;
     carry(painted, again);
     for (std::size_t t = 0; t < again.triangles.size(); ++t)
@@ -165,7 +172,8 @@ TEST_CASE("a surface that is cut again names triangles of the first one, and old
   }
 }
 
-TEST_CASE("where the sides of a crack are not in pairs of rows, the negative one has the other's normals turned round") {
+TEST_CASE(
+    "where the sides of a crack are not in pairs of rows, the negative one has the other's normals turned round") {
   const TriangleMesh model = dressed(make_block({1, 1, 1}, 0.5));
   Complex complex = Complex::from_skin(model);
   FrontState front = begin_front(std::vector<Vec3>{{-1, -1, 0.3}, {-1, 2, 0.3}}, false, 1);
@@ -180,7 +188,8 @@ TEST_CASE("where the sides of a crack are not in pairs of rows, the negative one
       for (std::size_t t = 0; t < copy.size(); ++t)
         if ((once.patch[t] < 0) == negative) rows.push_back(copy[t]);
   };
-  order(sorted.triangles), order(sorted.patch), order(sorted.source), order(sorted.attributes.uv), order(sorted.attributes.normal), order(sorted.attributes.color), order(sorted.attributes.group);
+  order(sorted.triangles), order(sorted.patch), order(sorted.source), order(sorted.attributes.uv),
+      order(sorted.attributes.normal), order(sorted.attributes.color), order(sorted.attributes.group);
   TriangleMesh again = Complex::from_two_sided(sorted).two_sided();
   carry(sorted, again);
   for (std::size_t t = 0; t < again.triangles.size(); ++t) {
@@ -220,7 +229,8 @@ TEST_CASE("seams of the texture stay: each triangle has the values of its own so
     carry(model, surface);
     CHECK(surface.attributes.names() == std::vector<std::string>{"uv"});
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-      for (const Vec2& uv : surface.attributes.uv[t]) REQUIRE(uv == (surface.patch[t] == 0 ? Vec2(surface.source[t], 0.1) : Vec2(0, 0)));
+      for (const Vec2& uv : surface.attributes.uv[t])
+        REQUIRE(uv == (surface.patch[t] == 0 ? Vec2(surface.source[t], 0.1) : Vec2(0, 0)));
   }
 }
 

@@ -16,7 +16,8 @@ TEST_CASE("Pieces and bonds account for all of a cut body", "[chunks]") {
     TriangleMesh model = make_sphere(6);
     if (seed % 2) {
       for (const auto& t : model.triangles) {
-        model.attributes.uv.push_back({Vec2(0.5, model.vertices[t[0]].y()), Vec2(0.5, model.vertices[t[1]].y()), Vec2(0.5, model.vertices[t[2]].y())});
+        model.attributes.uv.push_back({Vec2(0.5, model.vertices[t[0]].y()), Vec2(0.5, model.vertices[t[1]].y()),
+                                       Vec2(0.5, model.vertices[t[2]].y())});
         model.attributes.group.push_back(0);
       }
       model.attributes.group_names = {"peel"};
@@ -35,7 +36,8 @@ TEST_CASE("Pieces and bonds account for all of a cut body", "[chunks]") {
     double between = 0, shared = 0, volume = 0;
     Vec3 moment = Vec3::Zero();
     for (std::uint32_t f = 0; f < complex.face_count(); ++f)
-      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0 && pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]) {
+      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0 &&
+          pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]) {
         const auto p = complex.corners(FaceId(f));
         between += 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
       }
@@ -60,7 +62,8 @@ TEST_CASE("Pieces and bonds account for all of a cut body", "[chunks]") {
         for (std::size_t k = 0; k < 3; ++k)
           if (mesh.patch[t] == 0) CHECK(mesh.attributes.uv[t][k].x() == Approx(seed % 2 ? 0.5 : 0));
         if (mesh.patch[t] == 0) continue;
-        const Vec3 &p = mesh.vertices[mesh.triangles[t][0]], &q = mesh.vertices[mesh.triangles[t][1]], &r = mesh.vertices[mesh.triangles[t][2]];
+        const Vec3 &p = mesh.vertices[mesh.triangles[t][0]], &q = mesh.vertices[mesh.triangles[t][1]],
+                   &r = mesh.vertices[mesh.triangles[t][2]];
         sheets += 0.5 * (q - p).cross(r - p).norm();
         // Lengths along the wall's plane are kept, on the tile's scale, and none becomes longer.
         CHECK((mesh.attributes.uv[t][1] - mesh.attributes.uv[t][0]).norm() <= (q - p).norm() / 0.5 + 1e-12);
@@ -111,7 +114,9 @@ TEST_CASE("Chunks of a deformed body are the same triangles where their vertices
   // Each surface vertex by itself: both are stretched, and the one beyond the crack goes a way off.
   std::vector<Vec3> moved(complex.surface_vertex_count(), Vec3::Zero());
   std::vector<SurfaceVertexId> rows;
-  const auto place = [](const Vec3& x, std::uint32_t piece) { return Vec3(3 * x.x() + 5 * piece, x.y() + 0.5 * x.x(), 2 * x.z()); };
+  const auto place = [](const Vec3& x, std::uint32_t piece) {
+    return Vec3(3 * x.x() + 5 * piece, x.y() + 0.5 * x.x(), 2 * x.z());
+  };
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
     const TriangleMesh mesh = piece_mesh(complex, pieces, p, &rows);
     REQUIRE(rows.size() == mesh.vertices.size());
@@ -127,13 +132,16 @@ TEST_CASE("Chunks of a deformed body are the same triangles where their vertices
     CHECK(chunks[p].mesh.attributes.uv == still[p].mesh.attributes.uv);  // of the undeformed wall
     CHECK(chunks[p].volume == Approx(6 * still[p].volume));
     CHECK((chunks[p].centroid - place(still[p].centroid, p)).norm() < 1e-12);
-    for (std::size_t v = 0; v < chunks[p].mesh.vertices.size(); ++v) CHECK(chunks[p].mesh.vertices[v] == place(still[p].mesh.vertices[v], p));
+    for (std::size_t v = 0; v < chunks[p].mesh.vertices.size(); ++v)
+      CHECK(chunks[p].mesh.vertices[v] == place(still[p].mesh.vertices[v], p));
   }
   // The bond is half way between its sides, and as strong as the material was.
-  const Vec3 on_wall(0.7, 0.5, 0.5), u = place({0.7, 1, 0.5}, 0) - place(on_wall, 0), v = place({0.7, 0.5, 1}, 0) - place(on_wall, 0);
+  const Vec3 on_wall(0.7, 0.5, 0.5), u = place({0.7, 1, 0.5}, 0) - place(on_wall, 0),
+                                     v = place({0.7, 0.5, 1}, 0) - place(on_wall, 0);
   const auto bonds = find_bonds(complex, pieces, moved);
   REQUIRE(bonds.size() == 1);
   CHECK(bonds[0].area == Approx(1));
   CHECK((bonds[0].centroid - 0.5 * (place(on_wall, 0) + place(on_wall, 1))).norm() < 1e-12);
-  CHECK((bonds[0].normal + u.cross(v).normalized()).norm() < 1e-12);  // to the smaller piece, on the other side of x = 0.7
+  CHECK((bonds[0].normal + u.cross(v).normalized()).norm() <
+        1e-12);  // to the smaller piece, on the other side of x = 0.7
 }

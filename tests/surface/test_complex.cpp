@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
 #include "kerf/check.h"
+#include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "kerf/shapes.h"
 
@@ -36,8 +36,8 @@ TEST_CASE("a skin is its own derived surface") {
 TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back changes nothing") {
   const TriangleMesh mesh = cube();
   const Complex before = Complex::from_skin(mesh);
-  // The wall stands on a closed loop of the cube's own edges: find two opposite parallel edges that are diagonal to each
-  // other, and the two face diagonals that join them.
+  // The wall stands on a closed loop of the cube's own edges: find two opposite parallel edges that are diagonal to
+  // each other, and the two face diagonals that join them.
   const auto id = [&](double x, double y, double z) {
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
       if (mesh.vertices[v] == Vec3(x, y, z)) return VertexId(v);
@@ -52,7 +52,8 @@ TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back
     };
     const double s = variant % 2;
     const VertexId a = corner(0, 0, s), b = corner(1, 0, s), c = corner(1, 1, 1 - s), d = corner(0, 1, 1 - s);
-    if (before.around(a, d).empty() || before.around(b, c).empty()) continue;  // that face's diagonal runs the other way
+    if (before.around(a, d).empty() || before.around(b, c).empty())
+      continue;  // that face's diagonal runs the other way
     Complex k = before;
     ComplexEdit edit;
     edit.new_faces.push_back({{a, b, c}, 1, FaceId()});

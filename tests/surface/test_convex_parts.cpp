@@ -21,7 +21,8 @@ double volume_of(const std::vector<TriangleMesh>& parts) {
 
 TEST_CASE("Convex parts are closed, cover the mesh and hold less air the more they are", "[parts]") {
   const auto [first, count] = seeds(1);
-  for (const TriangleMesh& mesh : {make_letter('L', 0.3, 12), make_letter('K', 0.3, 12), make_polyp(5), make_apple(5)}) {
+  for (const TriangleMesh& mesh :
+       {make_letter('L', 0.3, 12), make_letter('K', 0.3, 12), make_polyp(5), make_apple(5)}) {
     double before = std::numeric_limits<double>::infinity();
     for (const std::size_t most : {1, 2, 4, 8}) {
       const auto parts = convex_parts(mesh, most, ~std::size_t(0));

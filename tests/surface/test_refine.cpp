@@ -1,10 +1,10 @@
 // Meshes with shorter edges.
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "cases.h"
 #include "kerf/check.h"
+#include "kerf/error.h"
 #include "kerf/repair.h"
 #include "kerf/shapes.h"
 
@@ -14,7 +14,8 @@ namespace {
 
 double longest_edge(const TriangleMesh& mesh) {
   double longest = 0;
-  for (const auto& [a, b, c] : corners_of(mesh)) longest = std::max({longest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
+  for (const auto& [a, b, c] : corners_of(mesh))
+    longest = std::max({longest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
   return longest;
 }
 
@@ -26,7 +27,8 @@ TEST_CASE("refined solids are solids of the same shape with short edges, in any 
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     TriangleMesh mesh = random.uniform() < 0.5 ? make_block({2, 1, 1}, 2) : make_sphere(2);
-    const Vec3 stretch(1 + 30 * random.uniform(), 1, 0.05 + random.uniform()), away = 1e3 * Vec3(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 stretch(1 + 30 * random.uniform(), 1, 0.05 + random.uniform()),
+        away = 1e3 * Vec3(random.uniform(), random.uniform(), random.uniform());
     for (Vec3& p : mesh.vertices) p = p.cwiseProduct(stretch) + away;
     const double longest = (0.02 + 0.3 * random.uniform()) * bounding_box(mesh).diagonal();
     const TriangleMesh fine = refined(mesh, longest);
@@ -53,7 +55,8 @@ TEST_CASE("a mesh that is fine enough stays as it is, and what one carries is wh
   const TriangleMesh fine = refined(mesh, 0.2);
   REQUIRE(fine.attributes.uv.size() == fine.triangles.size());
   for (std::size_t t = 0; t < fine.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) CHECK((fine.attributes.uv[t][k] - fine.vertices[fine.triangles[t][k]].head<2>()).norm() < 1e-12);
+    for (int k = 0; k < 3; ++k)
+      CHECK((fine.attributes.uv[t][k] - fine.vertices[fine.triangles[t][k]].head<2>()).norm() < 1e-12);
   CHECK(std::count(fine.attributes.group.begin(), fine.attributes.group.end(), 0) > 10);
 }
 

@@ -32,7 +32,9 @@ void drop_row(TriangleMesh& mesh, std::size_t t) {
 void add(TriangleMesh& mesh, const TriangleMesh& other, double scale, const Vec3& to, bool turned) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3& p : other.vertices) mesh.vertices.push_back(scale * p + to);
-  for (auto [a, b, c] : other.triangles) mesh.triangles.push_back(turned ? Triangle{first + a, first + c, first + b} : Triangle{first + a, first + b, first + c});
+  for (auto [a, b, c] : other.triangles)
+    mesh.triangles.push_back(turned ? Triangle{first + a, first + c, first + b}
+                                    : Triangle{first + a, first + b, first + c});
 }
 
 void check_dress(const TriangleMesh& mesh) {
@@ -61,7 +63,9 @@ TEST_CASE("triangles missing, turned, twice, and with a vertex twice, are mended
   TriangleMesh mesh = ball;
   drop_row(mesh, random.below(mesh.triangles.size()));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (random.below(5) == 0) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), std::swap(mesh.attributes.uv[t][1], mesh.attributes.uv[t][2]);
+    if (random.below(5) == 0)
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]),
+          std::swap(mesh.attributes.uv[t][1], mesh.attributes.uv[t][2]);
   const auto twice = static_cast<std::uint32_t>(random.below(mesh.triangles.size()));
   const auto again = [&](const Triangle& t) {
     mesh.triangles.push_back(t);
@@ -104,7 +108,9 @@ TEST_CASE("a hole closed smoothly goes on from what is around it, as fine as its
     CAPTURE(from);
     TriangleMesh open = dressed(ball);
     for (std::size_t t = open.triangles.size(); t-- > 0;)
-      if (const auto& [a, b, c] = open.triangles[t]; open.vertices[a].z() > from && open.vertices[b].z() > from && open.vertices[c].z() > from) drop_row(open, t);
+      if (const auto& [a, b, c] = open.triangles[t];
+          open.vertices[a].z() > from && open.vertices[b].z() > from && open.vertices[c].z() > from)
+        drop_row(open, t);
     const std::size_t rows = open.triangles.size();
     TriangleMesh flat = open, mesh = open;
     repair(flat);
@@ -132,7 +138,8 @@ TEST_CASE("a smooth patch that would cross something is not taken") {
   TriangleMesh mesh = make_block({1, 1, 1}, 0.1);
   for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
     const auto& [a, b, c] = mesh.triangles[t];
-    if (mesh.vertices[a].z() == 1 && mesh.vertices[b].z() == 1 && mesh.vertices[c].z() == 1) mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
+    if (mesh.vertices[a].z() == 1 && mesh.vertices[b].z() == 1 && mesh.vertices[c].z() == 1)
+      mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
   }
   TriangleMesh dome = mesh;
   CHECK(repair(dome, 0, true).smooth == 1);
@@ -153,9 +160,12 @@ TEST_CASE("random holes are closed smoothly or flat, without a crossing where th
   TriangleMesh mesh = seed % 2 ? make_pumpkin(8) : make_sphere(9);
   // Everything in some balls, and some triangles by themselves.
   std::vector<std::pair<Vec3, double>> balls;
-  for (int i = 0; i < 3; ++i) balls.push_back({mesh.vertices[random.below(mesh.vertices.size())], 0.15 + 0.4 * random.uniform()});
+  for (int i = 0; i < 3; ++i)
+    balls.push_back({mesh.vertices[random.below(mesh.vertices.size())], 0.15 + 0.4 * random.uniform()});
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return random.below(60) == 0 || std::any_of(balls.begin(), balls.end(), [&](const auto& b) { return (mesh.vertices[t[0]] - b.first).norm() < b.second; });
+    return random.below(60) == 0 || std::any_of(balls.begin(), balls.end(), [&](const auto& b) {
+             return (mesh.vertices[t[0]] - b.first).norm() < b.second;
+           });
   });
   TriangleMesh flat = mesh;
   repair(flat);
@@ -170,7 +180,8 @@ TEST_CASE("seams that are a little apart are welded within reach") {
   Random random(3);
   for (const auto& t : ball.triangles) {
     const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-    for (const auto v : t) soup.vertices.push_back(ball.vertices[v] + 1e-6 * Vec3(random.uniform(), random.uniform(), random.uniform()));
+    for (const auto v : t)
+      soup.vertices.push_back(ball.vertices[v] + 1e-6 * Vec3(random.uniform(), random.uniform(), random.uniform()));
     soup.triangles.push_back({first, first + 1, first + 2});
   }
   TriangleMesh apart = soup;
@@ -187,10 +198,10 @@ TEST_CASE("shells are turned outwards, cavities inwards, and what is hidden in a
     CAPTURE(flipped);
     TriangleMesh mesh;
     add(mesh, ball, 1, Vec3::Zero(), flipped);
-    add(mesh, ball, 0.3, {0.4, 0, 0}, !flipped);   // a cavity
-    add(mesh, ball, 0.3, {-0.4, 0, 0}, flipped);   // hidden
-    add(mesh, ball, 0.1, {0.4, 0, 0}, flipped);    // a core in the cavity
-    add(mesh, ball, 1, {5, 0, 0}, true);           // beside it all
+    add(mesh, ball, 0.3, {0.4, 0, 0}, !flipped);  // a cavity
+    add(mesh, ball, 0.3, {-0.4, 0, 0}, flipped);  // hidden
+    add(mesh, ball, 0.1, {0.4, 0, 0}, flipped);   // a core in the cavity
+    add(mesh, ball, 1, {5, 0, 0}, true);          // beside it all
     const Repairs done = repair(mesh);
     CHECK(done.hidden == 1);
     CHECK(check_surface(mesh, true).first_problem == "");

@@ -13,10 +13,14 @@ namespace {
 std::string place(const geo::Vec3& p) { return list({tool::number(p.x()), tool::number(p.y()), tool::number(p.z())}); }
 
 void require(const char* what, std::size_t i, std::size_t count) {
-  if (i >= count) throw geo::InputError("there is no " + std::string(what) + " " + std::to_string(i) + "; the last is " + (count ? std::to_string(count - 1) : "none"));
+  if (i >= count)
+    throw geo::InputError("there is no " + std::string(what) + " " + std::to_string(i) + "; the last is " +
+                          (count ? std::to_string(count - 1) : "none"));
 }
 
-std::string words(const geo::Vec3& p) { return "(" + rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()) + ")"; }
+std::string words(const geo::Vec3& p) {
+  return "(" + rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()) + ")";
+}
 
 }  // namespace
 
@@ -32,11 +36,15 @@ void ask_node(const geo::Body& body, std::size_t i, Report& report) {
     if (geo::RowStore::has_path(row.bits[e])) behind.insert(row.to[e]);
   std::vector<std::string> neighbors;
   for (const auto& n : body.graph.neighbors(body.nodes, node))
-    neighbors.push_back("{\"node\":" + std::to_string(n.to.value) + ",\"distance\":" + tool::number(n.distance) + ",\"seen\":" + (behind.count(n.to.value) ? "false" : "true") + "}");
+    neighbors.push_back("{\"node\":" + std::to_string(n.to.value) + ",\"distance\":" + tool::number(n.distance) +
+                        ",\"seen\":" + (behind.count(n.to.value) ? "false" : "true") + "}");
   for (std::uint32_t v = 0; v < body.binding.master_node.size(); ++v)
     if (body.binding.master_node[v] == node) masters.push_back(v);
-  report.headline = "Node " + std::to_string(i) + " at " + words(body.nodes.position[i]) + ": " + counted(edges.size(), "edge") + ", " + counted(neighbors.size(), "neighbour") +
-                    (behind.empty() ? "" : ", " + std::to_string(behind.size()) + " of them behind a face") + "; carries the trees of " + counted(masters.size(), "master") + "." + (body.debris[i] ? " It is debris." : "");
+  report.headline = "Node " + std::to_string(i) + " at " + words(body.nodes.position[i]) + ": " +
+                    counted(edges.size(), "edge") + ", " + counted(neighbors.size(), "neighbour") +
+                    (behind.empty() ? "" : ", " + std::to_string(behind.size()) + " of them behind a face") +
+                    "; carries the trees of " + counted(masters.size(), "master") + "." +
+                    (body.debris[i] ? " It is debris." : "");
   report.add("node", i);
   report.add("position", place(body.nodes.position[i]));
   report.add_number("radius", body.nodes.radius[i]);
@@ -62,14 +70,17 @@ void ask_edge(const geo::Body& body, std::size_t i, std::size_t j, Report& repor
   for (const geo::FaceId f : near) {
     const auto c = body.surface.corners(f);
     if (geo::segment_meets_triangle(p, q, c[0], c[1], c[2]))
-      faces.push_back("{\"face\":" + std::to_string(f.value) + ",\"crack\":" + std::to_string(body.surface.face(f).crack) + "}");
+      faces.push_back("{\"face\":" + std::to_string(f.value) +
+                      ",\"crack\":" + std::to_string(body.surface.face(f).crack) + "}");
   }
   const bool edge = body.graph.has(geo::NodeId(i), geo::NodeId(j));
   const double straight = (p - q).norm();
   std::string distance = "null";
   for (const auto& n : body.graph.neighbors(body.nodes, geo::NodeId(i)))
     if (n.to.index() == j) distance = tool::number(n.distance);
-  report.headline = "Nodes " + std::to_string(i) + " and " + std::to_string(j) + ", " + rounded(straight) + " apart: " + (edge ? "an edge" : "no edge") + ", " + (distance == "null" ? "no neighbours" : "neighbours") +
+  report.headline = "Nodes " + std::to_string(i) + " and " + std::to_string(j) + ", " + rounded(straight) +
+                    " apart: " + (edge ? "an edge" : "no edge") + ", " +
+                    (distance == "null" ? "no neighbours" : "neighbours") +
                     (faces.empty() ? ", in sight of each other." : ", behind " + counted(faces.size(), "face") + ".");
   report.add("nodes", numbers(std::vector{i, j}));
   report.add("edge", edge);
@@ -86,16 +97,22 @@ void ask_vertex(const geo::Body& body, std::size_t v, Report& report) {
   if (!body.surface.alive(vertex)) throw geo::InputError("surface vertex " + std::to_string(v) + " is no more");
   const geo::Binding& binding = body.binding;
   std::vector<std::uint32_t> way{vertex.value};
-  while (binding.master[way.back()].valid() && binding.parent[way.back()].value != way.back()) way.push_back(binding.parent[way.back()].value);
+  while (binding.master[way.back()].valid() && binding.parent[way.back()].value != way.back())
+    way.push_back(binding.parent[way.back()].value);
   const bool orphan = !binding.master[v].valid();
   const geo::NodeId node = orphan ? geo::NodeId() : binding.master_node[binding.master[v].index()];
   std::vector<std::pair<geo::NodeId, double>> bound;
   if (!orphan) geo::bound_nodes(body, vertex, bound);
   std::vector<std::string> nodes;
-  for (const auto& [id, distance] : bound) nodes.push_back("{\"node\":" + std::to_string(id.value) + ",\"distance\":" + tool::number(distance) + "}");
+  for (const auto& [id, distance] : bound)
+    nodes.push_back("{\"node\":" + std::to_string(id.value) + ",\"distance\":" + tool::number(distance) + "}");
   const geo::Vec3& at = body.surface.point(body.surface.site(vertex));
-  report.headline = "Surface vertex " + std::to_string(v) + " at " + words(at) + (orphan ? ": an orphan, which no node carries." : way.size() == 1 ? ": the master of node " + std::to_string(node.value) + "." :
-                    ": " + counted(way.size() - 1, "step") + " from master " + std::to_string(way.back()) + " of node " + std::to_string(node.value) + ".");
+  report.headline =
+      "Surface vertex " + std::to_string(v) + " at " + words(at) +
+      (orphan            ? ": an orphan, which no node carries."
+       : way.size() == 1 ? ": the master of node " + std::to_string(node.value) + "."
+                         : ": " + counted(way.size() - 1, "step") + " from master " + std::to_string(way.back()) +
+                               " of node " + std::to_string(node.value) + ".");
   report.add("vertex", v);
   report.add("position", place(at));
   report.add("site", static_cast<std::size_t>(body.surface.site(vertex).value));
@@ -118,12 +135,15 @@ void ask_vertex(const geo::TriangleMesh& mesh, std::size_t v, Report& report) {
   if (mesh.two_sided())
     for (std::size_t o = 0; o < mesh.site.size(); ++o)
       if (o != v && mesh.site[o] == mesh.site[v]) copies.push_back(o);
-  report.headline = "Vertex " + std::to_string(v) + " at " + words(mesh.vertices[v]) + ": " + counted(triangles.size(), "triangle") + (copies.empty() ? "." : ", " + counted(copies.size(), "other vertex", "other vertices") + " at its place.");
+  report.headline =
+      "Vertex " + std::to_string(v) + " at " + words(mesh.vertices[v]) + ": " + counted(triangles.size(), "triangle") +
+      (copies.empty() ? "." : ", " + counted(copies.size(), "other vertex", "other vertices") + " at its place.");
   report.add("vertex", v);
   report.add("position", place(mesh.vertices[v]));
   report.add("triangles", numbers(triangles));
   report.add("patches", numbers(patches));
-  if (mesh.two_sided()) report.add("site", static_cast<std::size_t>(mesh.site[v])), report.add("copies", numbers(copies));
+  if (mesh.two_sided())
+    report.add("site", static_cast<std::size_t>(mesh.site[v])), report.add("copies", numbers(copies));
 }
 
 }  // namespace info

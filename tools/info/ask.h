@@ -10,7 +10,8 @@ namespace info {
 void ask_node(const geo::Body& body, std::size_t i, Report& report);
 /// Edge or not, neighbours or not, lengths along the graph and straight, and the faces between them.
 void ask_edge(const geo::Body& body, std::size_t i, std::size_t j, Report& report);
-/// A surface vertex, by its row in the body's file: place, patches, and the way up its tree to the node that carries it.
+/// A surface vertex, by its row in the body's file: place, patches, and the way up its tree to the node that carries
+/// it.
 void ask_vertex(const geo::Body& body, std::size_t v, Report& report);
 /// A row of a surface.
 void ask_vertex(const geo::TriangleMesh& mesh, std::size_t v, Report& report);

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "info/files.h"
-#include <kerf/run_files.h>
 #include <kerf/check.h>
 #include <kerf/pieces.h>
+#include <kerf/run_files.h>
+#include "info/files.h"
 #include "tool.h"
 
 namespace info {
@@ -23,7 +23,8 @@ void report_motion(const geo::Checkpoint& checkpoint, Report& report) {
   double displacement = 0, speed = 0;
   for (const auto& u : checkpoint.state.motion.displacement) displacement = std::max(displacement, u.norm());
   for (const auto& v : checkpoint.state.motion.velocity) speed = std::max(speed, v.norm());
-  report.headline += " The checkpoint of a run at frame " + std::to_string(checkpoint.state.frame) + ", " + rounded(checkpoint.state.time) + " s.";
+  report.headline += " The checkpoint of a run at frame " + std::to_string(checkpoint.state.frame) + ", " +
+                     rounded(checkpoint.state.time) + " s.";
   report.add("frame", static_cast<std::size_t>(checkpoint.state.frame));
   report.add_number("time", checkpoint.state.time);
   report.add_number("displacement_max", displacement);
@@ -32,7 +33,8 @@ void report_motion(const geo::Checkpoint& checkpoint, Report& report) {
 
 }  // namespace
 
-std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes, const Wishes& wishes, Report& report) {
+std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes, const Wishes& wishes,
+                        Report& report) {
   geo::BodyReport result;
   std::string problem;
   std::vector<std::uint32_t> component;
@@ -48,14 +50,21 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
   }
   std::size_t vertices = 0;
   std::vector<double> neighbors;
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) neighbors.push_back(double(body.graph.neighbor_count(geo::NodeId(i))));
-  for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v) vertices += body.surface.alive(geo::SurfaceVertexId(v));
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    neighbors.push_back(double(body.graph.neighbor_count(geo::NodeId(i))));
+  for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v)
+    vertices += body.surface.alive(geo::SurfaceVertexId(v));
   const auto [least, most] = std::minmax_element(neighbors.begin(), neighbors.end());
-  const double sum = std::accumulate(neighbors.begin(), neighbors.end(), 0.0), volume = std::accumulate(body.nodes.volume.begin(), body.nodes.volume.end(), 0.0);
+  const double sum = std::accumulate(neighbors.begin(), neighbors.end(), 0.0),
+               volume = std::accumulate(body.nodes.volume.begin(), body.nodes.volume.end(), 0.0);
   const auto debris = static_cast<std::size_t>(std::count(body.debris.begin(), body.debris.end(), 1));
-  report.headline = "A body of " + counted(result.pieces, "piece") + ": " + counted(body.nodes.size(), "node") + " and " + counted(body.graph.edge_count(), "visibility edge") + ", " +
-                    (body.surface.crack_count() > 0 ? counted(static_cast<std::size_t>(body.surface.crack_count()), "crack") : "no crack") + ", " + counted(body.updates, "crack step") + "; volume " +
-                    rounded(volume) + "." + (debris > 0 ? " " + counted(debris, "node is", "nodes are") + " debris." : "");
+  report.headline =
+      "A body of " + counted(result.pieces, "piece") + ": " + counted(body.nodes.size(), "node") + " and " +
+      counted(body.graph.edge_count(), "visibility edge") + ", " +
+      (body.surface.crack_count() > 0 ? counted(static_cast<std::size_t>(body.surface.crack_count()), "crack")
+                                      : "no crack") +
+      ", " + counted(body.updates, "crack step") + "; volume " + rounded(volume) + "." +
+      (debris > 0 ? " " + counted(debris, "node is", "nodes are") + " debris." : "");
   report.add_text("kind", "body");
   report.add("nodes", body.nodes.size());
   report.add("edges", body.graph.edge_count());

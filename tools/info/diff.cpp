@@ -50,7 +50,9 @@ bool report_difference(const geo::Body& a, const geo::Body& b, Report& report) {
   Count moved, resized, rows, added, removed;
   for (std::size_t i = 0; i < common; ++i) {
     if (a.nodes.position[i] != b.nodes.position[i]) moved.add(i);
-    if (a.nodes.radius[i] != b.nodes.radius[i] || a.nodes.volume[i] != b.nodes.volume[i] || a.nodes.spacing[i] != b.nodes.spacing[i] || a.debris[i] != b.debris[i]) resized.add(i);
+    if (a.nodes.radius[i] != b.nodes.radius[i] || a.nodes.volume[i] != b.nodes.volume[i] ||
+        a.nodes.spacing[i] != b.nodes.spacing[i] || a.debris[i] != b.debris[i])
+      resized.add(i);
     const auto id = static_cast<std::uint32_t>(i);
     if (!(a.graph.rows().row(id) == b.graph.rows().row(id))) rows.add(i);
   }
@@ -59,15 +61,22 @@ bool report_difference(const geo::Body& a, const geo::Body& b, Report& report) {
   const Count cut = edges_missing(a, b), drawn = edges_missing(b, a);
   Count rebound;
   const std::size_t vertices = std::min(a.binding.master.size(), b.binding.master.size());
-  const auto carrier = [](const geo::Body& body, std::size_t v) { return body.binding.master[v].valid() ? body.binding.master_node[body.binding.master[v].index()] : geo::NodeId(); };
+  const auto carrier = [](const geo::Body& body, std::size_t v) {
+    return body.binding.master[v].valid() ? body.binding.master_node[body.binding.master[v].index()] : geo::NodeId();
+  };
   for (std::size_t v = 0; v < vertices; ++v)
     if (carrier(a, v) != carrier(b, v)) rebound.add(v);
   const std::size_t pieces_a = geo::find_pieces(a.surface).count, pieces_b = geo::find_pieces(b.surface).count;
   const geo::TriangleMesh first = a.surface.two_sided(), second = b.surface.two_sided();
-  const bool same_surface = first.vertices == second.vertices && first.triangles == second.triangles && first.patch == second.patch;
-  const bool same = same_surface && moved.size() + resized.size() + rows.size() + added.size() + removed.size() == 0 && a.graph == b.graph && a.binding == b.binding;
-  report.headline = same ? "The same body." : "From the first to the second: " + counted(pieces_a, "piece") + " → " + std::to_string(pieces_b) + ", " + counted(cut.size(), "edge") + " cut, " + grouped(drawn.size()) + " drawn, " +
-                    counted(added.size(), "node") + " added, " + counted(rows.size(), "node") + " with other edges or neighbours.";
+  const bool same_surface =
+      first.vertices == second.vertices && first.triangles == second.triangles && first.patch == second.patch;
+  const bool same = same_surface && moved.size() + resized.size() + rows.size() + added.size() + removed.size() == 0 &&
+                    a.graph == b.graph && a.binding == b.binding;
+  report.headline = same ? "The same body."
+                         : "From the first to the second: " + counted(pieces_a, "piece") + " → " +
+                               std::to_string(pieces_b) + ", " + counted(cut.size(), "edge") + " cut, " +
+                               grouped(drawn.size()) + " drawn, " + counted(added.size(), "node") + " added, " +
+                               counted(rows.size(), "node") + " with other edges or neighbours.";
   report.add("same", same);
   report.add("pieces", numbers(std::vector{pieces_a, pieces_b}));
   report.add("faces", numbers(std::vector{a.surface.live_face_count(), b.surface.live_face_count()}));

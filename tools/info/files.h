@@ -3,9 +3,9 @@
 
 #include <kerf/body.h>
 #include <kerf/crack.h>
+#include <kerf/surface_file.h>
 #include "info/report.h"
 #include "io/kerf_reader.h"
-#include <kerf/surface_file.h>
 
 namespace info {
 
@@ -15,7 +15,8 @@ struct Wishes {
 
 std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, Report& report);
 /// `file`, of that many `bytes`: where the body is from; a run's checkpoint has more to tell.
-std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes, const Wishes& wishes, Report& report);
+std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes, const Wishes& wishes,
+                        Report& report);
 std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report& report);
 /// Reading has found all that can be wrong with fronts.
 void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, Report& report);

@@ -2,11 +2,11 @@
 #include <filesystem>
 #include <numeric>
 
-#include <kerf/error.h>
-#include "info/files.h"
 #include <kerf/body_file.h>
+#include <kerf/error.h>
 #include <kerf/scene_file.h>
 #include <kerf/stream.h>
+#include "info/files.h"
 #include "model.h"
 #include "tool.h"
 
@@ -26,11 +26,13 @@ std::string twins(const geo::NodeSet& nodes) {
   std::sort(order.begin(), order.end(), less);
   for (std::size_t i = 1; i < order.size(); ++i)
     if (nodes.position[order[i - 1]] == nodes.position[order[i]])
-      return "nodes " + std::to_string(order[i - 1]) + " and " + std::to_string(order[i]) + " are at one place; remove one of them";
+      return "nodes " + std::to_string(order[i - 1]) + " and " + std::to_string(order[i]) +
+             " are at one place; remove one of them";
   return {};
 }
 
-// A frame is a surface that has deformed: sheets have parted, triangles may touch, cross and have no area. Only its topology is asked for.
+// A frame is a surface that has deformed: sheets have parted, triangles may touch, cross and have no area. Only its
+// topology is asked for.
 std::string check_frame(const std::string& path) {
   geo::TriangleMesh mesh = geo::read_surface(path).mesh;
   mesh.patch.clear(), mesh.site.clear();
@@ -44,7 +46,8 @@ std::string check_frame(const std::string& path) {
 std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report& report) {
   const auto [lo, hi] = std::minmax_element(nodes.spacing.begin(), nodes.spacing.end());
   const double volume = std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0);
-  report.headline = counted(nodes.size(), "node") + ", " + rounded(*lo) + " to " + rounded(*hi) + " apart; volume " + rounded(volume) + ".";
+  report.headline = counted(nodes.size(), "node") + ", " + rounded(*lo) + " to " + rounded(*hi) + " apart; volume " +
+                    rounded(volume) + ".";
   report.add_text("kind", "nodes");
   report.add("nodes", nodes.size());
   report.add_number("spacing_min", *lo);
@@ -69,9 +72,15 @@ void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, 
       moves.push_back(longest);
     }
   }
-  const std::string swept = counted(fronts.size() - sheets, "front") + " of " + counted(steps, "time step"), whole = counted(sheets, "sheet") + " of " + counted(triangles, "triangle");
-  report.headline = (sheets == 0 ? swept : sheets == fronts.size() ? whole : swept + ", " + whole) + "; " + counted(points, "point") +
-                    (moves.empty() ? "." : "; the longest move of a point in a step is " + rounded(*std::max_element(moves.begin(), moves.end())) + ".");
+  const std::string swept = counted(fronts.size() - sheets, "front") + " of " + counted(steps, "time step"),
+                    whole = counted(sheets, "sheet") + " of " + counted(triangles, "triangle");
+  report.headline = (sheets == 0               ? swept
+                     : sheets == fronts.size() ? whole
+                                               : swept + ", " + whole) +
+                    "; " + counted(points, "point") +
+                    (moves.empty() ? "."
+                                   : "; the longest move of a point in a step is " +
+                                         rounded(*std::max_element(moves.begin(), moves.end())) + ".");
   report.add_text("kind", "fronts");
   report.add("fronts", fronts.size() - sheets);
   report.add("sheets", sheets);
@@ -89,8 +98,10 @@ std::string report_scene(const std::string& path, const Wishes& wishes, Report& 
   std::vector<std::string> meshes, blades;
   for (const auto& body : scene.bodies) meshes.push_back(tool::quoted(body.mesh));
   for (const auto& blade : scene.blades) blades.push_back(tool::quoted(blade.name));
-  report.headline = "A scene: " + counted(scene.bodies.size(), "body", "bodies") + " and " + counted(scene.blades.size(), "blade") + (scene.ground ? " over a ground" : "") + ", " +
-                    counted(static_cast<std::size_t>(scene.frames), "frame") + " at " + rounded(scene.frame_rate) + " a second.";
+  report.headline = "A scene: " + counted(scene.bodies.size(), "body", "bodies") + " and " +
+                    counted(scene.blades.size(), "blade") + (scene.ground ? " over a ground" : "") + ", " +
+                    counted(static_cast<std::size_t>(scene.frames), "frame") + " at " + rounded(scene.frame_rate) +
+                    " a second.";
   report.add_text("kind", "scene");
   report.add("bodies", scene.bodies.size());
   report.add("meshes", list(meshes));
@@ -114,14 +125,17 @@ std::string report_scene(const std::string& path, const Wishes& wishes, Report& 
 }
 
 std::string report_run(const std::string& folder, const Wishes& wishes, Report& report) {
-  const fs::path top(folder), inner = fs::is_directory(top / "frames") ? top / "frames" : top, checkpoint = top / "checkpoint.kerf";
+  const fs::path top(folder), inner = fs::is_directory(top / "frames") ? top / "frames" : top,
+                              checkpoint = top / "checkpoint.kerf";
   std::vector<std::string> frames;
   for (const auto& entry : fs::directory_iterator(inner))
     if (entry.path().extension() == ".ply") frames.push_back(entry.path().string());
   std::sort(frames.begin(), frames.end());
   const bool resumable = fs::exists(checkpoint);
-  if (frames.empty() && !resumable) throw geo::InputError(folder + ": is no folder of a run: it has neither frames nor a checkpoint");
-  report.headline = "A run: " + counted(frames.size(), "frame") + (resumable ? ", and a checkpoint to go on from" : ", no checkpoint") + ".";
+  if (frames.empty() && !resumable)
+    throw geo::InputError(folder + ": is no folder of a run: it has neither frames nor a checkpoint");
+  report.headline = "A run: " + counted(frames.size(), "frame") +
+                    (resumable ? ", and a checkpoint to go on from" : ", no checkpoint") + ".";
   report.add_text("kind", "run");
   report.add("frames", frames.size());
   report.add("checkpoint", resumable);

@@ -19,8 +19,10 @@ void Report::add_histogram(const std::string& key, const std::vector<double>& va
   const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
   std::array<std::size_t, 10> counts{};
-  for (const double x : values) ++counts[*hi > *lo ? std::min<std::size_t>(9, static_cast<std::size_t>(10 * (x - *lo) / (*hi - *lo))) : 0];
-  add(key, "{\"lo\":" + tool::number(*lo) + ",\"hi\":" + tool::number(*hi) + ",\"mean\":" + tool::number(mean) + ",\"counts\":" + numbers(counts) + "}");
+  for (const double x : values)
+    ++counts[*hi > *lo ? std::min<std::size_t>(9, static_cast<std::size_t>(10 * (x - *lo) / (*hi - *lo))) : 0];
+  add(key, "{\"lo\":" + tool::number(*lo) + ",\"hi\":" + tool::number(*hi) + ",\"mean\":" + tool::number(mean) +
+               ",\"counts\":" + numbers(counts) + "}");
   std::string bars = key + ": " + rounded(*lo) + " to " + rounded(*hi) + ", mean " + rounded(mean) + "\n";
   const std::size_t most = *std::max_element(counts.begin(), counts.end());
   for (std::size_t b = 0; b < counts.size() && *hi > *lo; ++b) {
@@ -40,7 +42,8 @@ void Report::add_report(const std::string& key, const Report& other) {
 
 std::string Report::json() const {
   std::string text = "{";
-  for (std::size_t i = 0; i < rows_.size(); ++i) text += (i ? "," : "") + tool::quoted(rows_[i].first) + ":" + rows_[i].second;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    text += (i ? "," : "") + tool::quoted(rows_[i].first) + ":" + rows_[i].second;
   return text + "}";
 }
 
@@ -53,8 +56,10 @@ void Report::print(bool as_json) const {
   for (const auto& [key, value] : rows_) {
     if (value.front() == '{') continue;  // a histogram: below; another report: its headline has said it
     std::string shown = value.size() > 1 && value.front() == '"' ? value.substr(1, value.size() - 2) : value;
-    for (std::size_t at = 0; (at = shown.find("},{", at)) != std::string::npos;) shown.insert(at += 2, "\n" + std::string(21, ' '));  // a list of objects: one a line
-    std::cout << key << std::string(std::max<std::size_t>(1, 20 - std::min<std::size_t>(19, key.size())), ' ') << shown << '\n';
+    for (std::size_t at = 0; (at = shown.find("},{", at)) != std::string::npos;)
+      shown.insert(at += 2, "\n" + std::string(21, ' '));  // a list of objects: one a line
+    std::cout << key << std::string(std::max<std::size_t>(1, 20 - std::min<std::size_t>(19, key.size())), ' ') << shown
+              << '\n';
   }
   for (const auto& bars : bars_) std::cout << '\n' << bars;
 }

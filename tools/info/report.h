@@ -17,7 +17,8 @@ class Report {
   void add(const std::string& key, bool value) { add(key, std::string(value ? "true" : "false")); }
   void add_text(const std::string& key, const std::string& value);
   void add_number(const std::string& key, double value);
-  /// Ten bins between the least and the greatest value; in JSON an object with lo, hi, mean and counts, for people bars.
+  /// Ten bins between the least and the greatest value; in JSON an object with lo, hi, mean and counts, for people
+  /// bars.
   void add_histogram(const std::string& key, const std::vector<double>& values);
 
   /// Another report's keys: in JSON an object; people see its histograms only.
@@ -28,7 +29,6 @@ class Report {
 
  private:
   std::string json() const;
-
 
   std::vector<std::pair<std::string, std::string>> rows_;
   std::vector<std::string> bars_;  ///< what people see of histograms

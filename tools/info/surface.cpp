@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include <kerf/error.h>
-#include "info/files.h"
 #include <kerf/check.h>
+#include <kerf/error.h>
 #include <kerf/pieces.h>
+#include "info/files.h"
 #include "tool.h"
 
 namespace info {
@@ -25,7 +25,8 @@ std::vector<double> edge_lengths(const geo::TriangleMesh& mesh) {
 std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, Report& report) {
   const auto& mesh = file.mesh;
   const auto result = geo::check_surface(mesh, wishes.check);
-  const auto cracks = static_cast<std::size_t>(std::count_if(mesh.patch.begin(), mesh.patch.end(), [](auto p) { return p > 0; }));
+  const auto cracks =
+      static_cast<std::size_t>(std::count_if(mesh.patch.begin(), mesh.patch.end(), [](auto p) { return p > 0; }));
   std::size_t pieces = 0, front_edges = 0;
   std::int32_t crack_count = 0;
   const bool sound = result.closed && result.manifold && result.oriented;
@@ -35,14 +36,22 @@ std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, R
       crack_count = complex.crack_count();
       for (std::uint32_t f = 0; f < complex.face_count(); ++f)
         for (int k = 0; k < 3; ++k)
-          if (complex.face(geo::FaceId(f)).crack > 0) front_edges += complex.around(complex.face(geo::FaceId(f)).v[k], complex.face(geo::FaceId(f)).v[(k + 1) % 3]).size() == 1;
+          if (complex.face(geo::FaceId(f)).crack > 0)
+            front_edges +=
+                complex.around(complex.face(geo::FaceId(f)).v[k], complex.face(geo::FaceId(f)).v[(k + 1) % 3]).size() ==
+                1;
     } catch (const geo::InputError&) {
     }
   const double volume = geo::signed_volume(mesh);
-  const geo::Vec3 size = mesh.vertices.empty() ? geo::Vec3(0, 0, 0) : geo::Vec3(geo::bounding_box(mesh).hi - geo::bounding_box(mesh).lo);
-  report.headline = (sound ? "A closed surface: " : "A surface that is not closed or not sound: ") + counted(mesh.triangles.size() - 2 * cracks, "triangle") + " of skin" +
-                    (crack_count > 0 ? ", " + counted(static_cast<std::size_t>(crack_count), "crack") + " of " + counted(cracks, "triangle") + (front_edges > 0 ? " that ends inside" : "") : "") +
-                    (pieces > 0 ? ", " + counted(pieces, "piece") : "") + "; " + rounded(size.x()) + " × " + rounded(size.y()) + " × " + rounded(size.z()) + ", volume " + rounded(volume) + "." +
+  const geo::Vec3 size =
+      mesh.vertices.empty() ? geo::Vec3(0, 0, 0) : geo::Vec3(geo::bounding_box(mesh).hi - geo::bounding_box(mesh).lo);
+  report.headline = (sound ? "A closed surface: " : "A surface that is not closed or not sound: ") +
+                    counted(mesh.triangles.size() - 2 * cracks, "triangle") + " of skin" +
+                    (crack_count > 0 ? ", " + counted(static_cast<std::size_t>(crack_count), "crack") + " of " +
+                                           counted(cracks, "triangle") + (front_edges > 0 ? " that ends inside" : "")
+                                     : "") +
+                    (pieces > 0 ? ", " + counted(pieces, "piece") : "") + "; " + rounded(size.x()) + " × " +
+                    rounded(size.y()) + " × " + rounded(size.z()) + ", volume " + rounded(volume) + "." +
                     (file.fronts.empty() ? "" : " " + counted(file.fronts.size(), "front") + " can go on.");
   report.add_text("kind", "surface");
   report.add("vertices", mesh.vertices.size());
@@ -64,7 +73,9 @@ std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, R
   for (auto& name : names) name = tool::quoted(name);
   report.add("attributes", list(names));
   if (wishes.histograms) report.add_histogram("edge_lengths", edge_lengths(mesh));
-  const std::string problem = result.good() && wishes.check && !mesh.two_sided() && volume <= 0 ? "the surface is inside out; reverse its triangles" : result.first_problem;
+  const std::string problem = result.good() && wishes.check && !mesh.two_sided() && volume <= 0
+                                  ? "the surface is inside out; reverse its triangles"
+                                  : result.first_problem;
   return problem.empty() || mesh.two_sided() ? problem : problem + ", or try kerf-repair";
 }
 

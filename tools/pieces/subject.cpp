@@ -23,17 +23,22 @@ bool is_deformed(const geo::TriangleMesh& mesh) {
   return false;
 }
 
-// The vertices of a frame where the body that the run ends with has them. Runs only add vertices to a body and move none.
+// The vertices of a frame where the body that the run ends with has them. Runs only add vertices to a body and move
+// none.
 std::vector<geo::Vec3> material_points(const geo::TriangleMesh& frame, const std::string& path) {
   const fs::path checkpoint = fs::absolute(path).parent_path().parent_path() / "checkpoint.kerf";
   std::error_code error;
   if (path == "-" || !fs::exists(checkpoint, error))
-    throw geo::InputError(path + ": is deformed, and no frame in the folder of its run, whose checkpoint.kerf says where it was; give the undeformed surface");
+    throw geo::InputError(path +
+                          ": is deformed, and no frame in the folder of its run, whose checkpoint.kerf says where it "
+                          "was; give the undeformed surface");
   const geo::Complex surface = geo::read_body(checkpoint.string()).surface;
   std::vector<geo::Vec3> points;
   for (const auto site : frame.site) {
     if (site >= surface.vertex_count() || surface.faces_at(geo::VertexId(site)).empty())
-      throw geo::InputError(path + ": was cut after its run's checkpoint.kerf was written, or is of another run; bring the run to its end with kerf-sim --resume");
+      throw geo::InputError(path +
+                            ": was cut after its run's checkpoint.kerf was written, or is of another run; bring the "
+                            "run to its end with kerf-sim --resume");
     points.push_back(surface.point(geo::VertexId(site)));
   }
   return points;

@@ -10,13 +10,14 @@
 namespace pieces {
 
 struct Subject {
-  geo::TriangleMesh mesh;        ///< undeformed, with its attributes; `complex` was made from it. Empty where a body's file has the complex itself
+  geo::TriangleMesh mesh;  ///< undeformed, with its attributes; `complex` was made from it. Empty where a body's file
+                           ///< has the complex itself
   geo::Complex complex;
   std::vector<geo::Vec3> moved;  ///< of a deformed frame: where its vertices are, by their rows in `mesh`; else empty
 };
 
-/// Reads any of them; of a run's folder the last frame. A frame whose cracks have opened is put back to where its run's checkpoint.kerf, in the folder above it, has its
-/// vertices: topology is decided there. Throws InputError.
+/// Reads any of them; of a run's folder the last frame. A frame whose cracks have opened is put back to where its run's
+/// checkpoint.kerf, in the folder above it, has its vertices: topology is decided there. Throws InputError.
 Subject read_subject(const std::string& path);
 
 }  // namespace pieces

@@ -23,7 +23,8 @@ void give_way() {
 
 }  // namespace
 
-FrameWriter::FrameWriter(const RunFolder& folder, std::string log, bool json) : folder_(folder), log_(std::move(log)), json_(json), thread_([this] { run(); }) {}
+FrameWriter::FrameWriter(const RunFolder& folder, std::string log, bool json)
+    : folder_(folder), log_(std::move(log)), json_(json), thread_([this] { run(); }) {}
 
 FrameWriter::~FrameWriter() {
   {
@@ -86,7 +87,8 @@ void FrameWriter::write(const std::string& path, const std::function<void(std::o
 void FrameWriter::write(const Frame& frame) {
   const int i = frame.outcome.frame;
   write(folder_.nodes(i), [&](std::ostream& out) { geo::write_frame_nodes(out, frame.nodes); });
-  if (!frame.obstacles.triangles.empty()) write(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
+  if (!frame.obstacles.triangles.empty())
+    write(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
   write(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
   if (i == 0) return;  // nothing has happened yet
   const std::string line = line_of(frame.outcome, crossings_.count(frame.surface));

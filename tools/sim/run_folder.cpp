@@ -32,10 +32,13 @@ void RunFolder::require_room(bool resume) const {
   if (!fs::is_directory(path, error)) throw geo::OutputError(path.string() + ": is not a folder; give another name");
   if (fs::exists(frames(), error)) {
     if (resume) return;
-    throw geo::OutputError(path.string() + ": holds a run already; go on with --resume, remove it, or give another folder");
+    throw geo::OutputError(path.string() +
+                           ": holds a run already; go on with --resume, remove it, or give another folder");
   }
   for (const auto& entry : fs::directory_iterator(path, error))
-    if (const auto name = entry.path().filename().string(); name[0] != '.') throw geo::OutputError(path.string() + ": holds other files, as '" + name + "'; give another folder, or empty it");
+    if (const auto name = entry.path().filename().string(); name[0] != '.')
+      throw geo::OutputError(path.string() + ": holds other files, as '" + name +
+                             "'; give another folder, or empty it");
 }
 
 void RunFolder::make(bool with_obstacles) const {
@@ -63,18 +66,22 @@ std::string RunFolder::read_log(int count) const {
   const std::string all = geo::read_all(log().string());
   std::size_t end = 0;
   for (int i = 0; i < count && end != std::string::npos; ++i) end = all.find('\n', end ? end + 1 : 0);
-  if (end == std::string::npos) throw geo::InputError(log().string() + ": has fewer lines than there are frames; begin the run anew");
+  if (end == std::string::npos)
+    throw geo::InputError(log().string() + ": has fewer lines than there are frames; begin the run anew");
   return all.substr(0, end + 1);
 }
 
 void RunFolder::require_space(double bytes) const {
   std::error_code error;
   fs::path there = fs::absolute(path);
-  while (!fs::exists(there, error) && there.has_parent_path() && there != there.parent_path()) there = there.parent_path();
+  while (!fs::exists(there, error) && there.has_parent_path() && there != there.parent_path())
+    there = there.parent_path();
   const auto space = fs::space(there, error);
   if (error || space.capacity == 0 || double(space.available) >= bytes) return;
   const auto megabytes = [](double b) { return std::to_string(static_cast<long long>(b / 1e6) + 1) + " MB"; };
-  throw geo::OutputError(path.string() + ": the run needs about " + megabytes(bytes) + ", but " + megabytes(double(space.available)) + " are free; ask for fewer frames, or give another folder");
+  throw geo::OutputError(path.string() + ": the run needs about " + megabytes(bytes) + ", but " +
+                         megabytes(double(space.available)) +
+                         " are free; ask for fewer frames, or give another folder");
 }
 
 double bytes_of_frames(const geo::TriangleMesh& mesh, int frames) {

@@ -22,7 +22,8 @@ struct RunFolder {
   static std::string obstacles_name(int i);
   std::string obstacles(int i) const { return (path / obstacles_name(i)).string(); }
 
-  /// Throws OutputError unless a run may begin here: the folder is new or empty, but for hidden files. With `resume` one that holds a run, or began to, will do.
+  /// Throws OutputError unless a run may begin here: the folder is new or empty, but for hidden files. With `resume`
+  /// one that holds a run, or began to, will do.
   void require_room(bool resume) const;
   /// `with_obstacles`: a folder for them, too. Throws OutputError.
   void make(bool with_obstacles) const;
@@ -35,7 +36,8 @@ struct RunFolder {
   void require_space(double bytes) const;
 };
 
-/// A frame as PLY and its samples in the USD file, by what there is now and half as much again for cracks; bytes of so many.
+/// A frame as PLY and its samples in the USD file, by what there is now and half as much again for cracks; bytes of so
+/// many.
 double bytes_of_frames(const geo::TriangleMesh& mesh, int frames);
 
 }  // namespace sim

@@ -18,7 +18,8 @@ void write_whole_run(const RunFolder& folder, int last, double frame_rate, char 
     if (obstacles) parts[1].push_back(RunFolder::obstacles_name(i));
   }
   for (std::size_t part = 0; part < parts.size(); ++part)
-    geo::write_all((folder.path / (part == 0 ? "run.ply.series" : "obstacles.ply.series")).string(), [&](std::ostream& out) { geo::write_series(out, parts[part], frame_rate); });
+    geo::write_all((folder.path / (part == 0 ? "run.ply.series" : "obstacles.ply.series")).string(),
+                   [&](std::ostream& out) { geo::write_series(out, parts[part], frame_rate); });
   const auto frames = [&](std::size_t part) {
     return [&, part](std::size_t i) { return geo::read_surface((folder.path / parts[part][i]).string()).mesh; };
   };

@@ -95,11 +95,14 @@ void write_webp(std::ostream& out, int count, double frame_rate, const Sequence&
     const Picture shown = picture(i);
     if (!encoder) encoder.reset(WebPAnimEncoderNew(shown.width, shown.height, nullptr));
     WebpPicture frame(shown);
-    if (!encoder || !WebPAnimEncoderAdd(encoder.get(), &frame, milliseconds(i), &config)) failed(encoder ? WebPAnimEncoderGetError(encoder.get()) : "out of memory");
+    if (!encoder || !WebPAnimEncoderAdd(encoder.get(), &frame, milliseconds(i), &config))
+      failed(encoder ? WebPAnimEncoderGetError(encoder.get()) : "out of memory");
   }
   WebPData data;
   WebPDataInit(&data);
-  if (!encoder || !WebPAnimEncoderAdd(encoder.get(), nullptr, milliseconds(count), nullptr) || !WebPAnimEncoderAssemble(encoder.get(), &data)) failed("libwebp has no memory for it");
+  if (!encoder || !WebPAnimEncoderAdd(encoder.get(), nullptr, milliseconds(count), nullptr) ||
+      !WebPAnimEncoderAssemble(encoder.get(), &data))
+    failed("libwebp has no memory for it");
   out.write(reinterpret_cast<const char*>(data.bytes), static_cast<std::streamsize>(data.size));
   WebPDataClear(&data);
 }
@@ -111,9 +114,24 @@ void write_mp4(const std::string& path, int count, double frame_rate, const Sequ
   for (int i = 0; i < count; ++i) {
     const Picture shown = picture(i);
     if (!ffmpeg)
-      ffmpeg = std::make_unique<Fed>(std::vector<std::string>{"ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", std::to_string(shown.width) + "x" + std::to_string(shown.height), "-r",
-                                                              std::to_string(frame_rate), "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-threads", "1", "-crf", "20", "-pix_fmt", "yuv420p",
-                                                              "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4", aside});
+      ffmpeg = std::make_unique<Fed>(
+          std::vector<std::string>{"ffmpeg",    "-loglevel",
+                                   "error",     "-y",
+                                   "-f",        "rawvideo",
+                                   "-pix_fmt",  "rgb24",
+                                   "-s",        std::to_string(shown.width) + "x" + std::to_string(shown.height),
+                                   "-r",        std::to_string(frame_rate),
+                                   "-i",        "-",
+                                   "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                   "-c:v",      "libx264",
+                                   "-threads",  "1",
+                                   "-crf",      "20",
+                                   "-pix_fmt",  "yuv420p",
+                                   "-fflags",   "+bitexact",
+                                   "-flags:v",  "+bitexact",
+                                   "-movflags", "+faststart",
+                                   "-f",        "mp4",
+                                   aside});
     ffmpeg->put(rgb_bytes(shown));
   }
   if (!ffmpeg || ffmpeg->end() != 0) failed("ffmpeg failed");

@@ -35,7 +35,8 @@ constexpr Color rigid{0.42f, 0.43f, 0.45f};
 void add_obstacles(Stage& stage, const geo::TriangleMesh& mesh) {
   const auto first = static_cast<std::uint32_t>(stage.surface.vertices.size());
   stage.surface.vertices.insert(stage.surface.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-  if (!stage.surface.patch.empty()) stage.surface.patch.resize(stage.surface.triangles.size() + mesh.triangles.size(), 0);
+  if (!stage.surface.patch.empty())
+    stage.surface.patch.resize(stage.surface.triangles.size() + mesh.triangles.size(), 0);
   for (const auto& [a, b, c] : mesh.triangles) {
     stage.surface.triangles.push_back({first + a, first + b, first + c});
     stage.triangle_colors.push_back(rigid), stage.back_colors.push_back(rigid);
@@ -75,7 +76,11 @@ Color parse_color(const std::string& text) {
 }
 
 Color viridis(double t) {
-  constexpr Color stops[] = {{0.058f, 0.0004f, 0.088f}, {0.043f, 0.084f, 0.258f}, {0.014f, 0.281f, 0.271f}, {0.105f, 0.584f, 0.122f}, {0.984f, 0.799f, 0.019f}};
+  constexpr Color stops[] = {{0.058f, 0.0004f, 0.088f},
+                             {0.043f, 0.084f, 0.258f},
+                             {0.014f, 0.281f, 0.271f},
+                             {0.105f, 0.584f, 0.122f},
+                             {0.984f, 0.799f, 0.019f}};
   const double s = std::clamp(t, 0.0, 1.0) * 4;
   const int i = std::min(3, static_cast<int>(s));
   Color c{};
@@ -127,7 +132,9 @@ geo::Box3 box_of(const Stage& stage) {
 void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>& points) {
   constexpr int directions = 256;  // evenly over the sphere: along a spiral
   std::vector<Vec3> all = points;
-  const auto beyond = [&](const Vec3& p) { return stage.cutaway ? (p - stage.cutaway->point).dot(stage.cutaway->normal) : -1.0; };
+  const auto beyond = [&](const Vec3& p) {
+    return stage.cutaway ? (p - stage.cutaway->point).dot(stage.cutaway->normal) : -1.0;
+  };
   std::vector<char> taken(stage.surface.vertices.size(), 0);
   for (const auto& triangle : stage.surface.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -141,7 +148,8 @@ void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>
   points.assign(directions, Vec3::Zero());
   geo::parallel_for(directions, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const double height = 1 - (2 * double(k) + 1) / directions, across = std::sqrt(1 - height * height), turn = double(k) * std::numbers::pi * (3 - std::sqrt(5.0));
+      const double height = 1 - (2 * double(k) + 1) / directions, across = std::sqrt(1 - height * height),
+                   turn = double(k) * std::numbers::pi * (3 - std::sqrt(5.0));
       const Vec3 way(across * std::cos(turn), across * std::sin(turn), height);
       double farthest = -std::numeric_limits<double>::infinity();
       const auto take = [&](const Vec3& p) {

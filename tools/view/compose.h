@@ -21,18 +21,21 @@ struct Look {
   Coloring coloring = Coloring::patch;
   Color skin{0.80f, 0.36f, 0.10f};
   bool nodes = false, edges = false, wire = false, section = true;
-  std::string field = "radius";  ///< that nodes are coloured by, see fields.h
-  bool cut_edges = false;        ///< edges that cracks cut, in red
-  bool seams = false;            ///< where cracks meet the skin (green) and where they end (red)
-  bool trees = false;            ///< masters and their trees of slaves
-  std::optional<std::uint32_t> node;    ///< this node's neighbourhood
+  std::string field = "radius";       ///< that nodes are coloured by, see fields.h
+  bool cut_edges = false;             ///< edges that cracks cut, in red
+  bool seams = false;                 ///< where cracks meet the skin (green) and where they end (red)
+  bool trees = false;                 ///< masters and their trees of slaves
+  std::optional<std::uint32_t> node;  ///< this node's neighbourhood
   std::size_t first_step = 0, last_step = ~std::size_t(0);  ///< of fronts
-  const geo::Body* before = nullptr;    ///< an earlier state of the body: cut edges are those it had, updated nodes are red
+  const geo::Body* before =
+      nullptr;  ///< an earlier state of the body: cut edges are those it had, updated nodes are red
   double opacity = 1;
   bool sheets = false;  ///< sheets of cracks stay opaque in a skin that is not
   double explode = 0;   ///< pieces move apart by this fraction of their distance from the middle
   std::optional<RelativePlane> cutaway;
-  bool inside() const { return nodes || edges || cut_edges || trees || node; }  ///< something within the surface is drawn
+  bool inside() const {
+    return nodes || edges || cut_edges || trees || node;
+  }  ///< something within the surface is drawn
 };
 
 /// "#rrggbb" as linear light. Throws geo::InputError.
@@ -48,7 +51,8 @@ Stage stage_of(const Subject& subject, const Look& look);
 geo::Box3 box_of(const Stage& stage);
 /// What a picture should show: the same without what obstacles have beyond a quarter of its diagonal.
 geo::Box3 frame_of(const Stage& stage);
-/// Adds to `points` those of the stage, brought into `frame`, that are farthest off in one of some hundred directions, and leaves others out.
+/// Adds to `points` those of the stage, brought into `frame`, that are farthest off in one of some hundred directions,
+/// and leaves others out.
 void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<geo::Vec3>& points);
 
 }  // namespace view

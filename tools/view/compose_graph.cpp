@@ -11,14 +11,16 @@ namespace {
 
 using geo::Vec3;
 
-constexpr Color red{0.70f, 0.02f, 0.02f}, blue{0.10f, 0.22f, 0.55f}, bright{0.03f, 0.16f, 0.62f}, orange{0.90f, 0.32f, 0.02f}, green{0.02f, 0.30f, 0.06f};
+constexpr Color red{0.70f, 0.02f, 0.02f}, blue{0.10f, 0.22f, 0.55f}, bright{0.03f, 0.16f, 0.62f},
+    orange{0.90f, 0.32f, 0.02f}, green{0.02f, 0.30f, 0.06f};
 
 // Shortest paths along edges from a node, no longer than `reach`: the node before each one reached.
 std::map<std::uint32_t, std::uint32_t> paths_from(const geo::Body& body, std::uint32_t start, double reach) {
   std::map<std::uint32_t, std::uint32_t> from;
   std::map<std::uint32_t, double> length{{start, 0}}, open = length;
   while (!open.empty()) {
-    const auto next = std::min_element(open.begin(), open.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto next =
+        std::min_element(open.begin(), open.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     const auto [i, so_far] = *next;
     open.erase(next);
     for (const geo::NodeId j : body.graph.edges(geo::NodeId(i))) {
@@ -44,9 +46,11 @@ void add_neighborhood(Stage& stage, const geo::Body& body, const std::vector<Vec
   for (const auto& n : body.graph.neighbors(body.nodes, geo::NodeId(i))) {
     const std::uint32_t j = n.to.value;
     stage.spheres.push_back({position[j], 0.17 * spacing[j], behind[j] ? orange : bright});
-    if (!behind[j]) stage.sticks.push_back({position[i], position[j], 0.07 * spacing[i] * (1.15 - n.distance / reach), bright});
+    if (!behind[j])
+      stage.sticks.push_back({position[i], position[j], 0.07 * spacing[i] * (1.15 - n.distance / reach), bright});
     else
-      for (auto step = from.find(j); step != from.end(); step = from.find(step->second)) stage.sticks.push_back({position[step->first], position[step->second], 0.03 * spacing[i], orange});
+      for (auto step = from.find(j); step != from.end(); step = from.find(step->second))
+        stage.sticks.push_back({position[step->first], position[step->second], 0.03 * spacing[i], orange});
   }
 }
 
@@ -59,9 +63,11 @@ void add_nodes(Stage& stage, const Subject& subject, const std::vector<Vec3>& po
     const auto& values = find_field(fields, look.field).values;
     const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
     const double low = values.empty() ? 0 : *lo, range = values.empty() || *hi == *lo ? 1 : *hi - *lo;
-    const auto updated = subject.body && look.before ? updated_nodes(*subject.body, *look.before) : std::vector<std::uint8_t>(nodes.size());
+    const auto updated = subject.body && look.before ? updated_nodes(*subject.body, *look.before)
+                                                     : std::vector<std::uint8_t>(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      stage.spheres.push_back({position[i], 0.14 * nodes.spacing[i], updated[i] ? red : viridis((values[i] - low) / range)});
+      stage.spheres.push_back(
+          {position[i], 0.14 * nodes.spacing[i], updated[i] ? red : viridis((values[i] - low) / range)});
   }
   if (!subject.body) return;
   const auto stick = [&](std::uint32_t i, std::uint32_t j, double width, const Color& color) {
@@ -74,7 +80,9 @@ void add_nodes(Stage& stage, const Subject& subject, const std::vector<Vec3>& po
   if (look.cut_edges)
     for (const auto& [i, j] : cut_edges(*subject.body, look.before)) stick(i, j, 0.03, red);
   if (!look.node) return;
-  if (*look.node >= nodes.size()) throw geo::InputError("there is no node " + std::to_string(*look.node) + "; the last is " + std::to_string(nodes.size() - 1));
+  if (*look.node >= nodes.size())
+    throw geo::InputError("there is no node " + std::to_string(*look.node) + "; the last is " +
+                          std::to_string(nodes.size() - 1));
   add_neighborhood(stage, *subject.body, position, *look.node);
 }
 

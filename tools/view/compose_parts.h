@@ -5,8 +5,8 @@
 
 namespace view {
 
-/// Nodes, edges, cut ones, the neighbourhood of one node; `position`: where the nodes are shown. A node file's nodes are always
-/// drawn.
+/// Nodes, edges, cut ones, the neighbourhood of one node; `position`: where the nodes are shown. A node file's nodes
+/// are always drawn.
 void add_nodes(Stage& stage, const Subject& subject, const std::vector<geo::Vec3>& position, const Look& look);
 
 /// Masters and slaves (§ 6.5): links of nodes to masters in red, trees in green; of one node where `look.node` says.

@@ -10,7 +10,8 @@ namespace {
 geo::VisibilityGraph graph_within_skin(const geo::Body& body) {
   std::vector<std::array<geo::Vec3, 3>> skin;
   for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
-    if (body.surface.alive(geo::FaceId(f)) && body.surface.face(geo::FaceId(f)).crack == 0) skin.push_back(body.surface.corners(geo::FaceId(f)));
+    if (body.surface.alive(geo::FaceId(f)) && body.surface.face(geo::FaceId(f)).crack == 0)
+      skin.push_back(body.surface.corners(geo::FaceId(f)));
   return geo::build_visibility_graph(body.nodes, geo::TriangleBvh(skin), body.k);
 }
 
@@ -22,12 +23,14 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> cut_edges(const geo::Body& 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cut;
   for (std::uint32_t i = 0; i < std::min(whole.node_count(), body.nodes.size()); ++i)
     for (const geo::NodeId j : whole.edges(geo::NodeId(i)))
-      if (j.value > i && j.index() < body.nodes.size() && !body.graph.has(geo::NodeId(i), j)) cut.push_back({i, j.value});
+      if (j.value > i && j.index() < body.nodes.size() && !body.graph.has(geo::NodeId(i), j))
+        cut.push_back({i, j.value});
   return cut;
 }
 
 std::vector<std::uint8_t> updated_nodes(const geo::Body& body, const geo::Body& before) {
-  if (before.nodes.size() > body.nodes.size()) throw geo::InputError("the body before has more nodes than the one after; exchange them");
+  if (before.nodes.size() > body.nodes.size())
+    throw geo::InputError("the body before has more nodes than the one after; exchange them");
   std::vector<std::uint8_t> updated(body.nodes.size(), 1);
   for (std::uint32_t i = 0; i < before.nodes.size(); ++i)
     updated[i] = !(before.graph.rows().row(i) == body.graph.rows().row(i));

@@ -12,8 +12,8 @@ namespace view {
 /// that there would be if only the skin blocked sight.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> cut_edges(const geo::Body& body, const geo::Body* before);
 
-/// Per node: 1 where its row of edges and neighbours is another than before, or it is new. Throws InputError when `before`
-/// has more nodes.
+/// Per node: 1 where its row of edges and neighbours is another than before, or it is new. Throws InputError when
+/// `before` has more nodes.
 std::vector<std::uint8_t> updated_nodes(const geo::Body& body, const geo::Body& before);
 
 }  // namespace view

@@ -14,7 +14,8 @@ std::vector<Field> node_fields(const Subject& subject) {
   std::vector<std::uint32_t> component;
   body.graph.components(component);
   Field neighbors{"neighbors", {}};
-  for (std::size_t i = 0; i < nodes.size(); ++i) neighbors.values.push_back(double(body.graph.neighbor_count(geo::NodeId(i))));
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    neighbors.values.push_back(double(body.graph.neighbor_count(geo::NodeId(i))));
   fields.push_back(std::move(neighbors));
   fields.push_back({"component", {component.begin(), component.end()}});
   fields.push_back({"debris", {body.debris.begin(), body.debris.end()}});

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <map>
 
-#include "geometry/bvh.h"
 #include <kerf/run_files.h>
 #include <kerf/stream.h>
+#include "geometry/bvh.h"
 #include "view/pieces.h"
 
 namespace view {
 namespace {
 
-// Pieces only ever come apart, so a piece of the checkpoint is within one of each frame: the one whose surface is nearest to
-// most of its nodes. `own`: per node, its piece in the checkpoint.
-std::vector<std::uint32_t> whole_of(const geo::TriangleMesh& surface, const std::vector<std::uint32_t>& own, const MovingNodes::Frame& frame) {
+// Pieces only ever come apart, so a piece of the checkpoint is within one of each frame: the one whose surface is
+// nearest to most of its nodes. `own`: per node, its piece in the checkpoint.
+std::vector<std::uint32_t> whole_of(const geo::TriangleMesh& surface, const std::vector<std::uint32_t>& own,
+                                    const MovingNodes::Frame& frame) {
   constexpr std::size_t asked = 64;  // nodes of each piece
   const PieceMap pieces = pieces_of(surface);
   const std::uint32_t count = own.empty() ? 0 : *std::max_element(own.begin(), own.end()) + 1;
@@ -35,7 +36,8 @@ std::vector<std::uint32_t> whole_of(const geo::TriangleMesh& surface, const std:
 
 }  // namespace
 
-MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const std::vector<geo::TriangleMesh>& surfaces, const geo::Progress& progress) {
+MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const std::vector<geo::TriangleMesh>& surfaces,
+                              const geo::Progress& progress) {
   MovingNodes moving;
   if (!checkpoint.body) return moving;
   const auto& rest = checkpoint.nodes.position;

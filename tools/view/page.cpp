@@ -45,19 +45,22 @@ class Writer {
       few = shrink(mesh, pieces.of_row, static_cast<std::size_t>(most), kept);
       for (const auto v : kept) piece.push_back(pieces.of_row[v]);
       pieces.of_row = piece;
-      notice("decimated", "Surface decimated for this page: " + std::to_string(few.triangles.size()) + " of " + counted(mesh.triangles.size(), "triangles shown"));
+      notice("decimated", "Surface decimated for this page: " + std::to_string(few.triangles.size()) + " of " +
+                              counted(mesh.triangles.size(), "triangles shown"));
     }
     const geo::TriangleMesh& shown = coarse ? few : mesh;
     Numbers corners, patch(shown.patch.begin(), shown.patch.end());
     for (const auto& t : shown.triangles) corners.insert(corners.end(), t.begin(), t.end());
     const std::string name = "surface" + std::to_string(about_["surfaces"].size()) + "/";
-    about_["surfaces"].push_back({{"label", label},
-                                  {"position", name + "position"},
-                                  {"triangles", shared(name, "triangles", corners, shown.vertices.size() < 65536 ? 2 : 4, 3)},
-                                  {"patch", shared(name, "patch", patch, 4, 1)},
-                                  {"piece", shared(name, "piece", pieces.of_row, 4, 1)}});
+    about_["surfaces"].push_back(
+        {{"label", label},
+         {"position", name + "position"},
+         {"triangles", shared(name, "triangles", corners, shown.vertices.size() < 65536 ? 2 : 4, 3)},
+         {"patch", shared(name, "patch", patch, 4, 1)},
+         {"piece", shared(name, "piece", pieces.of_row, 4, 1)}});
     const std::string last = last_["position"];
-    pack_.points(name + "position", shown.vertices, box_, !last.empty() && pack_.length(last) == 3 * shown.vertices.size() ? last : "");
+    pack_.points(name + "position", shown.vertices, box_,
+                 !last.empty() && pack_.length(last) == 3 * shown.vertices.size() ? last : "");
     last_["position"] = name + "position";
     return !coarse;
   }
@@ -68,8 +71,13 @@ class Writer {
     geo::Box3 around;
     for (const auto& mesh : frames) around.add(geo::bounding_box(mesh));
     Numbers kept, corners;
-    const geo::TriangleMesh shown = double(frames[0].triangles.size()) > most ? shrink(frames[0], Numbers(frames[0].vertices.size(), 0), static_cast<std::size_t>(most), kept) : frames[0];
-    if (!kept.empty()) notice("obstacles", "Obstacles decimated for this page: " + std::to_string(shown.triangles.size()) + " of " + counted(frames[0].triangles.size(), "triangles shown"));
+    const geo::TriangleMesh shown =
+        double(frames[0].triangles.size()) > most
+            ? shrink(frames[0], Numbers(frames[0].vertices.size(), 0), static_cast<std::size_t>(most), kept)
+            : frames[0];
+    if (!kept.empty())
+      notice("obstacles", "Obstacles decimated for this page: " + std::to_string(shown.triangles.size()) + " of " +
+                              counted(frames[0].triangles.size(), "triangles shown"));
     if (kept.empty()) kept.resize(shown.vertices.size()), std::iota(kept.begin(), kept.end(), 0u);
     for (const auto& t : shown.triangles) corners.insert(corners.end(), t.begin(), t.end());
     pack_.whole("obstacles/triangles", corners, 4, 3);
@@ -84,22 +92,28 @@ class Writer {
   }
 
   // Nodes with all that is known of them; `rest`: the surface in material coordinates, `whole`: with all of its rows.
-  void add_nodes(const Subject& subject, int rest, bool whole, const geo::Body* before, const MovingNodes& moving = {}) {
+  void add_nodes(const Subject& subject, int rest, bool whole, const geo::Body* before,
+                 const MovingNodes& moving = {}) {
     const geo::NodeSet& nodes = subject.nodes;
     const std::size_t n = nodes.size();
     if (n == 0) return;
-    const std::size_t step = double(n) > budget_.nodes ? static_cast<std::size_t>(std::ceil(double(n) / budget_.nodes)) : 1;
-    if (step > 1) notice("nodes", "One node in " + std::to_string(step) + " of " + std::to_string(n) + " shown, without the graph");
+    const std::size_t step =
+        double(n) > budget_.nodes ? static_cast<std::size_t>(std::ceil(double(n) / budget_.nodes)) : 1;
+    if (step > 1)
+      notice("nodes", "One node in " + std::to_string(step) + " of " + std::to_string(n) + " shown, without the graph");
     json& about = about_["nodes"];
     const auto thinned = [&](const auto& values) {
       std::remove_cvref_t<decltype(values)> kept;
       for (std::size_t i = 0; i < n; i += step) kept.push_back(values[i]);
       return kept;
     };
-    about = {{"count", (n + step - 1) / step}, {"step", step}, {"rest", rest}, {"frame", subject.frame}, {"graph", false}, {"tree", false}, {"fields", json::array()}, {"frames", json::array()}};
+    about = {{"count", (n + step - 1) / step}, {"step", step},           {"rest", rest},
+             {"frame", subject.frame},         {"graph", false},         {"tree", false},
+             {"fields", json::array()},        {"frames", json::array()}};
     pack_.points("nodes/rest", thinned(nodes.position), box_);
     double most = 0;
-    for (const auto& frame : moving.frames) most = std::max(most, *std::max_element(frame.stress.begin(), frame.stress.end()));
+    for (const auto& frame : moving.frames)
+      most = std::max(most, *std::max_element(frame.stress.begin(), frame.stress.end()));
     std::string position = "nodes/rest", stress;
     for (std::size_t f = 0; f < moving.frames.size(); ++f) {
       const auto& frame = moving.frames[f];
@@ -107,7 +121,10 @@ class Writer {
       pack_.points("nodes/at" + number, thinned(frame.position), box_, position);
       pack_.scaled("stress/at" + number, thinned(frame.stress), 0, most, stress);
       position = "nodes/at" + number, stress = "stress/at" + number;
-      about["frames"].push_back({{"count", (frame.count + step - 1) / step}, {"position", position}, {"stress", stress}, {"pieces", frame.piece_of}});
+      about["frames"].push_back({{"count", (frame.count + step - 1) / step},
+                                 {"position", position},
+                                 {"stress", stress},
+                                 {"pieces", frame.piece_of}});
     }
     if (!moving.frames.empty()) about["fields"].push_back("stress"), about["stress"] = {0, moving.stress_shown};
     const double unit = std::max(0.5 * box_.diagonal(), 1e-300);
@@ -128,23 +145,29 @@ class Writer {
     for (std::size_t f = 0; f < fronts.size(); ++f) {
       std::vector<geo::Vec3> points;
       json counts = json::array();
-      for (const auto& step : fronts[f].steps) points.insert(points.end(), step.begin(), step.end()), counts.push_back(step.size());
+      for (const auto& step : fronts[f].steps)
+        points.insert(points.end(), step.begin(), step.end()), counts.push_back(step.size());
       const std::string name = "front" + std::to_string(f);
       pack_.points(name, points, box_);
-      about_["fronts"].push_back({{"name", fronts[f].name}, {"closed", fronts[f].closed}, {"steps", counts}, {"points", name}});
+      about_["fronts"].push_back(
+          {{"name", fronts[f].name}, {"closed", fronts[f].closed}, {"steps", counts}, {"points", name}});
     }
   }
 
   Page page(const std::string& title, const PageOptions& options) {
-    about_["title"] = title, about_["rate"] = options.frame_rate, about_["y_up"] = options.y_up, about_["unit"] = 0.5 * box_.diagonal(), about_["made"] = made, about_["arrays"] = pack_.manifest();
+    about_["title"] = title, about_["rate"] = options.frame_rate, about_["y_up"] = options.y_up,
+    about_["unit"] = 0.5 * box_.diagonal(), about_["made"] = made, about_["arrays"] = pack_.manifest();
     Page page;
     for (const auto& [key, text] : notice_of_) page.notices.push_back(text);
     about_["notices"] = page.notices;
     std::string text = about_.dump(-1, ' ', true, json::error_handler_t::replace);
     // A file's name may hold </script> or a mark.
-    for (std::size_t at = 0; (at = text.find_first_of("<@", at)) != std::string::npos;) text.replace(at, 1, text[at] == '<' ? "\\u003c" : "\\u0040");
+    for (std::size_t at = 0; (at = text.find_first_of("<@", at)) != std::string::npos;)
+      text.replace(at, 1, text[at] == '<' ? "\\u003c" : "\\u0040");
     page.html = page_template();
-    const auto put = [&](const std::string& mark, const std::string& what) { page.html.replace(page.html.find(mark), mark.size(), what); };
+    const auto put = [&](const std::string& mark, const std::string& what) {
+      page.html.replace(page.html.find(mark), mark.size(), what);
+    };
     put("@ABOUT@", text);
     put("@DATA@", pack_.text());
     return page;
@@ -174,12 +197,16 @@ class Writer {
         const std::uint32_t j = row.to[e];
         if (geo::VisibilityGraph::is_guide(j) || j < i) continue;
         to.push_back(j);
-        bits.push_back(geo::VisibilityGraph::is_edge(row.bits[e]) | geo::VisibilityGraph::is_neighbor(row.bits[e]) << 1 | behind << 2);
-        distance.push_back((behind ? double(length) : (body.nodes.position[i] - body.nodes.position[j]).norm()) / std::max(0.5 * box_.diagonal(), 1e-300));
+        bits.push_back(geo::VisibilityGraph::is_edge(row.bits[e]) |
+                       geo::VisibilityGraph::is_neighbor(row.bits[e]) << 1 | behind << 2);
+        distance.push_back((behind ? double(length) : (body.nodes.position[i] - body.nodes.position[j]).norm()) /
+                           std::max(0.5 * box_.diagonal(), 1e-300));
       }
       count.push_back(static_cast<std::uint32_t>(to.size() - had));
     }
-    if (double(to.size()) > budget_.pairs) return notice("graph", "The graph has " + counted(to.size(), "edges and pairs of neighbours: too many for this page"));
+    if (double(to.size()) > budget_.pairs)
+      return notice("graph",
+                    "The graph has " + counted(to.size(), "edges and pairs of neighbours: too many for this page"));
     pack_.whole("graph/count", count, 4, 1);
     pack_.whole("graph/to", to, 4, 1);
     pack_.whole("graph/bits", bits, 1, 1);
@@ -213,7 +240,8 @@ class Writer {
   geo::Box3 box_;
   Budget budget_;
   Pack pack_;
-  json about_ = {{"surfaces", json::array()}, {"obstacles", json::array()}, {"fronts", json::array()}, {"nodes", nullptr}};
+  json about_ = {
+      {"surfaces", json::array()}, {"obstacles", json::array()}, {"fronts", json::array()}, {"nodes", nullptr}};
   std::map<std::string, std::string> notice_of_;
   std::map<std::string, std::string> last_;
 };
@@ -221,7 +249,8 @@ class Writer {
 // Tries budgets until the page is small enough.
 Page fitted(const PageOptions& options, const Budget& needed, const std::function<Page(const Budget&)>& attempt) {
   Budget budget;
-  budget = {std::min(budget.triangles, needed.triangles), std::min(budget.nodes, needed.nodes), std::min(budget.pairs, needed.pairs)};
+  budget = {std::min(budget.triangles, needed.triangles), std::min(budget.nodes, needed.nodes),
+            std::min(budget.pairs, needed.pairs)};
   for (;;) {
     Page page = attempt(budget);
     const double room = options.megabytes * 1e6 / double(page.html.size());
@@ -233,7 +262,8 @@ Page fitted(const PageOptions& options, const Budget& needed, const std::functio
 Budget needs_of(const Subject& subject) {
   Budget needed{double(subject.surface.triangles.size()), double(subject.nodes.size()), 0};
   if (subject.body)
-    for (std::uint32_t i = 0; i < subject.nodes.size(); ++i) needed.pairs += double(subject.body->graph.entries(i).to.size()) / 2;
+    for (std::uint32_t i = 0; i < subject.nodes.size(); ++i)
+      needed.pairs += double(subject.body->graph.entries(i).to.size()) / 2;
   return needed;
 }
 
@@ -270,7 +300,8 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
     geo::report(progress, "read", frames.size(), run.frames.size());
     frames.push_back(geo::read_surface(path).mesh);
     box.add(geo::bounding_box(frames.back()));
-    needed.triangles = std::max(needed.triangles, double(run.frames.size() + 1) * double(frames.back().triangles.size()));
+    needed.triangles =
+        std::max(needed.triangles, double(run.frames.size() + 1) * double(frames.back().triangles.size()));
   }
   const std::vector<geo::TriangleMesh> obstacles = read_obstacles(run);
   const MovingNodes moving = read_moving_nodes(run, subject, frames, progress);

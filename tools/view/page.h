@@ -11,10 +11,10 @@
 namespace view {
 
 struct PageOptions {
-  double megabytes = 20;                ///< the page stays below; what is too large for it is made coarser
-  const geo::Body* before = nullptr;    ///< an earlier state of the body, for the edges that were cut; see cut_edges()
+  double megabytes = 20;              ///< the page stays below; what is too large for it is made coarser
+  const geo::Body* before = nullptr;  ///< an earlier state of the body, for the edges that were cut; see cut_edges()
   double frame_rate = 24;
-  bool y_up = false;                    ///< the model's y is up, not its z
+  bool y_up = false;  ///< the model's y is up, not its z
 };
 
 /// A page for one subject, or for a run with what its checkpoint holds.

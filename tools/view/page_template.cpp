@@ -4,7 +4,8 @@ asm(".section .rodata\n"
     ".global kerf_page_begin\n"
     ".global kerf_page_end\n"
     "kerf_page_begin:\n"
-    ".incbin \"" KERF_PAGE "\"\n"
+    ".incbin \"" KERF_PAGE
+    "\"\n"
     "kerf_page_end:\n"
     ".previous\n");
 extern const char kerf_page_begin[], kerf_page_end[];

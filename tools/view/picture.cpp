@@ -21,7 +21,8 @@ void png_failed(png_structp, png_const_charp message) {
 }
 void png_warned(png_structp, png_const_charp) {}
 void png_put(png_structp png, png_bytep data, png_size_t size) {
-  static_cast<std::ostream*>(png_get_io_ptr(png))->write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  static_cast<std::ostream*>(png_get_io_ptr(png))
+      ->write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 void png_flush_nothing(png_structp) {}
 
@@ -68,7 +69,8 @@ void write_png(std::ostream& out, const Picture& picture) {
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     const auto bytes = rgb_bytes(picture);
-    for (int y = 0; y < picture.height; ++y) png_write_row(png, bytes.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) * 3);
+    for (int y = 0; y < picture.height; ++y)
+      png_write_row(png, bytes.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) * 3);
     png_write_end(png, info);
   } catch (...) {
     png_destroy_write_struct(&png, &info);

@@ -44,19 +44,21 @@ PieceMap pieces_of(const geo::TriangleMesh& mesh) {
     const double part = (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));
     volume[s] += part, terms[s] += std::abs(part) + 1e-3 * std::pow(box[s].diagonal(), 3);
   }
-  // A shell whose volume is not positive beyond the rounding of its sum bounds a cavity, or is a crack inside: it goes with
-  // the smallest shell around it.
+  // A shell whose volume is not positive beyond the rounding of its sum bounds a cavity, or is a crack inside: it goes
+  // with the smallest shell around it.
   std::vector<std::uint32_t> outer(shells);
   for (std::uint32_t s = 0; s < shells; ++s) {
     outer[s] = s;
     if (volume[s] > 64 * std::numeric_limits<double>::epsilon() * terms[s]) continue;
     for (std::uint32_t o = 0; o < shells; ++o)
-      if (o != s && volume[o] > 0 && contains(box[o], box[s]) && (outer[s] == s || volume[o] < volume[outer[s]])) outer[s] = o;
+      if (o != s && volume[o] > 0 && contains(box[o], box[s]) && (outer[s] == s || volume[o] < volume[outer[s]]))
+        outer[s] = o;
   }
   PieceMap pieces;
   std::vector<std::uint32_t> number(shells);
   for (std::uint32_t s = 0; s < shells; ++s)
-    if (outer[s] == s) number[s] = static_cast<std::uint32_t>(pieces.center.size()), pieces.center.push_back(box[s].center());
+    if (outer[s] == s)
+      number[s] = static_cast<std::uint32_t>(pieces.center.size()), pieces.center.push_back(box[s].center());
   for (const std::uint32_t s : shell) pieces.of_row.push_back(number[outer[s]]);
   return pieces;
 }

@@ -28,11 +28,15 @@ std::uint32_t hash(std::uint32_t x) {
   return x;
 }
 
-// What is random in one sample of a pixel. Rays to lights are spread over all samples of the pixel, so that few a sample are
-// enough: one coordinate of each is from a layer of its own, the other goes on by the golden ratio.
+// What is random in one sample of a pixel. Rays to lights are spread over all samples of the pixel, so that few a
+// sample are enough: one coordinate of each is from a layer of its own, the other goes on by the golden ratio.
 class Dice {
  public:
-  Dice(std::uint32_t pixel, int sample, int samples, int rays) : state_(hash(pixel * 64u + static_cast<std::uint32_t>(sample))), sample_(sample), samples_(samples), rays_(rays) {
+  Dice(std::uint32_t pixel, int sample, int samples, int rays)
+      : state_(hash(pixel * 64u + static_cast<std::uint32_t>(sample))),
+        sample_(sample),
+        samples_(samples),
+        rays_(rays) {
     std::uint32_t turn = hash(pixel);
     turn_ = unit(turn);
   }
@@ -126,7 +130,8 @@ class Tracer {
     double from = 0, until = 1e30;
     bool at_plane = false;
     if (stage_.cutaway) {
-      // The eye may stand in what is cut away: then the ray begins at the plane, or never. Else it ends there, if it goes there.
+      // The eye may stand in what is cut away: then the ray begins at the plane, or never. Else it ends there, if it
+      // goes there.
       const double height = (eye - stage_.cutaway->point).dot(stage_.cutaway->normal);
       const double rate = d.dot(stage_.cutaway->normal);
       if (height > 0) {
@@ -150,14 +155,16 @@ class Tracer {
     // Through the skin as far as something opaque; its layers are laid over each other from behind.
     std::vector<std::pair<Color, double>> layers;
     while (skin.t < thing.t && skin.t < 1e29) {
-      const double opacity = stage_.surface_opacity >= 1 || skin.opaque ? 1 : std::min(1.0, stage_.surface_opacity * rim(skin, d));
+      const double opacity =
+          stage_.surface_opacity >= 1 || skin.opaque ? 1 : std::min(1.0, stage_.surface_opacity * rim(skin, d));
       layers.push_back({lit(skin, d, dice), opacity});
       if (opacity >= 1 || layers.size() == 6) break;
       // The first layer only, where nothing opaque of the surface is to be found behind it.
       if (!stage_.sheets_opaque) break;
       skin = trace(surface_, eye, d, skin.t + 1e-6 * scale_);
     }
-    for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) behind = mixed(behind, layer->first, layer->second);
+    for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer)
+      behind = mixed(behind, layer->first, layer->second);
     return behind;
   }
 
@@ -178,12 +185,12 @@ class Tracer {
   void add_surface(RTCScene scene, bool counting) {
     if (stage_.surface.triangles.empty()) return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                                          stage_.surface.vertices.size()));
+    auto* p = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, stage_.surface.vertices.size()));
     for (const auto& v : stage_.surface.vertices)
       for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(v[c]);
-    auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                                                  stage_.surface.triangles.size()));
+    auto* i = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, stage_.surface.triangles.size()));
     for (const auto& t : stage_.surface.triangles)
       for (const auto v : t) *i++ = v;
     if (counting) rtcSetGeometryIntersectFilterFunction(g, count_crossing);
@@ -195,7 +202,8 @@ class Tracer {
   void add_spheres() {
     if (stage_.spheres.empty()) return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, stage_.spheres.size()));
+    auto* p = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, stage_.spheres.size()));
     for (const auto& s : stage_.spheres) {
       for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(s.center[c]);
       *p++ = static_cast<float>(s.radius);
@@ -208,8 +216,10 @@ class Tracer {
   void add_sticks() {
     if (stage_.sticks.empty()) return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-    auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 2 * stage_.sticks.size()));
-    auto* i = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, 4, stage_.sticks.size()));
+    auto* p = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, 2 * stage_.sticks.size()));
+    auto* i = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, 4, stage_.sticks.size()));
     std::uint32_t row = 0;
     for (const auto& s : stage_.sticks) {
       for (const Vec3* end : {&s.a, &s.b}) {
@@ -249,7 +259,8 @@ class Tracer {
       const Vec3 flat(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
       if (!stage_.back_colors.empty() && flat.dot(d) > 0) hit.color = stage_.back_colors[r.hit.primID];
       hit.opaque = stage_.sheets_opaque && stage_.surface.patch[r.hit.primID] != 0;
-      if (stage_.wire && std::min({r.hit.u, r.hit.v, 1 - r.hit.u - r.hit.v}) < 0.035f) hit.color = scaled(hit.color, 0.45);
+      if (stage_.wire && std::min({r.hit.u, r.hit.v, 1 - r.hit.u - r.hit.v}) < 0.035f)
+        hit.color = scaled(hit.color, 0.45);
     } else {
       hit.normal = Vec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z).normalized();
       hit.color = r.hit.geomID == 1 ? stage_.spheres[r.hit.primID].color : stage_.sticks[r.hit.primID].color;
@@ -357,15 +368,19 @@ std::vector<Vec3> to_be_seen(const Camera& camera, double scale) {
   const std::size_t count = points.size();
   constexpr int turns = 72;
   for (int turn = 1; turn < turns && camera.all_round; ++turn)
-    for (std::size_t i = 0; i < count; ++i) points.push_back(Eigen::AngleAxisd(2 * pi * turn / turns, Vec3::UnitZ()) * points[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      points.push_back(Eigen::AngleAxisd(2 * pi * turn / turns, Vec3::UnitZ()) * points[i]);
   return points;
 }
 
-// How far back the eye has to be to see points along `axis` in a picture that reaches `slope` to either side at a distance of 1, wherever it is along the axis: a
-// point at (a, f) along axis and view is seen from (m, −d) where |a − m| ≤ slope (d + f).
+// How far back the eye has to be to see points along `axis` in a picture that reaches `slope` to either side at a
+// distance of 1, wherever it is along the axis: a point at (a, f) along axis and view is seen from (m, −d) where |a −
+// m| ≤ slope (d + f).
 double distance_to_see(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& forward, double slope) {
   double most = -1e300, least = 1e300;
-  for (const Vec3& p : points) most = std::max(most, axis.dot(p) - slope * forward.dot(p)), least = std::min(least, axis.dot(p) + slope * forward.dot(p));
+  for (const Vec3& p : points)
+    most = std::max(most, axis.dot(p) - slope * forward.dot(p)),
+    least = std::min(least, axis.dot(p) + slope * forward.dot(p));
   return (most - least) / (2 * slope);
 }
 
@@ -388,18 +403,24 @@ double middle_of_view(const std::vector<Vec3>& points, const Vec3& axis, const V
 
 Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options) {
   const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
-  const Stage near = placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius, camera.y_up);
+  const Stage near =
+      placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius, camera.y_up);
   const Tracer tracer(near);
   const double azimuth = camera.azimuth * pi / 180, elevation = camera.elevation * pi / 180;
-  const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), -std::sin(elevation));
+  const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
+                     -std::sin(elevation));
   const Vec3 right = Vec3(std::cos(azimuth), -std::sin(azimuth), 0), up = right.cross(forward);
-  const double all = std::tan(17 * pi / 180), field = all / camera.zoom;  // half the vertical angle of view; zoomed in, from where all is seen
+  const double all = std::tan(17 * pi / 180),
+               field = all / camera.zoom;  // half the vertical angle of view; zoomed in, from where all is seen
   const double aspect = double(options.width) / options.height;
   const double room = 0.84;  // share of the picture that is filled; shadows want some
   const std::vector<Vec3> points = to_be_seen(camera, 1 / radius);
-  const double distance = std::max({distance_to_see(points, right, forward, room * all * aspect), distance_to_see(points, up, forward, room * all), 1e-3});
+  const double distance = std::max({distance_to_see(points, right, forward, room * all * aspect),
+                                    distance_to_see(points, up, forward, room * all), 1e-3});
   Vec3 eye = -distance * forward;
-  if (!camera.on_box) eye += middle_of_view(points, right, forward, distance) * right + middle_of_view(points, up, forward, distance) * up;
+  if (!camera.on_box)
+    eye +=
+        middle_of_view(points, right, forward, distance) * right + middle_of_view(points, up, forward, distance) * up;
 
   const int samples = options.samples * options.samples, rays = (options.occlusion + samples - 1) / samples;
   Picture picture(options.width, options.height);
@@ -408,9 +429,14 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
       for (int x = 0; x < options.width; ++x) {
         Color sum{};
         for (int s = 0; s < samples; ++s) {
-          Dice dice(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options.width) + static_cast<std::uint32_t>(x), s, samples, rays);
-          const double px = x + (s % options.samples + 0.5) / options.samples, py = double(y) + (s / options.samples + 0.5) / options.samples;
-          const Vec3 d = (forward + (2 * px / options.width - 1) * field * aspect * right + (1 - 2 * py / options.height) * field * up).normalized();
+          Dice dice(
+              static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options.width) + static_cast<std::uint32_t>(x),
+              s, samples, rays);
+          const double px = x + (s % options.samples + 0.5) / options.samples,
+                       py = double(y) + (s / options.samples + 0.5) / options.samples;
+          const Vec3 d = (forward + (2 * px / options.width - 1) * field * aspect * right +
+                          (1 - 2 * py / options.height) * field * up)
+                             .normalized();
           const Color c = tracer.shade(eye, d, dice);
           for (int k = 0; k < 3; ++k) sum[k] += c[k];
         }

@@ -31,7 +31,7 @@ struct Stage {
   std::vector<Color> back_colors;      ///< the same, seen from behind; empty: no difference
   std::vector<Sphere> spheres;
   std::vector<Stick> sticks;
-  std::size_t obstacles = 0;           ///< so many triangles, the last ones, are of obstacles
+  std::size_t obstacles = 0;  ///< so many triangles, the last ones, are of obstacles
   std::optional<Plane> cutaway;
   double surface_opacity = 1;  ///< below 1 nodes and edges inside show through
   bool sheets_opaque = false;  ///< the opacity is the skin's; sheets of cracks (surface.patch) stay opaque
@@ -41,8 +41,9 @@ struct Stage {
   std::optional<double> ground_level;
 };
 
-/// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 shows `points`, as large as they can be seen from
-/// there, in the middle; above it less, from where it stands. With `y_up` all that is seen is stood up first: its y goes to z, its z to −y.
+/// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 shows `points`, as large as
+/// they can be seen from there, in the middle; above it less, from where it stands. With `y_up` all that is seen is
+/// stood up first: its y goes to z, its z to −y.
 struct Camera {
   double azimuth = 30, elevation = 22, zoom = 1;
   bool y_up = false;
@@ -54,8 +55,8 @@ struct Camera {
 
 struct RenderOptions {
   int width = 960, height = 720;
-  int samples = 3;      ///< rays a pixel and direction: samples² in all
-  int occlusion = 36;   ///< rays a pixel for ambient light, one a sample or more
+  int samples = 3;     ///< rays a pixel and direction: samples² in all
+  int occlusion = 36;  ///< rays a pixel for ambient light, one a sample or more
 };
 
 /// The same picture for any number of threads.

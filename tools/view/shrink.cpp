@@ -10,8 +10,8 @@ namespace {
 
 using Cell = std::array<std::int64_t, 5>;
 
-geo::TriangleMesh clustered(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece, const std::vector<std::int32_t>& sheet, double edge,
-                            std::vector<std::uint32_t>& kept) {
+geo::TriangleMesh clustered(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece,
+                            const std::vector<std::int32_t>& sheet, double edge, std::vector<std::uint32_t>& kept) {
   const geo::Vec3 lo = geo::bounding_box(mesh).lo;
   std::map<Cell, std::uint32_t> rows;
   std::vector<std::uint32_t> row_of(mesh.vertices.size());
@@ -36,7 +36,8 @@ geo::TriangleMesh clustered(const geo::TriangleMesh& mesh, const std::vector<std
 
 }  // namespace
 
-geo::TriangleMesh shrink(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece, std::size_t most, std::vector<std::uint32_t>& kept) {
+geo::TriangleMesh shrink(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece, std::size_t most,
+                         std::vector<std::uint32_t>& kept) {
   // A vertex of a crack's sheet belongs to it, also where the sheet meets the skin.
   std::vector<std::int32_t> sheet(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.patch.size(); ++t)

@@ -9,8 +9,8 @@
 
 namespace view {
 
-/// At most `most` triangles, more only where there are more sheets: positions, triangles and patch; `kept` receives the row that stands for each
-/// row of the result. `piece`: per vertex row.
+/// At most `most` triangles, more only where there are more sheets: positions, triangles and patch; `kept` receives the
+/// row that stands for each row of the result. `piece`: per vertex row.
 geo::TriangleMesh shrink(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece, std::size_t most,
                          std::vector<std::uint32_t>& kept);
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <kerf/error.h>
 #include <kerf/body_file.h>
-#include <kerf/run_files.h>
+#include <kerf/error.h>
 #include <kerf/front_file.h>
 #include <kerf/node_file.h>
+#include <kerf/run_files.h>
 #include <kerf/stream.h>
 #include <kerf/surface_file.h>
 #include "kind.h"
@@ -32,7 +32,8 @@ void add_body(Subject& subject, geo::Input input) {
   subject.nodes = subject.body->nodes;
 }
 
-// The file with the obstacles of a frame: frames/frame_0007.ply has obstacles/obstacles_0007.ply; empty where there is none.
+// The file with the obstacles of a frame: frames/frame_0007.ply has obstacles/obstacles_0007.ply; empty where there is
+// none.
 std::string obstacles_of(const fs::path& frame) {
   const std::string name = frame.filename().string(), begin = "frame_";
   if (!name.starts_with(begin)) return {};
@@ -42,7 +43,9 @@ std::string obstacles_of(const fs::path& frame) {
 
 void add(Subject& subject, const std::string& path) {
   const std::string bytes = geo::read_all(path);
-  const auto refuse = [&](const char* what) { throw geo::InputError(path + ": is a second file with " + what + "; give one of them"); };
+  const auto refuse = [&](const char* what) {
+    throw geo::InputError(path + ": is a second file with " + what + "; give one of them");
+  };
   switch (tool::kind_of(bytes, path)) {
     case tool::Kind::body:
       if (subject.nodes.size() > 0) refuse("nodes");
@@ -106,7 +109,8 @@ Run find_run(const std::string& folder) {
   const fs::path top(folder);
   run.frames = ply_files(fs::is_directory(top / "frames") ? top / "frames" : top);
   if (fs::is_directory(top / "nodes")) run.nodes = ply_files(top / "nodes");
-  run.nodes.resize(run.nodes.size() < run.frames.size() ? 0 : run.frames.size());  // a run that was stopped may be one ahead
+  run.nodes.resize(
+      run.nodes.size() < run.frames.size() ? 0 : run.frames.size());  // a run that was stopped may be one ahead
   if (run.frames.empty()) throw geo::InputError(folder + ": holds no frames; give the folder that kerf-sim wrote");
   if (fs::exists(top / "checkpoint.kerf")) run.body = (top / "checkpoint.kerf").string();
   if (const fs::path usd = top / "run.usda"; fs::exists(usd)) {
@@ -130,7 +134,8 @@ std::vector<geo::TriangleMesh> read_obstacles(const Run& run) {
     const auto beside = obstacles_of(path);
     if (beside.empty()) return {};
     frames.push_back(geo::read_surface(beside).mesh);
-    if (frames.back().triangles != frames[0].triangles) throw geo::InputError(beside + ": its triangles are not those of the frames before; run kerf-sim again");
+    if (frames.back().triangles != frames[0].triangles)
+      throw geo::InputError(beside + ": its triangles are not those of the frames before; run kerf-sim again");
   }
   return frames;
 }

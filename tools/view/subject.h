@@ -7,25 +7,25 @@
 
 #include <kerf/body.h>
 #include <kerf/crack.h>
-#include <kerf/solid.h>
 #include <kerf/nodes.h>
+#include <kerf/solid.h>
 
 namespace view {
 
 struct Subject {
   std::string title;
-  geo::TriangleMesh surface;              ///< a surface's own, or a body's two-sided one; may be empty
+  geo::TriangleMesh surface;  ///< a surface's own, or a body's two-sided one; may be empty
   std::optional<geo::Body> body;
-  std::vector<std::uint32_t> row_of;      ///< of a body: the row in `surface` of each surface vertex id
-  geo::NodeSet nodes;                     ///< a node file's, or a body's
+  std::vector<std::uint32_t> row_of;  ///< of a body: the row in `surface` of each surface vertex id
+  geo::NodeSet nodes;                 ///< a node file's, or a body's
   std::vector<geo::Front> fronts;
-  geo::TriangleMesh obstacles;            ///< of a run, where they are in its frame
-  std::optional<geo::State> motion;       ///< of a run's body: a checkpoint
-  int frame = 0;                          ///< of the run, at which `motion` holds
+  geo::TriangleMesh obstacles;       ///< of a run, where they are in its frame
+  std::optional<geo::State> motion;  ///< of a run's body: a checkpoint
+  int frame = 0;                     ///< of the run, at which `motion` holds
 };
 
-/// Reads files of any kind into one subject: at most one with a surface and one with nodes; with a frame of a run the obstacles
-/// beside it. Throws InputError.
+/// Reads files of any kind into one subject: at most one with a surface and one with nodes; with a frame of a run the
+/// obstacles beside it. Throws InputError.
 Subject read_subject(const std::vector<std::string>& paths);
 
 /// The folder of a run, or one of numbered surfaces.

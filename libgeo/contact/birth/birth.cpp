@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 
-#include "kerf/error.h"
-#include "kerf/parallel.h"
 #include "contact/birth/untangle.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
+#include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "mechanics/discretisation/deformation.h"
 
 namespace geo {
@@ -24,8 +24,8 @@ Mat3 frame_of(const std::array<Vec3, 3>& t) {
   return frame;
 }
 
-// Where a triangle that moved from `rest` to `now` carries x, which is on it but for last places: these make the difference
-// between slivers that cross and such that do not, so they turn with it.
+// Where a triangle that moved from `rest` to `now` carries x, which is on it but for last places: these make the
+// difference between slivers that cross and such that do not, so they turn with it.
 Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Vec3, 3>& now) {
   const Vec3 w = barycentric(x, rest[0], rest[1], rest[2]);
   const Vec3 off = x - (w[0] * rest[0] + w[1] * rest[1] + w[2] * rest[2]);
@@ -36,13 +36,20 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
 
 class Midwife {
  public:
-  Midwife(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions, const Complex& grown, const CrackDelta& crack)
-      : body_(body), state_(state), before_(before), old_(positions), k_(grown), gradient_(solid.gradients_when_asked(state.displacement)) {
+  Midwife(const Body& body, const Solid& solid, const State& state, const ContactSurface& before,
+          const std::vector<Vec3>& positions, const Complex& grown, const CrackDelta& crack)
+      : body_(body),
+        state_(state),
+        before_(before),
+        old_(positions),
+        k_(grown),
+        gradient_(solid.gradients_when_asked(state.displacement)) {
     birth_.surface = grown_surface(before, grown, crack);
     birth_.positions = positions;
     birth_.positions.resize(birth_.surface.site.size(), Vec3::Zero());
     like_.resize(birth_.positions.size());
-    for (std::uint32_t v = 0; v < like_.size(); ++v) like_[v] = v < positions.size() ? SurfaceVertexId(v) : SurfaceVertexId();
+    for (std::uint32_t v = 0; v < like_.size(); ++v)
+      like_[v] = v < positions.size() ? SurfaceVertexId(v) : SurfaceVertexId();
     placed_.assign(birth_.positions.size(), 1);
   }
 
@@ -67,7 +74,9 @@ class Midwife {
   // Where the corners of a side were that was there.
   std::optional<Triangle> old_side(Side side) const {
     for (auto [row, end] = before_.rows_of(side.face); row < end; ++row)
-      if (const auto& [a, b, c] = before_.triangles[row]; before_.side[row] % 2 == static_cast<std::uint32_t>(side.which)) return side.which == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
+      if (const auto& [a, b, c] = before_.triangles[row];
+          before_.side[row] % 2 == static_cast<std::uint32_t>(side.which))
+        return side.which == 0 ? Triangle{a, b, c} : Triangle{a, c, b};
     return {};
   }
 
@@ -87,14 +96,15 @@ class Midwife {
     }
   }
 
-  // On old faces: each part of one gives its new corners their place in it, the lowest face that has one first. What is on an edge
-  // is placed by its two ends, so that copies are together where these are.
+  // On old faces: each part of one gives its new corners their place in it, the lowest face that has one first. What is
+  // on an edge is placed by its two ends, so that copies are together where these are.
   void on_parts(const CrackDelta& crack) {
     std::vector<FaceId> parents = crack.removed_faces, parts;
     std::sort(parents.begin(), parents.end());
-    std::set_difference(crack.new_faces.begin(), crack.new_faces.end(), crack.new_crack_faces.begin(), crack.new_crack_faces.end(), std::back_inserter(parts));
+    std::set_difference(crack.new_faces.begin(), crack.new_faces.end(), crack.new_crack_faces.begin(),
+                        crack.new_crack_faces.end(), std::back_inserter(parts));
     const double size = k_.extent().diagonal();
-    std::vector<std::pair<FaceId, FaceId>> part_of;  // parent, part
+    std::vector<std::pair<FaceId, FaceId>> part_of;    // parent, part
     std::map<VertexId, std::vector<VertexId>> common;  // by site the corners that all of its parents have
     for (const FaceId g : parents) {
       const auto corners = k_.corners(g);
@@ -103,7 +113,8 @@ class Midwife {
         if (k_.face(f).crack != k_.face(g).crack || !box.meets(k_.box(f))) continue;
         const auto part = k_.corners(f);
         const Vec3 middle = (part[0] + part[1] + part[2]) / 3;
-        if ((closest_point_on_triangle(middle, corners[0], corners[1], corners[2]) - middle).norm() > 1e-10 * size) continue;
+        if ((closest_point_on_triangle(middle, corners[0], corners[1], corners[2]) - middle).norm() > 1e-10 * size)
+          continue;
         part_of.push_back({g, f});
         const auto& own = k_.face(g).v;
         for (const VertexId v : k_.face(f).v) {
@@ -117,7 +128,8 @@ class Midwife {
       for (int which = 0; which < 2; ++which)
         if (const auto at = old_side({g, which}); at && k_.has({f, which}))
           for (int c = 0; c < 3; ++c)
-            if (const auto v = k_.surface_vertex({f, which}, c); !placed_[v.index()]) place_on_part(v, k_.face(f).v[static_cast<std::size_t>(c)], g, *at, common, on_edges);
+            if (const auto v = k_.surface_vertex({f, which}, c); !placed_[v.index()])
+              place_on_part(v, k_.face(f).v[static_cast<std::size_t>(c)], g, *at, common, on_edges);
   }
 
   struct OnEdge {
@@ -125,18 +137,25 @@ class Midwife {
   };
 
   // `at`: where the parent's corners were.
-  void place_on_part(SurfaceVertexId v, VertexId site, FaceId parent, const Triangle& at, const std::map<VertexId, std::vector<VertexId>>& common, std::map<VertexId, std::vector<OnEdge>>& on_edges) {
+  void place_on_part(SurfaceVertexId v, VertexId site, FaceId parent, const Triangle& at,
+                     const std::map<VertexId, std::vector<VertexId>>& common,
+                     std::map<VertexId, std::vector<OnEdge>>& on_edges) {
     const auto corners = k_.corners(parent);
     const auto& own = k_.face(parent).v;
-    const auto row = [&](VertexId c) { return static_cast<std::size_t>(std::find(own.begin(), own.end(), c) - own.begin()); };
+    const auto row = [&](VertexId c) {
+      return static_cast<std::size_t>(std::find(own.begin(), own.end(), c) - own.begin());
+    };
     if (const auto same = row(site); same < 3) return place(v, old_[at[same]], SurfaceVertexId(at[same]));
     Vec3 to = carried(k_.point(site), corners, {old_[at[0]], old_[at[1]], old_[at[2]]});
     if (const auto& edge = common.at(site); edge.size() == 2) {
       const Vec3 &a = old_[at[row(edge[0])]], &b = old_[at[row(edge[1])]];
       auto& known = on_edges[site];
-      const auto same = std::find_if(known.begin(), known.end(), [&](const OnEdge& e) { return e.ends[0] == a && e.ends[1] == b; });
-      if (same == known.end()) known.push_back({{a, b}, to});
-      else to = same->at;
+      const auto same =
+          std::find_if(known.begin(), known.end(), [&](const OnEdge& e) { return e.ends[0] == a && e.ends[1] == b; });
+      if (same == known.end())
+        known.push_back({{a, b}, to});
+      else
+        to = same->at;
     }
     place(v, to, SurfaceVertexId(at[0]));
   }
@@ -231,14 +250,19 @@ class Midwife {
       const Vec3 almost = x + 0.999 * (c - x);
       Box3 way;
       way.add(x), way.add(almost);
-      const auto is_in_the_way = [&](std::size_t j) { return j != i && way.meets(boxes[j]) && segment_meets_triangle(x, almost, corners[j][0], corners[j][1], corners[j][2]); };
+      const auto is_in_the_way = [&](std::size_t j) {
+        return j != i && way.meets(boxes[j]) &&
+               segment_meets_triangle(x, almost, corners[j][0], corners[j][1], corners[j][2]);
+      };
       bool hidden = false;
       for (std::size_t j = 0; j < faces.size() && !hidden; ++j) hidden = is_in_the_way(j);
       if (hidden) continue;
-      const Side side{f, k_.face(f).crack > 0 && orient3d(rest[0], rest[1], rest[2], x) > 0 ? 1 : 0};  // material is behind side 0
+      const Side side{
+          f, k_.face(f).crack > 0 && orient3d(rest[0], rest[1], rest[2], x) > 0 ? 1 : 0};  // material is behind side 0
       const Vec3 w = barycentric(c, rest[0], rest[1], rest[2]);
       Vec3 by = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) by += w[k] * (birth_.positions[k_.surface_vertex(side, k).index()] - rest[static_cast<std::size_t>(k)]);
+      for (int k = 0; k < 3; ++k)
+        by += w[k] * (birth_.positions[k_.surface_vertex(side, k).index()] - rest[static_cast<std::size_t>(k)]);
       result.push_back({c, c + by, like_[k_.surface_vertex(side, 0).index()], distance});
     }
     return result;
@@ -257,7 +281,8 @@ class Midwife {
       const auto nodes = like_[v].valid() ? nodes_of(like_[v]) : nodes_near(rest(v));
       return nodes.empty() ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + gradient_[nodes[0].index()]);
     };
-    if (!untangle(s, rest, slope, fresh, gap, birth_.positions, marked).empty()) throw GeometryError("the surface would cross itself where the crack begins to open");
+    if (!untangle(s, rest, slope, fresh, gap, birth_.positions, marked).empty())
+      throw GeometryError("the surface would cross itself where the crack begins to open");
   }
 
   std::vector<NodeId> with_neighbors(NodeId m) const {
@@ -278,7 +303,8 @@ class Midwife {
     if (nodes.empty()) return Vec3::Zero();
     std::vector<std::pair<NodeId, double>> bound;
     for (const NodeId i : nodes)
-      if (const double d = (body_.nodes.position[i.index()] - x).norm(); d < body_.nodes.radius[i.index()]) bound.push_back({i, d});
+      if (const double d = (body_.nodes.position[i.index()] - x).norm(); d < body_.nodes.radius[i.index()])
+        bound.push_back({i, d});
     if (bound.empty()) bound.push_back({nodes[0], 0.0});
     return displacement_at(x, bound, body_.nodes, state_.displacement, gradient_);
   }
@@ -290,14 +316,14 @@ class Midwife {
   const Complex& k_;
   NodeGradients gradient_;
   Birth birth_;
-  std::vector<SurfaceVertexId> like_;     // the old vertex whose nodes say how the material about a vertex moves
+  std::vector<SurfaceVertexId> like_;  // the old vertex whose nodes say how the material about a vertex moves
   std::vector<std::uint8_t> placed_;
 };
 
 }  // namespace
 
-Birth give_birth(const Body& body, const Solid& solid, const State& state, const ContactSurface& before, const std::vector<Vec3>& positions,
-                 const Complex& grown, const CrackDelta& crack, double gap) {
+Birth give_birth(const Body& body, const Solid& solid, const State& state, const ContactSurface& before,
+                 const std::vector<Vec3>& positions, const Complex& grown, const CrackDelta& crack, double gap) {
   return Midwife(body, solid, state, before, positions, grown, crack).run(crack, gap);
 }
 

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <set>
 
-#include "kerf/crossing.h"
 #include "contact/detection/dividers.h"
+#include "kerf/crossing.h"
 
 namespace geo {
 namespace {
 
 struct Tangle {
   Simplex a, b;
-  Vec3 normal;  // from b to a
-  double apart; // that they are to be
+  Vec3 normal;   // from b to a
+  double apart;  // that they are to be
 };
 
 // True when that moved one.
@@ -32,9 +32,12 @@ bool push(const Tangle& t, std::vector<Vec3>& at, std::vector<std::uint8_t>& mov
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurface& surface, const std::function<Vec3(std::uint32_t)>& rest,
-                                                              const std::function<Mat3(std::uint32_t)>& slope, const std::vector<std::uint8_t>& fresh,
-                                                              double gap, std::vector<Vec3>& positions, std::vector<std::uint8_t>& marked) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurface& surface,
+                                                              const std::function<Vec3(std::uint32_t)>& rest,
+                                                              const std::function<Mat3(std::uint32_t)>& slope,
+                                                              const std::vector<std::uint8_t>& fresh, double gap,
+                                                              std::vector<Vec3>& positions,
+                                                              std::vector<std::uint8_t>& marked) {
   constexpr int most_rounds = 16, most_sweeps = 4;
   const auto together = vertices_together(surface.site, positions);
   const auto standing = [&](std::size_t t) {
@@ -50,7 +53,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurfa
     const auto crossings = find_crossings(surface.triangles, positions, together, true, &marked);
     // In vain, too, when half of the rounds have not helped.
     fewest = std::min(fewest, crossings.size());
-    if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest)) return crossings;
+    if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest))
+      return crossings;
     if (start.empty()) start = positions, moved.assign(positions.size(), 0);
     for (const auto& pair : crossings) {
       if (!known.insert(pair).second) continue;
@@ -71,7 +75,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> untangle(const ContactSurfa
             for (int k = 0; k < s.size; ++k) mean += slope(s.v[k]) / (a.size + b.size);
           normal = mean.inverse().transpose() * apart;
         }
-        if (normal.norm() > 0 && normal.allFinite()) tangles.push_back({a, b, normal.normalized(), std::min(gap, 0.25 * apart.norm())});
+        if (normal.norm() > 0 && normal.allFinite())
+          tangles.push_back({a, b, normal.normalized(), std::min(gap, 0.25 * apart.norm())});
       }
     }
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {

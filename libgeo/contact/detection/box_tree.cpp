@@ -1,7 +1,8 @@
 // Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/box_tree.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no array can hold
+#define HWY_DISABLED_TARGETS \
+  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no array can hold
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
@@ -13,8 +14,8 @@
 #include <limits>
 #include <numeric>
 
-#include "kerf/parallel.h"
 #include "contact/detection/box_tree.h"
+#include "kerf/parallel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo {
@@ -60,9 +61,11 @@ HWY_INLINE std::uint32_t sharing(const BoxTree::Corners& block, const BoxTree::C
 
 }  // namespace
 
-// Blocks of the lowest level in the order of `rows`, of which the last one may not be full, and the boxes around them in the level above. What is beyond all floats goes
-// to the last of them, never to infinity, where places without a box have their ends.
-void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> rows, const Vec3& middle, std::size_t begin, std::size_t end, std::vector<std::vector<BoxTree::Block>>& levels) {
+// Blocks of the lowest level in the order of `rows`, of which the last one may not be full, and the boxes around them
+// in the level above. What is beyond all floats goes to the last of them, never to infinity, where places without a box
+// have their ends.
+void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> rows, const Vec3& middle, std::size_t begin,
+                 std::size_t end, std::vector<std::vector<BoxTree::Block>>& levels) {
   static_assert(sizeof(Box3) == 6 * sizeof(double) && offsetof(Box3, hi) == 3 * sizeof(double));
   constexpr std::size_t width = BoxTree::width;
   const hn::CappedTag<double, width / 2> d;
@@ -79,26 +82,31 @@ void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> rows, const V
       auto full = hn::FirstN(d, count - std::min(count, at));
       for (int axis = 0; axis < 3; ++axis) {
         const auto from = hn::Load(number, first + at);
-        lo[axis] = hn::GatherIndex(d, boxes->lo.data() + axis, from), hi[axis] = hn::GatherIndex(d, boxes->hi.data() + axis, from);
+        lo[axis] = hn::GatherIndex(d, boxes->lo.data() + axis, from),
+        hi[axis] = hn::GatherIndex(d, boxes->hi.data() + axis, from);
         full = hn::And(full, hn::Le(lo[axis], hi[axis]));
       }
       for (int axis = 0; axis < 3; ++axis) {
         const auto origin = hn::Set(d, middle[axis]);
-        const auto low = hn::Min(hn::Max(hn::Sub(lo[axis], origin), hn::Neg(last)), last), high = hn::Min(hn::Max(hn::Sub(hi[axis], origin), hn::Neg(last)), last);
-        hn::Store(hn::DemoteTo(f, low), f, block.lo[axis] + at), hn::Store(hn::DemoteTo(f, high), f, block.hi[axis] + at);
+        const auto low = hn::Min(hn::Max(hn::Sub(lo[axis], origin), hn::Neg(last)), last),
+                   high = hn::Min(hn::Max(hn::Sub(hi[axis], origin), hn::Neg(last)), last);
+        hn::Store(hn::DemoteTo(f, low), f, block.lo[axis] + at),
+            hn::Store(hn::DemoteTo(f, high), f, block.hi[axis] + at);
       }
       if (hn::AllTrue(d, full)) continue;
       alignas(64) double there[width];
       hn::Store(hn::IfThenElseZero(full, last), d, there);
       for (std::size_t k = 0; k < hn::Lanes(d); ++k)
-        for (int axis = 0; axis < 3 && there[k] == 0; ++axis) block.lo[axis][at + k] = INFINITY, block.hi[axis][at + k] = -INFINITY;
+        for (int axis = 0; axis < 3 && there[k] == 0; ++axis)
+          block.lo[axis][at + k] = INFINITY, block.hi[axis][at + k] = -INFINITY;
     }
     const hn::CappedTag<float, BoxTree::width> all;
     for (int axis = 0; axis < 3; ++axis) {
       auto lo = hn::Load(all, block.lo[axis]), hi = hn::Load(all, block.hi[axis]);
       for (std::size_t at = hn::Lanes(all); at < width; at += hn::Lanes(all))
         lo = hn::Min(lo, hn::Load(all, block.lo[axis] + at)), hi = hn::Max(hi, hn::Load(all, block.hi[axis] + at));
-      levels[1][b / width].lo[axis][b % width] = hn::GetLane(hn::MinOfLanes(all, lo)), levels[1][b / width].hi[axis][b % width] = hn::GetLane(hn::MaxOfLanes(all, hi));
+      levels[1][b / width].lo[axis][b % width] = hn::GetLane(hn::MinOfLanes(all, lo)),
+                                        levels[1][b / width].hi[axis][b % width] = hn::GetLane(hn::MaxOfLanes(all, hi));
     }
   }
 }
@@ -110,7 +118,8 @@ void follow_curve(BoxTree::Cells& cells) {
   constexpr std::uint32_t highest = 1u << 9;
   // Every third bit of the result is one of v.
   const auto spread = [&](V v) HWY_ATTR {
-    v = hn::And(hn::Or(v, hn::ShiftLeft<16>(v)), hn::Set(d, 0x030000ff)), v = hn::And(hn::Or(v, hn::ShiftLeft<8>(v)), hn::Set(d, 0x0300f00f));
+    v = hn::And(hn::Or(v, hn::ShiftLeft<16>(v)), hn::Set(d, 0x030000ff)),
+    v = hn::And(hn::Or(v, hn::ShiftLeft<8>(v)), hn::Set(d, 0x0300f00f));
     v = hn::And(hn::Or(v, hn::ShiftLeft<4>(v)), hn::Set(d, 0x030c30c3));
     return hn::And(hn::Or(v, hn::ShiftLeft<2>(v)), hn::Set(d, 0x09249249));
   };
@@ -127,14 +136,17 @@ void follow_curve(BoxTree::Cells& cells) {
     }
     x[1] = hn::Xor(x[1], x[0]), x[2] = hn::Xor(x[2], x[1]);
     auto turn = hn::Zero(d);
-    for (std::uint32_t bit = highest; bit > 1; bit /= 2) turn = hn::Xor(turn, hn::IfThenElseZero(hn::TestBit(x[2], hn::Set(d, bit)), hn::Set(d, bit - 1)));
+    for (std::uint32_t bit = highest; bit > 1; bit /= 2)
+      turn = hn::Xor(turn, hn::IfThenElseZero(hn::TestBit(x[2], hn::Set(d, bit)), hn::Set(d, bit - 1)));
     for (V& one : x) one = hn::Xor(one, turn);
-    hn::Store(hn::Or(hn::ShiftLeft<2>(spread(x[0])), hn::Or(hn::ShiftLeft<1>(spread(x[1])), spread(x[2]))), d, cells.at[0] + at);
+    hn::Store(hn::Or(hn::ShiftLeft<2>(spread(x[0])), hn::Or(hn::ShiftLeft<1>(spread(x[1])), spread(x[2]))), d,
+              cells.at[0] + at);
   }
 }
 
 // Blocks of level 1 that meet the box around block `own` of it, from block `first` on.
-void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t first, std::vector<std::uint32_t>& out) {
+void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::uint32_t own, std::uint32_t first,
+                 std::vector<std::uint32_t>& out) {
   constexpr std::uint32_t width = BoxTree::width;
   out.assign(levels.size() == 2 ? 1 : 0, 0);  // the only one
   if (levels.size() == 2) return;
@@ -151,15 +163,19 @@ void blocks_near(const std::vector<std::vector<BoxTree::Block>>& levels, std::ui
       continue;
     }
     auto lanes = meeting(levels[level][block], levels[2][own / width], own % width);
-    const std::uint32_t least = first >> std::countr_zero(width) * (level - 2);  // what comes before it ends before `first`
+    const std::uint32_t least =
+        first >> std::countr_zero(width) * (level - 2);  // what comes before it ends before `first`
     if (least > block * width) lanes &= ~0u << (least - block * width);
-    for (; lanes != 0; lanes &= lanes - 1) stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
+    for (; lanes != 0; lanes &= lanes - 1)
+      stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
   }
 }
 
-// Pairs of places in the tree, of one block with all: with places behind each, or with all but those behind it that are marked. None
-// with a corner in common, where these are given (null: not). `near`: blocks of level 1 as blocks_near() has them of the one around it.
-void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, const BoxTree::Corners* corners, std::uint32_t own, std::uint32_t asked, const std::uint8_t* marked,
+// Pairs of places in the tree, of one block with all: with places behind each, or with all but those behind it that are
+// marked. None with a corner in common, where these are given (null: not). `near`: blocks of level 1 as blocks_near()
+// has them of the one around it.
+void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, const BoxTree::Corners* corners,
+                    std::uint32_t own, std::uint32_t asked, const std::uint8_t* marked,
                     std::span<const std::uint32_t> near, std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) {
   constexpr std::uint32_t width = BoxTree::width;
   const BoxTree::Block &mine = levels[0][own], &around = levels[1][own / width];
@@ -170,7 +186,9 @@ void pairs_of_block(const std::vector<std::vector<BoxTree::Block>>& levels, cons
       if (block == own && !marked) met &= ~((2u << lane) - 1);
       if (corners && met != 0) met &= ~sharing(corners[block], corners[own], lane);
       for (; met != 0; met &= met - 1)
-        if (const auto other = block * width + static_cast<std::uint32_t>(std::countr_zero(met)); !marked || !(marked[other] && other <= place)) out.push_back({place, other});
+        if (const auto other = block * width + static_cast<std::uint32_t>(std::countr_zero(met));
+            !marked || !(marked[other] && other <= place))
+          out.push_back({place, other});
     }
   };
   for (const auto above : near) {
@@ -213,7 +231,8 @@ void sort_along(Places& places) {
 
 std::vector<BoxTree::Block> empty_blocks(std::size_t boxes) {
   BoxTree::Block none;
-  for (int axis = 0; axis < 3; ++axis) std::fill_n(none.lo[axis], BoxTree::width, INFINITY), std::fill_n(none.hi[axis], BoxTree::width, -INFINITY);
+  for (int axis = 0; axis < 3; ++axis)
+    std::fill_n(none.lo[axis], BoxTree::width, INFINITY), std::fill_n(none.hi[axis], BoxTree::width, -INFINITY);
   return std::vector<BoxTree::Block>((boxes + BoxTree::width - 1) / BoxTree::width, none);
 }
 
@@ -231,7 +250,8 @@ bool add(BoxTree::Block& block, std::uint32_t lane, const BoxTree::Block& other,
 
 }  // namespace
 
-BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) : boxes_(std::move(boxes)), place_(boxes_.size(), ~0u) {
+BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles)
+    : boxes_(std::move(boxes)), place_(boxes_.size(), ~0u) {
   Box3 all;
   Places along;
   along.reserve(boxes_.size());
@@ -246,7 +266,9 @@ BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) :
       const std::size_t first = b * width, count = std::min<std::size_t>(width, along.size() - first);
       for (std::size_t k = 0; k < count; ++k) {
         const Box3& box = boxes_[along[first + k].second];
-        for (int axis = 0; axis < 3; ++axis) cells.at[axis][k] = static_cast<std::uint32_t>((0.5 * box.lo[axis] + 0.5 * box.hi[axis] - all.lo[axis]) * scale);
+        for (int axis = 0; axis < 3; ++axis)
+          cells.at[axis][k] =
+              static_cast<std::uint32_t>((0.5 * box.lo[axis] + 0.5 * box.hi[axis] - all.lo[axis]) * scale);
       }
       HWY_DYNAMIC_DISPATCH(follow_curve)(cells);
       for (std::size_t k = 0; k < count; ++k) along[first + k].first = cells.at[0][k];
@@ -262,7 +284,8 @@ BoxTree::BoxTree(std::vector<Box3> boxes, std::span<const Triangle> triangles) :
       for (std::size_t k = 0; k < 3 && !triangles.empty(); ++k) corners_[i / width].v[k][i % width] = triangles[row][k];
     }
   });
-  for (std::size_t size = order_.size(); levels_.size() < 2 || size > 1; size = levels_.back().size()) levels_.push_back(empty_blocks(size));
+  for (std::size_t size = order_.size(); levels_.size() < 2 || size > 1; size = levels_.back().size())
+    levels_.push_back(empty_blocks(size));
   fill();
   made_ = block_sizes();
 }
@@ -277,7 +300,9 @@ bool BoxTree::replace(std::vector<Box3>& boxes) {
 }
 
 void BoxTree::fill() {
-  parallel_for(levels_[0].size(), 64, [&](std::size_t begin, std::size_t end) { HWY_DYNAMIC_DISPATCH(fill_blocks)(boxes_.data(), order_, middle_, begin, end, levels_); });
+  parallel_for(levels_[0].size(), 64, [&](std::size_t begin, std::size_t end) {
+    HWY_DYNAMIC_DISPATCH(fill_blocks)(boxes_.data(), order_, middle_, begin, end, levels_);
+  });
   for (std::size_t l = 1; l + 1 < levels_.size(); ++l)
     for (std::size_t i = 0; i < levels_[l].size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
@@ -288,9 +313,12 @@ void BoxTree::fill() {
 }
 
 void BoxTree::put(std::vector<Box3> boxes, std::span<const Triangle> triangles) {
-  constexpr double worn = 1.2, flat = 0.2;  // so flat is what has gone so far that floats no longer tell its boxes apart
-  if (!replace(boxes)) *this = BoxTree(std::move(boxes), triangles);
-  else if (const double size = block_sizes(); size > worn * made_ || size < flat * made_) *this = BoxTree(std::move(boxes_), triangles);
+  constexpr double worn = 1.2,
+                   flat = 0.2;  // so flat is what has gone so far that floats no longer tell its boxes apart
+  if (!replace(boxes))
+    *this = BoxTree(std::move(boxes), triangles);
+  else if (const double size = block_sizes(); size > worn * made_ || size < flat * made_)
+    *this = BoxTree(std::move(boxes_), triangles);
 }
 
 double BoxTree::block_sizes() const {
@@ -307,7 +335,10 @@ void BoxTree::enlarge(std::uint32_t row, const Box3& box) {
   boxes_[row].add(box);
   std::uint32_t place = place_[row] / width;
   HWY_DYNAMIC_DISPATCH(fill_blocks)(boxes_.data(), order_, middle_, place, place + 1, levels_);
-  for (std::size_t l = 1; l + 1 < levels_.size() && add(levels_[l + 1][place / width / width], place / width % width, levels_[l][place / width], place % width); ++l) place /= width;
+  for (std::size_t l = 1; l + 1 < levels_.size() && add(levels_[l + 1][place / width / width], place / width % width,
+                                                        levels_[l][place / width], place % width);
+       ++l)
+    place /= width;
 }
 
 BoxTree::Pairs BoxTree::pairs(const std::vector<std::uint8_t>* only, const std::function<void(Pairs&)>& narrow) const {
@@ -332,10 +363,14 @@ BoxTree::Pairs BoxTree::pairs(const std::vector<std::uint8_t>* only, const std::
       const auto own = static_cast<std::uint32_t>(s);
       HWY_DYNAMIC_DISPATCH(blocks_near)(levels_, own, only ? 0 : own, near);
       for (std::uint32_t b = 0; b < width; ++b)
-        if (asked[b] != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)(levels_, corners_.empty() ? nullptr : corners_.data(), own * width + b, asked[b], only ? marked.data() : nullptr, near, some);
+        if (asked[b] != 0)
+          HWY_DYNAMIC_DISPATCH(pairs_of_block)
+          (levels_, corners_.empty() ? nullptr : corners_.data(), own * width + b, asked[b],
+           only ? marked.data() : nullptr, near, some);
       std::size_t count = 0;
       for (const auto& [p, q] : some)
-        if (const auto i = order_[p], j = order_[q]; boxes_[i].meets(boxes_[j])) some[count++] = {std::min(i, j), std::max(i, j)};
+        if (const auto i = order_[p], j = order_[q]; boxes_[i].meets(boxes_[j]))
+          some[count++] = {std::min(i, j), std::max(i, j)};
       some.resize(count);
       if (narrow) narrow(some);
       found[s].assign(some.begin(), some.end());
@@ -345,7 +380,8 @@ BoxTree::Pairs BoxTree::pairs(const std::vector<std::uint8_t>* only, const std::
   for (std::size_t s = 0; s < found.size(); ++s) first[s + 1] = first[s] + found[s].size();
   Pairs result(first.back());
   parallel_for(found.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) std::copy(found[s].begin(), found[s].end(), result.begin() + static_cast<std::ptrdiff_t>(first[s]));
+    for (std::size_t s = begin; s < end; ++s)
+      std::copy(found[s].begin(), found[s].end(), result.begin() + static_cast<std::ptrdiff_t>(first[s]));
   });
   return result;
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "contact/detection/parting_lanes.h"
 #include "contact/detection/triangle_planes.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -25,7 +25,8 @@ double way_of(const Divided& d, const Couple& c) {
 }
 
 // Whether the parts may come together, and the plane between them then.
-bool divide(const Divided& d, const std::vector<Vec3>& at, bool adjacent, const Partings& p, std::size_t lane, Divider& out) {
+bool divide(const Divided& d, const std::vector<Vec3>& at, bool adjacent, const Partings& p, std::size_t lane,
+            Divider& out) {
   const double reach = way_of(d, {out.a, out.b}) + d.gap;
   // The corners' centres and the triangles' own normals part most; only else closest places are looked at.
   int taken = Partings::across;
@@ -39,10 +40,15 @@ bool divide(const Divided& d, const std::vector<Vec3>& at, bool adjacent, const 
   }
   out.normal = {p.normal[taken][0][lane], p.normal[taken][1][lane], p.normal[taken][2][lane]};
   double low = -std::numeric_limits<double>::infinity(), high = -low, wants_low = low, wants_high = high;
-  for (int k = 0; k < out.a.size; ++k) high = std::min(high, out.normal.dot(at[out.a.v[k]])), wants_high = std::min(wants_high, out.normal.dot(d.to[out.a.v[k]]));
-  for (int k = 0; k < out.b.size; ++k) low = std::max(low, out.normal.dot(at[out.b.v[k]])), wants_low = std::max(wants_low, out.normal.dot(d.to[out.b.v[k]]));
+  for (int k = 0; k < out.a.size; ++k)
+    high = std::min(high, out.normal.dot(at[out.a.v[k]])),
+    wants_high = std::min(wants_high, out.normal.dot(d.to[out.a.v[k]]));
+  for (int k = 0; k < out.b.size; ++k)
+    low = std::max(low, out.normal.dot(at[out.b.v[k]])),
+    wants_low = std::max(wants_low, out.normal.dot(d.to[out.b.v[k]]));
   const double free = high - low;
-  // Parts of neighbours may become thinner as the body is squeezed, but never flat; sheets in contact keep their distance.
+  // Parts of neighbours may become thinner as the body is squeezed, but never flat; sheets in contact keep their
+  // distance.
   const double gap = free > d.gap ? d.gap : adjacent ? 0.5 * free : free;
   out.half = 0.5 * gap;
   out.at = std::clamp(0.5 * (wants_low + wants_high), low + out.half, std::max(low + out.half, high - out.half));
@@ -50,7 +56,8 @@ bool divide(const Divided& d, const std::vector<Vec3>& at, bool adjacent, const 
 }
 
 // Where one vertex comes to. `size`: of coordinates, for rounding.
-Vec3 moved(const Vec3& from, const Vec3& to, double limit, std::span<const std::pair<const Divider*, double>> planes, double size) {
+Vec3 moved(const Vec3& from, const Vec3& to, double limit, std::span<const std::pair<const Divider*, double>> planes,
+           double size) {
   Vec3 x = to;
   const auto within = [&] {
     if (const Vec3 way = x - from; way.norm() > limit) x = from + limit / way.norm() * way;
@@ -61,14 +68,16 @@ Vec3 moved(const Vec3& from, const Vec3& to, double limit, std::span<const std::
   for (int round = 0; round < most_rounds; ++round) {
     bool inside = true;
     for (const auto& [p, side] : planes)
-      if (const double lack = p->half * (1 + spare) - side * (p->normal.dot(x) - p->at); lack > 0.5 * spare * p->half) x += side * lack * p->normal, inside = false;
+      if (const double lack = p->half * (1 + spare) - side * (p->normal.dot(x) - p->at); lack > 0.5 * spare * p->half)
+        x += side * lack * p->normal, inside = false;
     if (inside) break;
   }
   within();
   double share = 1;
   for (const auto& [p, side] : planes) {
     if (!(p->half > 1e-13 * size)) return from;
-    const double before = side * (p->normal.dot(from) - p->at) - p->half, after = side * (p->normal.dot(x) - p->at) - p->half;
+    const double before = side * (p->normal.dot(from) - p->at) - p->half,
+                 after = side * (p->normal.dot(x) - p->at) - p->half;
     if (after < 0) share = std::min(share, std::max(0.0, before) / (std::max(0.0, before) - after));
   }
   return share == 1 ? x : Vec3(from + share * (x - from));
@@ -115,13 +124,15 @@ std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
       CouplesInLanes<decltype(judge)> couples(at, at, false, judge);
       for (std::size_t i = s * stretch; i < std::min(d.pairs.size(), (s + 1) * stretch); ++i) {
         const auto& [t, o] = d.pairs[i];
-        if (!boxes[t].meets(boxes[o]) || planes_of.part(t, o, way[t] + way[o] + d.gap, way[t] + way[o] + d.gap)) continue;
+        if (!boxes[t].meets(boxes[o]) || planes_of.part(t, o, way[t] + way[o] + d.gap, way[t] + way[o] + d.gap))
+          continue;
         std::pair<Simplex, Simplex> own[2];
         const int count = parts_apart(d.triangles[t], d.triangles[o], own);
         for (int k = 0; k < count; ++k) {
           const Couple c{own[k].first, own[k].second};
           const double both = way_of(d, c);
-          if (both > 0 && part_across(c, at, at).first <= both + d.gap) couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
+          if (both > 0 && part_across(c, at, at).first <= both + d.gap)
+            couples.add(c, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));
         }
       }
       couples.finish();
@@ -145,7 +156,8 @@ std::size_t move_divided(const Divided& d, std::vector<Vec3>& at) {
   parallel_for(at.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (!(d.limit[v] > 0)) continue;
-      at[v] = moved(at[v], d.to[v], d.limit[v], {planes.data() + first[v], first[v + 1] - first[v]}, at[v].cwiseAbs().maxCoeff());
+      at[v] = moved(at[v], d.to[v], d.limit[v], {planes.data() + first[v], first[v + 1] - first[v]},
+                    at[v].cwiseAbs().maxCoeff());
     }
   });
   std::size_t planes_found = 0;

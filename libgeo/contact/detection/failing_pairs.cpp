@@ -3,21 +3,32 @@
 #include <algorithm>
 #include <utility>
 
-#include "kerf/parallel.h"
-#include "kerf/crossing.h"
 #include "contact/detection/parting_lanes.h"
 #include "contact/detection/tilted.h"
+#include "kerf/crossing.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 
-FailingPairs::FailingPairs(const StandingRows& surface, const VertexFans& fans, std::span<const std::uint32_t> together, bool two_sided,
-                           const std::vector<Vec3>& start, const std::vector<Vec3>& next, double rounding, TrianglePlanes& planes)
-    : surface_(surface), triangles_(surface.triangles), fans_(fans), together_(together), two_sided_(two_sided), start_(start), next_(next), rounding_(rounding), planes_(planes),
+FailingPairs::FailingPairs(const StandingRows& surface, const VertexFans& fans, std::span<const std::uint32_t> together,
+                           bool two_sided, const std::vector<Vec3>& start, const std::vector<Vec3>& next,
+                           double rounding, TrianglePlanes& planes)
+    : surface_(surface),
+      triangles_(surface.triangles),
+      fans_(fans),
+      together_(together),
+      two_sided_(two_sided),
+      start_(start),
+      next_(next),
+      rounding_(rounding),
+      planes_(planes),
       opens_out_(start.size(), 0) {
   planes_.place(surface.triangles, start, next);
 }
 
-std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed, const KeptApart& kept_apart) {
+std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
+                                                    const std::vector<std::uint8_t>& changed,
+                                                    const KeptApart& kept_apart) {
   renew_planes(changed);
   constexpr std::size_t stretch = 1024;
   std::vector<std::vector<Pair>> found((pairs.size() + stretch - 1) / stretch);
@@ -30,22 +41,30 @@ std::vector<FailingPairs::Pair> FailingPairs::among(std::span<const Pair> pairs,
       for (std::size_t i = f * stretch; i < std::min(pairs.size(), (f + 1) * stretch); ++i) {
         const auto& [p, q] = pairs[i];
         if (!changed[p] && !changed[q]) continue;
-        if (surface_.touch(p, q)) test(pairs[i]);
-        else some.push_back(pairs[i]);
+        if (surface_.touch(p, q))
+          test(pairs[i]);
+        else
+          some.push_back(pairs[i]);
       }
       planes_.keep_unparted(some, rounding_, rounding_);
       planes_.keep_unparted_across(some, rounding_, rounding_);
       const auto couple = [&](const Pair& p) {
-        const auto simplex = [&](std::uint32_t t) { return Simplex{{triangles_[t][0], triangles_[t][1], triangles_[t][2]}, 3}; };
+        const auto simplex = [&](std::uint32_t t) {
+          return Simplex{{triangles_[t][0], triangles_[t][1], triangles_[t][2]}, 3};
+        };
         return Couple{simplex(p.first), simplex(p.second)};
       };
       const auto apart = [&](double first, double last) { return first > rounding_ && last > rounding_; };
       const auto judge = [&](std::size_t i, const Partings& p, std::size_t lane) {
         for (int k = 0; k < Partings::count; ++k)
           if (apart(p.first[k][lane], p.last[k][lane])) return;
-        if (some_tilted(couple(some[i]), p, lane, start_, next_, [&](const Vec3&, double first, double last) { return apart(first, last); })) return;
-        if (kept_apart(some[i].first, some[i].second, p.first[Partings::closest][lane])) test(some[i]);
-        else found[f].push_back(some[i]);
+        if (some_tilted(couple(some[i]), p, lane, start_, next_,
+                        [&](const Vec3&, double first, double last) { return apart(first, last); }))
+          return;
+        if (kept_apart(some[i].first, some[i].second, p.first[Partings::closest][lane]))
+          test(some[i]);
+        else
+          found[f].push_back(some[i]);
       };
       CouplesInLanes<decltype(judge)> couples(start_, next_, true, judge);
       for (std::size_t i = 0; i < some.size(); ++i) couples.add(couple(some[i]), i);

@@ -1,4 +1,5 @@
-// Leaves pairs out of a list, for sources that Highway compiles once for each kind of vector: these include it, after Highway.
+// Leaves pairs out of a list, for sources that Highway compiles once for each kind of vector: these include it, after
+// Highway.
 #if defined(KERF_KEEP_LANES) == defined(HWY_TARGET_TOGGLE)  // once for each kind, too
 #ifdef KERF_KEEP_LANES
 #undef KERF_KEEP_LANES

@@ -7,11 +7,14 @@
 namespace geo {
 namespace {
 
-bool within(const Box3& box, const Box3& other) { return (box.lo.array() >= other.lo.array()).all() && (box.hi.array() <= other.hi.array()).all(); }
+bool within(const Box3& box, const Box3& other) {
+  return (box.lo.array() >= other.lo.array()).all() && (box.hi.array() <= other.hi.array()).all();
+}
 
 }  // namespace
 
-void NearPairs::cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare, const std::vector<std::uint8_t>* changed) {
+void NearPairs::cover(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double spare,
+                      const std::vector<std::uint8_t>* changed) {
   constexpr std::size_t most_outside = 4;  // one of so many
   const bool known = known_ && tree_.boxes().size() == triangles.size(), few = known && changed;
   std::vector<Box3> boxes(few ? 0 : triangles.size());

@@ -1,8 +1,9 @@
-// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time. No sum is
-// fused with a product, so all give the same.
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
+// No sum is fused with a product, so all give the same.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/parting_lanes.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no structure can hold
+#define HWY_DISABLED_TARGETS \
+  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no structure can hold
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
@@ -19,8 +20,8 @@ struct Corners {
   alignas(64) double at[6][3][Partings::width];
 };
 
-// Closest places. 0 to 8: s along edge which / 3 of a, t along edge which % 3 of b; 9 to 11: a corner of a, and (s, t) inside b;
-// 12 to 14: the reverse.
+// Closest places. 0 to 8: s along edge which / 3 of a, t along edge which % 3 of b; 9 to 11: a corner of a, and (s, t)
+// inside b; 12 to 14: the reverse.
 struct Places {
   alignas(64) double which[Partings::width], s[Partings::width], t[Partings::width];
 };
@@ -49,15 +50,24 @@ struct V3 {
 HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE V3 operator*(const V& s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE V dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
-HWY_INLINE V difference(const V& a, const V& b, const V& c, const V& d) { return hn::Sub(hn::Mul(a, b), hn::Mul(c, d)); }
-HWY_INLINE V3 cross(const V3& a, const V3& b) { return {difference(a.y, b.z, a.z, b.y), difference(a.z, b.x, a.x, b.z), difference(a.x, b.y, a.y, b.x)}; }
+HWY_INLINE V dot(const V3& a, const V3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE V difference(const V& a, const V& b, const V& c, const V& d) {
+  return hn::Sub(hn::Mul(a, b), hn::Mul(c, d));
+}
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
+  return {difference(a.y, b.z, a.z, b.y), difference(a.z, b.x, a.x, b.z), difference(a.x, b.y, a.y, b.x)};
+}
 HWY_INLINE V clamped(const V& x) { return hn::Min(hn::Max(x, hn::Zero(Doubles())), hn::Set(Doubles(), 1.0)); }
 // 1 / x where x > 0, else 0.
-HWY_INLINE V inverse(const V& x) { return hn::IfThenElseZero(hn::Gt(x, hn::Zero(Doubles())), hn::Div(hn::Set(Doubles(), 1.0), x)); }
+HWY_INLINE V inverse(const V& x) {
+  return hn::IfThenElseZero(hn::Gt(x, hn::Zero(Doubles())), hn::Div(hn::Set(Doubles(), 1.0), x));
+}
 HWY_INLINE V3 load(const Corners& c, int corner, std::size_t lane) {
   const Doubles d;
-  return {hn::Load(d, c.at[corner][0] + lane), hn::Load(d, c.at[corner][1] + lane), hn::Load(d, c.at[corner][2] + lane)};
+  return {hn::Load(d, c.at[corner][0] + lane), hn::Load(d, c.at[corner][1] + lane),
+          hn::Load(d, c.at[corner][2] + lane)};
 }
 
 // The closest places of two triangles, and their difference.
@@ -70,7 +80,8 @@ struct Closest {
     const V length = dot(candidate, candidate);
     const auto better = hn::And(valid, hn::Lt(length, squared));
     squared = hn::IfThenElse(better, length, squared);
-    apart = {hn::IfThenElse(better, candidate.x, apart.x), hn::IfThenElse(better, candidate.y, apart.y), hn::IfThenElse(better, candidate.z, apart.z)};
+    apart = {hn::IfThenElse(better, candidate.x, apart.x), hn::IfThenElse(better, candidate.y, apart.y),
+             hn::IfThenElse(better, candidate.z, apart.z)};
     which = hn::IfThenElse(better, hn::Set(Doubles(), double(number)), which);
     s = hn::IfThenElse(better, at_s, s), t = hn::IfThenElse(better, at_t, t);
   }
@@ -124,14 +135,19 @@ void find_eight(const Corners& from, const Corners& to, bool end, Partings& out,
   const Doubles d;
   for (std::size_t lane = 0; lane < Partings::width; lane += hn::Lanes(d)) {
     V3 a[3], b[3], c[3], e[3];
-    for (int k = 0; k < 3; ++k) a[k] = load(from, k, lane), b[k] = load(from, 3 + k, lane), c[k] = load(to, k, lane), e[k] = load(to, 3 + k, lane);
+    for (int k = 0; k < 3; ++k)
+      a[k] = load(from, k, lane), b[k] = load(from, 3 + k, lane), c[k] = load(to, k, lane),
+      e[k] = load(to, 3 + k, lane);
     const auto put = [&](int which, const V3& way, const hn::Mask<Doubles>& turn) HWY_ATTR {
       const V length = hn::Sqrt(dot(way, way)), one = inverse(length);
       const V3 n = hn::IfThenElse(turn, hn::Neg(one), one) * way;
-      const auto least = [&](const V3 (&p)[3]) HWY_ATTR { return hn::Min(hn::Min(dot(n, p[0]), dot(n, p[1])), dot(n, p[2])); };
-      const auto most = [&](const V3 (&p)[3]) HWY_ATTR { return hn::Max(hn::Max(dot(n, p[0]), dot(n, p[1])), dot(n, p[2])); };
+      const auto least = [&](const V3(&p)[3])
+                             HWY_ATTR { return hn::Min(hn::Min(dot(n, p[0]), dot(n, p[1])), dot(n, p[2])); };
+      const auto most = [&](const V3(&p)[3])
+                            HWY_ATTR { return hn::Max(hn::Max(dot(n, p[0]), dot(n, p[1])), dot(n, p[2])); };
       const V least_first = least(a), most_first = most(b), least_last = least(c), most_last = most(e);
-      hn::Store(n.x, d, out.normal[which][0] + lane), hn::Store(n.y, d, out.normal[which][1] + lane), hn::Store(n.z, d, out.normal[which][2] + lane);
+      hn::Store(n.x, d, out.normal[which][0] + lane), hn::Store(n.y, d, out.normal[which][1] + lane),
+          hn::Store(n.z, d, out.normal[which][2] + lane);
       hn::Store(hn::Sub(least_first, most_first), d, out.first[which] + lane);
       hn::Store(hn::Sub(least_last, most_last), d, out.last[which] + lane);
       hn::Store(hn::Sub(hn::Min(least_first, least_last), hn::Max(most_first, most_last)), d, out.always[which] + lane);
@@ -145,7 +161,8 @@ void find_eight(const Corners& from, const Corners& to, bool end, Partings& out,
     put(Partings::b_normal, of_b, hn::Lt(dot(of_b, across), zero));
     const Closest closest = closest_of(a, b);
     put(Partings::closest, closest.apart, as_it_is);
-    hn::Store(closest.which, d, places.which + lane), hn::Store(closest.s, d, places.s + lane), hn::Store(closest.t, d, places.t + lane);
+    hn::Store(closest.which, d, places.which + lane), hn::Store(closest.s, d, places.s + lane),
+        hn::Store(closest.t, d, places.t + lane);
     if (end) put(Partings::closest_at_end, closest_of(c, e).apart, as_it_is);
   }
 }
@@ -155,13 +172,18 @@ void find_fifteen(const Tilts& tilts, TiltedPartings& out) {
   for (std::size_t lane = 0; lane < TiltedPartings::width; lane += hn::Lanes(d)) {
     const V tilt = hn::Load(d, tilts.tilt + lane);
     V n[3];
-    for (int k = 0; k < 3; ++k) n[k] = hn::Add(hn::Load(d, tilts.normal[k] + lane), hn::Mul(tilt, hn::Set(d, tilts.closest[k])));
-    const auto along = [&](const V& x, const V& y, const V& z) HWY_ATTR { return hn::Add(hn::Add(hn::Mul(n[0], x), hn::Mul(n[1], y)), hn::Mul(n[2], z)); };
+    for (int k = 0; k < 3; ++k)
+      n[k] = hn::Add(hn::Load(d, tilts.normal[k] + lane), hn::Mul(tilt, hn::Set(d, tilts.closest[k])));
+    const auto along = [&](const V& x, const V& y, const V& z)
+                           HWY_ATTR { return hn::Add(hn::Add(hn::Mul(n[0], x), hn::Mul(n[1], y)), hn::Mul(n[2], z)); };
     const V squared = along(n[0], n[1], n[2]);
     const V length = hn::IfThenElse(hn::Gt(squared, hn::Zero(d)), hn::Sqrt(squared), hn::Set(d, 1.0));
     for (int k = 0; k < 3; ++k) n[k] = hn::Div(n[k], length), hn::Store(n[k], d, out.normal[k] + lane);
     for (int end = 0; end < 2; ++end) {
-      const auto at = [&](int corner) HWY_ATTR { return along(hn::Set(d, tilts.at[end][corner][0]), hn::Set(d, tilts.at[end][corner][1]), hn::Set(d, tilts.at[end][corner][2])); };
+      const auto at = [&](int corner) HWY_ATTR {
+        return along(hn::Set(d, tilts.at[end][corner][0]), hn::Set(d, tilts.at[end][corner][1]),
+                     hn::Set(d, tilts.at[end][corner][2]));
+      };
       const V least = hn::Min(hn::Min(at(0), at(1)), at(2)), most = hn::Max(hn::Max(at(3), at(4)), at(5));
       hn::Store(hn::Sub(least, most), d, (end == 0 ? out.first : out.last) + lane);
     }
@@ -177,12 +199,14 @@ namespace geo {
 HWY_EXPORT(find_eight);
 HWY_EXPORT(find_fifteen);
 
-void find_tilted(const Couple& couple, const Partings& p, std::size_t lane, const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedPartings& out) {
+void find_tilted(const Couple& couple, const Partings& p, std::size_t lane, const std::vector<Vec3>& from,
+                 const std::vector<Vec3>& to, TiltedPartings& out) {
   constexpr double tilt[] = {0, 0.01, 0.03, 0.09, 0.27, 0};
   Tilts tilts;
   for (std::size_t i = 0; i < TiltedPartings::width; ++i) tilts.tilt[i] = tilt[i / 3];
   for (int axis = 0; axis < 3; ++axis) {
-    const double a = p.normal[Partings::a_normal][axis][lane], b = p.normal[Partings::b_normal][axis][lane], of[3] = {a, b, a + b};
+    const double a = p.normal[Partings::a_normal][axis][lane], b = p.normal[Partings::b_normal][axis][lane],
+                 of[3] = {a, b, a + b};
     for (std::size_t i = 0; i < TiltedPartings::width; ++i) tilts.normal[axis][i] = of[i % 3];
     tilts.closest[axis] = p.normal[Partings::closest][axis][lane];
     for (int k = 0; k < 6; ++k) {
@@ -194,14 +218,16 @@ void find_tilted(const Couple& couple, const Partings& p, std::size_t lane, cons
   HWY_DYNAMIC_DISPATCH(find_fifteen)(tilts, out);
 }
 
-void find_partings(const Couple* couples, std::size_t size, const std::vector<Vec3>& from, const std::vector<Vec3>& to, bool end, Partings& out) {
+void find_partings(const Couple* couples, std::size_t size, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                   bool end, Partings& out) {
   Corners first, last;
   for (std::size_t lane = 0; lane < Partings::width; ++lane) {
     const Couple& couple = couples[std::min(lane, size - 1)];
     for (std::size_t k = 0; k < 6; ++k) {
       const Simplex& s = k < 3 ? couple.a : couple.b;
       const auto row = s.v[std::min<int>(static_cast<int>(k % 3), s.size - 1)];  // an edge is a triangle without area
-      for (int axis = 0; axis < 3; ++axis) first.at[k][axis][lane] = from[row][axis], last.at[k][axis][lane] = to[row][axis];
+      for (int axis = 0; axis < 3; ++axis)
+        first.at[k][axis][lane] = from[row][axis], last.at[k][axis][lane] = to[row][axis];
     }
   }
   Places places;

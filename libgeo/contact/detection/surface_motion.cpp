@@ -4,7 +4,8 @@
 
 namespace geo {
 
-StandingRows::StandingRows(const SurfaceMotion& motion) : triangles(motion.triangles), joined(motion.triangles.size(), 0) {
+StandingRows::StandingRows(const SurfaceMotion& motion)
+    : triangles(motion.triangles), joined(motion.triangles.size(), 0) {
   std::vector<std::uint8_t> used(motion.from.size(), 0), stands(motion.from.size(), 0);
   for (std::uint32_t v = 0; v < motion.together.size(); ++v)
     if (motion.together[v] != v) stands[motion.together[v]] = 1;

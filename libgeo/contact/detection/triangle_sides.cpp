@@ -1,8 +1,9 @@
-// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time. No sum is
-// fused with a product, so that error bounds hold.
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
+// No sum is fused with a product, so that error bounds hold.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/triangle_sides.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no structure can hold
+#define HWY_DISABLED_TARGETS \
+  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // vectors that no structure can hold
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
@@ -70,8 +71,8 @@ HWY_INLINE Normal normal(const Corners& c) {
   return n;
 }
 
-// Whether all corners of o that p does not have are strictly on one side of p's plane: the determinant of orient3d_quick() with
-// its bound, but taken relative to p's first corner.
+// Whether all corners of o that p does not have are strictly on one side of p's plane: the determinant of
+// orient3d_quick() with its bound, but taken relative to p's first corner.
 HWY_INLINE M on_one_side(const Corners& p, const Corners& o) {
   const D d;
   const Normal n = normal(p);
@@ -109,9 +110,11 @@ HWY_INLINE Seen seen(const Corners& c, M along_x, M along_y) {
 // The turn abc where its sign is sure, as orient2d_quick() has it; else zero.
 HWY_INLINE V turn(const V (&a)[2], const V (&b)[2], const V (&c)[2]) {
   const D d;
-  const V left = hn::Mul(hn::Sub(a[0], c[0]), hn::Sub(b[1], c[1])), right = hn::Mul(hn::Sub(a[1], c[1]), hn::Sub(b[0], c[0]));
+  const V left = hn::Mul(hn::Sub(a[0], c[0]), hn::Sub(b[1], c[1])),
+          right = hn::Mul(hn::Sub(a[1], c[1]), hn::Sub(b[0], c[0]));
   const V value = hn::Sub(left, right), terms = hn::Add(hn::Abs(left), hn::Abs(right));
-  return hn::IfThenElseZero(hn::And(sure(terms), hn::Gt(hn::Abs(value), hn::Mul(hn::Set(d, 3.3306690738754716e-16), terms))), value);
+  return hn::IfThenElseZero(
+      hn::And(sure(terms), hn::Gt(hn::Abs(value), hn::Mul(hn::Set(d, 3.3306690738754716e-16), terms))), value);
 }
 
 // Whether an edge of p has o strictly on its far side, but for corners that the two share on it.
@@ -125,7 +128,8 @@ HWY_INLINE M divides(const Seen& p, const Seen& o) {
     for (int j = 0; j < 3; ++j) {
       const M shared = hn::Or(hn::Eq(o.row[j], p.row[k]), hn::Eq(o.row[j], p.row[next]));
       const V other = turn(p.at[k], p.at[next], o.at[j]);
-      const M against = hn::Or(hn::And(hn::Gt(own, hn::Zero(d)), hn::Lt(other, hn::Zero(d))), hn::And(hn::Lt(own, hn::Zero(d)), hn::Gt(other, hn::Zero(d))));
+      const M against = hn::Or(hn::And(hn::Gt(own, hn::Zero(d)), hn::Lt(other, hn::Zero(d))),
+                               hn::And(hn::Lt(own, hn::Zero(d)), hn::Gt(other, hn::Zero(d))));
       beyond = hn::And(beyond, hn::Or(shared, against));
     }
     some = hn::Or(some, beyond);
@@ -133,7 +137,9 @@ HWY_INLINE M divides(const Seen& p, const Seen& o) {
   return some;
 }
 
-HWY_INLINE M apart_by_planes(const Corners& s, const Corners& t) { return hn::Or(on_one_side(s, t), on_one_side(t, s)); }
+HWY_INLINE M apart_by_planes(const Corners& s, const Corners& t) {
+  return hn::Or(on_one_side(s, t), on_one_side(t, s));
+}
 
 HWY_INLINE M apart_by_edges(const Corners& s, const Corners& t) {
   const Normal n = normal(s);
@@ -179,7 +185,8 @@ using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 // Those not in `clear`, which is asked about some at a time. The last ones are in the lanes that are left, too.
 template <class Clear>
-void leave_out(std::span<const Triangle> triangles, const std::vector<Vec3>& positions, Pairs& pairs, const Clear& clear) {
+void leave_out(std::span<const Triangle> triangles, const std::vector<Vec3>& positions, Pairs& pairs,
+               const Clear& clear) {
   std::size_t kept = 0;
   PairLanes lanes;
   for (std::size_t first = 0; first < pairs.size(); first += PairLanes::width) {
@@ -205,8 +212,10 @@ void leave_out(std::span<const Triangle> triangles, const std::vector<Vec3>& pos
 }  // namespace
 
 void keep_unclear(std::span<const Triangle> triangles, const std::vector<Vec3>& positions, Pairs& pairs) {
-  leave_out(triangles, positions, pairs, [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_planes)(lanes); });
-  leave_out(triangles, positions, pairs, [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_edges)(lanes); });
+  leave_out(triangles, positions, pairs,
+            [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_planes)(lanes); });
+  leave_out(triangles, positions, pairs,
+            [](const PairLanes& lanes) { return HWY_DYNAMIC_DISPATCH(clear_by_edges)(lanes); });
 }
 
 }  // namespace geo

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "geometry/predicates.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 
@@ -22,37 +22,42 @@ VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t verti
   parallel_for(vertices, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto links = about(v);
-      closed_[v] = links.size() >= 3 && links.size() <= most && std::all_of(links.begin(), links.end(), [&](const Link& one) {
-        std::size_t same = 0, before = 0;
-        for (const Link& other : links) same += other.from == one.from, before += other.to == one.from;
-        return same == 1 && before == 1;
-      });
+      closed_[v] =
+          links.size() >= 3 && links.size() <= most && std::all_of(links.begin(), links.end(), [&](const Link& one) {
+            std::size_t same = 0, before = 0;
+            for (const Link& other : links) same += other.from == one.from, before += other.to == one.from;
+            return same == 1 && before == 1;
+          });
     }
   });
 }
 
-bool VertexFans::open_out(std::uint32_t v, const FreshArray<Front>& fronts, std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const {
+bool VertexFans::open_out(std::uint32_t v, const FreshArray<Front>& fronts, std::span<const std::uint32_t> together,
+                          const std::vector<Vec3>& at) const {
   if (!closed_[v]) return false;
   // Well beyond the rounding of a product of three vectors, over their lengths.
   constexpr double rounding = 1e-13;
   Vec3 n = Vec3::Zero();
   for (const Link& l : about(v)) n += fronts[l.triangle].way();
   const double size = n.lpNorm<1>();
-  // All go around n the same way, so each turn leaves the half-space behind `across`, which n is parallel to, to the bit, once: between two
-  // corners that n sees further apart than rounding could move them.
+  // All go around n the same way, so each turn leaves the half-space behind `across`, which n is parallel to, to the
+  // bit, once: between two corners that n sees further apart than rounding could move them.
   const Vec3 across = std::abs(n.x()) > std::abs(n.y()) ? Vec3(n.z(), 0, -n.x()) : Vec3(0, n.z(), -n.y());
   const Vec3& x = at[together[v]];
   int turns = 0;
   for (const Link& l : about(v)) {
     const Front& f = fronts[l.triangle];
     const double front = n.dot(f.way());
-    if (!(front > rounding * size * f.longest && front > filter_smallest && front < filter_largest && f.longest > filter_smallest)) return false;
+    if (!(front > rounding * size * f.longest && front > filter_smallest && front < filter_largest &&
+          f.longest > filter_smallest))
+      return false;
     turns += across.dot(at[together[l.from]] - x) < 0 && across.dot(at[together[l.to]] - x) >= 0;
   }
   return turns == 1;
 }
 
-std::vector<std::uint32_t> VertexFans::find_shut(const std::vector<std::uint8_t>& changed, std::span<const std::uint32_t> together, const std::vector<Vec3>& at,
+std::vector<std::uint32_t> VertexFans::find_shut(const std::vector<std::uint8_t>& changed,
+                                                 std::span<const std::uint32_t> together, const std::vector<Vec3>& at,
                                                  std::vector<std::uint8_t>& opens_out) const {
   std::vector<std::uint8_t> asked(size(), 0), is_shut(size(), 0);
   for (std::size_t t = 0; t < triangles_.size(); ++t)

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <tuple>
 
-#include "kerf/parallel.h"
-#include "geometry/affine_motion.h"
 #include "contact/detection/parting_lanes.h"
 #include "contact/detection/triangle_planes.h"
+#include "geometry/affine_motion.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -25,7 +25,8 @@ bool examine(const SurfaceMotion& m, const Partings& p, std::size_t lane, Watche
   w.closest.apart = distance * along(Partings::closest);
   // Another direction, if it parts them about as well at the beginning and better at the end.
   for (int k = 0; k < Partings::closest; ++k)
-    if (p.first[k][lane] >= 0.5 * std::min(distance, m.gap) && p.last[k][lane] > best) best = p.last[k][lane], taken = k;
+    if (p.first[k][lane] >= 0.5 * std::min(distance, m.gap) && p.last[k][lane] > best)
+      best = p.last[k][lane], taken = k;
   w.normal = along(taken);
   w.gap = std::min(m.gap, p.first[taken][lane]);
   return true;
@@ -39,15 +40,18 @@ struct Between {
   double left;              // TrianglePlanes::left()
 };
 
-Pairs closest_between(const Pairs& pairs, const std::vector<Between>& between, std::span<const std::uint32_t> owner, std::size_t most) {
+Pairs closest_between(const Pairs& pairs, const std::vector<Between>& between, std::span<const std::uint32_t> owner,
+                      std::size_t most) {
   struct Entry {
     double left;
     std::pair<std::uint32_t, std::uint32_t> triangles;
     std::uint32_t pair;
-    bool operator<(const Entry& o) const { return std::tie(left, triangles) < std::tie(o.left, o.triangles); }  // whatever order pairs are in
+    bool operator<(const Entry& o) const {
+      return std::tie(left, triangles) < std::tie(o.left, o.triangles);
+    }  // whatever order pairs are in
   };
   struct Closest {
-    std::uint32_t other;  // the higher of the two owners
+    std::uint32_t other;     // the higher of the two owners
     std::vector<Entry> few;  // the closest, ascending
   };
   // By the lower owner first; row 0 is of triangles that have none.
@@ -93,7 +97,8 @@ Pairs closest_between(const Pairs& pairs, const std::vector<Between>& between, s
 
 }  // namespace
 
-std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<const std::uint32_t> owner, std::size_t most) {
+std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<const std::uint32_t> owner,
+                           std::size_t most) {
   // All boxes in a frame that moves as the surface does on the whole.
   const StandingRows surface(m);
   const auto& corners = surface.triangles;
@@ -102,11 +107,14 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   // What is held stays, though the motion does not know of it.
   Vec3 middle = Vec3::Zero();
   for (const auto v : surface.rows) middle += m.from[v] / double(surface.rows.size());
-  known.cover(m.triangles, [&](std::size_t t) {
-    Box3 box = surface.swept(t, carried, m.to);
-    for (const auto v : corners[t]) box.add(m.from[v] - middle);
-    return box.grown(0.5 * m.reach);
-  }, 0);
+  known.cover(
+      m.triangles,
+      [&](std::size_t t) {
+        Box3 box = surface.swept(t, carried, m.to);
+        for (const auto v : corners[t]) box.add(m.from[v] - middle);
+        return box.grown(0.5 * m.reach);
+      },
+      0);
   TrianglePlanes& planes = known.planes();
   planes.place(corners, m.from, m.to);
   constexpr std::size_t stretch = 1024;

@@ -4,13 +4,13 @@
 #include <numeric>
 #include <optional>
 
-#include "kerf/parallel.h"
-#include "geometry/affine_motion.h"
-#include "contact/motion/carried.h"
-#include "kerf/crossing.h"
 #include "contact/detection/failing_pairs.h"
+#include "contact/motion/carried.h"
 #include "contact/motion/give_way.h"
 #include "contact/motion/settle.h"
+#include "geometry/affine_motion.h"
+#include "kerf/crossing.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -21,7 +21,8 @@ class Mover {
       : m_(m), two_sided_(two_sided), near_(near), fans_(fans), report_(report), surface_(m), at_(m.from) {
     edge_ = mean_edge();
     double size = 0;
-    for (const auto v : surface_.rows) size = std::max({size, m.from[v].cwiseAbs().maxCoeff(), m.to[v].cwiseAbs().maxCoeff()});
+    for (const auto v : surface_.rows)
+      size = std::max({size, m.from[v].cwiseAbs().maxCoeff(), m.to[v].cwiseAbs().maxCoeff()});
     rounding_ = 1e-14 * size;
   }
 
@@ -57,8 +58,8 @@ class Mover {
     return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
-  // Straight to where all want to be; what would cross or pass something is carried along instead, and left behind where the field
-  // would be too steep.
+  // Straight to where all want to be; what would cross or pass something is carried along instead, and left behind
+  // where the field would be too steep.
   enum class Way { free, carried, behind };
   Way advance(int round) {
     std::vector<Vec3> start = at_;
@@ -73,7 +74,9 @@ class Mover {
     cover(start, next);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
     std::optional<Carried> carried;
-    const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) { return carried && carried->keep_apart(s, t, distance); };
+    const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
+      return carried && carried->keep_apart(s, t, distance);
+    };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int growth = 0;; ++growth) {
       const auto failing = check.among(near_.pairs(), changed, keep_apart);
@@ -116,8 +119,10 @@ class Mover {
       if (free) break;
       if (failing.size() < many - many / 4) many = failing.size(), since = round;
       const std::vector<Vec3> before = next;
-      if (round - since < patience) couples.add(failing, next);
-      else couples.bind(failing), many = failing.size(), since = round;
+      if (round - since < patience)
+        couples.add(failing, next);
+      else
+        couples.bind(failing), many = failing.size(), since = round;
       couples.push(next);
       if (next == before) {
         if (!couples.bind(failing)) break;
@@ -147,14 +152,21 @@ class Mover {
     cover(next, next);
     std::vector<NearPairs::Pair> pairs = near_.pairs();
     for (std::uint32_t v = 0; v < fans_.size(); ++v)
-      fans_.each_pair(v, [v](std::uint32_t w) { return w < v; }, [&](std::uint32_t s, std::uint32_t t) { pairs.push_back({s, t}); });
+      fans_.each_pair(
+          v, [v](std::uint32_t w) { return w < v; },
+          [&](std::uint32_t s, std::uint32_t t) {
+            pairs.push_back({s, t});
+          });
     report_.held = !find_crossings(pairs, surface_.triangles, next, m_.together, two_sided_).empty();
     if (report_.held) next = at_;
   }
 
-  // Sees to it that all pairs are there that may come together from `start` to `next`; only these triangles have another `next`.
-  void cover(const std::vector<Vec3>& start, const std::vector<Vec3>& next, const std::vector<std::uint8_t>* changed = nullptr) {
-    near_.cover(m_.triangles, [&](std::size_t t) { return surface_.swept(t, start, next); }, spare * edge_, changed);
+  // Sees to it that all pairs are there that may come together from `start` to `next`; only these triangles have
+  // another `next`.
+  void cover(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
+             const std::vector<std::uint8_t>* changed = nullptr) {
+    near_.cover(
+        m_.triangles, [&](std::size_t t) { return surface_.swept(t, start, next); }, spare * edge_, changed);
   }
 
   const SurfaceMotion& m_;
@@ -169,7 +181,8 @@ class Mover {
 
 }  // namespace
 
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* told, NearPairs* near, const VertexFans* fans) {
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* told,
+                                        NearPairs* near, const VertexFans* fans) {
   BoundedMotion own;
   NearPairs pairs;
   if (!fans) {

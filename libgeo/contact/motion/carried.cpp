@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "kerf/parallel.h"
-#include "geometry/affine_motion.h"
 #include "contact/motion/smooth_field.h"
+#include "geometry/affine_motion.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -13,8 +13,15 @@ constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-
 
 }  // namespace
 
-Carried::Carried(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows, const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge)
-    : triangles_(triangles), rows_(rows), start_(start), field_(start), deviation_(triangles.size()), carried_(start.size(), 0), zones_(start.size()) {
+Carried::Carried(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
+                 const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge)
+    : triangles_(triangles),
+      rows_(rows),
+      start_(start),
+      field_(start),
+      deviation_(triangles.size()),
+      carried_(start.size(), 0),
+      zones_(start.size()) {
   std::vector<Vec3> by(start.size(), Vec3::Zero());
   for (const auto v : rows) by[v] = to[v] - start[v];
   const SmoothField field(start, by, rows, 4 * edge);
@@ -24,7 +31,10 @@ Carried::Carried(const std::vector<Triangle>& triangles, std::span<const std::ui
   });
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto& [i, j, k] = triangles[t];
-    deviation_[t] = share_ * field.deviation(std::sqrt(std::max({(start[j] - start[i]).squaredNorm(), (start[k] - start[j]).squaredNorm(), (start[i] - start[k]).squaredNorm()})));
+    deviation_[t] =
+        share_ *
+        field.deviation(std::sqrt(std::max({(start[j] - start[i]).squaredNorm(), (start[k] - start[j]).squaredNorm(),
+                                            (start[i] - start[k]).squaredNorm()})));
   }
 }
 

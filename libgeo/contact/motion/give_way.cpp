@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "kerf/parallel.h"
-#include "geometry/affine_motion.h"
 #include "contact/detection/dividers.h"
 #include "contact/detection/tilted.h"
+#include "geometry/affine_motion.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 
@@ -18,17 +18,20 @@ void GiveWay::add(std::span<const Pair> pairs, const std::vector<Vec3>& next) {
     double most = 0, best = -std::numeric_limits<double>::infinity();
     for (const auto& first : p.first) most = std::max(most, first[lane]);
     const auto offer = [&](const Vec3& n, double first, double last) {
-      if (first > 0 && first >= 0.5 * std::min(most, gap_) && last > best) best = last, c.normal = n, c.apart = std::min(gap_, share * first);
+      if (first > 0 && first >= 0.5 * std::min(most, gap_) && last > best)
+        best = last, c.normal = n, c.apart = std::min(gap_, share * first);
       return false;
     };
-    for (int k = 0; k < Partings::count; ++k) offer({p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]}, p.first[k][lane], p.last[k][lane]);
+    for (int k = 0; k < Partings::count; ++k)
+      offer({p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]}, p.first[k][lane], p.last[k][lane]);
     if (!neighbours) some_tilted({c.a, c.b}, p, lane, start_, next, offer);
   };
   std::vector<std::size_t> chosen;
   for (const auto& pair : pairs) {
     std::pair<Simplex, Simplex> parts[2];
     const auto count = static_cast<std::size_t>(parts_apart(triangles_[pair.first], triangles_[pair.second], parts));
-    const std::size_t at = known_.try_emplace(std::uint64_t(pair.first) << 32 | pair.second, couples_.size()).first->second;
+    const std::size_t at =
+        known_.try_emplace(std::uint64_t(pair.first) << 32 | pair.second, couples_.size()).first->second;
     if (at == couples_.size()) couples_.resize(at + count);
     for (std::size_t k = 0; k < count; ++k) {
       for (Simplex* one : {&parts[k].first, &parts[k].second})
@@ -63,7 +66,8 @@ void GiveWay::push(std::vector<Vec3>& at) const {
   for (const Kept& c : couples_) each_corner(c, [&](std::uint32_t v) { ++first[v + 1]; });
   for (std::size_t v = 0; v < at.size(); ++v) first[v + 1] += first[v];
   std::vector<std::uint32_t> of(first.back()), end(first.begin(), first.end() - 1);
-  for (std::uint32_t i = 0; i < couples_.size(); ++i) each_corner(couples_[i], [&](std::uint32_t v) { of[end[v]++] = i; });
+  for (std::uint32_t i = 0; i < couples_.size(); ++i)
+    each_corner(couples_[i], [&](std::uint32_t v) { of[end[v]++] = i; });
   const auto zones = zones_.members();
   // Only couples are looked at again of which something has moved.
   std::vector<std::uint32_t> asked(couples_.size()), moved;

@@ -19,7 +19,9 @@ bool RigidZones::have(const Triangle& s, const Triangle& t) const {
   return true;
 }
 
-std::size_t RigidZones::size() const { return static_cast<std::size_t>(std::count(in_zone_.begin(), in_zone_.end(), 1)); }
+std::size_t RigidZones::size() const {
+  return static_cast<std::size_t>(std::count(in_zone_.begin(), in_zone_.end(), 1));
+}
 
 std::vector<std::vector<std::uint32_t>> RigidZones::members() const {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of;

@@ -8,7 +8,8 @@
 
 namespace geo {
 
-std::size_t settle(const std::vector<Triangle>& triangles, const std::vector<Vec3>& wanted, double edge, double gap, std::vector<Vec3>& at) {
+std::size_t settle(const std::vector<Triangle>& triangles, const std::vector<Vec3>& wanted, double edge, double gap,
+                   std::vector<Vec3>& at) {
   constexpr double negligible = 0.01, farthest = 0.1;  // of an edge: not worth a plane, and as far as planes let one go
   std::vector<double> room(at.size(), 0);
   std::vector<Vec3> to = at;
@@ -16,7 +17,8 @@ std::size_t settle(const std::vector<Triangle>& triangles, const std::vector<Vec
   std::vector<Box3> boxes(triangles.size());
   for (const auto& t : triangles)
     for (const auto v : t)
-      if (const double way = (wanted[v] - at[v]).norm(); way > negligible * edge) room[v] = std::min(farthest * edge, way), to[v] = wanted[v];
+      if (const double way = (wanted[v] - at[v]).norm(); way > negligible * edge)
+        room[v] = std::min(farthest * edge, way), to[v] = wanted[v];
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     double most = 0;
     for (const auto v : triangles[t]) most = std::max(most, room[v]), boxes[t].add(at[v]), boxes[t].add(to[v]);

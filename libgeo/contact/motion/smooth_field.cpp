@@ -12,7 +12,9 @@ void SmoothField::each(const Take& take) const {
       for (std::size_t z = 0; z < size_[2]; ++z) take(index(x, y, z), {x, y, z});
 }
 
-SmoothField::SmoothField(const std::vector<Vec3>& at, const std::vector<Vec3>& by, std::span<const std::uint32_t> rows, double cell) : cell_(cell) {
+SmoothField::SmoothField(const std::vector<Vec3>& at, const std::vector<Vec3>& by, std::span<const std::uint32_t> rows,
+                         double cell)
+    : cell_(cell) {
   Box3 box;
   for (const auto v : rows) box.add(at[v]);
   if (box.empty()) return;
@@ -58,19 +60,22 @@ SmoothField::SmoothField(const std::vector<Vec3>& at, const std::vector<Vec3>& b
   for (int axis = 0; axis < 3; ++axis) {
     double steepest = 0;
     each([&](std::size_t g, const std::size_t(&place)[3]) {
-      if (place[axis] + 1 < size_[axis] && filled[g] && filled[g + stride[axis]]) steepest = std::max(steepest, (value_[g] - value_[g + stride[axis]]).squaredNorm());
+      if (place[axis] + 1 < size_[axis] && filled[g] && filled[g + stride[axis]])
+        steepest = std::max(steepest, (value_[g] - value_[g + stride[axis]]).squaredNorm());
       for (int other = axis; other < 3; ++other) {
         if (place[axis] + 1 >= size_[axis] || place[other] + 1 >= size_[other]) continue;
         if (axis == other && place[axis] + 2 >= size_[axis]) continue;
         const std::size_t a = g + stride[axis], b = g + stride[other], c = a + stride[other];
-        if (filled[g] && filled[a] && filled[b] && filled[c]) second = std::max(second, (value_[g] - value_[a] - value_[b] + value_[c]).squaredNorm());
+        if (filled[g] && filled[a] && filled[b] && filled[c])
+          second = std::max(second, (value_[g] - value_[a] - value_[b] + value_[c]).squaredNorm());
       }
     });
     first += steepest;
   }
   double largest = 0;
   for (const Vec3& v : value_) largest = std::max(largest, v.norm());
-  slope_ = std::max(std::sqrt(first), largest) / cell_;  // points with something unknown between them are more than two cells apart
+  slope_ = std::max(std::sqrt(first), largest) /
+           cell_;  // points with something unknown between them are more than two cells apart
   bend_ = 3 * std::sqrt(second) / (cell_ * cell_);  // the norm of a matrix is at most three times its largest entry
 }
 
@@ -91,7 +96,8 @@ Vec3 SmoothField::operator()(const Vec3& p) const {
   const Weights w = weights(p);
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t k = 0; k < 3; ++k) sum += w.w[0][i] * w.w[1][j] * w.w[2][k] * value_[index(w.first[0] + i, w.first[1] + j, w.first[2] + k)];
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += w.w[0][i] * w.w[1][j] * w.w[2][k] * value_[index(w.first[0] + i, w.first[1] + j, w.first[2] + k)];
   return sum;
 }
 

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
-#include "kerf/parallel.h"
 #include "contact/detection/dividers.h"
 #include "contact/detection/parting_lanes.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
 
-bool any_corner(const Triangle& t, const std::vector<std::uint8_t>& marked) { return marked[t[0]] || marked[t[1]] || marked[t[2]]; }
+bool any_corner(const Triangle& t, const std::vector<std::uint8_t>& marked) {
+  return marked[t[0]] || marked[t[1]] || marked[t[2]];
+}
 
 Box3 swept(const Triangle& t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   Box3 box = box_of(from[t[0]], from[t[1]], from[t[2]]);
@@ -19,13 +21,15 @@ Box3 swept(const Triangle& t, const std::vector<Vec3>& from, const std::vector<V
 
 }  // namespace
 
-void move_straight(const std::vector<Triangle>& triangles, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs,
-                   const std::vector<Vec3>& to, double gap, std::vector<Vec3>& at) {
+void move_straight(const std::vector<Triangle>& triangles,
+                   std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const std::vector<Vec3>& to,
+                   double gap, std::vector<Vec3>& at) {
   constexpr int most_halvings = 2;
   enum : std::uint8_t { parted, meets, never };  // never: whichever part of their ways the corners go
   const std::vector<Vec3> start = at;
   std::vector<double> share(at.size(), 0);
-  std::vector<std::uint8_t> moves(at.size(), 0), blocked(at.size(), 0), changed(triangles.size(), 1), asked(triangles.size()), found(pairs.size(), parted);
+  std::vector<std::uint8_t> moves(at.size(), 0), blocked(at.size(), 0), changed(triangles.size(), 1),
+      asked(triangles.size()), found(pairs.size(), parted);
   for (const auto& t : triangles)
     for (const auto v : t) share[v] = to[v] != start[v], moves[v] = share[v] > 0;
   std::vector<Box3> boxes(triangles.size());
@@ -34,11 +38,16 @@ void move_straight(const std::vector<Triangle>& triangles, std::span<const std::
       if (moves[v] || blocked[v]) at[v] = share[v] == 1 ? to[v] : Vec3(start[v] + share[v] * (to[v] - start[v]));
     parallel_for(triangles.size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
-        if (changed[t]) boxes[t] = swept(triangles[t], start, at).grown(0.5 * gap), asked[t] = any_corner(triangles[t], moves);
+        if (changed[t])
+          boxes[t] = swept(triangles[t], start, at).grown(0.5 * gap), asked[t] = any_corner(triangles[t], moves);
     });
     parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
-      const auto kept = [gap](const Parting& p, bool adjacent) { return p.first > 0 && p.last >= std::min(gap, adjacent ? 0.5 * p.first : p.first); };
-      const auto for_good = [gap](const Parting& p, bool adjacent) { return p.always > 0 && p.always >= std::min(gap, adjacent ? 0.5 * p.first : p.first); };
+      const auto kept = [gap](const Parting& p, bool adjacent) {
+        return p.first > 0 && p.last >= std::min(gap, adjacent ? 0.5 * p.first : p.first);
+      };
+      const auto for_good = [gap](const Parting& p, bool adjacent) {
+        return p.always > 0 && p.always >= std::min(gap, adjacent ? 0.5 * p.first : p.first);
+      };
       // Numbers: of the pair, and whether it is one of neighbours.
       const auto judge = [&](std::size_t number, const Partings& p, std::size_t lane) {
         bool any = false, any_for_good = false;
@@ -47,8 +56,10 @@ void move_straight(const std::vector<Triangle>& triangles, std::span<const std::
           any |= kept(one, number % 2 != 0), any_for_good |= for_good(one, number % 2 != 0);
         }
         auto& all = found[number / 2];
-        if (!any) all = meets;
-        else if (!any_for_good && all == never) all = parted;
+        if (!any)
+          all = meets;
+        else if (!any_for_good && all == never)
+          all = parted;
       };
       CouplesInLanes<decltype(judge)> couples(start, at, true, judge);
       std::pair<Simplex, Simplex> parts[2];

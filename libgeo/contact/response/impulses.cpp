@@ -7,8 +7,8 @@
 
 namespace geo {
 
-std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const Copies& stands_for,
-                                       const std::vector<double>& inverse_mass) {
+std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
+                                       const Copies& stands_for, const std::vector<double>& inverse_mass) {
   std::vector<RelativeRow> rows(touching.size());
   parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
     RelativeRows maker(weights, stands_for, inverse_mass);
@@ -44,7 +44,8 @@ ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const Touc
         const Vec3 slip = v - n.dot(v) * n;
         Vec3 rub = rubbed[i] - (slip + softness * rubbed[i]) / mobility;
         rub -= n.dot(rub) * n;
-        if (const double most = options.friction * pressed[i], is = rub.norm(); is > most) rub *= is > 0 ? most / is : 0.0;
+        if (const double most = options.friction * pressed[i], is = rub.norm(); is > most)
+          rub *= is > 0 ? most / is : 0.0;
         impulse += rub - rubbed[i];
         rubbed[i] = rub;
       }

@@ -4,38 +4,41 @@
 #include <span>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "contact/response/relative_row.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
 /// Two places that may not come closer along a normal.
 struct TouchingPlaces {
   SurfacePlace a, b;
-  Vec3 normal;          ///< unit; from b to a
-  double depth = 0;     ///< how far past each other the motion would bring them, model units
-  double approach = 0;  ///< relative velocity along −normal that is still allowed, model units per second; negative: they must part
+  Vec3 normal;       ///< unit; from b to a
+  double depth = 0;  ///< how far past each other the motion would bring them, model units
+  double approach =
+      0;  ///< relative velocity along −normal that is still allowed, model units per second; negative: they must part
 };
 
-/// Their rows (relative_row.h), in the order given. `stands_for`: which surface vertices carry one vertex of the places (together,
-/// they move as their average). Made by all threads.
-std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching, const Copies& stands_for,
-                                       const std::vector<double>& inverse_mass);
+/// Their rows (relative_row.h), in the order given. `stands_for`: which surface vertices carry one vertex of the places
+/// (together, they move as their average). Made by all threads.
+std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
+                                       const Copies& stands_for, const std::vector<double>& inverse_mass);
 
 struct ImpulseReport {
   std::size_t touching = 0;  ///< constraints with an impulse
   int sweeps = 0;
 };
 
-/// Changes the velocities of nodes as little as possible (in the kinetic energy's norm) so that no two places approach each
-/// other, by impulses along the normals that are spread over the nodes by the weights, and by friction at most `friction` times
-/// as large. Pairs of equal and opposite impulses: momentum is what it was, but for nodes of infinite mass (inverse mass 0).
-/// Kinetic energy does not grow unless they must part. `stands_for` as in relative_rows(). Projected Gauss-Seidel, in the order given.
+/// Changes the velocities of nodes as little as possible (in the kinetic energy's norm) so that no two places approach
+/// each other, by impulses along the normals that are spread over the nodes by the weights, and by friction at most
+/// `friction` times as large. Pairs of equal and opposite impulses: momentum is what it was, but for nodes of infinite
+/// mass (inverse mass 0). Kinetic energy does not grow unless they must part. `stands_for` as in relative_rows().
+/// Projected Gauss-Seidel, in the order given.
 struct ImpulseOptions {
   double friction = 0;
-  int sweeps = 8;          ///< at most
+  int sweeps = 8;           ///< at most
   double tolerance = 1e-2;  ///< they end when the largest change of a relative velocity is this share of the largest
-  double softness = 0.02;  ///< share of the places' own mobility that is added to the pair's: for places that share their nodes
+  double softness =
+      0.02;  ///< share of the places' own mobility that is added to the pair's: for places that share their nodes
 };
 ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
                              const Copies& stands_for, const std::vector<double>& inverse_mass,

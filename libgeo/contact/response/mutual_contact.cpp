@@ -14,7 +14,8 @@ void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
 double MutualContact::energy(std::size_t r, const Vec3& apart) const {
   const Row& row = rows_[r];
   const double normal = 0.5 * row.stiffness * std::pow(row.depth(apart), 2);
-  return row.pressed > 0 ? normal + friction_energy(friction_ * row.pressed, row.along(apart - row.start).norm(), slow_) : normal;
+  return row.pressed > 0 ? normal + friction_energy(friction_ * row.pressed, row.along(apart - row.start).norm(), slow_)
+                         : normal;
 }
 
 Potential::Push MutualContact::push(std::size_t r, const Vec3& apart) {
@@ -30,7 +31,8 @@ Potential::Push MutualContact::push(std::size_t r, const Vec3& apart) {
   return push;
 }
 
-void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {
+void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+                            std::vector<Vec3>& velocity) {
   for (const Row& row : rows_) {
     const double push = h * row.stiffness * row.depth(row.at(u));
     double lightness = 0;

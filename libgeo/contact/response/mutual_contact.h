@@ -1,4 +1,5 @@
-// Surface vertices against triangles of the surface that they are inside of: a penalty between deforming bodies, with friction (§ 3.3).
+// Surface vertices against triangles of the surface that they are inside of: a penalty between deforming bodies, with
+// friction (§ 3.3).
 #pragma once
 
 #include "contact/surface/surface_weights.h"
@@ -6,15 +7,18 @@
 
 namespace geo {
 
-/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an Obstacle. Both sides get the same
-/// force, so that momentum is kept; the angular one to second order of the depth.
+/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an Obstacle. Both sides get
+/// the same force, so that momentum is kept; the angular one to second order of the depth.
 class MutualContact : public Potential {
  public:
   MutualContact(double friction, double slow) : friction_(friction), slow_(slow) {}
 
-  /// Displacements of the two sides differ by `apart`: weights of nodes, the vertex's less those of the place on the triangle.
-  /// `way`: from the place to the vertex at rest. `normal`: out of the body that the triangle bounds. `stiffness`: N/m.
-  void add(std::vector<SurfaceWeights::Entry> apart, const Vec3& way, const Vec3& normal, double stiffness) { rows_.push_back({std::move(apart), way, normal, stiffness}); }
+  /// Displacements of the two sides differ by `apart`: weights of nodes, the vertex's less those of the place on the
+  /// triangle. `way`: from the place to the vertex at rest. `normal`: out of the body that the triangle bounds.
+  /// `stiffness`: N/m.
+  void add(std::vector<SurfaceWeights::Entry> apart, const Vec3& way, const Vec3& normal, double stiffness) {
+    rows_.push_back({std::move(apart), way, normal, stiffness});
+  }
   bool empty() const { return rows_.empty(); }
 
   void begin(const std::vector<Vec3>& u, double from, double to) override;
@@ -23,7 +27,8 @@ class MutualContact : public Potential {
   double energy(std::size_t r, const Vec3& way) const override;
   Push push(std::size_t r, const Vec3& way) override;
   double stiffness(std::size_t r) const override { return rows_[r].stiffness; }
-  void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
+  void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+               std::vector<Vec3>& velocity) override;
 
   /// The deepest vertex at displacements u; 0: none.
   double depth(const std::vector<Vec3>& u) const;
@@ -33,8 +38,8 @@ class MutualContact : public Potential {
     std::vector<SurfaceWeights::Entry> apart;
     Vec3 way, normal;
     double stiffness;
-    double pressed = 0;             // N, when this part of the step began
-    Vec3 start = Vec3::Zero();      // how far apart then
+    double pressed = 0;         // N, when this part of the step began
+    Vec3 start = Vec3::Zero();  // how far apart then
     Vec3 at(const std::vector<Vec3>& values) const { return weighed(apart, values); }
     double depth(const Vec3& apart) const { return std::max(0.0, -normal.dot(way + apart)); }
     Vec3 along(const Vec3& v) const { return v - normal.dot(v) * normal; }

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "contact/response/friction.h"
+#include "kerf/parallel.h"
 #include "mechanics/terms/row_sums.h"
 
 namespace geo {
 
-Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
+Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options,
+                   const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
 template <class Take>
 void Obstacle::each_way(const std::vector<Vec3>& u, const Take& take) const {
-  each_row_sum(rows_.size(), u, [&](std::size_t r) { return rows_[r].weights; }, take);
+  each_row_sum(
+      rows_.size(), u, [&](std::size_t r) { return rows_[r].weights; }, take);
 }
 
 Eigen::Isometry3d Obstacle::pose(double share) const {
@@ -26,7 +28,8 @@ Eigen::Isometry3d Obstacle::pose(double share) const {
   return p;
 }
 
-void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow, std::span<const double> firmness) {
+void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
+                     std::span<const double> firmness) {
   const Complex& k = body.surface;
   slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
   const auto rest = [&](std::uint32_t v) -> const Vec3& { return k.point(k.site(SurfaceVertexId(v))); };
@@ -39,7 +42,8 @@ void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watc
       const auto row = weights.row(v);
       if (!k.alive(SurfaceVertexId(v)) || row.empty()) continue;
       if (!at.empty()) {
-        if (std::none_of(row.begin(), row.end(), [&](const NodeWeight& w) { return watched.near[w.node] != 0; })) continue;
+        if (std::none_of(row.begin(), row.end(), [&](const NodeWeight& w) { return watched.near[w.node] != 0; }))
+          continue;
         at[v] = rest(v) + weights.at(v, watched.u);
       }
       reached[v] = shape_->near(back * place(v), reach);
@@ -61,8 +65,10 @@ void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watc
 }
 
 void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
-  if (from <= 0) sum_ = {}, impulses_ = false;
-  else if (from == ended_ && !impulses_) add_reaction(u, sum_);
+  if (from <= 0)
+    sum_ = {}, impulses_ = false;
+  else if (from == ended_ && !impulses_)
+    add_reaction(u, sum_);
   const Eigen::Isometry3d start = pose(from), back = start.inverse();
   begun_ = from, ended_ = to, now_ = pose(to);
   const auto stand = [&](std::size_t r, const Vec3& way) {
@@ -96,13 +102,16 @@ Vec3 Obstacle::slide(const Row& row, const Vec3& y) {
   return way - row.normal.dot(way) * row.normal;
 }
 
-double Obstacle::drag(const Row& row, const Vec3& slide) const { return friction_drag(options_.friction * row.pressed, slide.norm(), slow_); }
+double Obstacle::drag(const Row& row, const Vec3& slide) const {
+  return friction_drag(options_.friction * row.pressed, slide.norm(), slow_);
+}
 
 double Obstacle::energy(std::size_t r, const Vec3& way) const {
   const Row& row = rows_[r];
   const Vec3 y = row.rest + way;
   const double normal = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
-  return row.pressed > 0 ? normal + friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_) : normal;
+  return row.pressed > 0 ? normal + friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_)
+                         : normal;
 }
 
 Potential::Push Obstacle::pushed(const Row& row, const Vec3& way) const {
@@ -117,7 +126,8 @@ Potential::Push Obstacle::pushed(const Row& row, const Vec3& way) const {
   return push;
 }
 
-void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) {
+void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+                       std::vector<Vec3>& velocity) {
   const Eigen::Isometry3d start = pose(begun_);
   std::vector<RigidShape::Field> fields(rows_.size());
   const double share = ended_ - begun_;

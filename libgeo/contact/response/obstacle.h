@@ -1,4 +1,5 @@
-// A rigid obstacle: a penalty on each vertex of the surface that is inside it, with Coulomb friction (§ 3.3, between objects).
+// A rigid obstacle: a penalty on each vertex of the surface that is inside it, with Coulomb friction (§ 3.3, between
+// objects).
 #pragma once
 
 #include <memory>
@@ -10,17 +11,20 @@
 namespace geo {
 
 struct ObstacleOptions {
-  double pressure = 1e6;  ///< Pa for a metre of depth: a body that presses with p stands p / pressure deep, in model units
+  double pressure =
+      1e6;  ///< Pa for a metre of depth: a body that presses with p stands p / pressure deep, in model units
   double friction = 0.5;  ///< Coulomb's coefficient
 };
 
-/// ½ pressure area depth² at each surface vertex, area being a third of its triangles' at rest, depth how far it is inside. Friction
-/// acts on the way beside the obstacle since the step began, with the normal and the normal force of that moment: that is the
-/// derivative of a convex potential (Li et al. 2020, § 5). Vertices act on nodes by the weights of Eq. 1.
+/// ½ pressure area depth² at each surface vertex, area being a third of its triangles' at rest, depth how far it is
+/// inside. Friction acts on the way beside the obstacle since the step began, with the normal and the normal force of
+/// that moment: that is the derivative of a convex potential (Li et al. 2020, § 5). Vertices act on nodes by the
+/// weights of Eq. 1.
 class Obstacle : public Potential {
  public:
   /// Moves from one pose to the other during the step, its turn even.
-  Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+  Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from,
+           const Eigen::Isometry3d& to);
 
   /// Where a body is when a step begins.
   struct Watched {
@@ -28,9 +32,11 @@ class Obstacle : public Potential {
     std::span<const Vec3> at;            ///< its surface vertices; empty: found from u, where they may be near
     std::span<const std::uint8_t> near;  ///< then: nodes that carry surface that may be
   };
-  /// Which vertices may reach the obstacle in that step (those nearer than `reach`), and their weights, which must outlive it. `slow`: a way along the
-  /// obstacle, model units, below which friction is smooth. `firmness`: per node, of what its surface is pressed with, times the pressure; empty: 1.
-  void watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow, std::span<const double> firmness = {});
+  /// Which vertices may reach the obstacle in that step (those nearer than `reach`), and their weights, which must
+  /// outlive it. `slow`: a way along the obstacle, model units, below which friction is smooth. `firmness`: per node,
+  /// of what its surface is pressed with, times the pressure; empty: 1.
+  void watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
+             std::span<const double> firmness = {});
 
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 
@@ -45,7 +51,8 @@ class Obstacle : public Potential {
   Push push(std::size_t r, const Vec3& way) override { return pushed(rows_[r], way); }
   double stiffness(std::size_t r) const override { return rows_[r].stiffness; }
   /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction can.
-  void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass, std::vector<Vec3>& velocity) override;
+  void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+               std::vector<Vec3>& velocity) override;
 
   struct Reaction {
     Vec3 force = Vec3::Zero();   ///< N
@@ -60,14 +67,14 @@ class Obstacle : public Potential {
   struct Row {
     std::span<const SurfaceWeights::Entry> weights;
     Vec3 rest = Vec3::Zero(), way = Vec3::Zero();  // way: when it was watched
-    double stiffness = 0;         // N/m
-    double spread = 0;            // of its weights
-    Vec3 start = Vec3::Zero();    // where the vertex was
-    double outside = 0;           // how far outside then
-    double reach = 0;             // how far nodes may go before it can be inside
-    double pressed = 0;           // N, then
-    Vec3 normal = Vec3::Zero();   // world, then
-    Vec3 stuck = Vec3::Zero();    // where it would be had it stuck to the obstacle
+    double stiffness = 0;                          // N/m
+    double spread = 0;                             // of its weights
+    Vec3 start = Vec3::Zero();                     // where the vertex was
+    double outside = 0;                            // how far outside then
+    double reach = 0;                              // how far nodes may go before it can be inside
+    double pressed = 0;                            // N, then
+    Vec3 normal = Vec3::Zero();                    // world, then
+    Vec3 stuck = Vec3::Zero();                     // where it would be had it stuck to the obstacle
   };
   static Vec3 at(const Row& row, const std::vector<Vec3>& values) { return weighed(row.weights, values); }
   Push pushed(const Row& row, const Vec3& way) const;
@@ -84,10 +91,10 @@ class Obstacle : public Potential {
 
   std::shared_ptr<const RigidShape> shape_;
   ObstacleOptions options_;
-  Eigen::Isometry3d from_, to_, now_;  // now_: at the end of this part of the step
+  Eigen::Isometry3d from_, to_, now_;        // now_: at the end of this part of the step
   double slow_ = 0, begun_ = 0, ended_ = 0;  // shares of the step
-  Reaction sum_;  // of the parts before this one, times their shares
-  bool impulses_ = false;  // sum_ is of impulses, this part's included
+  Reaction sum_;                             // of the parts before this one, times their shares
+  bool impulses_ = false;                    // sum_ is of impulses, this part's included
   std::vector<Row> rows_;
 };
 

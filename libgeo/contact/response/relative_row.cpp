@@ -2,8 +2,13 @@
 
 namespace geo {
 
-RelativeRows::RelativeRows(const SurfaceWeights& weights, const Copies& stands_for, const std::vector<double>& inverse_mass)
-    : weights_(weights), stands_for_(stands_for), inverse_mass_(inverse_mass), sum_(inverse_mass.size(), Sums{0, 0}), taken_(inverse_mass.size(), 0) {}
+RelativeRows::RelativeRows(const SurfaceWeights& weights, const Copies& stands_for,
+                           const std::vector<double>& inverse_mass)
+    : weights_(weights),
+      stands_for_(stands_for),
+      inverse_mass_(inverse_mass),
+      sum_(inverse_mass.size(), Sums{0, 0}),
+      taken_(inverse_mass.size(), 0) {}
 
 RelativeRow RelativeRows::make(const SurfacePlace& a, const SurfacePlace& b) {
   RelativeRow row;

@@ -29,7 +29,8 @@ inline Vec3 place(const SurfacePlace& p, const std::vector<Vec3>& at) {
   return sum;
 }
 
-/// Makes rows, one at a time. `stands_for`: which surface vertices carry one vertex of a place (they move as their average).
+/// Makes rows, one at a time. `stands_for`: which surface vertices carry one vertex of a place (they move as their
+/// average).
 class RelativeRows {
  public:
   RelativeRows(const SurfaceWeights& weights, const Copies& stands_for, const std::vector<double>& inverse_mass);

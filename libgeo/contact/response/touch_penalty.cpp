@@ -6,7 +6,8 @@
 
 namespace geo {
 void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
-  rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness, std::max(0.0, -depth) / spread(row.entries), start, false});
+  rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness,
+                   std::max(0.0, -depth) / spread(row.entries), start, false});
   entries_.insert(entries_.end(), row.entries.begin(), row.entries.end());
 }
 
@@ -21,7 +22,9 @@ double TouchPenalty::energy(std::size_t r, const Vec3& way) const {
   const Vec3 gone = way - row.start;
   const double along = row.normal.dot(gone), depth = std::max(0.0, row.depth - along);
   const double normal = 0.5 * row.stiffness * depth * depth;
-  return row.depth > 0 && options_.friction > 0 ? normal + friction_energy(most_friction(row), (gone - along * row.normal).norm(), options_.slow) : normal;
+  return row.depth > 0 && options_.friction > 0
+             ? normal + friction_energy(most_friction(row), (gone - along * row.normal).norm(), options_.slow)
+             : normal;
 }
 
 Potential::Push TouchPenalty::push(std::size_t r, const Vec3& way) {
@@ -41,7 +44,8 @@ Potential::Push TouchPenalty::push(std::size_t r, const Vec3& way) {
 }
 
 std::size_t TouchPenalty::pressing() const {
-  return static_cast<std::size_t>(std::count_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.pressing; }));
+  return static_cast<std::size_t>(
+      std::count_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.pressing; }));
 }
 
 }  // namespace geo

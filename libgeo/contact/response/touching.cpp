@@ -8,9 +8,11 @@
 
 namespace geo {
 
-std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m, const Constraint& how) {
+std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m,
+                                            const Constraint& how) {
   using Key = std::array<std::uint32_t, 6>;
-  using Name = std::pair<Key, Key>;  // of the places; and of the couple that has them, so that it does not depend on the couples' order which of several is taken
+  using Name = std::pair<Key, Key>;  // of the places; and of the couple that has them, so that it does not depend on
+                                     // the couples' order which of several is taken
   constexpr std::size_t stretch = 256;
   std::vector<std::pair<std::vector<TouchingPlaces>, std::vector<Name>>> some((watched.size() + stretch - 1) / stretch);
   const auto look_at = [&](const Watched& w, std::vector<TouchingPlaces>& result, std::vector<Name>& names) {
@@ -31,18 +33,22 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
     // Neighbouring triangles have places in common: they are named by the vertices that carry them.
     Key key;
     key.fill(~0u);
-    std::copy(t.a.vertex, t.a.vertex + t.a.size, key.begin()), std::copy(t.b.vertex, t.b.vertex + t.b.size, key.begin() + 3);
+    std::copy(t.a.vertex, t.a.vertex + t.a.size, key.begin()),
+        std::copy(t.b.vertex, t.b.vertex + t.b.size, key.begin() + 3);
     std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
-    if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3)) std::rotate(key.begin(), key.begin() + 3, key.end());
+    if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3))
+      std::rotate(key.begin(), key.begin() + 3, key.end());
     names.push_back({key, {w.a.v[0], w.a.v[1], w.a.v[2], w.b.v[0], w.b.v[1], w.b.v[2]}}), result.push_back(t);
   };
   parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
-      for (std::size_t i = s * stretch; i < std::min(watched.size(), (s + 1) * stretch); ++i) look_at(watched[i], some[s].first, some[s].second);
+      for (std::size_t i = s * stretch; i < std::min(watched.size(), (s + 1) * stretch); ++i)
+        look_at(watched[i], some[s].first, some[s].second);
   });
   std::vector<TouchingPlaces> result;
   std::vector<Name> names;
-  for (const auto& [places, named] : some) result.insert(result.end(), places.begin(), places.end()), names.insert(names.end(), named.begin(), named.end());
+  for (const auto& [places, named] : some)
+    result.insert(result.end(), places.begin(), places.end()), names.insert(names.end(), named.begin(), named.end());
   std::vector<std::uint32_t> order(result.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(names[i], i) < std::tie(names[j], j); });
@@ -58,7 +64,8 @@ void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, con
     for (std::size_t i = 0; i < copies[v].size(); ++i)
       for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
         const auto a = copies[v][i], b = copies[v][j];
-        const Vec3 across = normals[b].normalized() - normals[a].normalized();  // b's material looks at a along its normal
+        const Vec3 across =
+            normals[b].normalized() - normals[a].normalized();  // b's material looks at a along its normal
         if (!(across.norm() > 0.5)) continue;
         const Vec3 n = across.normalized();
         const double apart = n.dot(targets[a] - targets[b]);
@@ -66,7 +73,8 @@ void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, con
       }
 }
 
-std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights, std::size_t most) {
+std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights,
+                                    std::size_t most) {
   const auto node = [&](const SurfacePlace& place) {
     return weights.heaviest()[place.vertex[std::max_element(place.weight, place.weight + place.size) - place.weight]];
   };
@@ -82,7 +90,9 @@ std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching,
       order[i] = {std::min(a, b), std::max(a, b), touching[i].depth, i};
     }
   });
-  std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) { return std::tie(p.low, p.high, q.depth, p.row) < std::tie(q.low, q.high, p.depth, q.row); });
+  std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) {
+    return std::tie(p.low, p.high, q.depth, p.row) < std::tie(q.low, q.high, p.depth, q.row);
+  });
   std::vector<std::size_t> kept;
   for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
     if (order[i].low != order[first].low || order[i].high != order[first].high) first = i;

@@ -14,7 +14,9 @@ Triangle triangle_of(const Complex& complex, std::uint32_t side) {
 
 void add_sides(const Complex& complex, FaceId f, ContactSurface& s) {
   for (int which = 0; which < 2; ++which)
-    if (complex.has({f, which})) s.side.push_back(2 * f.value + static_cast<std::uint32_t>(which)), s.triangles.push_back(triangle_of(complex, s.side.back()));
+    if (complex.has({f, which}))
+      s.side.push_back(2 * f.value + static_cast<std::uint32_t>(which)),
+          s.triangles.push_back(triangle_of(complex, s.side.back()));
 }
 
 void set_sites(const Complex& complex, ContactSurface& s) {
@@ -33,7 +35,8 @@ std::vector<FaceId> ascending(std::vector<FaceId> faces) {
 }  // namespace
 
 std::pair<std::size_t, std::size_t> ContactSurface::rows_of(FaceId f) const {
-  const auto first = std::lower_bound(side.begin(), side.end(), 2 * f.value), last = std::find_if(first, side.end(), [&](auto s) { return s / 2 != f.value; });
+  const auto first = std::lower_bound(side.begin(), side.end(), 2 * f.value),
+             last = std::find_if(first, side.end(), [&](auto s) { return s / 2 != f.value; });
   return {static_cast<std::size_t>(first - side.begin()), static_cast<std::size_t>(last - side.begin())};
 }
 
@@ -92,7 +95,8 @@ double area_about(const Complex& k, SurfaceVertexId v) {
   return area;
 }
 
-std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies, const std::vector<Vec3>& p) {
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies,
+                                 const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
   parallel_for(copies.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -107,14 +111,17 @@ std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans
   return normals;
 }
 
-std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together, const std::vector<Vec3>& p) {
+std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together,
+                                 const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
   for (std::size_t t = 1; t < surface.triangles.size(); ++t) {
     if (surface.side[t] / 2 != surface.side[t - 1] / 2) continue;  // the two sides of a face follow each other
     const auto &s = surface.triangles[t - 1], &o = surface.triangles[t];
-    if (together[s[0]] != together[o[0]] || together[s[1]] != together[o[2]] || together[s[2]] != together[o[1]]) continue;
+    if (together[s[0]] != together[o[0]] || together[s[1]] != together[o[2]] || together[s[2]] != together[o[1]])
+      continue;
     const Vec3 n = (p[s[1]] - p[s[0]]).cross(p[s[2]] - p[s[0]]);
-    for (int k = 0; k < 3; ++k) normals[s[static_cast<std::size_t>(k)]] += n, normals[o[static_cast<std::size_t>(k)]] -= n;
+    for (int k = 0; k < 3; ++k)
+      normals[s[static_cast<std::size_t>(k)]] += n, normals[o[static_cast<std::size_t>(k)]] -= n;
   }
   return normals;
 }

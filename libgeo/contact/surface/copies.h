@@ -25,7 +25,9 @@ class Copies {
   }
 
   std::size_t size() const { return row_.size(); }
-  std::span<const std::uint32_t> operator[](std::size_t v) const { return {row_.data() + first_[v], first_[v + 1] - first_[v]}; }
+  std::span<const std::uint32_t> operator[](std::size_t v) const {
+    return {row_.data() + first_[v], first_[v + 1] - first_[v]};
+  }
 
  private:
   std::vector<std::uint32_t> first_, row_;

@@ -8,8 +8,8 @@
 
 namespace geo {
 
-std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Copies& copies, const std::vector<Vec3>& to, double gap, double opens,
-                        std::vector<Vec3>& positions) {
+std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Copies& copies,
+                        const std::vector<Vec3>& to, double gap, double opens, std::vector<Vec3>& positions) {
   const std::vector<Vec3> normals = vertex_normals(surface, fans, copies, positions);
   std::vector<std::uint32_t> opening;
   for (std::uint32_t v = 0; v < copies.size(); ++v)
@@ -18,7 +18,8 @@ std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, c
         const auto a = copies[v][i], b = copies[v][j];
         const Vec3 n = (normals[b].normalized() - normals[a].normalized()).normalized(), apart = to[a] - to[b];
         const double along = n.dot(apart);
-        if ((along > opens || (apart - along * n).norm() > 3 * opens) && (opening.empty() || opening.back() != v)) opening.push_back(v);
+        if ((along > opens || (apart - along * n).norm() > 3 * opens) && (opening.empty() || opening.back() != v))
+          opening.push_back(v);
       }
   const std::size_t wanted = opening.size();
   if (wanted == 0) return 0;
@@ -47,10 +48,14 @@ std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, c
     std::vector<std::uint32_t> refused;
     std::vector<std::uint8_t> moved(positions.size(), 0), marked(surface.triangles.size(), 0), bad(positions.size(), 0);
     for (const auto v : opening)
-      for (const auto c : copies[v]) positions[c] -= step * (trial % 2 == 0 ? shared[c] : normals[c]).normalized(), moved[c] = 1;
+      for (const auto c : copies[v])
+        positions[c] -= step * (trial % 2 == 0 ? shared[c] : normals[c]).normalized(), moved[c] = 1;
     for (;;) {
-      for (std::size_t t = 0; t < marked.size(); ++t) marked[t] = std::any_of(surface.triangles[t].begin(), surface.triangles[t].end(), [&](auto v) { return moved[v]; });
-      const auto crossings = find_crossings(pairs, surface.triangles, positions, vertices_together(surface.site, positions), true, &marked);
+      for (std::size_t t = 0; t < marked.size(); ++t)
+        marked[t] =
+            std::any_of(surface.triangles[t].begin(), surface.triangles[t].end(), [&](auto v) { return moved[v]; });
+      const auto crossings = find_crossings(pairs, surface.triangles, positions,
+                                            vertices_together(surface.site, positions), true, &marked);
       if (crossings.empty()) break;
       for (const auto& [s, t] : crossings)
         for (const auto& triangle : {surface.triangles[s], surface.triangles[t]})
@@ -75,7 +80,8 @@ std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, c
     for (const auto& pair : pairs)
       for (const auto t : {pair.first, pair.second})
         for (const auto c : surface.triangles[t])
-          if (turn[c] != ~0u && (pairs_about[turn[c]].empty() || pairs_about[turn[c]].back() != pair)) pairs_about[turn[c]].push_back(pair);
+          if (turn[c] != ~0u && (pairs_about[turn[c]].empty() || pairs_about[turn[c]].back() != pair))
+            pairs_about[turn[c]].push_back(pair);
   std::erase_if(opening, [&](auto v) {
     const auto& about = pairs_about[turn[copies[v][0]]];
     for (int trial = 0; trial < 20; ++trial) {

@@ -4,8 +4,8 @@
 #include <bit>
 #include <numeric>
 
-#include "kerf/parallel.h"
 #include "contact/surface/contact_surface.h"
+#include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
 #include "mechanics/terms/row_sums.h"
 
@@ -32,7 +32,8 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
     for (const auto v : *some) asked[v.index()] = 1;
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const SurfaceVertexId master = body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
+      const SurfaceVertexId master =
+          body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
       asked[v] = asked[v] || !master.valid() || stale[body.binding.master_node[master.index()].index()];
     }
   });
@@ -43,9 +44,12 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
   return vertices;
 }
 
-std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const {
+std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertices,
+                                          const std::vector<Vec3>& values) const {
   std::vector<Vec3> result(vertices.size());
-  each_row_sum(vertices.size(), values, [&](std::size_t k) { return row(vertices[k]); }, [&](std::size_t k, const Vec3& sum) { result[k] = sum; });
+  each_row_sum(
+      vertices.size(), values, [&](std::size_t k) { return row(vertices[k]); },
+      [&](std::size_t k, const Vec3& sum) { result[k] = sum; });
   return result;
 }
 
@@ -58,8 +62,10 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
     // Of all nodes, zero between rows: each thread keeps its own, as there are few vertices to a range.
     thread_local std::vector<double> weight;
     thread_local std::vector<std::uint64_t> used;  // a bit a node
-    weight.resize(std::max(weight.size(), solid.size()), 0), used.resize(std::max(used.size(), (solid.size() + 63) / 64), 0);
-    if (std::any_of(used.begin(), used.end(), [](auto bits) { return bits != 0; }))  // a row was given up when there was no memory for it
+    weight.resize(std::max(weight.size(), solid.size()), 0),
+        used.resize(std::max(used.size(), (solid.size() + 63) / 64), 0);
+    if (std::any_of(used.begin(), used.end(),
+                    [](auto bits) { return bits != 0; }))  // a row was given up when there was no memory for it
       std::fill(used.begin(), used.end(), 0), std::fill(weight.begin(), weight.end(), 0.0);
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
@@ -95,7 +101,8 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
           if (weight[j] != 0) rows_[v].push_back({j, weight[j]});
           weight[j] = 0;
         }
-      const auto most = std::max_element(rows_[v].begin(), rows_[v].end(), [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
+      const auto most = std::max_element(rows_[v].begin(), rows_[v].end(),
+                                         [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
       if (most != rows_[v].end()) heaviest_[v] = most->node;
       spread_[v] = geo::spread(rows_[v]);
     }

@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "kerf/body.h"
-#include "mechanics/terms/potential.h"
 #include "kerf/solid.h"
+#include "mechanics/terms/potential.h"
 
 namespace geo {
 
-/// A row per surface vertex: nodes, and weights that sum to 1. A vertex's velocity follows from the nodes' by the same weights,
-/// and an impulse on it is spread over the nodes by them (§ 3.3).
+/// A row per surface vertex: nodes, and weights that sum to 1. A vertex's velocity follows from the nodes' by the same
+/// weights, and an impulse on it is spread over the nodes by them (§ 3.3).
 class SurfaceWeights {
  public:
   using Entry = NodeWeight;
   /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's gradient, those of its
   /// neighbours. Cost follows the surface.
   void update(const Body& body, const Solid& solid);
-  /// After a split that was made since: the same, but only rows are made anew that it can have changed. Returns which, ascending.
+  /// After a split that was made since: the same, but only rows are made anew that it can have changed. Returns which,
+  /// ascending.
   std::vector<std::uint32_t> follow(const Body& body, const Solid& solid, const BodyDelta& delta);
 
   std::size_t size() const { return rows_.size(); }

@@ -8,18 +8,18 @@
 #include <utility>
 #include <vector>
 
-#include "kerf/progress.h"
+#include "graph/update.h"
+#include "kerf/complex.h"
 #include "kerf/crack.h"
 #include "kerf/graph.h"
-#include "graph/update.h"
-#include "sampling/node_grid.h"
 #include "kerf/nodes.h"
-#include "kerf/complex.h"
+#include "kerf/progress.h"
+#include "sampling/node_grid.h"
 
 namespace geo {
 
-/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries. A crumb that
-/// has no room for a node is rigid debris, carried by the nearest one.
+/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries. A crumb
+/// that has no room for a node is rigid debris, carried by the nearest one.
 struct Binding {
   std::vector<NodeId> master_node;       ///< of masters: the node with the visibility edge; else invalid
   std::vector<SurfaceVertexId> master;   ///< the master whose tree a vertex hangs in; invalid: orphan
@@ -30,11 +30,12 @@ struct Binding {
 
 /// What a split keeps for the next one, so that it need not look at the whole body; derived by the first split.
 struct Upkeep {
-  std::vector<std::int32_t> piece;   ///< per surface vertex: a number for its piece of material, −1: dead
-  std::int32_t pieces = 0;           ///< how many numbers there are
-  std::set<std::int32_t> bare;       ///< pieces without a node, as far as known: crumbs in which doubles have no room for one
-  bool inner_shells = false;         ///< a piece may be bounded by several shells: cavities, cracks inside
-  std::vector<std::uint32_t> depth;  ///< per surface vertex: edges to its master; ~0u: orphan
+  std::vector<std::int32_t> piece;  ///< per surface vertex: a number for its piece of material, −1: dead
+  std::int32_t pieces = 0;          ///< how many numbers there are
+  std::set<std::int32_t>
+      bare;                   ///< pieces without a node, as far as known: crumbs in which doubles have no room for one
+  bool inner_shells = false;  ///< a piece may be bounded by several shells: cavities, cracks inside
+  std::vector<std::uint32_t> depth;     ///< per surface vertex: edges to its master; ~0u: orphan
   std::vector<SurfaceVertexId> strays;  ///< masters of shells that no node looks at, ascending
 };
 
@@ -49,14 +50,16 @@ struct Body {
   NodeSet nodes;
   VisibilityGraph graph;  ///< and the neighbours of each node
   Binding binding;
-  std::vector<NodeId> donors;    ///< of the nodes inserted last, in order; derived, never in a file
-  NodeGrid grid;                     ///< over nodes.position; derived, never in a file
-  Upkeep upkeep;                     ///< derived, never in a file
-  int k = 26;                        ///< nearest neighbours per node in the graph
-  double guides = 0;                 ///< of guides along concave edges (§ 8), in spacings of the nodes; 0: none
-  double resample_limit = 1;         ///< 0: cracks get no new nodes
-  std::uint32_t sampled = 0;         ///< nodes that it was built of: the first rows
-  double finest = 0, widest = 0;     ///< their smallest spacing and largest support radius: cracks get no finer nodes, and no wider ones
+  std::vector<NodeId> donors;  ///< of the nodes inserted last, in order; derived, never in a file
+  NodeGrid grid;               ///< over nodes.position; derived, never in a file
+  Upkeep upkeep;               ///< derived, never in a file
+  int k = 26;                  ///< nearest neighbours per node in the graph
+  double guides = 0;           ///< of guides along concave edges (§ 8), in spacings of the nodes; 0: none
+  double resample_limit = 1;   ///< 0: cracks get no new nodes
+  std::uint32_t sampled = 0;   ///< nodes that it was built of: the first rows
+  double finest = 0,
+         widest =
+             0;  ///< their smallest spacing and largest support radius: cracks get no finer nodes, and no wider ones
   std::uint32_t updates = 0;         ///< cracks steps applied since the build
   std::vector<std::uint8_t> debris;  ///< per node: 1 where its neighbours do not span space (nodes.h): rigid debris
   std::vector<Provenance> history;
@@ -80,20 +83,23 @@ Binding build_binding(const Body& body);
 struct SplitWork {
   CrackWork crack;
   std::size_t edges_cut = 0, edges_added = 0, nodes_updated = 0, nodes_added = 0, nodes_moved = 0, orphans = 0;
-  std::size_t nodes_mended = 0;  ///< of those added, the last: in pieces without a node and passages too narrow for the sampling
+  std::size_t nodes_mended =
+      0;  ///< of those added, the last: in pieces without a node and passages too narrow for the sampling
   double resample_seconds = 0, graph_seconds = 0, binding_seconds = 0;
 };
 
 /// What a split changed, for the mechanics.
 struct BodyDelta {
   CrackDelta crack;
-  NodeId first_new_node;                 ///< nodes from here on are new
-  std::vector<NodeId> donors;            ///< per new node: the node that gave it half of its volume
-  std::vector<NodeId> moved_nodes;       ///< old nodes moved off a crack face, ascending
-  std::vector<std::pair<NodeId, double>> resized_nodes;  ///< old nodes that stayed, but have another support radius; with the one they had, ascending
+  NodeId first_new_node;            ///< nodes from here on are new
+  std::vector<NodeId> donors;       ///< per new node: the node that gave it half of its volume
+  std::vector<NodeId> moved_nodes;  ///< old nodes moved off a crack face, ascending
+  std::vector<std::pair<NodeId, double>>
+      resized_nodes;  ///< old nodes that stayed, but have another support radius; with the one they had, ascending
   std::vector<NodeId> updated_nodes;     ///< rows changed (new, moved and resized ones included), ascending
   std::vector<SurfaceVertexId> rebound;  ///< surface vertices that another node carries now, ascending
-  std::vector<std::vector<NodeId>> parted;  ///< of each piece that came off, the nodes, ascending; the largest part is not among them
+  std::vector<std::vector<NodeId>>
+      parted;  ///< of each piece that came off, the nodes, ascending; the largest part is not among them
 };
 
 /// One front step through all seven steps of § 4: crack, cut graph, sample, update neighbours, re-bind. Commits all or
@@ -101,12 +107,13 @@ struct BodyDelta {
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
                 SplitWork* work = nullptr);
 
-/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own. Where `progress`
-/// stops the work, body is of no more use.
+/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own.
+/// Where `progress` stops the work, body is of no more use.
 BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr, const Progress& progress = {});
 
-/// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest: graph, neighbours and binding follow, and equal those from
-/// scratch with the same edges, bit for bit. The cost follows what changes. Throws InputError for a radius that is not positive.
+/// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest: graph, neighbours and
+/// binding follow, and equal those from scratch with the same edges, bit for bit. The cost follows what changes. Throws
+/// InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
 /// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its master's node, the node

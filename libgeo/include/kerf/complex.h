@@ -10,9 +10,9 @@
 #include <iterator>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "geometry/triangle_index.h"
 #include "kerf/mesh.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -71,8 +71,8 @@ struct ComplexEdit {
 /// What a commit did; all that any consumer (graph, binding, contact, viewer) needs to follow.
 struct CrackDelta {
   std::vector<VertexId> new_vertices;
-  std::vector<FaceId> removed_faces, new_faces;    ///< new_faces holds skin children and crack faces
-  std::vector<FaceId> new_crack_faces;             ///< crack faces that are part of no earlier face
+  std::vector<FaceId> removed_faces, new_faces;  ///< new_faces holds skin children and crack faces
+  std::vector<FaceId> new_crack_faces;           ///< crack faces that are part of no earlier face
   std::vector<SurfaceVertexId> removed_surface_vertices, new_surface_vertices;
   std::vector<SurfaceVertexId> touched_surface_vertices;  ///< kept ones whose triangles changed
   /// new_surface_vertices[i] appeared at the site of copied_from[i], or of no earlier one (invalid).
@@ -133,7 +133,9 @@ class Complex {
   SurfaceVertexId surface_vertex(Side s, int k) const { return corner_vertex_[s.face.index() * 6 + s.which * 3 + k]; }
   /// The side across the edge from the face's k-th vertex to its (k+1)-th one: the one that bounds the same wedge.
   Side neighbor(Side s, int k) const;
-  std::uint32_t surface_vertex_count() const { return static_cast<std::uint32_t>(site_.size()); }  ///< dead rows included
+  std::uint32_t surface_vertex_count() const {
+    return static_cast<std::uint32_t>(site_.size());
+  }                                                                    ///< dead rows included
   VertexId site(SurfaceVertexId v) const { return site_[v.index()]; }  ///< invalid when v is dead
   bool alive(SurfaceVertexId v) const { return site_[v.index()].valid(); }
   /// One corner (side and k) of a live surface vertex, from which its fan can be walked.
@@ -173,7 +175,9 @@ class Complex {
   FaceId any_at(VertexId a, VertexId b) const;
   /// Which of its edges ab is, for a face that has it.
   static int edge_in(const Face& f, VertexId a, VertexId b);
-  FaceId next_around(FaceId f, VertexId a, VertexId b) const { return radial_[f.index() * 3 + static_cast<std::size_t>(edge_in(face(f), a, b))]; }
+  FaceId next_around(FaceId f, VertexId a, VertexId b) const {
+    return radial_[f.index() * 3 + static_cast<std::size_t>(edge_in(face(f), a, b))];
+  }
   void link_corners(FaceId f);
   void unlink_corners(FaceId f);
   void link_ring(VertexId a, VertexId b, const FaceId* faces, std::size_t count);
@@ -204,7 +208,7 @@ class Complex {
     std::uint32_t vertices, faces, surface_vertices;
     std::int32_t cracks;
     std::vector<FaceId> removed;
-    std::vector<std::pair<std::size_t, FaceId>> radial;             // places in radial_
+    std::vector<std::pair<std::size_t, FaceId>> radial;            // places in radial_
     std::vector<std::pair<std::size_t, SurfaceVertexId>> corners;  // in corner_vertex_
     std::vector<Stand> stands;
   };
@@ -216,9 +220,9 @@ class Complex {
   std::uint32_t live_faces_ = 0;
   std::int32_t crack_count_ = 0;
   Box3 extent_;
-  std::vector<FaceId> radial_;               // 3 a face: the next face around its edge k, ccw about lower→higher vertex
-  std::vector<std::uint32_t> first_corner_;  // per vertex: 3 f + k of the lowest face at it
-  std::vector<std::uint32_t> next_corner_;   // 3 a face: the next corner at the same vertex
+  std::vector<FaceId> radial_;  // 3 a face: the next face around its edge k, ccw about lower→higher vertex
+  std::vector<std::uint32_t> first_corner_;     // per vertex: 3 f + k of the lowest face at it
+  std::vector<std::uint32_t> next_corner_;      // 3 a face: the next corner at the same vertex
   std::vector<SurfaceVertexId> corner_vertex_;  // 6 a face: [side][corner]
   std::vector<VertexId> site_;                  // per surface vertex
   std::vector<Side> fan_side_;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "kerf/complex.h"
 #include "kerf/mesh.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -41,20 +41,22 @@ struct FrontState {
     VertexId id;    ///< the vertex of K at this point; invalid while the point is outside the material
   };
   bool closed = false;
-  std::int32_t crack = 0;             ///< the number of the crack that this front leaves behind; ≥ 1
-  std::vector<Point> points;          ///< the front points as given (or as moved by the guard)
+  std::int32_t crack = 0;                    ///< the number of the crack that this front leaves behind; ≥ 1
+  std::vector<Point> points;                 ///< the front points as given (or as moved by the guard)
   std::vector<std::vector<Point>> segments;  ///< segments[i]: from points[i] to points[i+1], with the contacts between
-  std::uint32_t step = 0;             ///< how many time steps of its file this front has made
+  std::uint32_t step = 0;                    ///< how many time steps of its file this front has made
   std::string name;
 };
 
 struct CrackOptions {
-  double snap = 1e-14;    ///< pre-snap of the strip to vertices of K, relative to the extent's diagonal
-  double clear = 1e-6;    ///< new front points a hundredth of this from a face of K, but not on it, move this far off, relative
-  double clearance = 0x1p-46; ///< how far apart a step must leave what does not touch, relative; the later half of the attempts does without
-  double jitter = 1e-9;   ///< first displacement of the new front when the guard refuses a step, relative
-  int attempts = 12;       ///< how often a refused step is jittered and redone
-  std::uint64_t seed = 1; ///< of the jitter
+  double snap = 1e-14;  ///< pre-snap of the strip to vertices of K, relative to the extent's diagonal
+  double clear =
+      1e-6;  ///< new front points a hundredth of this from a face of K, but not on it, move this far off, relative
+  double clearance = 0x1p-46;  ///< how far apart a step must leave what does not touch, relative; the later half of the
+                               ///< attempts does without
+  double jitter = 1e-9;        ///< first displacement of the new front when the guard refuses a step, relative
+  int attempts = 12;           ///< how often a refused step is jittered and redone
+  std::uint64_t seed = 1;      ///< of the jitter
 };
 
 /// Counts and seconds of one step, by phase.
@@ -80,7 +82,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
 /// Inserts what of `sheet` lies in the material as one crack, in one step: any triangles, connected or not, crossing
 /// themselves or not; patch and site are ignored. Throws InputError for a sheet with rows out of range or coordinates
 /// that are not finite, GeometryError when no attempt passes the guard; `complex` is then unchanged.
-CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options = {},
-                        CrackWork* work = nullptr);
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
+                        const CrackOptions& options = {}, CrackWork* work = nullptr);
 
 }  // namespace geo

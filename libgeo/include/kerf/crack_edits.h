@@ -11,11 +11,13 @@
 namespace geo {
 
 struct RemeshOptions {
-  double angle = 15;          ///< degrees: faces with a smaller angle are improved
-  double deviation = 1e-4;    ///< how far a crack's surface may move, relative to the extent's diagonal; the skin never does
-  double shortest = 2e-3;     ///< no edge is divided into shorter ones, relative
-  double crease = 20;         ///< degrees: an edge of a crack that is bent more is a feature
-  /// Refuses what passes through a tetrahedron that this returns false for, where given (a body's nodes must keep their sides).
+  double angle = 15;  ///< degrees: faces with a smaller angle are improved
+  double deviation =
+      1e-4;  ///< how far a crack's surface may move, relative to the extent's diagonal; the skin never does
+  double shortest = 2e-3;  ///< no edge is divided into shorter ones, relative
+  double crease = 20;      ///< degrees: an edge of a crack that is bent more is a feature
+  /// Refuses what passes through a tetrahedron that this returns false for, where given (a body's nodes must keep their
+  /// sides).
   std::function<bool(const std::array<Vec3, 4>&)> may_pass;
 };
 
@@ -38,24 +40,26 @@ double smallest_angle(const std::array<Vec3, 3>& corners);
 // ---- Jagged cracks (§ 5.2, brittle fracture): crack faces subdivided and displaced by fractal noise.
 
 struct RoughenOptions {
-  double amplitude = 0.01;    ///< of the largest bumps, relative to the extent's diagonal
-  double frequency = 8;       ///< of these, per diagonal
-  int octaves = 4;            ///< each twice as fine and 0.6 times as high
-  double edge = 0;            ///< longest edge inside a crack, relative; 0: a twelfth of the largest bumps
+  double amplitude = 0.01;  ///< of the largest bumps, relative to the extent's diagonal
+  double frequency = 8;     ///< of these, per diagonal
+  int octaves = 4;          ///< each twice as fine and 0.6 times as high
+  double edge = 0;          ///< longest edge inside a crack, relative; 0: a twelfth of the largest bumps
   std::uint64_t seed = 1;
   std::vector<std::int32_t> cracks;  ///< which; empty: all
 };
 
 struct RoughenWork {
-  std::size_t divisions = 0, moves = 0, lowered = 0, refused = 0;  ///< lowered: moved less far than wanted, for something is in the way
+  std::size_t divisions = 0, moves = 0, lowered = 0,
+              refused = 0;  ///< lowered: moved less far than wanted, for something is in the way
   double seconds = 0;
 };
 
-/// Divides the inner edges of the cracks and moves their inner vertices along the normal by noise that fades towards the
-/// skin, other cracks and the tips, which stay as they are. Both sides of a crack are alike, the pieces' volumes sum to
-/// what they did, and nothing crosses: where it would, a vertex moves less. Contacts of `fronts` stay. Returns what
-/// changed. Throws InputError for options out of range.
-CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options = {}, RoughenWork* work = nullptr);
+/// Divides the inner edges of the cracks and moves their inner vertices along the normal by noise that fades towards
+/// the skin, other cracks and the tips, which stay as they are. Both sides of a crack are alike, the pieces' volumes
+/// sum to what they did, and nothing crosses: where it would, a vertex moves less. Contacts of `fronts` stay. Returns
+/// what changed. Throws InputError for options out of range.
+CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options = {},
+                   RoughenWork* work = nullptr);
 
 /// Gradient noise (Perlin 2002) in about [−1, 1], the same for the same seed everywhere.
 double noise(const Vec3& p, std::uint64_t seed);
@@ -75,9 +79,10 @@ struct DecimateWork {
 };
 
 /// Collapses edges of skin and cracks, the shortest first. Lines where surfaces meet, tips and creases stay lines;
-/// contacts of `fronts` stay or are left out between their neighbours. K never crosses itself, the derived surface stays
-/// closed; volumes change by what the deviation allows. Cost follows the whole. Returns what changed.
-/// Throws InputError for options out of range.
-CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options = {}, DecimateWork* work = nullptr);
+/// contacts of `fronts` stay or are left out between their neighbours. K never crosses itself, the derived surface
+/// stays closed; volumes change by what the deviation allows. Cost follows the whole. Returns what changed. Throws
+/// InputError for options out of range.
+CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options = {},
+                    DecimateWork* work = nullptr);
 
 }  // namespace geo

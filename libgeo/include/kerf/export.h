@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "kerf/body.h"
 #include "io/kerf_reader.h"
+#include "kerf/body.h"
 #include "kerf/pieces.h"
 
 namespace geo {
@@ -36,20 +36,24 @@ struct ChunkNotes {
   double strength = 1;             ///< force an area of 1 withstands; a bond's strength is this times its area
 };
 
-/// `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal", "centroid", "strength"}]}`.
-void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes);
+/// `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal", "centroid",
+/// "strength"}]}`.
+void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+                 const ChunkNotes& notes);
 
 struct GlbOptions {
-  std::size_t hull_corners = 0;  ///< of the convex hulls below each piece's node, named UCX_ and the piece's name; 0: none
-  std::size_t hull_parts = 1;    ///< see convex_parts(); where there are several, their names end in _00, _01 …
-  bool z_up = false;             ///< the model's z is up; glTF's is y
+  std::size_t hull_corners =
+      0;  ///< of the convex hulls below each piece's node, named UCX_ and the piece's name; 0: none
+  std::size_t hull_parts = 1;  ///< see convex_parts(); where there are several, their names end in _00, _01 …
+  bool z_up = false;           ///< the model's z is up; glTF's is y
 };
 
-/// A .glb: a root node with one node for each piece, whose origin is the piece's centroid, and one material for each group,
-/// that of cracks with a face on the inside. Normals are those given, on cracks and where there are none those of the
-/// triangles around each corner that are bent less than 45 degrees. Colours become linear, as glTF wants them. What
-/// write_bonds() says is in the scene's `extras`. Coordinates are single precision about each centroid.
-void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes, const GlbOptions& options = {});
+/// A .glb: a root node with one node for each piece, whose origin is the piece's centroid, and one material for each
+/// group, that of cracks with a face on the inside. Normals are those given, on cracks and where there are none those
+/// of the triangles around each corner that are bent less than 45 degrees. Colours become linear, as glTF wants them.
+/// What write_bonds() says is in the scene's `extras`. Coordinates are single precision about each centroid.
+void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+               const ChunkNotes& notes, const GlbOptions& options = {});
 
 /// What the name of hull `part` of `parts` ends in: "" for a single one, else _00, _01 …
 std::string hull_suffix(std::size_t part, std::size_t parts);

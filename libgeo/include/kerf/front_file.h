@@ -9,8 +9,9 @@
 
 namespace geo {
 
-/// `front NAME [closed]`, then `step T` and rows `x y z`; `sheet NAME`, then `v x y z` and `f a b c`; `#` comments. Or OBJ with `l` polylines, one object a step in
-/// name order. Throws InputError with file and line: fewer than two points, one step only, not finite, unknown words.
+/// `front NAME [closed]`, then `step T` and rows `x y z`; `sheet NAME`, then `v x y z` and `f a b c`; `#` comments. Or
+/// OBJ with `l` polylines, one object a step in name order. Throws InputError with file and line: fewer than two
+/// points, one step only, not finite, unknown words.
 std::vector<Front> read_fronts(const std::string& path);
 std::vector<Front> parse_fronts(const std::string& bytes, const std::string& name);
 /// The same where lines need not move: one step is enough, each is a curve.

@@ -20,16 +20,16 @@ enum class Discretisation { galerkin, mueller04 };
 struct Material {
   Discretisation discretisation = Discretisation::galerkin;
   ElasticModel model = ElasticModel::neo_hookean;
-  double young = 1e5;      ///< Pa (model units: m)
-  double poisson = 0.3;    ///< −1 < ν < 0.5
-  double density = 1000;   ///< kg/m³
-  double volume_term = 0;  ///< k_v of ½ k_v (det F − 1)², Pa; keeps Saint-Venant–Kirchhoff from collapsing
-  double damping = 0.5;    ///< mass-proportional, 1/s
-  double viscosity = 0;    ///< η of ½ η |Ė|², E the Green strain, Pa·s: resists changes of shape, not motion
+  double young = 1e5;          ///< Pa (model units: m)
+  double poisson = 0.3;        ///< −1 < ν < 0.5
+  double density = 1000;       ///< kg/m³
+  double volume_term = 0;      ///< k_v of ½ k_v (det F − 1)², Pa; keeps Saint-Venant–Kirchhoff from collapsing
+  double damping = 0.5;        ///< mass-proportional, 1/s
+  double viscosity = 0;        ///< η of ½ η |Ė|², E the Green strain, Pa·s: resists changes of shape, not motion
   double mode_penalty = 0.05;  ///< of mueller04: α of the penalty on modes that nodal strains do not see
-  double yield = 0;        ///< norm of the elastic strain beyond which material flows; 0: never (plasticity.h)
-  double creep = 1;        ///< the share of the elastic strain that flows in a second
-  double most_plastic = 1; ///< norm that the plastic strain cannot pass
+  double yield = 0;            ///< norm of the elastic strain beyond which material flows; 0: never (plasticity.h)
+  double creep = 1;            ///< the share of the elastic strain that flows in a second
+  double most_plastic = 1;     ///< norm that the plastic strain cannot pass
   double lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
   double mu() const { return young / (2 * (1 + poisson)); }
   friend bool operator==(const Material&, const Material&) = default;
@@ -55,14 +55,15 @@ Mat9 stress_derivative(const Material& material, const Mat3& f);
 /// The same with negative eigenvalues set to zero.
 Mat9 projected_derivative(const Material& material, const Mat3& f);
 
-// ---- What a solid is made of: one material, or several, of which each node has one. What no path in the material joins may differ.
+// ---- What a solid is made of: one material, or several, of which each node has one. What no path in the material
+// joins may differ.
 
 class Materials {
  public:
   /// One for all. Throws InputError for an impossible one.
   Materials(const Material& all = {}) : Materials(std::vector<Material>{all}, {}) {}
-  /// `of_node`: numbers in the table. Nodes that share a graph's component have the same. Throws InputError for an impossible material, for numbers
-  /// that are not in the table, and where discretisations differ.
+  /// `of_node`: numbers in the table. Nodes that share a graph's component have the same. Throws InputError for an
+  /// impossible material, for numbers that are not in the table, and where discretisations differ.
   Materials(std::vector<Material> table, std::vector<std::uint16_t> of_node);
 
   std::size_t count() const { return table_.size(); }

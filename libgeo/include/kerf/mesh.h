@@ -38,12 +38,13 @@ inline constexpr const char* crack_group = "crack";
 Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Gives `derived`, a surface or piece of the complex that was made from `original`, the attributes of `original`.
-/// `derived.source` must hold rows of `original`, as Complex::two_sided and piece_mesh fill it; afterwards it holds what
-/// those rows name in turn: where `original` was cut from another surface, rows of that one, and ~0u for all triangles of
-/// cracks. A corner that stands on a corner of its source triangle gets that one's values to the bit, any other values
-/// interpolated linearly over the triangle (normals made unit again). Two triangles that meet in an edge of equal values
-/// get equal values there. A side of a crack that `original` has already keeps its values; those made since get the ones
-/// named above. Works on undeformed positions. Cost follows `derived`. Throws InputError when a source is not there.
+/// `derived.source` must hold rows of `original`, as Complex::two_sided and piece_mesh fill it; afterwards it holds
+/// what those rows name in turn: where `original` was cut from another surface, rows of that one, and ~0u for all
+/// triangles of cracks. A corner that stands on a corner of its source triangle gets that one's values to the bit, any
+/// other values interpolated linearly over the triangle (normals made unit again). Two triangles that meet in an edge
+/// of equal values get equal values there. A side of a crack that `original` has already keeps its values; those made
+/// since get the ones named above. Works on undeformed positions. Cost follows `derived`. Throws InputError when a
+/// source is not there.
 void carry(const TriangleMesh& original, TriangleMesh& derived);
 
 // ---- A plain indexed triangle mesh: what files hold and what the derived surface is exported as.
@@ -54,8 +55,8 @@ void carry(const TriangleMesh& original, TriangleMesh& derived);
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::int32_t> patch;   ///< per triangle, or empty
-  std::vector<std::uint32_t> site;   ///< per vertex, or empty
+  std::vector<std::int32_t> patch;    ///< per triangle, or empty
+  std::vector<std::uint32_t> site;    ///< per vertex, or empty
   std::vector<std::uint32_t> source;  ///< per triangle, ~0u: of none (a crack's); or empty: not known
   Attributes attributes;
   bool two_sided() const { return !site.empty(); }

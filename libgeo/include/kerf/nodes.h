@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "kerf/mesh.h"
 #include "kerf/progress.h"
 #include "kerf/vec.h"
-#include "kerf/mesh.h"
 
 namespace geo {
 
@@ -26,11 +26,12 @@ struct NodeSet {
 enum class NodePattern { jitter, blue, grid };
 
 struct SampleOptions {
-  double spacing = 0;      ///< cells at the surface, model units; 0: 3 % of the diagonal, or what `count` asks for
-  std::size_t count = 0;   ///< wanted number of nodes; 0: by spacing. Reached exactly, or within 2 % where symmetry forbids
-  int levels = 2;          ///< resolution levels, each twice as coarse as the one before; 1 to 10
-  double jitter = 0.15;    ///< random displacement of a node, as a fraction of its cell; up to 0.5; of pattern `jitter`
-  double support = 1.8;    ///< support radius over the spacing around, enlarged until enough nodes are within it
+  double spacing = 0;  ///< cells at the surface, model units; 0: 3 % of the diagonal, or what `count` asks for
+  std::size_t count =
+      0;           ///< wanted number of nodes; 0: by spacing. Reached exactly, or within 2 % where symmetry forbids
+  int levels = 2;  ///< resolution levels, each twice as coarse as the one before; 1 to 10
+  double jitter = 0.15;  ///< random displacement of a node, as a fraction of its cell; up to 0.5; of pattern `jitter`
+  double support = 1.8;  ///< support radius over the spacing around, enlarged until enough nodes are within it
   std::uint64_t seed = 1;
   NodePattern pattern = NodePattern::jitter;
   int across = 0;  ///< nodes wanted across thin material: cells there are up to 32 times finer, with `count` as far as
@@ -39,10 +40,10 @@ struct SampleOptions {
 
 /// What a sampling found out.
 struct SampleReport {
-  double spacing = 0;           ///< cells at the surface, model units
-  double thinnest = 0;          ///< the thinnest wall of less than `across` cells, before any was made finer; 0: none
+  double spacing = 0;   ///< cells at the surface, model units
+  double thinnest = 0;  ///< the thinnest wall of less than `across` cells, before any was made finer; 0: none
   Vec3 thinnest_at = Vec3::Zero();
-  double unresolved = 0;        ///< the thinnest wall that still has fewer; 0: none
+  double unresolved = 0;  ///< the thinnest wall that still has fewer; 0: none
   Vec3 unresolved_at = Vec3::Zero();
   double octree_seconds = 0, node_seconds = 0, support_seconds = 0;
 };
@@ -50,6 +51,7 @@ struct SampleReport {
 /// Nodes inside a closed surface (check.h's require_solid holds). Inside is exact (ray parity), also in slits and walls
 /// much thinner than a cell. Deterministic for a seed and for any number of threads. Throws InputError for options out
 /// of range and when the spacing is so large that no node fits inside.
-NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress = {}, SampleReport* report = nullptr);
+NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress = {},
+                     SampleReport* report = nullptr);
 
 }  // namespace geo

@@ -12,7 +12,8 @@ void set_threads(int count);
 /// How many threads `parallel_for` uses.
 int threads();
 
-/// While one lives, loops of the thread that made it go on in that thread alone: for work that others do not wait for, beside work that they do.
+/// While one lives, loops of the thread that made it go on in that thread alone: for work that others do not wait for,
+/// beside work that they do.
 class Alone {
  public:
   Alone();

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "kerf/crack.h"
 #include "kerf/material.h"
-#include "kerf/nodes.h"
 #include "kerf/mesh.h"
+#include "kerf/nodes.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
@@ -34,17 +34,19 @@ struct Motion {
   std::vector<Key> keys;  ///< ascending in time; none: stays where it is
 
   bool active(double time) const { return !keys.empty() && time >= keys.front().time && time <= keys.back().time; }
-  /// Position interpolated linearly, rotation by its angle where both keys have the same axis (whole turns included), else
-  /// spherically; before the first key and after the last one it stands still.
+  /// Position interpolated linearly, rotation by its angle where both keys have the same axis (whole turns included),
+  /// else spherically; before the first key and after the last one it stands still.
   Pose at(double time) const;
 };
 
-// ---- When and where a body breaks by its own stress (Pauly et al. 2005; O'Brien and Hodgins 1999): what a scene says of it.
+// ---- When and where a body breaks by its own stress (Pauly et al. 2005; O'Brien and Hodgins 1999): what a scene says
+// of it.
 
 /// What it takes to break a body.
 struct Strength {
-  double strength = 1e4;   ///< Pa: largest principal stress, averaged over the support radius, at which a crack begins
-  double toughness = 0;    ///< Pa √m: K_Ic at which a crack goes on; 0: strength · √(π h/2), h the support radius at the tip
+  double strength = 1e4;  ///< Pa: largest principal stress, averaged over the support radius, at which a crack begins
+  double toughness =
+      0;  ///< Pa √m: K_Ic at which a crack goes on; 0: strength · √(π h/2), h the support radius at the tip
   double variation = 0.2;  ///< of strength and toughness: they are multiplied by 1 + variation · noise in about [−1, 1]
   double grain = 0;        ///< size of the noise, model units; 0: a tenth of the diagonal of all bodies
   friend bool operator==(const Strength&, const Strength&) = default;
@@ -53,19 +55,22 @@ struct Strength {
 struct Fracture : Strength {
   bool on = false;
   std::vector<Strength> own;  ///< per body of the scene; empty: all have the same
-  double speed = 0.55;     ///< the fastest a crack gets, as a share of the Rayleigh wave's speed
-  double branching = 0;    ///< a front divides where the stress ahead is this many times what it needs; 0: never
-  double apart = 4;        ///< no crack begins nearer to another than this many node spacings
-  int cracks = 24;         ///< how many may begin in all, branches included
+  double speed = 0.55;        ///< the fastest a crack gets, as a share of the Rayleigh wave's speed
+  double branching = 0;       ///< a front divides where the stress ahead is this many times what it needs; 0: never
+  double apart = 4;           ///< no crack begins nearer to another than this many node spacings
+  int cracks = 24;            ///< how many may begin in all, branches included
   int cracks_per_step = 1;
-  double start = 0;        ///< seconds: nothing breaks before
+  double start = 0;                      ///< seconds: nothing breaks before
   std::vector<std::array<Vec3, 2>> off;  ///< boxes, material coordinates, where no crack begins or goes on
   std::uint64_t seed = 1;
   /// Of a node. `part`: per node, its body.
-  const Strength& of(const std::vector<std::uint32_t>& part, std::size_t node) const { return own.empty() ? *this : own[part[node]]; }
+  const Strength& of(const std::vector<std::uint32_t>& part, std::size_t node) const {
+    return own.empty() ? *this : own[part[node]];
+  }
 };
 
-/// By how much strength and toughness at material point x differ from what the scene says; ≥ 0.05. `diagonal`: of all bodies.
+/// By how much strength and toughness at material point x differ from what the scene says; ≥ 0.05. `diagonal`: of all
+/// bodies.
 double strength_factor(const Strength& strength, std::uint64_t seed, double diagonal, const Vec3& x);
 
 /// False where the scene says that nothing breaks.
@@ -83,14 +88,15 @@ double stress_of_toughness(double toughness, double h);
 struct ContactOptions {
   double friction = 0.3;  ///< Coulomb's coefficient between surfaces of the body
   double gap = 1e-4;      ///< that open sheets keep, in mean edges of the surface
-  double opening = 1e-2;  ///< how far Eq. 1 must have the two sides of a sheet apart before they part, in mean edges; along each other, three times
+  double opening = 1e-2;  ///< how far Eq. 1 must have the two sides of a sheet apart before they part, in mean edges;
+                          ///< along each other, three times
   double recovery = 0.3;  ///< share of the way back, in a step, for nodes whose surfaces have passed through each other
   int rounds = 2;         ///< of finding what touches and applying impulses
 };
 
 struct ContactWork {
   std::size_t watched = 0, touching = 0, in_zones = 0, opened = 0, held = 0;
-  double lag = 0;             ///< largest distance of a vertex from where Eq. 1 has it, model units
+  double lag = 0;  ///< largest distance of a vertex from where Eq. 1 has it, model units
   double seconds = 0;
   ContactWork& operator+=(const ContactWork& o);
 };
@@ -106,15 +112,15 @@ struct SceneBody {
   double spacing_percent = 5;  ///< of the diagonal, when sampling.spacing and count are 0
   double scale = 1;            ///< of the model, before it is placed
   Pose place;
-  Vec3 velocity = Vec3::Zero();  ///< at the start
-  Vec3 spin = Vec3::Zero();      ///< angular velocity at the start about the middle of its box, rad/s
+  Vec3 velocity = Vec3::Zero();      ///< at the start
+  Vec3 spin = Vec3::Zero();          ///< angular velocity at the start about the middle of its box, rad/s
   std::optional<Material> material;  ///< its own; none: the scene's
 };
 
 /// Nodes in a box that are held, and moved.
 struct Grip {
-  Vec3 lo, hi;    ///< material coordinates
-  Motion motion;  ///< of the box's middle, relative to where it was; none: stays
+  Vec3 lo, hi;           ///< material coordinates
+  Motion motion;         ///< of the box's middle, relative to where it was; none: stays
   bool release = false;  ///< lets go after the last key
   Vec3 middle() const { return 0.5 * (lo + hi); }
 };
@@ -125,7 +131,8 @@ struct Blade {
   std::vector<Vec3> points;  ///< the edge, in its own coordinates
   bool closed = false;
   Motion motion;             ///< at least two keys; the blade is there from the first to the last
-  Vec3 back = Vec3::Zero();  ///< from the edge to the back of the blade, in its own coordinates; its length is the blade's width
+  Vec3 back = Vec3::Zero();  ///< from the edge to the back of the blade, in its own coordinates; its length is the
+                             ///< blade's width
   double thickness = 0;      ///< of the wedge at its back, model units; 0: parts nothing
   double stiffness = 1e4;    ///< of what the wedge pushes with: acceleration per depth, 1/s²
   double limit = 1;          ///< longest way of an edge point within one cut, in node spacings (§ 5.1)
@@ -138,13 +145,13 @@ struct Blade {
 /// A rigid thing that bodies lie on and are pressed by: a closed mesh, or all that is behind a plane.
 struct SceneObstacle {
   std::string name;
-  TriangleMesh mesh;             ///< in its own coordinates; empty: a plane through its origin
-  Vec3 normal = Vec3::UnitZ();   ///< of the plane, where bodies may be
-  double scale = 1;              ///< of the mesh, before it is placed
+  TriangleMesh mesh;            ///< in its own coordinates; empty: a plane through its origin
+  Vec3 normal = Vec3::UnitZ();  ///< of the plane, where bodies may be
+  double scale = 1;             ///< of the mesh, before it is placed
   Pose place;
-  Motion motion;                 ///< of what was placed; none: stays
-  double stiffness = 1e5;        ///< of its penalty: acceleration per depth, 1/s²
-  double friction = 0.5;         ///< Coulomb's coefficient
+  Motion motion;           ///< of what was placed; none: stays
+  double stiffness = 1e5;  ///< of its penalty: acceleration per depth, 1/s²
+  double friction = 0.5;   ///< Coulomb's coefficient
 
   /// World = pose · scaled. Before its first key and after its last one it stands still.
   Pose pose(double time) const;
@@ -153,7 +160,7 @@ struct SceneObstacle {
 struct Scene {
   std::vector<SceneBody> bodies;  ///< one at least
   int k = 26;
-  Material material;  ///< of bodies that have none of their own
+  Material material;          ///< of bodies that have none of their own
   std::vector<Front> scores;  ///< cracks made before time 0, in material coordinates
   std::vector<Grip> grips;
   bool ground = false;
@@ -172,7 +179,7 @@ struct Scene {
   ContactOptions contact;
   bool body_contact = true;        ///< where there is no self_contact: bodies push each other apart
   double contact_stiffness = 1e5;  ///< with this penalty: acceleration per depth, 1/s²
-  std::uint64_t fingerprint = 0;  ///< of all that decides what the run computes; 0: not from a file
+  std::uint64_t fingerprint = 0;   ///< of all that decides what the run computes; 0: not from a file
 };
 
 }  // namespace geo

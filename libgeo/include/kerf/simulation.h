@@ -1,10 +1,11 @@
-// What a frame took: counts, and seconds by phase.
+// The loop of § 3.3 and § 4: blades move, fronts follow into the material, the body is split, nodes move, surface follows.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "kerf/body.h"
+#include "kerf/run.h"
 #include "kerf/scene.h"
 #include "kerf/solid.h"
 #include "simulation/collide.h"
@@ -15,22 +16,6 @@
 
 namespace geo {
 
-struct FrameWork {
-  SplitWork split;  ///< crack: meet and mesh; graph, resample, binding
-  FractureWork fracture;
-  ContactWork contact;
-  std::size_t refused = 0, fronts = 0, newton = 0, cg = 0, steps = 0;
-  double fracture_seconds = 0;  ///< stresses and plans, its splits apart
-  double front_seconds = 0, mechanics_seconds = 0, contact_seconds = 0, write_seconds = 0;
-  double energy = 0;                  ///< elastic, J, at the frame's end
-  std::vector<Vec3> blade_force;      ///< per blade: what the material does to it, N, mean over the frame
-  std::vector<Vec3> obstacle_force, obstacle_torque;  ///< per obstacle, then of the ground on surfaces: what bodies do to it, N and N m about its origin, mean over the frame
-  FrameWork& operator+=(const FrameWork& o);
-  /// Meet and mesh, graph, resample, binding.
-  double split_seconds() const;
-};
-
-// ---- The loop of § 3.3 and § 4: blades move, fronts follow into the material, the body is split, nodes move, surface follows.
 
 class Simulation {
  public:
@@ -38,18 +23,19 @@ class Simulation {
   Simulation(const Scene& scene, const Model& model, const Progress& progress = {});
   /// The same for a scene of one body that stands where it was modelled.
   Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress = {});
-  /// A run taken up again; without parts all nodes are of the first body. Throws InputError when the state is not of this scene.
+  /// A run taken up again; without parts all nodes are of the first body. Throws InputError when the state is not of
+  /// this scene.
   Simulation(const Scene& scene, Body body, RunState state);
-  /// This run from its own body and state as a file gave them back: from there on the same as a run taken up from that file. What
-  /// no cut has changed since the run began, or was taken up last, is kept.
+  /// This run from its own body and state as a file gave them back: from there on the same as a run taken up from that
+  /// file. What no cut has changed since the run began, or was taken up last, is kept.
   void take_up(Body body, RunState state);
 
-  /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when `progress`
-  /// says so. A crack step that is refused is counted, and its front tried again in the next step.
+  /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when
+  /// `progress` says so. A crack step that is refused is counted, and its front tried again in the next step.
   FrameWork advance_frame(const Progress& progress = {});
 
-  /// The deformed two-sided surface (Eq. 1, but for what contact holds back), patch, site and source included. With the model of the run it also has the
-  /// model's attributes, except normals: these change with the shape.
+  /// The deformed two-sided surface (Eq. 1, but for what contact holds back), patch, site and source included. With the
+  /// model of the run it also has the model's attributes, except normals: these change with the shape.
   TriangleMesh surface(const TriangleMesh* model = nullptr) const;
   const Body& body() const { return body_; }
   const RunState& state() const { return state_; }
@@ -83,7 +69,7 @@ class Simulation {
   Obstacles obstacles_;
   std::optional<Collisions> collisions_;
   std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
-  bool cut_ = false;  // since the solid was made
+  bool cut_ = false;                                     // since the solid was made
 };
 
 }  // namespace geo

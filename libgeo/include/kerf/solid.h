@@ -1,5 +1,5 @@
-// A deforming solid, total Lagrangian, with the discrete energy's own forces. Shape functions live in material space and
-// change only where a cut passes.
+// A deforming solid, total Lagrangian, with the discrete energy's own forces. Shape functions live in material space
+// and change only where a cut passes.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,24 @@
 #include <vector>
 
 #include "kerf/graph.h"
-#include "mechanics/discretisation/galerkin.h"
 #include "kerf/material.h"
+#include "kerf/nodes.h"
+#include "mechanics/discretisation/galerkin.h"
+#include "mechanics/discretisation/node_rows.h"
+#include "mechanics/discretisation/point_lanes.h"
 #include "mechanics/solver/node_groups.h"
 #include "mechanics/solver/node_patches.h"
-#include "mechanics/discretisation/node_rows.h"
 #include "mechanics/solver/patch_inverses.h"
-#include "mechanics/discretisation/point_lanes.h"
 #include "mechanics/terms/potential.h"
-#include "kerf/nodes.h"
 
 namespace geo {
 
 struct State {
-  std::vector<Vec3> displacement;  ///< per node, model units
-  std::vector<Vec3> velocity;      ///< per node, model units per second
-  std::vector<Vec3> acceleration = {};  ///< per node, of the step before: Newton begins with them where they are much the same from node to node; empty: not known
-  std::vector<Mat3> plastic = {};  ///< per material point: plastic part of the Green strain; empty: none yet
+  std::vector<Vec3> displacement;       ///< per node, model units
+  std::vector<Vec3> velocity;           ///< per node, model units per second
+  std::vector<Vec3> acceleration = {};  ///< per node, of the step before: Newton begins with them where they are much
+                                        ///< the same from node to node; empty: not known
+  std::vector<Mat3> plastic = {};       ///< per material point: plastic part of the Green strain; empty: none yet
 };
 
 /// What acts on nodes besides elasticity.
@@ -34,9 +35,9 @@ struct Environment {
   Vec3 gravity = {0, 0, -9.81};
   bool ground = false;
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
-  double ground_stiffness = 1e4;  ///< per node mass: acceleration per unit of depth, 1/s²
-  double friction = 0.5;          ///< share of the tangential velocity that a touching node loses per 0.01 s
-  std::vector<double> clearance;  ///< per node: distance to the skin below it; empty: none
+  double ground_stiffness = 1e4;    ///< per node mass: acceleration per unit of depth, 1/s²
+  double friction = 0.5;            ///< share of the tangential velocity that a touching node loses per 0.01 s
+  std::vector<double> clearance;    ///< per node: distance to the skin below it; empty: none
   std::vector<std::uint8_t> fixed;  ///< per node: 1 keeps it where it is; empty: none
   std::vector<Vec3> load;           ///< per node: a force, N; empty: none
   std::vector<Potential*> contact;  ///< all of them; none: nothing touches
@@ -59,12 +60,15 @@ class Solid {
   /// Of nodes and graph alone, by mueller04 whatever the materials say: there is no surface to clip cells to.
   Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials);
 
-  /// After a split: what the cut has changed is recomputed; equal to a build from scratch, bit for bit. New nodes move with
-  /// their donors' affine map and velocity, and are of their material; then each connected part gets the rigid motion that gives it back its linear
-  /// momentum, and its angular momentum about its centre of mass. Plastic strain stays with its point.
-  void update(const Body& body, const BodyDelta& delta, State& state) { follow(body, delta, state), settle(body, state); }
-  /// The two halves of update(): nodes with their motion and gradients, after each split; material points, once after several
-  /// and before anything asks about energy, forces or stress.
+  /// After a split: what the cut has changed is recomputed; equal to a build from scratch, bit for bit. New nodes move
+  /// with their donors' affine map and velocity, and are of their material; then each connected part gets the rigid
+  /// motion that gives it back its linear momentum, and its angular momentum about its centre of mass. Plastic strain
+  /// stays with its point.
+  void update(const Body& body, const BodyDelta& delta, State& state) {
+    follow(body, delta, state), settle(body, state);
+  }
+  /// The two halves of update(): nodes with their motion and gradients, after each split; material points, once after
+  /// several and before anything asks about energy, forces or stress.
   void follow(const Body& body, const BodyDelta& delta, State& state);
   void settle(const Body& body, State& state);
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
@@ -92,13 +96,15 @@ class Solid {
   std::vector<Vec3> stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const;
   /// Cauchy stress, Pa, about material point x: the mean over material points within `radius` (those whose segment to x
   /// `sees` accepts), weighed by volume and the kernel. Zero where there are none.
-  Mat3 stress_at(const State& state, const Vec3& x, double radius, const std::function<bool(const Vec3&)>& sees = {}) const;
+  Mat3 stress_at(const State& state, const Vec3& x, double radius,
+                 const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Backward Euler as an incremental potential: Newton, conjugate gradients preconditioned on two levels, line search. Divided in
-  /// two halves, and these again, where Newton does not converge. `accuracy`: of displacements, over the nodes' spacing. One at a time:
-  /// it keeps what the next will need as well, which changes nothing but time.
+  /// Backward Euler as an incremental potential: Newton, conjugate gradients preconditioned on two levels, line search.
+  /// Divided in two halves, and these again, where Newton does not converge. `accuracy`: of displacements, over the
+  /// nodes' spacing. One at a time: it keeps what the next will need as well, which changes nothing but time.
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3) const;
-  /// Leapfrog (symplectic Euler) with as many substeps as the fastest wave asks for; twice as many where the energy rises.
+  /// Leapfrog (symplectic Euler) with as many substeps as the fastest wave asks for; twice as many where the energy
+  /// rises.
   StepReport step_explicit(State& state, double dt, const Environment& environment) const;
 
   /// Total linear momentum, and angular momentum about the origin of the world.
@@ -109,28 +115,32 @@ class Solid {
 
  private:
   friend class ImplicitStep;
-  void follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
-                    std::span<const NodeId> updated, State& state, bool parted = true);
+  void follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new,
+                    std::span<const NodeId> donors, std::span<const NodeId> updated, State& state, bool parted = true);
   void number_parts(const VisibilityGraph& graph, std::size_t first_new);
   void group_nodes();
-  // Of the points that the preconditioner's second level is made of. A cell has four, so that with five it is another of them from cell to cell, and
-  // none of every fifth cell: less work, and a step's result is the same to its accuracy.
+  // Of the points that the preconditioner's second level is made of. A cell has four, so that with five it is another
+  // of them from cell to cell, and none of every fifth cell: less work, and a step's result is the same to its
+  // accuracy.
   std::size_t point_stride() const { return galerkin_ ? 5 : 1; }
-  bool flows() const { return materials_.any([](const Material& m) { return m.yield > 0; }); }
+  bool flows() const {
+    return materials_.any([](const Material& m) { return m.yield > 0; });
+  }
   void nodal_points(std::span<const NodeId> updated);
   void update_plasticity(State& state, double dt) const;
   std::vector<Columns<double>> relaxed(const State& state) const;
-  double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Columns<double>>& relaxed = {}) const;
+  double elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force,
+                       const std::vector<Columns<double>>& relaxed = {}) const;
 
   Materials materials_;
   std::vector<double> mass_, volume_, spacing_;
-  std::vector<Vec3> position_;          // material
-  std::vector<std::uint32_t> part_;     // per node: its connected part
+  std::vector<Vec3> position_;       // material
+  std::vector<std::uint32_t> part_;  // per node: its connected part
   std::uint32_t parts_ = 0;
   NodeRows rows_;
   NodeGroups groups_;
   NodePatches patches_;
-  std::vector<char> other_;             // per node: whether splits have given it another row, or place, since settle()
+  std::vector<char> other_;         // per node: whether splits have given it another row, or place, since settle()
   mutable PatchInverses inverses_;  // of the last implicit step
   MaterialPoints points_;
   std::optional<Galerkin> galerkin_;
@@ -141,11 +151,12 @@ class Solid {
 
 /// Displacement of the material at each node, by Eq. 1 from the node and its neighbours. A node's own displacement is a
 /// coefficient of that field: where nodes are crowded, as beside cracks, it may be far from what they say together.
-std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph, const State& state);
+std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph,
+                                        const State& state);
 
-/// Von Mises' equivalent of the Cauchy stress, Pa, one a node: the mean over material points whose shape functions have the node
-/// in them, which see it, weighed by volume and the kernel over the node's support. Plastic strain is taken off; viscosity
-/// adds nothing. Zero where no such point can tell.
+/// Von Mises' equivalent of the Cauchy stress, Pa, one a node: the mean over material points whose shape functions have
+/// the node in them, which see it, weighed by volume and the kernel over the node's support. Plastic strain is taken
+/// off; viscosity adds nothing. Zero where no such point can tell.
 std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, const State& state);
 
 }  // namespace geo

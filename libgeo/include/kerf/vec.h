@@ -61,7 +61,8 @@ struct Box3 {
   void add(const Box3& b) { lo = lo.cwiseMin(b.lo), hi = hi.cwiseMax(b.hi); }
   bool empty() const { return (lo.array() > hi.array()).any(); }
   bool meets(const Box3& b) const {
-    return lo[0] <= b.hi[0] && b.lo[0] <= hi[0] && lo[1] <= b.hi[1] && b.lo[1] <= hi[1] && lo[2] <= b.hi[2] && b.lo[2] <= hi[2];
+    return lo[0] <= b.hi[0] && b.lo[0] <= hi[0] && lo[1] <= b.hi[1] && b.lo[1] <= hi[1] && lo[2] <= b.hi[2] &&
+           b.lo[2] <= hi[2];
   }
   Box3 grown(double r) const { return {lo - Vec3::Constant(r), hi + Vec3::Constant(r)}; }
   double diagonal() const { return empty() ? 0.0 : (hi - lo).norm(); }

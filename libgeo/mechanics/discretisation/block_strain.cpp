@@ -9,19 +9,23 @@
 namespace geo {
 namespace {
 
-// A point's gradient, if the block's nodes move together and all of its points know what is affine from what is not. Of a point in the middle, in the
-// order they have, so that as little as can be is left.
-std::optional<Mat3> motion_of(const PointBlock& block, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& u) {
+// A point's gradient, if the block's nodes move together and all of its points know what is affine from what is not. Of
+// a point in the middle, in the order they have, so that as little as can be is left.
+std::optional<Mat3> motion_of(const PointBlock& block, const std::vector<std::uint32_t>& component,
+                              const std::vector<Vec3>& u) {
   const auto apart = [&](auto j) { return component[j] != component[block.nodes[0]]; };
   if (block.nodes.empty() || std::any_of(block.nodes.begin(), block.nodes.end(), apart)) return {};
-  if (std::any_of(block.points.begin(), block.points.end(), [](const MaterialPoint& p) { return p.rung == Rung::regularised; })) return {};
+  if (std::any_of(block.points.begin(), block.points.end(),
+                  [](const MaterialPoint& p) { return p.rung == Rung::regularised; }))
+    return {};
   const std::size_t n = block.points.size();
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = (n / 2 + k) % n;
     if (block.points[i].rung != Rung::full) continue;
     Mat3 gradient = Mat3::Zero();
     for (auto q = block.first[i]; q < block.first[i + 1]; ++q)
-      gradient += (u[block.nodes[block.to[q]]] - u[block.nodes[0]]) * Eigen::Map<const Vec3>(&block.gradient[3 * std::size_t(q)]).transpose();
+      gradient += (u[block.nodes[block.to[q]]] - u[block.nodes[0]]) *
+                  Eigen::Map<const Vec3>(&block.gradient[3 * std::size_t(q)]).transpose();
     return gradient;
   }
   return {};
@@ -31,7 +35,8 @@ std::optional<Mat3> motion_of(const PointBlock& block, const std::vector<std::ui
 
 BlockStrain::BlockStrain(const MaterialPoints& points) : points_(points) {}
 
-BlockStrain::BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& first)
+BlockStrain::BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position,
+                         const std::vector<std::uint32_t>& component, const std::vector<Vec3>& first)
     : points_(points), position_(&position), motion_(points.blocks.size()) {
   parallel_for(motion_.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)

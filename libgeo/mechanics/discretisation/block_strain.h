@@ -8,9 +8,10 @@
 
 namespace geo {
 
-/// In double precision; or, to a loose accuracy, in single precision from the 16 bits that products take, with half the memory to read and four points
-/// side by side. Then blocks have in double the affine motion that they had at first, and the rest is about that: what has turned has no strain from
-/// rounding, and a strain about it is off by some ten-thousandths of itself, at most. Energies are still those of the forces.
+/// In double precision; or, to a loose accuracy, in single precision from the 16 bits that products take, with half the
+/// memory to read and four points side by side. Then blocks have in double the affine motion that they had at first,
+/// and the rest is about that: what has turned has no strain from rounding, and a strain about it is off by some
+/// ten-thousandths of itself, at most. Energies are still those of the forces.
 class BlockStrain {
  public:
   /// Of one thread, used block after block.
@@ -20,9 +21,11 @@ class BlockStrain {
   };
   /// In double precision.
   explicit BlockStrain(const MaterialPoints& points);
-  /// Loose, about `first`, displacements at first. `position`: of nodes at rest; `component`: of each node, that of the graph. Blocks with nodes of several
-  /// of these, or with points that do not reproduce affine fields, are in double precision still. Refers to `position`, too.
-  BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& first);
+  /// Loose, about `first`, displacements at first. `position`: of nodes at rest; `component`: of each node, that of the
+  /// graph. Blocks with nodes of several of these, or with points that do not reproduce affine fields, are in double
+  /// precision still. Refers to `position`, too.
+  BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position,
+              const std::vector<std::uint32_t>& component, const std::vector<Vec3>& first);
 
   const MaterialPoints& points() const { return points_; }
   /// At the points of a block, in order; what stands beside the last is zero.

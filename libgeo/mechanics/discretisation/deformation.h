@@ -5,17 +5,17 @@
 #include <utility>
 #include <vector>
 
+#include "kerf/nodes.h"
 #include "kerf/vec.h"
 #include "mechanics/discretisation/kernel.h"
-#include "kerf/nodes.h"
 
 namespace geo {
 
-/// Eq. 1: the displacement at material point x, from nodes with their Euclidean distances to it. Not empty. `gradient`: per node,
-/// anything with [].
+/// Eq. 1: the displacement at material point x, from nodes with their Euclidean distances to it. Not empty. `gradient`:
+/// per node, anything with [].
 template <class Gradients>
-Vec3 displacement_at(const Vec3& x, std::span<const std::pair<NodeId, double>> nodes, const NodeSet& set, const std::vector<Vec3>& u,
-                     const Gradients& gradient) {
+Vec3 displacement_at(const Vec3& x, std::span<const std::pair<NodeId, double>> nodes, const NodeSet& set,
+                     const std::vector<Vec3>& u, const Gradients& gradient) {
   double total = 0;
   Vec3 sum = Vec3::Zero();
   for (const auto& [id, distance] : nodes) {

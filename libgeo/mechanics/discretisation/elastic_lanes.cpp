@@ -46,7 +46,9 @@ HWY_INLINE void strain_of(const Matrix<double>& h, Vector (&e)[6]) {
     e[k] = hn::Mul(half, hn::Add(hn::Add(h.at[c][r], h.at[r][c]), dot3(h.at[r], h.at[c])));
   }
 }
-HWY_INLINE Matrix<double> symmetric(const Vector (&e)[6]) { return {{{e[0], e[3], e[4]}, {e[3], e[1], e[5]}, {e[4], e[5], e[2]}}}; }
+HWY_INLINE Matrix<double> symmetric(const Vector (&e)[6]) {
+  return {{{e[0], e[3], e[4]}, {e[3], e[1], e[5]}, {e[4], e[5], e[2]}}};
+}
 HWY_INLINE Vector square_norm(const Vector (&e)[6]) {
   const auto beside = dot3(e + 3, e + 3);
   return hn::Add(dot3(e, e), hn::Add(beside, beside));
@@ -67,7 +69,8 @@ HWY_INLINE Matrix<double> with_identity(Matrix<double> h) {
   return h;
 }
 
-// Energy density and stress at F = 1 + h. Of the strain's invariants, so that next to nothing is left of terms of first order where there is none.
+// Energy density and stress at F = 1 + h. Of the strain's invariants, so that next to nothing is left of terms of first
+// order where there is none.
 HWY_INLINE Vector elastic(const ElasticConstants& m, const Matrix<double>& h, Matrix<double>& stress) {
   const auto one = number(1), half = number(0.5), two = number(2), four = number(4);
   const auto mu = number(m.mu), lambda = number(m.lambda), volume = number(m.volume);
@@ -76,12 +79,15 @@ HWY_INLINE Vector elastic(const ElasticConstants& m, const Matrix<double>& h, Ma
   strain_of(h, strain);
   const auto e = hn::Add(hn::Add(strain[0], strain[1]), strain[2]), square = square_norm(strain);
   const auto minors = hn::Mul(half, hn::Sub(hn::Mul(e, e), square));
-  const auto minor = [&](int a, int b, int c, int d) HWY_ATTR { return hn::Sub(hn::Mul(strain[a], strain[b]), hn::Mul(strain[c], strain[d])); };
-  const auto cubic = hn::Add(hn::Sub(hn::Mul(strain[0], minor(1, 2, 5, 5)), hn::Mul(strain[3], minor(3, 2, 5, 4))), hn::Mul(strain[4], minor(3, 5, 1, 4)));
+  const auto minor = [&](int a, int b, int c, int d)
+                         HWY_ATTR { return hn::Sub(hn::Mul(strain[a], strain[b]), hn::Mul(strain[c], strain[d])); };
+  const auto cubic = hn::Add(hn::Sub(hn::Mul(strain[0], minor(1, 2, 5, 5)), hn::Mul(strain[3], minor(3, 2, 5, 4))),
+                             hn::Mul(strain[4], minor(3, 5, 1, 4)));
   const auto j = dot3(f.at[0], cof.at[0]);
   const auto upright = hn::Gt(j, hn::Zero(Tag()));
   // J − 1, and e less that.
-  const auto next = hn::IfThenElse(upright, hn::Add(j, one), one), higher = hn::Add(hn::Mul(four, minors), hn::Mul(number(8), cubic));
+  const auto next = hn::IfThenElse(upright, hn::Add(j, one), one),
+             higher = hn::Add(hn::Mul(four, minors), hn::Mul(number(8), cubic));
   const auto grown = hn::IfThenElse(upright, hn::Div(hn::Add(hn::Mul(two, e), higher), next), hn::Sub(j, one));
   const auto rest = hn::IfThenElse(upright, hn::Div(hn::Sub(hn::Mul(e, grown), higher), next), hn::Sub(e, grown));
   const auto bulk = m.neo_hookean ? hn::Add(lambda, volume) : volume;
@@ -92,7 +98,8 @@ HWY_INLINE Vector elastic(const ElasticConstants& m, const Matrix<double>& h, Ma
     const auto along = hn::Div(hn::Mul(mu, e), hn::Add(number(8), hn::Mul(four, e))), across = hn::Mul(bulk, grown);
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r)
-        stress.at[c][r] = hn::Add(hn::Mul(shear, hn::Sub(f.at[c][r], cof.at[c][r])), hn::Add(hn::Mul(along, f.at[c][r]), hn::Mul(across, cof.at[c][r])));
+        stress.at[c][r] = hn::Add(hn::Mul(shear, hn::Sub(f.at[c][r], cof.at[c][r])),
+                                  hn::Add(hn::Mul(along, f.at[c][r]), hn::Mul(across, cof.at[c][r])));
     return energy;
   }
   energy = hn::Add(energy, hn::Add(hn::Mul(mu, square), hn::Mul(hn::Mul(half, lambda), hn::Mul(e, e))));
@@ -109,7 +116,8 @@ HWY_INLINE Vector elastic(const ElasticConstants& m, const Matrix<double>& h, Ma
 }
 
 // What changes of the strain since `before` cost besides.
-HWY_INLINE Vector viscous(const ElasticConstants& m, const Matrix<double>& g, const Matrix<double>& before, Matrix<double>& stress) {
+HWY_INLINE Vector viscous(const ElasticConstants& m, const Matrix<double>& g, const Matrix<double>& before,
+                          Matrix<double>& stress) {
   Vector rate[6], was[6];
   strain_of(g, rate), strain_of(before, was);
   for (int k = 0; k < 6; ++k) rate[k] = hn::Div(hn::Sub(rate[k], was[k]), number(m.dt));
@@ -127,15 +135,17 @@ HWY_INLINE Matrix<double> relaxed_by(const double* const* relaxed, std::size_t i
   return h;
 }
 
-void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* volume, const double* const* relaxed, const double* const* before,
-             double* const* gradient, double* energy, float* const* deformed) {
+void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* volume,
+             const double* const* relaxed, const double* const* before, double* const* gradient, double* energy,
+             float* const* deformed) {
   const hn::Rebind<float, Tag> d32;
   for (std::size_t i = begin; i < end; i += width<double>) {
     const Matrix<double> g = load<double>(gradient, i), h = relaxed_by(relaxed, i, g);
     Matrix<double> stress;
     if (deformed)
       for (std::size_t c = 0; c < 3; ++c)
-        hn::StoreInterleaved4(hn::DemoteTo(d32, h.at[c][0]), hn::DemoteTo(d32, h.at[c][1]), hn::DemoteTo(d32, h.at[c][2]), hn::Zero(d32), d32, deformed[c] + 4 * i);
+        hn::StoreInterleaved4(hn::DemoteTo(d32, h.at[c][0]), hn::DemoteTo(d32, h.at[c][1]),
+                              hn::DemoteTo(d32, h.at[c][2]), hn::Zero(d32), d32, deformed[c] + 4 * i);
     auto density = elastic(m, h, stress);
     if (relaxed) stress = product(stress, load(relaxed, i));
     if (before) density = hn::Add(density, viscous(m, g, load(before, i), stress));
@@ -148,7 +158,8 @@ void Elastic(const ElasticConstants& m, std::size_t begin, std::size_t end, cons
   }
 }
 
-void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* const* relaxed, const double* const* gradient, float* HWY_RESTRICT own) {
+void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const double* const* relaxed,
+            const double* const* gradient, float* HWY_RESTRICT own) {
   const hn::Rebind<float, Tag> d32;
   constexpr std::size_t lanes = width<double>;
   float numbers[2][4 * lanes];
@@ -159,9 +170,14 @@ void Cauchy(const ElasticConstants& m, std::size_t begin, std::size_t end, const
     const Matrix<double> f = with_identity(h), stress = product(pull, transposed(f));
     const auto j = dot3(f.at[0], cofactor(f).at[0]);
     const auto upright = hn::Gt(j, hn::Zero(Tag()));
-    const auto number_of = [&](int r, int c) HWY_ATTR { return hn::DemoteTo(d32, hn::IfThenElseZero(upright, hn::Div(hn::Mul(number(0.5), hn::Add(stress.at[c][r], stress.at[r][c])), j))); };
+    const auto number_of = [&](int r, int c) HWY_ATTR {
+      return hn::DemoteTo(
+          d32,
+          hn::IfThenElseZero(upright, hn::Div(hn::Mul(number(0.5), hn::Add(stress.at[c][r], stress.at[r][c])), j)));
+    };
     hn::StoreInterleaved4(number_of(0, 0), number_of(1, 1), number_of(2, 2), number_of(0, 1), d32, numbers[0]);
-    hn::StoreInterleaved4(number_of(1, 2), number_of(2, 0), hn::DemoteTo(d32, hn::IfThenElseZero(upright, number(1))), hn::Zero(d32), d32, numbers[1]);
+    hn::StoreInterleaved4(number_of(1, 2), number_of(2, 0), hn::DemoteTo(d32, hn::IfThenElseZero(upright, number(1))),
+                          hn::Zero(d32), d32, numbers[1]);
     for (std::size_t k = 0; k < lanes; ++k)
       for (std::size_t part = 0; part < 2; ++part) std::copy_n(numbers[part] + 4 * k, 4, own + 8 * (i + k) + 4 * part);
   }
@@ -179,27 +195,34 @@ HWY_EXPORT(Cauchy);
 namespace {
 
 std::array<const double*, 3> columns(const Columns<double>* c) {
-  return c ? std::array<const double*, 3>{c->column[0].data(), c->column[1].data(), c->column[2].data()} : std::array<const double*, 3>{};
+  return c ? std::array<const double*, 3>{c->column[0].data(), c->column[1].data(), c->column[2].data()}
+           : std::array<const double*, 3>{};
 }
 
 }  // namespace
 
 ElasticConstants elastic_constants(const Material& m, double dt) {
   // What the stable neo-Hookean energy has of its own, so that small strains see Lamé's constants (elasticity.cpp).
-  if (m.model == ElasticModel::neo_hookean) return {true, 4.0 / 3.0 * m.mu(), m.lambda() + 5.0 / 6.0 * m.mu(), m.volume_term, m.viscosity, dt, m.yield > 0};
+  if (m.model == ElasticModel::neo_hookean)
+    return {true, 4.0 / 3.0 * m.mu(), m.lambda() + 5.0 / 6.0 * m.mu(), m.volume_term, m.viscosity, dt, m.yield > 0};
   return {false, m.mu(), m.lambda(), m.volume_term, m.viscosity, dt, m.yield > 0};
 }
 
-void elastic_points(const ElasticConstants& constants, std::size_t begin, std::size_t end, const std::vector<double>& volume, const PointHistory& history,
-                    Columns<double>& gradient, std::vector<double>& energy, Columns<float>* deformed) {
+void elastic_points(const ElasticConstants& constants, std::size_t begin, std::size_t end,
+                    const std::vector<double>& volume, const PointHistory& history, Columns<double>& gradient,
+                    std::vector<double>& energy, Columns<float>* deformed) {
   const auto relaxed = columns(history.relaxed), before = columns(history.before);
   double* const to[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
-  float* const kept[3] = {deformed ? deformed->column[0].data() : nullptr, deformed ? deformed->column[1].data() : nullptr, deformed ? deformed->column[2].data() : nullptr};
-  HWY_DYNAMIC_DISPATCH(Elastic)(constants, begin, end, volume.data(), history.relaxed ? relaxed.data() : nullptr, history.before ? before.data() : nullptr, to,
-                                energy.data(), deformed ? kept : nullptr);
+  float* const kept[3] = {deformed ? deformed->column[0].data() : nullptr,
+                          deformed ? deformed->column[1].data() : nullptr,
+                          deformed ? deformed->column[2].data() : nullptr};
+  HWY_DYNAMIC_DISPATCH(Elastic)
+  (constants, begin, end, volume.data(), history.relaxed ? relaxed.data() : nullptr,
+   history.before ? before.data() : nullptr, to, energy.data(), deformed ? kept : nullptr);
 }
 
-void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end, const Columns<double>* relaxed, const Columns<double>& gradient, float* own) {
+void cauchy_stresses(const ElasticConstants& constants, std::size_t begin, std::size_t end,
+                     const Columns<double>* relaxed, const Columns<double>& gradient, float* own) {
   const auto from = columns(&gradient), turned = columns(relaxed);
   HWY_DYNAMIC_DISPATCH(Cauchy)(constants, begin, end, relaxed ? turned.data() : nullptr, from.data(), own);
 }

@@ -16,7 +16,8 @@ constexpr std::size_t none = ~std::size_t(0);
 // Faces that came or went, and supports of nodes that came, went, moved or changed their radius.
 class Changes {
  public:
-  Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports) : faces_(faces), supports_(supports) {
+  Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports)
+      : faces_(faces), supports_(supports) {
     for (const auto& [a, b, c] : faces) where_.add(box_of(a, b, c));
     for (const auto& [x, r] : supports) where_.add(Box3{x, x}.grown(support_growth.back() * r));
   }
@@ -28,11 +29,14 @@ class Changes {
       if (points.grown(support_growth.back() * s.second).meets({s.first, s.first})) near.push_back(s);
     return near;
   }
-  /// Whether faces, or `supports`, touch what the row of a point is made of: nodes that support it, the segments to these, the way
-  /// aside. Where faces hide a node already, how far it is round a front is decided all about the point.
-  bool concern(const Body& body, std::span<const std::pair<Vec3, double>> supports, const Vec3& place, const MaterialPoint& p) const {
+  /// Whether faces, or `supports`, touch what the row of a point is made of: nodes that support it, the segments to
+  /// these, the way aside. Where faces hide a node already, how far it is round a front is decided all about the point.
+  bool concern(const Body& body, std::span<const std::pair<Vec3, double>> supports, const Vec3& place,
+               const MaterialPoint& p) const {
     const double grown = support_growth[p.growth];
-    if (std::any_of(supports.begin(), supports.end(), [&](const auto& s) { return (s.first - p.position).norm() < grown * s.second; })) return true;
+    if (std::any_of(supports.begin(), supports.end(),
+                    [&](const auto& s) { return (s.first - p.position).norm() < grown * s.second; }))
+      return true;
     std::vector<std::uint32_t> near;
     faces_.near(Box3{p.position, p.position}.grown(p.reach), near);
     if (near.empty() || p.blinded) return !near.empty();
@@ -54,7 +58,8 @@ class Changes {
 
 // A quarter of its cell's each.
 void set_volumes(std::span<const QuadratureCell> cells, std::vector<MaterialPoint>& points) {
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].volume = 0.25 * cells[i / 4].volume, points[i].measured = 0.25 * cells[i / 4].measured;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].volume = 0.25 * cells[i / 4].volume, points[i].measured = 0.25 * cells[i / 4].measured;
 }
 
 void put(const Body& body, const Vec3& place, MaterialPoint& point) {
@@ -67,7 +72,8 @@ std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::
   std::size_t o = 0;
   for (const QuadratureCell& c : now) {
     while (o < before.size() && morton(before[o].cell.corner) < morton(c.cell.corner)) ++o;
-    const bool found = o < before.size() && before[o].cell.corner == c.cell.corner && before[o].cell.level == c.cell.level;
+    const bool found =
+        o < before.size() && before[o].cell.corner == c.cell.corner && before[o].cell.level == c.cell.level;
     same.push_back(found ? static_cast<std::uint32_t>(o) : ~0u);
   }
   return same;
@@ -83,9 +89,11 @@ struct BlockRepair {
 
   BlockRepair() = default;
   // `was`: numbers of the cells before; `first`: of the first cell of each block before.
-  BlockRepair(const Body& body, const Changes& changes, double reach, std::span<const QuadratureCell> cells, std::span<const std::uint32_t> was,
-              std::span<const std::size_t> first, std::span<const PointBlock> old) {
-    const auto block_of = [&](std::uint32_t cell) { return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), cell) - first.begin() - 1); };
+  BlockRepair(const Body& body, const Changes& changes, double reach, std::span<const QuadratureCell> cells,
+              std::span<const std::uint32_t> was, std::span<const std::size_t> first, std::span<const PointBlock> old) {
+    const auto block_of = [&](std::uint32_t cell) {
+      return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), cell) - first.begin() - 1);
+    };
     if (was[0] != ~0u) {
       const std::size_t o = block_of(was[0]);
       bool same = was[0] == first[o] && first[o + 1] - first[o] == cells.size();
@@ -103,7 +111,9 @@ struct BlockRepair {
     }
     const auto supports = changes.supports(box);
     for (std::uint32_t i = 0; i < sources.size(); ++i)
-      if (const auto& [block, number, row] = sources[i]; !block || changes.concern(body, supports, cells[i / 4].point[i % 4], block->points[number])) stale.push_back(i);
+      if (const auto& [block, number, row] = sources[i];
+          !block || changes.concern(body, supports, cells[i / 4].point[i % 4], block->points[number]))
+        stale.push_back(i);
     if (whole != none && stale.empty()) return;
     points.resize(sources.size()), rows.resize(stale.size());
     for (std::size_t i = 0; i < sources.size(); ++i)
@@ -145,7 +155,8 @@ Galerkin::Galerkin(const Body& body, MaterialPoints& points) : cells_(body), gro
       std::vector<MaterialPoint> all(4 * cells.size());
       std::vector<ShapeRow> rows(all.size());
       std::vector<RowJob> jobs;
-      for (std::size_t i = 0; i < all.size(); ++i) put(body, cells[i / 4].point[i % 4], all[i]), jobs.push_back({&all[i], &rows[i]});
+      for (std::size_t i = 0; i < all.size(); ++i)
+        put(body, cells[i / 4].point[i % 4], all[i]), jobs.push_back({&all[i], &rows[i]});
       build_rows(body, std::move(jobs), &obstacles);
       set_volumes(cells, all);
       points.blocks[b] = PointBlock(std::move(all), rows);
@@ -158,12 +169,14 @@ void Galerkin::note(const Body& body, const BodyDelta& delta, std::span<const Ve
   const NodeSet& nodes = body.nodes;
   for (const auto* list : {&delta.crack.new_faces, &delta.crack.removed_faces})
     for (const FaceId f : *list) faces_.push_back(body.surface.corners(f));
-  for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i) supports_.push_back({nodes.position[i], nodes.radius[i]});
+  for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i)
+    supports_.push_back({nodes.position[i], nodes.radius[i]});
   for (std::size_t k = 0; k < delta.moved_nodes.size(); ++k) {
     const std::size_t i = delta.moved_nodes[k].index();
     supports_.push_back({old_position[k], nodes.radius[i]}), supports_.push_back({nodes.position[i], nodes.radius[i]});
   }
-  for (const auto& [i, before] : delta.resized_nodes) supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])});
+  for (const auto& [i, before] : delta.resized_nodes)
+    supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])});
 }
 
 PointChanges Galerkin::settle(const Body& body, MaterialPoints& points) {
@@ -186,7 +199,8 @@ PointChanges Galerkin::settle(const Body& body, MaterialPoints& points) {
   std::vector<BlockRepair> repairs(points.blocks.size());
   const double reach = support_growth.back() * *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   parallel_for(repairs.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) repairs[b] = BlockRepair(body, changes, reach, group(b), {&was[groups_[b]], group(b).size()}, groups_before, old);
+    for (std::size_t b = begin; b < end; ++b)
+      repairs[b] = BlockRepair(body, changes, reach, group(b), {&was[groups_[b]], group(b).size()}, groups_before, old);
   });
   std::vector<RowJob> jobs;
   for (BlockRepair& r : repairs)

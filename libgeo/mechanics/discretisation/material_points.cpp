@@ -24,7 +24,9 @@ std::optional<PointBlock::Source> whole_four(std::span<const PointBlock::Source>
   if (4 * four + 4 > sources.size()) return {};
   const PointBlock::Source& from = sources[4 * four];
   for (std::size_t k = 0; k < 4; ++k)
-    if (const auto& s = sources[4 * four + k]; s.row || s.block != from.block || s.point != from.point + k || from.point % 4 != 0) return {};
+    if (const auto& s = sources[4 * four + k];
+        s.row || s.block != from.block || s.point != from.point + k || from.point % 4 != 0)
+      return {};
   return from;
 }
 
@@ -36,7 +38,8 @@ std::vector<PointBlock::Source> sources_of(std::span<const ShapeRow> rows) {
 
 }  // namespace
 
-PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow> rows) : PointBlock(std::move(all), sources_of(rows)) {}
+PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow> rows)
+    : PointBlock(std::move(all), sources_of(rows)) {}
 
 PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> sources) : points(std::move(all)) {
   // The nodes of all rows; then places in each block's list, and in the whole one, for those here.
@@ -56,8 +59,11 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
       if (used[k]) nodes.push_back(block->nodes[k]);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  if (nodes.size() > 65536) throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
-  const auto find = [&](std::uint32_t node) { return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()); };
+  if (nodes.size() > 65536)
+    throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
+  const auto find = [&](std::uint32_t node) {
+    return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
   for (auto& [block, to_here] : place)
     for (std::size_t k = 0; k < to_here.size(); ++k) to_here[k] = find(block->nodes[k]);
 
@@ -127,7 +133,8 @@ void PointBlock::copy_packed(std::size_t four, const Source& from, const std::ve
   const PointBlock& b = *from.block;
   const auto begin = b.four_first[from.point / 4], end = b.four_first[from.point / 4 + 1];
   for (auto k = begin; k < end; ++k) four_to.push_back(to_here[b.four_to[k]]);
-  packed.insert(packed.end(), b.packed.begin() + 12 * std::ptrdiff_t(begin), b.packed.begin() + 12 * std::ptrdiff_t(end));
+  packed.insert(packed.end(), b.packed.begin() + 12 * std::ptrdiff_t(begin),
+                b.packed.begin() + 12 * std::ptrdiff_t(end));
   std::copy_n(&b.unit[from.point], 4, &unit[4 * four]);
 }
 
@@ -166,9 +173,12 @@ void PointBlock::set_materials(const Materials& materials) {
 
 bool operator==(const PointBlock& a, const PointBlock& b) {
   const auto same = [](const MaterialPoint& p, const MaterialPoint& q) {
-    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth && p.blinded == q.blinded && p.material == q.material && p.reach == q.reach && p.measured == q.measured;
+    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth &&
+           p.blinded == q.blinded && p.material == q.material && p.reach == q.reach && p.measured == q.measured;
   };
-  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient && a.four_first == b.four_first && a.four_to == b.four_to && a.packed == b.packed && a.unit == b.unit && std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
+  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient &&
+         a.four_first == b.four_first && a.four_to == b.four_to && a.packed == b.packed && a.unit == b.unit &&
+         std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }
 
 void MaterialPoints::connect(std::size_t nodes) {
@@ -181,7 +191,8 @@ void MaterialPoints::connect(std::size_t nodes) {
   incoming_.resize(part_.back());
   std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (std::size_t k = 0; k < blocks[b].nodes.size(); ++k) incoming_[at[blocks[b].nodes[k]]++] = static_cast<std::uint32_t>(part_[b] + k);
+    for (std::size_t k = 0; k < blocks[b].nodes.size(); ++k)
+      incoming_[at[blocks[b].nodes[k]]++] = static_cast<std::uint32_t>(part_[b] + k);
 }
 
 void MaterialPoints::set_materials(const Materials& materials) {
@@ -193,7 +204,8 @@ void MaterialPoints::set_materials(const Materials& materials) {
 void MaterialPoints::values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {
   const auto& nodes = blocks[block].nodes;
   if (values.size() < 4 * nodes.size()) values.resize(4 * nodes.size());
-  for (std::size_t k = 0; k < nodes.size(); ++k) Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]], 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]], 0;
 }
 
 std::vector<Mat3> MaterialPoints::gradients(std::size_t block, const std::vector<Vec3>& u) const {

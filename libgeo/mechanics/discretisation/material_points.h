@@ -1,5 +1,5 @@
-// Points that carry strain, in blocks: each block has its own short list of nodes, so that what one thread works on stays
-// in its cache, and sums are made in an order that no thread or vector width changes.
+// Points that carry strain, in blocks: each block has its own short list of nodes, so that what one thread works on
+// stays in its cache, and sums are made in an order that no thread or vector width changes.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "kerf/parallel.h"
 #include "kerf/material.h"
+#include "kerf/parallel.h"
 #include "mechanics/discretisation/shape_functions.h"
 
 namespace geo {
@@ -18,14 +18,15 @@ struct MaterialPoint {
   Vec3 position = Vec3::Zero();
   double volume = 0;
   Rung rung = Rung::rigid;
-  std::uint8_t growth = 0;  ///< how often its support was widened by a fifth
-  bool blinded = false;     ///< a face hides a node within its support
+  std::uint8_t growth = 0;     ///< how often its support was widened by a fifth
+  bool blinded = false;        ///< a face hides a node within its support
   std::uint16_t material = 0;  ///< that of the nodes that it sees
-  double reach = 0;         ///< no node within its support is farther away, nor is any part of a way to one
-  double measured = 0;      ///< its volume before all were scaled to sum to that of the nodes
+  double reach = 0;            ///< no node within its support is farther away, nor is any part of a way to one
+  double measured = 0;         ///< its volume before all were scaled to sum to that of the nodes
 };
 
-/// Points of a block with the same material, from a multiple of eight to the next or a later one. `alone`: no points of others stand among them.
+/// Points of a block with the same material, from a multiple of eight to the next or a later one. `alone`: no points of
+/// others stand among them.
 struct MaterialRun {
   std::uint32_t begin = 0, end = 0;
   std::uint16_t material = 0;
@@ -40,15 +41,15 @@ struct PointBlock {
   std::vector<std::uint16_t> to;     ///< entries: places in `nodes`
   std::vector<double> gradient;      ///< three an entry
   std::vector<float> rounded;        ///< the same
-  // The same for products, four points side by side: places of their nodes in `nodes`, as all of them have them, an even number; of two of
-  // these 24 numbers, x of the first for four points, x of the second, then y, then z, in multiples of the point's unit, such that they
-  // still sum to zero.
+  // The same for products, four points side by side: places of their nodes in `nodes`, as all of them have them, an
+  // even number; of two of these 24 numbers, x of the first for four points, x of the second, then y, then z, in
+  // multiples of the point's unit, such that they still sum to zero.
   std::vector<std::uint32_t> four_first;  ///< per four points: the first of their nodes; one more at the end
   std::vector<std::uint16_t> four_to;
   std::vector<std::int16_t> packed;
-  std::vector<float> unit;  ///< per point, a multiple of eight of them
-  Box3 box;                          ///< of the points
-  std::vector<MaterialRun> runs;     ///< in order; where eight points have several materials, one run for each of these
+  std::vector<float> unit;        ///< per point, a multiple of eight of them
+  Box3 box;                       ///< of the points
+  std::vector<MaterialRun> runs;  ///< in order; where eight points have several materials, one run for each of these
 
   /// Where a point's row comes from: its own, or that of a point of another block.
   struct Source {
@@ -64,7 +65,8 @@ struct PointBlock {
   ShapeRow row(std::size_t point) const;
   /// Gives points the materials of nodes.
   void set_materials(const Materials& materials);
-  /// False where a point has another material than the run that it stands in. What is no point, or sees nothing, is of any run.
+  /// False where a point has another material than the run that it stands in. What is no point, or sees nothing, is of
+  /// any run.
   bool is_of(const MaterialRun& run, std::size_t point) const {
     return point >= points.size() || points[point].material == run.material || first[point] == first[point + 1];
   }
@@ -77,9 +79,9 @@ struct PointBlock {
 
 /// What a cut did to points.
 struct PointChanges {
-  std::vector<std::uint32_t> kept;    ///< per point there is now, its number before, or ~0u; empty where all are the same
+  std::vector<std::uint32_t> kept;  ///< per point there is now, its number before, or ~0u; empty where all are the same
   std::vector<std::uint32_t> blocks;  ///< per block there was, the number of the one with the same points now, or ~0u
-  std::vector<char> nodes;            ///< per node: 1 where points with it came, went or have another row, or are in other blocks
+  std::vector<char> nodes;  ///< per node: 1 where points with it came, went or have another row, or are in other blocks
 };
 
 class MaterialPoints {
@@ -94,12 +96,13 @@ class MaterialPoints {
   /// Number of a block's first point.
   std::size_t first(std::size_t block) const { return first_[block]; }
 
-  /// A nodal field at a block's nodes, four numbers each, from its first node's value on: differences lose nothing where a body is far from
-  /// where it was. `values` is made longer where it is too short.
+  /// A nodal field at a block's nodes, four numbers each, from its first node's value on: differences lose nothing
+  /// where a body is far from where it was. `values` is made longer where it is too short.
   void values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const;
   /// ∇u at the points of a block, in order.
   std::vector<Mat3> gradients(std::size_t block, const std::vector<Vec3>& u) const;
-  /// The sum of what blocks have for a node, in their order: `width` numbers a node of a block, from width · part(block) on.
+  /// The sum of what blocks have for a node, in their order: `width` numbers a node of a block, from width ·
+  /// part(block) on.
   template <std::size_t width, class Number>
   std::array<double, width> sum(const Number* parts, std::size_t node) const {
     std::array<double, width> sum{};

@@ -13,7 +13,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<double, 4>;
 constexpr std::size_t step = hn::MaxLanes(Tag());
 
-void RowGradient(const std::uint32_t* to, std::size_t count, const Vec3* g, const FourNumbers* values, std::uint32_t own, FourColumns& out) {
+void RowGradient(const std::uint32_t* to, std::size_t count, const Vec3* g, const FourNumbers* values,
+                 std::uint32_t own, FourColumns& out) {
   const Tag d;
   for (std::size_t at = 0; at < 4; at += step) {
     const auto self = hn::Load(d, values[own].at + at);
@@ -42,7 +43,8 @@ void MovedBy(const std::uint32_t* to, std::size_t count, const MovedNodes& nodes
       const double w = left * left * left;
       const auto& slope = nodes.gradient[to[q]].at;
       auto there = hn::Load(d, nodes.displacement[to[q]].at + at);
-      for (std::size_t c = 0; c < 3; ++c) there = hn::Add(there, hn::Mul(hn::Load(d, slope[c] + at), hn::Set(d, way[c])));
+      for (std::size_t c = 0; c < 3; ++c)
+        there = hn::Add(there, hn::Mul(hn::Load(d, slope[c] + at), hn::Set(d, way[c])));
       total += w, sum = hn::Add(sum, hn::Mul(hn::Set(d, w), there));
     }
     hn::Store(hn::Div(sum, hn::Set(d, total)), d, out.at + at);
@@ -57,7 +59,8 @@ namespace geo {
 HWY_EXPORT(RowGradient);
 HWY_EXPORT(MovedBy);
 
-FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const FourNumbers* values, std::uint32_t own) {
+FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const FourNumbers* values,
+                         std::uint32_t own) {
   FourColumns result;
   HWY_DYNAMIC_DISPATCH(RowGradient)(to.data(), to.size(), g, values, own, result);
   return result;

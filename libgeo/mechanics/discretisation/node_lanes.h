@@ -15,7 +15,8 @@ struct alignas(32) FourColumns {
 };
 
 /// Σ (values[to] − values[own]) gᵀ.
-FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const FourNumbers* values, std::uint32_t own);
+FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const FourNumbers* values,
+                         std::uint32_t own);
 
 /// What Eq. 1 takes from a node: its place at rest with 1 over the square of its radius; its displacement and gradient.
 struct MovedNodes {

@@ -65,7 +65,8 @@ std::vector<FourColumns> NodeRows::columns(const std::vector<Vec3>& u) const {
   const std::vector<FourNumbers> numbers = four_numbers(u);
   std::vector<FourColumns> g(size());
   parallel_for(size(), 128, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) g[i] = row_gradient(rows_[i].to, rows_[i].g.data(), numbers.data(), static_cast<std::uint32_t>(i));
+    for (std::size_t i = begin; i < end; ++i)
+      g[i] = row_gradient(rows_[i].to, rows_[i].g.data(), numbers.data(), static_cast<std::uint32_t>(i));
   });
   return g;
 }
@@ -87,7 +88,8 @@ ShapeRow NodeRows::row(std::size_t i) const {
   return row;
 }
 
-ModePenalty::ModePenalty(const NodeRows& rows, std::vector<double> weight) : weight_(std::move(weight)), incoming_(rows.size()) {
+ModePenalty::ModePenalty(const NodeRows& rows, std::vector<double> weight)
+    : weight_(std::move(weight)), incoming_(rows.size()) {
   for (std::uint32_t i = 0; i < rows.size(); ++i)
     for (std::uint32_t q = 0; q < rows[i].to.size(); ++q) incoming_[rows[i].to[q]].push_back({i, q});
 }

@@ -1,5 +1,5 @@
-// The gradient at nodes from their neighbours along the graph (Müller et al. 2004): what surface and blades follow, and, in
-// the discretisation of that paper, where strain energy is summed.
+// The gradient at nodes from their neighbours along the graph (Müller et al. 2004): what surface and blades follow,
+// and, in the discretisation of that paper, where strain energy is summed.
 #pragma once
 
 #include <atomic>
@@ -11,9 +11,9 @@
 
 #include "kerf/graph.h"
 #include "kerf/material.h"
+#include "kerf/nodes.h"
 #include "mechanics/discretisation/node_lanes.h"
 #include "mechanics/discretisation/shape_functions.h"
-#include "kerf/nodes.h"
 
 namespace geo {
 
@@ -33,7 +33,7 @@ class NodeRows {
 
   struct Row {
     std::vector<std::uint32_t> to;
-    std::vector<Vec3> g, x;    // gradients; offsets to the neighbours
+    std::vector<Vec3> g, x;     // gradients; offsets to the neighbours
     std::vector<double> share;  // of the weights, which sum to 1, over |x|²
     Vec3 g_self = Vec3::Zero();
     Rung rung = Rung::rigid;
@@ -44,16 +44,18 @@ class NodeRows {
   std::vector<Row> rows_;
 };
 
-/// Gradients at nodes, each worked out when it is first asked for: for what concerns a few nodes of a large body. Several threads
-/// may ask at once. Refers to rows and displacements.
+/// Gradients at nodes, each worked out when it is first asked for: for what concerns a few nodes of a large body.
+/// Several threads may ask at once. Refers to rows and displacements.
 class NodeGradients {
  public:
-  NodeGradients(const NodeRows& rows, const std::vector<Vec3>& u) : rows_(&rows), u_(&u), gradient_(rows.size()), known_(std::make_unique<std::atomic<Known>[]>(rows.size())) {}
+  NodeGradients(const NodeRows& rows, const std::vector<Vec3>& u)
+      : rows_(&rows), u_(&u), gradient_(rows.size()), known_(std::make_unique<std::atomic<Known>[]>(rows.size())) {}
   Mat3 operator[](std::size_t i) const {
     if (known_[i].load(std::memory_order_acquire) == Known::yes) return gradient_[i];
     const Mat3 gradient = rows_->gradient(i, *u_);
     // Of threads that have worked it out at once, one writes it down.
-    if (Known no = Known::no; known_[i].compare_exchange_strong(no, Known::soon)) gradient_[i] = gradient, known_[i].store(Known::yes, std::memory_order_release);
+    if (Known no = Known::no; known_[i].compare_exchange_strong(no, Known::soon))
+      gradient_[i] = gradient, known_[i].store(Known::yes, std::memory_order_release);
     return gradient;
   }
 
@@ -77,8 +79,9 @@ class ModePenalty {
   void add_diagonal(const NodeRows& rows, std::vector<double>& out) const;
 
  private:
-  std::vector<double> weight_;                                                // per node: α E V
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> incoming_;  // per node: rows that hold it, and where
+  std::vector<double> weight_;  // per node: α E V
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>
+      incoming_;  // per node: rows that hold it, and where
 };
 
 }  // namespace geo

@@ -19,8 +19,9 @@ struct Columns {
 void point_gradients(const PointBlock& block, const double* values, Columns<double>& out);
 /// Adds Σ stress · shape gradient of the block's points to four numbers a node of the block.
 void point_divergence(const PointBlock& block, const Columns<double>& stress, double* out);
-/// Adds eight numbers of each point, times a weight, to those of its nodes; nothing where the seventh is zero. The weight is
-/// the point's volume times the kernel, without its scale. `place`: of each node of the block its coordinates, from `base` on, and 1 / support².
+/// Adds eight numbers of each point, times a weight, to those of its nodes; nothing where the seventh is zero. The
+/// weight is the point's volume times the kernel, without its scale. `place`: of each node of the block its
+/// coordinates, from `base` on, and 1 / support².
 void point_shares(const PointBlock& block, const Vec3& base, const float* place, const float* own, float* out);
 
 }  // namespace geo

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "kerf/parallel.h"
 #include "geometry/predicates.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
 
-constexpr std::size_t few = 8;          // a point with fewer nodes, or a worse moment matrix, widens its support
+constexpr std::size_t few = 8;  // a point with fewer nodes, or a worse moment matrix, widens its support
 constexpr double ill_conditioned = 500;
-constexpr double hopeless = 1e7;        // linear fields would be off by 1e-9 of their size
+constexpr double hopeless = 1e7;  // linear fields would be off by 1e-9 of their size
 constexpr std::size_t most_in_run = 32;
 
 bool on_face(const Complex& surface, const Vec3& p) {
@@ -28,8 +28,8 @@ struct Run {
   std::span<const RowJob> jobs;
   std::vector<std::uint32_t> nodes;  // ascending
   std::vector<FrontEdge> fronts;
-  Box3 reach;                        // with all ways to nodes
-  std::vector<RowJob> left;          // for which supports must be wider
+  Box3 reach;                // with all ways to nodes
+  std::vector<RowJob> left;  // for which supports must be wider
 
   void find_nodes(const Body& body, double grown, double longest) {
     const auto& position = body.nodes.position;
@@ -45,10 +45,13 @@ struct Run {
 
   void make_rows(const Body& body, std::span<const double> growth, const Obstacles& obstacles) {
     for (const FrontEdge& e : obstacles.fronts)
-      if (const Vec3 middle = 0.5 * (e.a + e.b); reach.grown((e.b - e.a).norm()).meets({middle, middle})) fronts.push_back(e);
+      if (const Vec3 middle = 0.5 * (e.a + e.b); reach.grown((e.b - e.a).norm()).meets({middle, middle}))
+        fronts.push_back(e);
     Sights sights;
     for (const RowJob& job : jobs)
-      if (std::none_of(growth.begin(), growth.end(), [&](double grown) { return make_row(body, job, grown, obstacles.faces, sights); })) left.push_back(job);
+      if (std::none_of(growth.begin(), growth.end(),
+                       [&](double grown) { return make_row(body, job, grown, obstacles.faces, sights); }))
+        left.push_back(job);
   }
 
  private:
@@ -65,16 +68,19 @@ struct Run {
     const Vec3& x = point.position;
     found.nodes.clear(), found.ends.clear(), found.seen.clear(), row.to.clear();
     for (const auto j : nodes)
-      if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < grown * body.nodes.radius[j]) found.nodes.push_back(j), found.ends.push_back(y);
+      if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < grown * body.nodes.radius[j])
+        found.nodes.push_back(j), found.ends.push_back(y);
     found.hidden.assign(found.ends.size(), 0);
     if (!faces.empty()) faces.blocks(x, found.ends, found.hidden.data());
-    point.growth = static_cast<std::uint8_t>(std::find(support_growth.begin(), support_growth.end(), grown) - support_growth.begin());
+    point.growth = static_cast<std::uint8_t>(std::find(support_growth.begin(), support_growth.end(), grown) -
+                                             support_growth.begin());
     point.blinded = std::find(found.hidden.begin(), found.hidden.end(), 1) != found.hidden.end();
     for (std::size_t q = 0; q < found.nodes.size(); ++q) {
       const double support = grown * body.nodes.radius[found.nodes[q]], straight = (found.ends[q] - x).norm();
       // No way to the node that is shorter than its support leads farther off than half of both.
       point.reach = std::max(point.reach, found.hidden[q] ? 0.5 * (straight + support) : straight);
-      const auto node = found.hidden[q] ? sight_round(x, found.ends[q], support, fronts, faces) : sight(x, found.ends[q], support);
+      const auto node =
+          found.hidden[q] ? sight_round(x, found.ends[q], support, fronts, faces) : sight(x, found.ends[q], support);
       if (node) row.to.push_back(found.nodes[q]), found.seen.push_back(*node);
     }
     const double condition = shape_gradients(x, found.seen, row.gradient);
@@ -89,7 +95,9 @@ std::vector<Run> runs_of(std::span<const RowJob> jobs, double apart) {
   std::vector<Run> runs;
   for (std::size_t begin = 0, end; begin < jobs.size(); begin = end) {
     const Vec3& first = jobs[begin].point->position;
-    for (end = begin + 1; end < std::min(begin + most_in_run, jobs.size()) && (jobs[end].point->position - first).norm() < apart;) ++end;
+    for (end = begin + 1;
+         end < std::min(begin + most_in_run, jobs.size()) && (jobs[end].point->position - first).norm() < apart;)
+      ++end;
     runs.emplace_back().jobs = jobs.subspan(begin, end - begin);
   }
   return runs;

@@ -1,5 +1,5 @@
-// Rows of material points: the nodes whose support holds a point and which it sees, straight ahead or round the front of a
-// crack, and how much wider supports must be for enough of them.
+// Rows of material points: the nodes whose support holds a point and which it sees, straight ahead or round the front
+// of a crack, and how much wider supports must be for enough of them.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct Obstacles {
 /// All that there are.
 Obstacles all_obstacles(const Complex& surface);
 
-/// Where a point goes that is meant to be at p. One that a face passes through is on neither of its sides: it steps aside,
-/// towards the nearest node.
+/// Where a point goes that is meant to be at p. One that a face passes through is on neither of its sides: it steps
+/// aside, towards the nearest node.
 Vec3 off_faces(const Body& body, const Vec3& p);
 
 /// A row to be made for a point that has its position, and in `reach` how far that is from where it was meant to be.
@@ -34,8 +34,8 @@ struct RowJob {
   MaterialPoint* point;
   ShapeRow* row;
 };
-/// Makes rows, and all of the points but volumes. Points that follow each other should be near each other. `obstacles`: of all
-/// faces; null: those that matter are looked for.
+/// Makes rows, and all of the points but volumes. Points that follow each other should be near each other. `obstacles`:
+/// of all faces; null: those that matter are looked for.
 void build_rows(const Body& body, std::vector<RowJob> jobs, const Obstacles* obstacles = nullptr);
 
 }  // namespace geo

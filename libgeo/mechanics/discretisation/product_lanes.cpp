@@ -1,5 +1,5 @@
-// Compiled once for each kind of vector, like point_lanes.cpp. Products and sums are one operation here where the processor has it: a product is
-// limited by how many it can do. All kinds that have it find the same numbers.
+// Compiled once for each kind of vector, like point_lanes.cpp. Products and sums are one operation here where the
+// processor has it: a product is limited by how many it can do. All kinds that have it find the same numbers.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/discretisation/product_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -8,8 +8,8 @@
 #include <algorithm>
 
 #include "hwy/highway.h"
-#include "mechanics/material/matrix_lanes.h"
 #include "mechanics/discretisation/product_lanes.h"
+#include "mechanics/material/matrix_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
@@ -18,34 +18,41 @@ namespace geo::HWY_NAMESPACE {
 constexpr std::size_t batch = 32;
 
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT values, float* HWY_RESTRICT out) {
+HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT values,
+                          float* HWY_RESTRICT out) {
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) {
         float sums[2] = {0, 0};
         for (std::size_t k = block.four_first[four]; k < block.four_first[four + 1]; ++k)
-          sums[k % 2] += values[4 * std::size_t(block.four_to[k]) + r] * float(block.packed[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]);
+          sums[k % 2] += values[4 * std::size_t(block.four_to[k]) + r] *
+                         float(block.packed[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]);
         out[batch * (3 * c + r) + i] = sums[0] + sums[1];
       }
 }
-HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT stress, float* HWY_RESTRICT out) {
+HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT stress,
+                           float* HWY_RESTRICT out) {
   for (std::size_t k = block.four_first[four]; k < block.four_first[four + 1]; ++k)
     for (std::size_t r = 0; r < 3; ++r) {
       const auto of = [&](std::size_t i) {
-        const auto part = [&](std::size_t c) { return stress[batch * (3 * c + r) + i] * float(block.packed[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]); };
+        const auto part = [&](std::size_t c) {
+          return stress[batch * (3 * c + r) + i] * float(block.packed[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]);
+        };
         return part(0) + part(1) + part(2);
       };
       out[4 * std::size_t(block.four_to[k]) + r] += (of(0) + of(2)) + (of(1) + of(3));
     }
 }
 #else
-// One or two nodes side by side, in each lane of four a point. Nodes are taken in turn by two sums, whatever the vectors' width.
+// One or two nodes side by side, in each lane of four a point. Nodes are taken in turn by two sums, whatever the
+// vectors' width.
 using Eight = hn::CappedTag<float, 8>;
 using Four = hn::CappedTag<float, 4>;
 
 template <class Wide>
 HWY_INLINE hn::Vec<Wide> shape(const std::int16_t* HWY_RESTRICT at) {
-  return hn::ConvertTo(Wide(), hn::PromoteTo(hn::Rebind<std::int32_t, Wide>(), hn::LoadU(hn::Rebind<std::int16_t, Wide>(), at)));
+  return hn::ConvertTo(
+      Wide(), hn::PromoteTo(hn::Rebind<std::int32_t, Wide>(), hn::LoadU(hn::Rebind<std::int16_t, Wide>(), at)));
 }
 
 template <class Wide>
@@ -58,7 +65,8 @@ HWY_INLINE void add_node(hn::Vec<Wide> u, const std::int16_t* HWY_RESTRICT at, h
 }
 
 template <class Wide = Eight>
-HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT values, float* HWY_RESTRICT out) {
+HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT values,
+                          float* HWY_RESTRICT out) {
   constexpr std::size_t beside = hn::MaxLanes(Wide()) / 4;
   const Wide d;
   const Four d4;
@@ -70,17 +78,22 @@ HWY_INLINE void gradients(const PointBlock& block, std::size_t four, const float
     for (auto& x : s) x = hn::Zero(d);
   if constexpr (beside == 2) {
     for (std::size_t k = begin; k < end; k += 2)
-      add_node<Wide>(hn::Combine(d, hn::LoadU(d4, values + 4 * std::size_t(to[k + 1])), hn::LoadU(d4, values + 4 * std::size_t(to[k]))), packed + 12 * k, sum[0]);
-    for (std::size_t n = 0; n < 9; ++n) hn::StoreU(hn::Add(hn::LowerHalf(d4, sum[0][n]), hn::UpperHalf(d4, sum[0][n])), d4, out + batch * n);
+      add_node<Wide>(hn::Combine(d, hn::LoadU(d4, values + 4 * std::size_t(to[k + 1])),
+                                 hn::LoadU(d4, values + 4 * std::size_t(to[k]))),
+                     packed + 12 * k, sum[0]);
+    for (std::size_t n = 0; n < 9; ++n)
+      hn::StoreU(hn::Add(hn::LowerHalf(d4, sum[0][n]), hn::UpperHalf(d4, sum[0][n])), d4, out + batch * n);
   } else {
     for (std::size_t k = begin; k < end; k += 2)
-      for (std::size_t h = 0; h < 2; ++h) add_node<Wide>(hn::LoadU(d, values + 4 * std::size_t(to[k + h])), packed + 12 * k + 4 * h, sum[h]);
+      for (std::size_t h = 0; h < 2; ++h)
+        add_node<Wide>(hn::LoadU(d, values + 4 * std::size_t(to[k + h])), packed + 12 * k + 4 * h, sum[h]);
     for (std::size_t n = 0; n < 9; ++n) hn::StoreU(hn::Add(sum[0][n], sum[1][n]), d, out + batch * n);
   }
 }
 
 template <class Wide = Eight>
-HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT stress, float* HWY_RESTRICT out) {
+HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const float* HWY_RESTRICT stress,
+                           float* HWY_RESTRICT out) {
   constexpr std::size_t beside = hn::MaxLanes(Wide()) / 4;
   const Wide d;
   const Four d4;
@@ -91,9 +104,12 @@ HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const floa
   // Coordinates of the force, each the sum over four points.
   const auto force = [&](const std::int16_t* at) HWY_ATTR {
     const hn::Vec<Wide> g[3] = {shape<Wide>(at), shape<Wide>(at + 8), shape<Wide>(at + 16)};
-    const auto of = [&](std::size_t r) HWY_ATTR { return hn::MulAdd(s[6 + r], g[2], hn::MulAdd(s[3 + r], g[1], hn::Mul(s[r], g[0]))); };
+    const auto of = [&](std::size_t r) HWY_ATTR {
+      return hn::MulAdd(s[6 + r], g[2], hn::MulAdd(s[3 + r], g[1], hn::Mul(s[r], g[0])));
+    };
     const auto x = of(0), y = of(1), z = of(2), zero = hn::Zero(d);
-    const auto xz = hn::Add(hn::InterleaveLower(d, x, z), hn::InterleaveUpper(d, x, z)), y0 = hn::Add(hn::InterleaveLower(d, y, zero), hn::InterleaveUpper(d, y, zero));
+    const auto xz = hn::Add(hn::InterleaveLower(d, x, z), hn::InterleaveUpper(d, x, z)),
+               y0 = hn::Add(hn::InterleaveLower(d, y, zero), hn::InterleaveUpper(d, y, zero));
     return hn::Add(hn::InterleaveLower(d, xz, y0), hn::InterleaveUpper(d, xz, y0));
   };
   const auto add = [&](std::size_t k, hn::Vec<Four> f) HWY_ATTR {
@@ -111,36 +127,43 @@ HWY_INLINE void divergence(const PointBlock& block, std::size_t four, const floa
 }
 #endif
 
-HWY_INLINE V<float> fused(V<float> a0, V<float> b0, V<float> a1, V<float> b1, V<float> a2, V<float> b2) { return hn::MulAdd(a2, b2, hn::MulAdd(a1, b1, hn::Mul(a0, b0))); }
+HWY_INLINE V<float> fused(V<float> a0, V<float> b0, V<float> a1, V<float> b1, V<float> a2, V<float> b2) {
+  return hn::MulAdd(a2, b2, hn::MulAdd(a1, b1, hn::Mul(a0, b0)));
+}
 // a · b
 HWY_INLINE Matrix<float> fused_product(const Matrix<float>& a, const Matrix<float>& b) {
   Matrix<float> m;
   for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) m.at[c][r] = fused(a.at[0][r], b.at[c][0], a.at[1][r], b.at[c][1], a.at[2][r], b.at[c][2]);
+    for (int r = 0; r < 3; ++r)
+      m.at[c][r] = fused(a.at[0][r], b.at[c][0], a.at[1][r], b.at[c][1], a.at[2][r], b.at[c][2]);
   return m;
 }
 
 // Gradients of points from `first` on, in multiples of their unit, become the stresses that belong to them, times it.
-HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes, std::size_t first, std::size_t count, float* HWY_RESTRICT gradient) {
+HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes, std::size_t first, std::size_t count,
+                            float* HWY_RESTRICT gradient) {
   const Lanes<float> d;
   const hn::Rebind<std::int32_t, Lanes<float>> d32;
   const hn::Rebind<std::int16_t, Lanes<float>> d16;
   for (std::size_t i = 0; i < count; i += width<float>) {
     const std::int16_t* const in_frame = &modes.frame[modes.number(first + i, 18)];
     const float* const stiffness = &modes.stiffness[modes.number(first + i, 12)];
-    const auto frame = [&](std::size_t k) HWY_ATTR { return hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d16, in_frame + 8 * k))); };
+    const auto frame = [&](std::size_t k)
+                           HWY_ATTR { return hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d16, in_frame + 8 * k))); };
     const auto number = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, stiffness + 8 * k); };
     Matrix<float> u, v;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) u.at[c][r] = frame(3 * c + r), v.at[c][r] = frame(9 + 3 * c + r);
-    const auto unit = hn::Mul(hn::LoadU(d, block.unit.data() + first + i), hn::Set(d, 1 / (StiffnessModes::full * StiffnessModes::full)));
+    const auto unit = hn::Mul(hn::LoadU(d, block.unit.data() + first + i),
+                              hn::Set(d, 1 / (StiffnessModes::full * StiffnessModes::full)));
     Matrix<float> at, out;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t r = 0; r < 3; ++r) at.at[c][r] = hn::LoadU(d, gradient + batch * (3 * c + r) + i);
     Matrix<float> in = fused_product(transposed(u), fused_product(at, v));
     for (auto& column : in.at)
       for (auto& x : column) x = hn::Mul(x, unit);
-    const V<float> a[3][3] = {{number(0), number(3), number(4)}, {number(3), number(1), number(5)}, {number(4), number(5), number(2)}};
+    const V<float> a[3][3] = {
+        {number(0), number(3), number(4)}, {number(3), number(1), number(5)}, {number(4), number(5), number(2)}};
     for (int k = 0; k < 3; ++k) out.at[k][k] = fused(a[k][0], in.at[0][0], a[k][1], in.at[1][1], a[k][2], in.at[2][2]);
     for (std::size_t k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2;
@@ -156,7 +179,8 @@ HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes
   }
 }
 
-void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float* HWY_RESTRICT values, float* HWY_RESTRICT out) {
+void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float* HWY_RESTRICT values,
+               float* HWY_RESTRICT out) {
   HWY_ALIGN float numbers[9 * batch];
   for (std::size_t first = 0; first < modes.points; first += batch) {
     const std::size_t count = std::min(batch, modes.points - first);
@@ -167,22 +191,26 @@ void Stiffness(const PointBlock& block, const StiffnessModes& modes, const float
 }
 
 // Of points side by side what columns have one after the other, times their units, on top of what all have; and back.
-HWY_INLINE void to_columns(const float* HWY_RESTRICT numbers, const float* HWY_RESTRICT unit, const double* HWY_RESTRICT carried, std::size_t first, std::size_t count,
+HWY_INLINE void to_columns(const float* HWY_RESTRICT numbers, const float* HWY_RESTRICT unit,
+                           const double* HWY_RESTRICT carried, std::size_t first, std::size_t count,
                            double* const* HWY_RESTRICT out) {
   const Lanes<float> d;
   HWY_ALIGN float rows[4 * width<float>];
   for (std::size_t i = 0; i < count; i += width<float>) {
     const auto by = hn::LoadU(d, unit + first + i);
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto number = [&](std::size_t r) HWY_ATTR { return hn::Mul(by, hn::LoadU(d, numbers + batch * (3 * c + r) + i)); };
+      const auto number = [&](std::size_t r)
+                              HWY_ATTR { return hn::Mul(by, hn::LoadU(d, numbers + batch * (3 * c + r) + i)); };
       hn::StoreInterleaved4(number(0), number(1), number(2), hn::Zero(d), d, rows);
       double* const to = out[c] + 4 * (first + i);
       for (std::size_t k = 0; k < width<float>; ++k)
-        for (std::size_t r = 0; r < 4; ++r) to[4 * k + r] = unit[first + i + k] > 0 ? double(rows[4 * k + r]) + carried[4 * c + r] : 0;
+        for (std::size_t r = 0; r < 4; ++r)
+          to[4 * k + r] = unit[first + i + k] > 0 ? double(rows[4 * k + r]) + carried[4 * c + r] : 0;
     }
   }
 }
-HWY_INLINE void from_columns(const double* const* HWY_RESTRICT columns, const float* HWY_RESTRICT unit, std::size_t first, std::size_t count, float* HWY_RESTRICT numbers) {
+HWY_INLINE void from_columns(const double* const* HWY_RESTRICT columns, const float* HWY_RESTRICT unit,
+                             std::size_t first, std::size_t count, float* HWY_RESTRICT numbers) {
   const Lanes<float> d;
   HWY_ALIGN float rows[4 * width<float>];
   for (std::size_t i = 0; i < count; i += width<float>) {
@@ -198,7 +226,8 @@ HWY_INLINE void from_columns(const double* const* HWY_RESTRICT columns, const fl
   }
 }
 
-void RoundedGradients(const PointBlock& block, const float* HWY_RESTRICT values, const double* HWY_RESTRICT carried, double* const* HWY_RESTRICT out) {
+void RoundedGradients(const PointBlock& block, const float* HWY_RESTRICT values, const double* HWY_RESTRICT carried,
+                      double* const* HWY_RESTRICT out) {
   HWY_ALIGN float numbers[9 * batch];
   for (std::size_t first = 0; first < block.unit.size(); first += batch) {
     const std::size_t count = std::min(batch, block.unit.size() - first);
@@ -225,7 +254,9 @@ HWY_EXPORT(Stiffness);
 HWY_EXPORT(RoundedGradients);
 HWY_EXPORT(RoundedDivergence);
 
-void multiply_stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out) { HWY_DYNAMIC_DISPATCH(Stiffness)(block, modes, values, out); }
+void multiply_stiffness(const PointBlock& block, const StiffnessModes& modes, const float* values, float* out) {
+  HWY_DYNAMIC_DISPATCH(Stiffness)(block, modes, values, out);
+}
 
 void rounded_gradients(const PointBlock& block, const float* values, const Mat3& carried, Columns<double>& out) {
   out.resize(block.points.size());

@@ -12,7 +12,8 @@ namespace {
 constexpr int across = 6;  // samples across a cell that the surface cuts, one at random in each sub-cell
 constexpr int samples = across * across * across;
 
-// Every other corner of a cube, the other four in every other cell: in all directions the pattern is as long as it is wide.
+// Every other corner of a cube, the other four in every other cell: in all directions the pattern is as long as it is
+// wide.
 Vec3 pattern(int k, bool other) {
   const int corner = std::array{0, 3, 5, 6}[static_cast<std::size_t>(k)] ^ (other ? 7 : 0);
   return {corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0};
@@ -24,7 +25,8 @@ QuadratureCell place(const RegionTree& tree, const Lattice& lattice, const Regio
   const bool other = (c[0] ^ c[1] ^ c[2]) >> region.cell.level & 1;
   QuadratureCell cell{region.cell, !region.cut(), edge * edge * edge, {}};
   if (cell.whole) {
-    for (int k = 0; k < 4; ++k) cell.point[static_cast<std::size_t>(k)] = region.probe + edge / std::sqrt(12.0) * pattern(k, other);
+    for (int k = 0; k < 4; ++k)
+      cell.point[static_cast<std::size_t>(k)] = region.probe + edge / std::sqrt(12.0) * pattern(k, other);
     return cell;
   }
   const Box3 box = lattice.box(region.cell);
@@ -33,7 +35,8 @@ QuadratureCell place(const RegionTree& tree, const Lattice& lattice, const Regio
   std::vector<char> in(samples);
   for (int i = 0; i < samples; ++i) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    at[static_cast<std::size_t>(i)] = box.lo + edge / across * Vec3(i % across + x, i / across % across + y, i / (across * across) + z);
+    at[static_cast<std::size_t>(i)] =
+        box.lo + edge / across * Vec3(i % across + x, i / across % across + y, i / (across * across) + z);
   }
   tree.inside(region, at, in);
   std::vector<Vec3> inside;
@@ -47,7 +50,8 @@ QuadratureCell place(const RegionTree& tree, const Lattice& lattice, const Regio
   Mat3 spread = Mat3::Zero();
   for (const Vec3& p : inside) spread += (p - mean) * (p - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread / double(inside.size()));
-  const Mat3 root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+  const Mat3 root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
+                    eigen.eigenvectors().transpose();
   for (int k = 0; k < 4; ++k) {
     Vec3 p = mean;
     bool found = false;
@@ -56,7 +60,9 @@ QuadratureCell place(const RegionTree& tree, const Lattice& lattice, const Regio
       found = box.meets({p, p}) && tree.inside(region, p);
     }
     if (!found)
-      p = *std::min_element(inside.begin(), inside.end(), [&](const Vec3& a, const Vec3& b) { return (a - p).squaredNorm() < (b - p).squaredNorm(); });
+      p = *std::min_element(inside.begin(), inside.end(), [&](const Vec3& a, const Vec3& b) {
+        return (a - p).squaredNorm() < (b - p).squaredNorm();
+      });
     cell.point[static_cast<std::size_t>(k)] = p;
   }
   return cell;
@@ -76,27 +82,32 @@ TriangleMesh skin_of(const Complex& surface) {
   TriangleMesh skin;
   for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) skin.vertices.push_back(surface.point(VertexId(v)));
   for (std::uint32_t f = 0; f < surface.face_count(); ++f)
-    if (const auto& face = surface.face(FaceId(f)); face.alive && face.crack == 0) skin.triangles.push_back({face.v[0].value, face.v[1].value, face.v[2].value});
+    if (const auto& face = surface.face(FaceId(f)); face.alive && face.crack == 0)
+      skin.triangles.push_back({face.v[0].value, face.v[1].value, face.v[2].value});
   return skin;
 }
 
 }  // namespace
 
 QuadratureCells::QuadratureCells(const Body& body) {
-  // As the sampler lays its cells, where that can be told: centred on the body, in units of the coarsest. The first node is
-  // always there, and so is its spacing.
+  // As the sampler lays its cells, where that can be told: centred on the body, in units of the coarsest. The first
+  // node is always there, and so is its spacing.
   const NodeSet& nodes = body.nodes;
   const Box3& extent = body.surface.extent();
-  const double spacing = nodes.spacing[0], coarse = spacing * std::exp2(std::round(std::log2(*std::max_element(nodes.spacing.begin(), nodes.spacing.end()) / spacing)));
+  const double spacing = nodes.spacing[0],
+               coarse = spacing * std::exp2(std::round(std::log2(
+                                      *std::max_element(nodes.spacing.begin(), nodes.spacing.end()) / spacing)));
   Vec3 cells;
-  for (int a = 0; a < 3; ++a) cells[a] = std::max(1.0, std::ceil((extent.hi[a] - extent.lo[a] + 0.02 * spacing) / coarse));
-  const int above = static_cast<int>(std::ceil(std::log2(cells.maxCoeff())));            // levels of the root over the coarsest
-  const int below = std::max(0, std::min(10, 20 - above));                               // and of the coarsest over the finest
+  for (int a = 0; a < 3; ++a)
+    cells[a] = std::max(1.0, std::ceil((extent.hi[a] - extent.lo[a] + 0.02 * spacing) / coarse));
+  const int above = static_cast<int>(std::ceil(std::log2(cells.maxCoeff())));  // levels of the root over the coarsest
+  const int below = std::max(0, std::min(10, 20 - above));                     // and of the coarsest over the finest
   lattice_ = {extent.center() - 0.5 * coarse * cells, std::ldexp(coarse, -below)};
   root_ = above + below;
   divided_ = divisions(nodes);
   skin_ = std::make_shared<const RegionTree>(skin_of(body.surface));
-  for (const auto& list : walk<QuadratureCell>(*skin_, lattice_, {{0, 0, 0}, root_}, "quadrature", {}, visit())) placed_.insert(placed_.end(), list.begin(), list.end());
+  for (const auto& list : walk<QuadratureCell>(*skin_, lattice_, {{0, 0, 0}, root_}, "quadrature", {}, visit()))
+    placed_.insert(placed_.end(), list.begin(), list.end());
   share_volume(nodes);
 }
 
@@ -114,9 +125,12 @@ Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
   std::vector<std::uint64_t> last(divided.size(), ~std::uint64_t(0));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     std::array<std::int32_t, 3> at;
-    for (int a = 0; a < 3; ++a) at[static_cast<std::size_t>(a)] = std::clamp(static_cast<std::int32_t>((nodes.position[i][a] - lattice_.origin[a]) / lattice_.size), 0, (1 << root_) - 1);
+    for (int a = 0; a < 3; ++a)
+      at[static_cast<std::size_t>(a)] = std::clamp(
+          static_cast<std::int32_t>((nodes.position[i][a] - lattice_.origin[a]) / lattice_.size), 0, (1 << root_) - 1);
     const std::uint64_t code = morton(at);
-    for (int level = std::max(0, static_cast<int>(std::lround(std::log2(nodes.spacing[i] / lattice_.size)))) + 1; level <= root_; ++level) {
+    for (int level = std::max(0, static_cast<int>(std::lround(std::log2(nodes.spacing[i] / lattice_.size)))) + 1;
+         level <= root_; ++level) {
       const auto l = static_cast<std::size_t>(level);
       const std::uint64_t cell = code >> 3 * level << 3 * level;
       if (last[l] != cell) divided[l].push_back(last[l] = cell);
@@ -149,11 +163,15 @@ bool QuadratureCells::follow(const Body& body) {
   for (int level = root_; level > 0; --level) {
     const auto l = static_cast<std::size_t>(level);
     std::vector<std::uint64_t> codes;
-    std::set_symmetric_difference(before[l].begin(), before[l].end(), divided_[l].begin(), divided_[l].end(), std::back_inserter(codes));
+    std::set_symmetric_difference(before[l].begin(), before[l].end(), divided_[l].begin(), divided_[l].end(),
+                                  std::back_inserter(codes));
     for (const auto code : codes)
-      if (std::none_of(changed.begin(), changed.end(), [&](const Cell& c) { return code >> 3 * c.level == morton(c.corner) >> 3 * c.level; })) changed.push_back({corner_of(code), level});
+      if (std::none_of(changed.begin(), changed.end(),
+                       [&](const Cell& c) { return code >> 3 * c.level == morton(c.corner) >> 3 * c.level; }))
+        changed.push_back({corner_of(code), level});
   }
-  std::sort(changed.begin(), changed.end(), [](const Cell& a, const Cell& b) { return morton(a.corner) < morton(b.corner); });
+  std::sort(changed.begin(), changed.end(),
+            [](const Cell& a, const Cell& b) { return morton(a.corner) < morton(b.corner); });
   std::vector<QuadratureCell> found;
   auto old = placed_.begin();
   const auto up_to = [&](std::uint64_t code, bool keep) {
@@ -177,7 +195,8 @@ bool QuadratureCells::follow(const Body& body) {
 std::vector<std::size_t> QuadratureCells::groups(std::size_t most) const {
   std::vector<std::size_t> first;
   const auto code = [&](std::size_t i) { return morton(cells_[i].cell.corner); };
-  const auto divide = [&](const auto& self, std::size_t begin, std::size_t end, std::uint64_t corner, int level) -> void {
+  const auto divide = [&](const auto& self, std::size_t begin, std::size_t end, std::uint64_t corner,
+                          int level) -> void {
     if (begin == end) return;
     if (end - begin <= most || level == 0) {
       first.push_back(begin);

@@ -31,8 +31,8 @@ class QuadratureCells {
 
   /// In Morton order; their volumes sum to that of the nodes.
   const std::vector<QuadratureCell>& cells() const { return cells_; }
-  /// Groups of `most` cells or fewer, each of as many children of one cell of the octree, one after another, as there is room for: the
-  /// first of each, and one past the last. What a group holds depends on nothing outside of that cell.
+  /// Groups of `most` cells or fewer, each of as many children of one cell of the octree, one after another, as there
+  /// is room for: the first of each, and one past the last. What a group holds depends on nothing outside of that cell.
   std::vector<std::size_t> groups(std::size_t most) const;
 
  private:

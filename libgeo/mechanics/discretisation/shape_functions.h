@@ -9,8 +9,9 @@
 
 namespace geo {
 
-/// How well the nodes around a point span space. `full`: a well-conditioned moment matrix, if need be with a wider support;
-/// `regularised`: an ill-conditioned one, or, at nodes, with a direction left out; `rigid`: none, the point carries no strain.
+/// How well the nodes around a point span space. `full`: a well-conditioned moment matrix, if need be with a wider
+/// support; `regularised`: an ill-conditioned one, or, at nodes, with a direction left out; `rigid`: none, the point
+/// carries no strain.
 enum class Rung : std::uint8_t { full, regularised, rigid };
 
 /// The nodes of a point and the gradients of their shape functions: ∇u = Σ u_j gᵀ_j, exact where u is linear.

@@ -16,13 +16,15 @@ namespace geo::HWY_NAMESPACE {
 
 using Vector = V<float>;
 
-// Cyclic Jacobi on symmetric matrices, a[j][i] = a[i][j]: eigenvalues on the diagonal, eigenvectors as columns of v. A rotation is left out where
-// what it would take away is less than rounding of the diagonal, so that a sweep in which all are is the last. Numbers' squares are to be finite.
-// Two sets of matrices by turns: each rotation waits for the one before, and one set's roots and quotients for nothing that the other's need.
+// Cyclic Jacobi on symmetric matrices, a[j][i] = a[i][j]: eigenvalues on the diagonal, eigenvectors as columns of v. A
+// rotation is left out where what it would take away is less than rounding of the diagonal, so that a sweep in which
+// all are is the last. Numbers' squares are to be finite. Two sets of matrices by turns: each rotation waits for the
+// one before, and one set's roots and quotients for nothing that the other's need.
 constexpr int sets = 2;
 HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[sets]) {
   const Lanes<float> d;
-  const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), two = hn::Set(d, 2.0f), rounding = hn::Set(d, 1e-8f), tiny = hn::Set(d, 1e-18f);
+  const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), two = hn::Set(d, 2.0f), rounding = hn::Set(d, 1e-8f),
+             tiny = hn::Set(d, 1e-18f);
   for (auto& v : vectors)
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) v.at[c][r] = c == r ? one : zero;
@@ -31,7 +33,7 @@ HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[
     done = true;
     for (int k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
-      const auto is_due = [&](const Vector (&a)[3][3]) HWY_ATTR {
+      const auto is_due = [&](const Vector(&a)[3][3]) HWY_ATTR {
         return hn::Gt(hn::Abs(a[p][q]), hn::Max(hn::Mul(rounding, hn::Max(hn::Abs(a[p][p]), hn::Abs(a[q][q]))), tiny));
       };
       const hn::Mask<Lanes<float>> due[sets] = {is_due(all[0]), is_due(all[1])};
@@ -44,7 +46,8 @@ HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[
         const auto apq = a[p][q], twice = hn::Mul(two, apq), apart = hn::Sub(a[q][q], a[p][p]);
         // tan of the angle: the smaller root of t² + (a_qq − a_pp) / a_pq t − 1 = 0.
         const auto root = hn::Sqrt(hn::Add(hn::Mul(apart, apart), hn::Mul(twice, twice)));
-        const auto t = hn::IfThenElseZero(turns, hn::Div(hn::CopySign(twice, hn::Xor(twice, apart)), hn::IfThenElse(turns, hn::Add(hn::Abs(apart), root), one)));
+        const auto t = hn::IfThenElseZero(turns, hn::Div(hn::CopySign(twice, hn::Xor(twice, apart)),
+                                                         hn::IfThenElse(turns, hn::Add(hn::Abs(apart), root), one)));
         const auto step = hn::Mul(t, apq);
         c[m] = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s[m] = hn::Mul(t, c[m]);
         a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
@@ -70,8 +73,10 @@ HWY_INLINE void squares(const Matrix<float>& f, Vector (&s)[3][3]) {
     for (int j = 0; j < 3; ++j) s[i][j] = dot3(f.at[i], f.at[j]);
 }
 
-// F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out; v and s as FᵀF diagonalised leaves them.
-HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<float>& u, Vector (&sigma)[3], Matrix<float>& v) {
+// F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out; v and s as FᵀF
+// diagonalised leaves them.
+HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<float>& u, Vector (&sigma)[3],
+                          Matrix<float>& v) {
   const Lanes<float> d;
   const auto tiny = hn::Set(d, 1e-20f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
@@ -86,7 +91,9 @@ HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<floa
   }
   Vector b[3][3];
   for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) b[c][r] = hn::Add(hn::Add(hn::Mul(f.at[0][r], v.at[c][0]), hn::Mul(f.at[1][r], v.at[c][1])), hn::Mul(f.at[2][r], v.at[c][2]));
+    for (int r = 0; r < 3; ++r)
+      b[c][r] = hn::Add(hn::Add(hn::Mul(f.at[0][r], v.at[c][0]), hn::Mul(f.at[1][r], v.at[c][1])),
+                        hn::Mul(f.at[2][r], v.at[c][2]));
   const auto length = hn::Sqrt(dot3(b[0], b[0]));
   const auto gone = hn::Lt(length, tiny);
   const auto inverse = hn::Div(one, hn::IfThenElse(gone, one, length));
@@ -97,7 +104,8 @@ HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<floa
   const auto second = dot3(b[1], b[1]);
   const auto lost = hn::Lt(second, hn::Max(hn::Mul(hn::Set(d, 1e-12f), hn::Mul(length, length)), tiny));
   const auto flat = hn::Lt(hn::Abs(u.at[0][0]), hn::Set(d, 0.7f));
-  const Vector across[3] = {hn::IfThenElse(flat, zero, hn::Neg(u.at[0][2])), hn::IfThenElse(flat, u.at[0][2], zero), hn::IfThenElse(flat, hn::Neg(u.at[0][1]), u.at[0][0])};
+  const Vector across[3] = {hn::IfThenElse(flat, zero, hn::Neg(u.at[0][2])), hn::IfThenElse(flat, u.at[0][2], zero),
+                            hn::IfThenElse(flat, hn::Neg(u.at[0][1]), u.at[0][0])};
   for (int r = 0; r < 3; ++r) b[1][r] = hn::IfThenElse(lost, across[r], b[1][r]);
   const auto unit = hn::Div(one, hn::Sqrt(dot3(b[1], b[1])));
   for (int r = 0; r < 3; ++r) u.at[1][r] = hn::Mul(b[1][r], unit);
@@ -116,11 +124,14 @@ struct Principal {
 
 HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]) {
   const Lanes<float> d;
-  const auto one = hn::Set(d, 1.0f), mu = hn::Set(d, m.mu), lambda = hn::Set(d, m.lambda), volume = hn::Set(d, m.volume);
+  const auto one = hn::Set(d, 1.0f), mu = hn::Set(d, m.mu), lambda = hn::Set(d, m.lambda),
+             volume = hn::Set(d, m.volume);
   const Vector cof[3] = {hn::Mul(s[1], s[2]), hn::Mul(s[0], s[2]), hn::Mul(s[0], s[1])};
-  const auto j = hn::Mul(s[0], cof[0]), square = hn::Add(hn::Add(hn::Mul(s[0], s[0]), hn::Mul(s[1], s[1])), hn::Mul(s[2], s[2]));
+  const auto j = hn::Mul(s[0], cof[0]),
+             square = hn::Add(hn::Add(hn::Mul(s[0], s[0]), hn::Mul(s[1], s[1])), hn::Mul(s[2], s[2]));
   Principal p;
-  const auto pressure = hn::Add(hn::Mul(volume, hn::Sub(j, one)), m.neo_hookean ? hn::Mul(lambda, hn::Sub(j, hn::Set(d, m.alpha))) : hn::Zero(d));
+  const auto pressure = hn::Add(hn::Mul(volume, hn::Sub(j, one)),
+                                m.neo_hookean ? hn::Mul(lambda, hn::Sub(j, hn::Set(d, m.alpha))) : hn::Zero(d));
   const auto bulk = m.neo_hookean ? hn::Add(lambda, volume) : volume;
   const auto i1 = hn::Div(one, hn::Add(square, one));
   const auto shear = hn::Mul(mu, hn::Sub(one, i1)), soft = hn::Mul(hn::Mul(hn::Set(d, 2.0f), mu), hn::Mul(i1, i1));
@@ -146,7 +157,8 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]
     auto same = shear, turned = shear;
     if (!m.neo_hookean) {
       const auto squares = hn::Add(hn::Mul(s[i], s[i]), hn::Mul(s[l], s[l])), both = hn::Mul(s[i], s[l]);
-      same = hn::Add(green, hn::Mul(mu, hn::Add(squares, both))), turned = hn::Add(green, hn::Mul(mu, hn::Sub(squares, both)));
+      same = hn::Add(green, hn::Mul(mu, hn::Add(squares, both))),
+      turned = hn::Add(green, hn::Mul(mu, hn::Sub(squares, both)));
     }
     p.same[k] = hn::Max(hn::Sub(same, turn), hn::Zero(d));
     p.turned[k] = hn::Max(hn::Add(turned, turn), hn::Zero(d));
@@ -155,12 +167,14 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]
 }
 
 // What is written of points from i on. `relaxed`: columns, or null.
-HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_t i, const Matrix<float>& u, Matrix<float>& v, const Principal& p, const Matrix<float>& e,
-                      const float* const* relaxed, const float* weight, StiffnessModes& out) {
+HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_t i, const Matrix<float>& u,
+                      Matrix<float>& v, const Principal& p, const Matrix<float>& e, const float* const* relaxed,
+                      const float* weight, StiffnessModes& out) {
   const Lanes<float> d;
   const hn::Rebind<std::int32_t, Lanes<float>> d32;
   const hn::Rebind<std::int16_t, Lanes<float>> d16;
-  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full), firmness = hn::Set(d, firm);
+  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full),
+             firmness = hn::Set(d, firm);
   // Where plastic strain has made V no rotation, what its numbers are too long by is the stiffness'.
   Vector longest = one;
   if (relaxed) {
@@ -174,7 +188,8 @@ HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_
   };
   const auto shorter = hn::Div(full, longest);
   for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t r = 0; r < 3; ++r) put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
+    for (std::size_t r = 0; r < 3; ++r)
+      put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
   const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
   float* const to = &out.stiffness[out.number(i, 12)];
   Vector kept[3];
@@ -193,14 +208,18 @@ HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_
   }
 }
 
-void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
+void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t end, const Columns<float>& gradient,
+           const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
   const Lanes<float> d;
-  const auto columns_of = [](const Columns<float>& c) { return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()}; };
+  const auto columns_of = [](const Columns<float>& c) {
+    return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()};
+  };
   const auto columns = columns_of(gradient), of_relaxed = relaxed ? columns_of(*relaxed) : columns;
   const float firm = material.mu + material.lambda + material.volume;
   const auto one = hn::Set(d, 1.0f), one_over_firmness = hn::Set(d, 1 / firm);
   for (std::size_t i = begin; i < end; i += sets * width<float>) {
-    const std::size_t at[sets] = {i, std::min(i + width<float>, end - width<float>)};  // the last one twice, where they are odd
+    const std::size_t at[sets] = {
+        i, std::min(i + width<float>, end - width<float>)};  // the last one twice, where they are odd
     Matrix<float> f[sets], u[sets], v[sets], e[sets];
     Vector sigma[3], s[sets][3][3], a[sets][3][3];
     for (int m = 0; m < sets; ++m) {
@@ -231,8 +250,9 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Modes);
 
-void stiffness_modes(const StiffnessConstants& constants, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed,
-                     const std::vector<float>& weight, StiffnessModes& out) {
+void stiffness_modes(const StiffnessConstants& constants, std::size_t begin, std::size_t end,
+                     const Columns<float>& gradient, const Columns<float>* relaxed, const std::vector<float>& weight,
+                     StiffnessModes& out) {
   HWY_DYNAMIC_DISPATCH(Modes)(constants, begin, end, gradient, relaxed, weight.data(), out);
 }
 

@@ -1,19 +1,20 @@
-// The stiffness of material points, by the singular value decomposition of what deforms them, eight points side by side.
+// The stiffness of material points, by the singular value decomposition of what deforms them, eight points side by
+// side.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "kerf/vec.h"
 #include "kerf/material.h"
+#include "kerf/vec.h"
 #include "mechanics/discretisation/point_lanes.h"
 
 namespace geo {
 
 /// ∂²Ψ/∂F² at points, made positive, by the singular value decomposition F = U Σ Vᵀ (both rotations): in that frame a
-/// stress S' = Uᵀ S V depends on G' = Uᵀ ∂F V by a 3 × 3 matrix between the diagonals and three 2 × 2 ones between (i, j)
-/// and (j, i) (Stomakhin et al. 2012, Smith, de Goes and Kim 2018). Eight points stand side by
-/// side: number k of n that point i has is at number(i, n) + 8 k.
+/// stress S' = Uᵀ S V depends on G' = Uᵀ ∂F V by a 3 × 3 matrix between the diagonals and three 2 × 2 ones between (i,
+/// j) and (j, i) (Stomakhin et al. 2012, Smith, de Goes and Kim 2018). Eight points stand side by side: number k of n
+/// that point i has is at number(i, n) + 8 k.
 struct StiffnessModes {
   static constexpr float full = 32767;
   std::size_t points = 0;           ///< a multiple of eight
@@ -26,9 +27,11 @@ struct StiffnessModes {
   /// U Vᵀ
   Eigen::Matrix3f rotation(std::size_t point) const;
 };
-/// From point `begin` to `end`, both multiples of eight, of an `out` that has room for all. `gradient`: ∇u; where material has flown, of F times `relaxed` (symmetric), by which gradients and stresses are then multiplied, too: null where
-/// it has not. Stiffness is times `weight`, one a point, a multiple of eight of them.
-void stiffness_modes(const StiffnessConstants& constants, std::size_t begin, std::size_t end, const Columns<float>& gradient, const Columns<float>* relaxed,
-                     const std::vector<float>& weight, StiffnessModes& out);
+/// From point `begin` to `end`, both multiples of eight, of an `out` that has room for all. `gradient`: ∇u; where
+/// material has flown, of F times `relaxed` (symmetric), by which gradients and stresses are then multiplied, too: null
+/// where it has not. Stiffness is times `weight`, one a point, a multiple of eight of them.
+void stiffness_modes(const StiffnessConstants& constants, std::size_t begin, std::size_t end,
+                     const Columns<float>& gradient, const Columns<float>* relaxed, const std::vector<float>& weight,
+                     StiffnessModes& out);
 
 }  // namespace geo

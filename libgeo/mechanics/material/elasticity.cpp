@@ -1,5 +1,5 @@
-// Saint-Venant-Kirchhoff, and the stable neo-Hookean energy of Smith, de Goes and Kim (2018), which is defined for any F,
-// inverted ones included.
+// Saint-Venant-Kirchhoff, and the stable neo-Hookean energy of Smith, de Goes and Kim (2018), which is defined for any
+// F, inverted ones included.
 #include "kerf/material.h"
 
 #include <Eigen/Cholesky>
@@ -31,7 +31,8 @@ Mat3 cofactor_derivative(const Mat3& f, const Mat3& d) {
 // The reparametrisation of § 3.4 there, so that small strains see Lamé's constants.
 struct Stable {
   double mu, lambda, alpha;
-  explicit Stable(const Material& m) : mu(4.0 / 3.0 * m.mu()), lambda(m.lambda() + 5.0 / 6.0 * m.mu()), alpha(1 + 0.75 * mu / lambda) {}
+  explicit Stable(const Material& m)
+      : mu(4.0 / 3.0 * m.mu()), lambda(m.lambda() + 5.0 / 6.0 * m.mu()), alpha(1 + 0.75 * mu / lambda) {}
 };
 
 Mat3 stress_along(const Material& m, const Mat3& f, const Mat3& d) {
@@ -40,7 +41,8 @@ Mat3 stress_along(const Material& m, const Mat3& f, const Mat3& d) {
   Mat3 result = m.volume_term * (dj * cof + (j - 1) * dcof);
   if (m.model == ElasticModel::saint_venant_kirchhoff) {
     const Mat3 e = 0.5 * (f.transpose() * f - Mat3::Identity()), de = 0.5 * (d.transpose() * f + f.transpose() * d);
-    const Mat3 s = 2 * m.mu() * e + m.lambda() * e.trace() * Mat3::Identity(), ds = 2 * m.mu() * de + m.lambda() * de.trace() * Mat3::Identity();
+    const Mat3 s = 2 * m.mu() * e + m.lambda() * e.trace() * Mat3::Identity(),
+               ds = 2 * m.mu() * de + m.lambda() * de.trace() * Mat3::Identity();
     return result + d * s + f * ds;
   }
   const Stable p(m);
@@ -57,18 +59,20 @@ void require_material(const Material& m) {
   if (!(m.density > 0) || !std::isfinite(m.density)) throw InputError("the density must be positive");
   if (!(m.volume_term >= 0) || !(m.damping >= 0) || !(m.viscosity >= 0) || !(m.mode_penalty >= 0))
     throw InputError("volume term, damping, viscosity and mode penalty must not be negative");
-  if (!(m.yield >= 0) || !(m.creep >= 0) || !(m.most_plastic >= 0)) throw InputError("yield, creep and the most plastic strain must not be negative");
+  if (!(m.yield >= 0) || !(m.creep >= 0) || !(m.most_plastic >= 0))
+    throw InputError("yield, creep and the most plastic strain must not be negative");
 }
 
-// Of the Green strain's invariants, so that next to nothing is left of the terms of first order where there is no strain:
-// with e = tr E and J² = det(1 + 2 E), e − (J − 1) is of second order.
+// Of the Green strain's invariants, so that next to nothing is left of the terms of first order where there is no
+// strain: with e = tr E and J² = det(1 + 2 E), e − (J − 1) is of second order.
 double energy_density(const Material& m, const Mat3& f) {
   const Mat3 strain = 0.5 * (f.transpose() * f - Mat3::Identity());
   const double e = strain.trace(), j = f.determinant();
   const double minors = 0.5 * (e * e - strain.squaredNorm()), cubic = strain.determinant();
   const double grown = j > 0 ? (2 * e + 4 * minors + 8 * cubic) / (j + 1) : j - 1;
   double energy = 0.5 * m.volume_term * grown * grown;
-  if (m.model == ElasticModel::saint_venant_kirchhoff) return energy + m.mu() * strain.squaredNorm() + 0.5 * m.lambda() * e * e;
+  if (m.model == ElasticModel::saint_venant_kirchhoff)
+    return energy + m.mu() * strain.squaredNorm() + 0.5 * m.lambda() * e * e;
   const Stable p(m);
   const double rest = j > 0 ? (e * grown - 4 * minors - 8 * cubic) / (j + 1) : e - grown;
   return energy + 0.75 * p.mu * rest + 0.5 * p.lambda * grown * grown + 0.5 * p.mu * (0.5 * e - std::log1p(0.5 * e));
@@ -98,14 +102,16 @@ Mat9 stress_derivative(const Material& m, const Mat3& f) {
 }
 
 StiffnessConstants stiffness_constants(const Material& m) {
-  if (m.model == ElasticModel::saint_venant_kirchhoff) return {false, float(m.mu()), float(m.lambda()), 1, float(m.volume_term), 0};
+  if (m.model == ElasticModel::saint_venant_kirchhoff)
+    return {false, float(m.mu()), float(m.lambda()), 1, float(m.volume_term), 0};
   const Stable p(m);
   return {true, float(p.mu), float(p.lambda), float(p.alpha), float(m.volume_term), 0};
 }
 
 Mat9 projected_derivative(const Material& m, const Mat3& f) {
   const Mat9 h = stress_derivative(m, f);
-  if (Eigen::LLT<Mat9>(h + 1e-9 * h.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity()).info() == Eigen::Success) return h;
+  if (Eigen::LLT<Mat9>(h + 1e-9 * h.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity()).info() == Eigen::Success)
+    return h;
   const Eigen::SelfAdjointEigenSolver<Mat9> eigen(h);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
 }

@@ -4,7 +4,8 @@
 
 namespace geo {
 
-Materials::Materials(std::vector<Material> table, std::vector<std::uint16_t> of_node) : table_(std::move(table)), of_node_(std::move(of_node)) {
+Materials::Materials(std::vector<Material> table, std::vector<std::uint16_t> of_node)
+    : table_(std::move(table)), of_node_(std::move(of_node)) {
   if (table_.empty()) throw InputError("a solid needs a material");
   for (const Material& m : table_) {
     require_material(m);
@@ -12,7 +13,8 @@ Materials::Materials(std::vector<Material> table, std::vector<std::uint16_t> of_
   }
   if (count() == 1) of_node_.clear();
   for (const auto number : of_node_)
-    if (number >= count()) throw InputError("material " + std::to_string(number) + " is not in the table of " + std::to_string(count()));
+    if (number >= count())
+      throw InputError("material " + std::to_string(number) + " is not in the table of " + std::to_string(count()));
 }
 
 void Materials::set(Discretisation discretisation) {

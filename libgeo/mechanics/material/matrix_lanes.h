@@ -1,5 +1,5 @@
-// 3 × 3 matrices of several points side by side, for sources that Highway compiles once for each kind of vector: these include
-// it, after Highway.
+// 3 × 3 matrices of several points side by side, for sources that Highway compiles once for each kind of vector: these
+// include it, after Highway.
 #if defined(KERF_MATRIX_LANES) == defined(HWY_TARGET_TOGGLE)  // once for each kind, too
 #ifdef KERF_MATRIX_LANES
 #undef KERF_MATRIX_LANES
@@ -30,13 +30,15 @@ template <class Number>
 HWY_INLINE Matrix<Number> load(const Number* const* columns, std::size_t i) {
   Matrix<Number> m;
   V<Number> unused;
-  for (std::size_t c = 0; c < 3; ++c) hn::LoadInterleaved4(Lanes<Number>(), columns[c] + 4 * i, m.at[c][0], m.at[c][1], m.at[c][2], unused);
+  for (std::size_t c = 0; c < 3; ++c)
+    hn::LoadInterleaved4(Lanes<Number>(), columns[c] + 4 * i, m.at[c][0], m.at[c][1], m.at[c][2], unused);
   return m;
 }
 template <class Number>
 HWY_INLINE void store(const Matrix<Number>& m, Number* const* columns, std::size_t i) {
   const Lanes<Number> d;
-  for (std::size_t c = 0; c < 3; ++c) hn::StoreInterleaved4(m.at[c][0], m.at[c][1], m.at[c][2], hn::Zero(d), d, columns[c] + 4 * i);
+  for (std::size_t c = 0; c < 3; ++c)
+    hn::StoreInterleaved4(m.at[c][0], m.at[c][1], m.at[c][2], hn::Zero(d), d, columns[c] + 4 * i);
 }
 
 template <class Vector>
@@ -49,7 +51,8 @@ HWY_INLINE Matrix<Number> product(const Matrix<Number>& a, const Matrix<Number>&
   Matrix<Number> m;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)
-      m.at[c][r] = hn::Add(hn::Add(hn::Mul(a.at[0][r], b.at[c][0]), hn::Mul(a.at[1][r], b.at[c][1])), hn::Mul(a.at[2][r], b.at[c][2]));
+      m.at[c][r] = hn::Add(hn::Add(hn::Mul(a.at[0][r], b.at[c][0]), hn::Mul(a.at[1][r], b.at[c][1])),
+                           hn::Mul(a.at[2][r], b.at[c][2]));
   return m;
 }
 template <class Number>

@@ -7,7 +7,8 @@ namespace geo {
 
 Mat3 relaxation(const Mat3& plastic) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(Mat3::Identity() + 2 * plastic);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.01).cwiseSqrt().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.01).cwiseSqrt().cwiseInverse().asDiagonal() *
+         eigen.eigenvectors().transpose();
 }
 
 Mat3 flow(const Material& m, const Mat3& plastic, const Mat3& f, double dt) {

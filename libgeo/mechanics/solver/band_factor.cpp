@@ -58,7 +58,8 @@ void BandFactor::factor(std::size_t from, std::size_t to) {
 void BandFactor::solve(float* x) const {
   parallel_for(ranges_.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      if (std::any_of(x + 6 * ranges_[k], x + 6 * ranges_[k + 1], [](float v) { return v != 0; })) solve(ranges_[k], ranges_[k + 1], x);
+      if (std::any_of(x + 6 * ranges_[k], x + 6 * ranges_[k + 1], [](float v) { return v != 0; }))
+        solve(ranges_[k], ranges_[k + 1], x);
   });
 }
 

@@ -11,7 +11,9 @@ class BandFactor {
   /// Zero; `last`: per tile row the last tile that is not zero.
   explicit BandFactor(const std::vector<std::size_t>& last);
   /// Entry (row, column) with row ≤ column, within the band.
-  float& at(std::size_t row, std::size_t column) { return tile_row(row / 6)[row % 6 * stride_[row / 6] + column - row / 6 * 6]; }
+  float& at(std::size_t row, std::size_t column) {
+    return tile_row(row / 6)[row % 6 * stride_[row / 6] + column - row / 6 * 6];
+  }
   /// Replaces the matrix by its factor. A row that is not positive beyond rounding is taken out: it answers with zero.
   void factor();
   /// x = matrix⁻¹ x, after factor().

@@ -14,7 +14,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Wide = hn::CappedTag<float, band_room>;
 constexpr std::size_t wide = hn::MaxLanes(Wide());
 
-void EliminateSix(std::size_t n, std::size_t stride, const float* HWY_RESTRICT upper, const float* HWY_RESTRICT inverse, float* HWY_RESTRICT rows) {
+void EliminateSix(std::size_t n, std::size_t stride, const float* HWY_RESTRICT upper, const float* HWY_RESTRICT inverse,
+                  float* HWY_RESTRICT rows) {
   const Wide d;
   for (std::size_t j = 0; j < n; j += wide) {
     hn::Vec<Wide> row[6];
@@ -27,7 +28,8 @@ void EliminateSix(std::size_t n, std::size_t stride, const float* HWY_RESTRICT u
   }
 }
 
-void SubtractSix(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride_of, const float* HWY_RESTRICT of, std::size_t stride, float* HWY_RESTRICT rows) {
+void SubtractSix(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride_of, const float* HWY_RESTRICT of,
+                 std::size_t stride, float* HWY_RESTRICT rows) {
   const Wide d;
   for (std::size_t j = 0; j < n; j += wide) {
     hn::Vec<Wide> row[6];
@@ -40,16 +42,19 @@ void SubtractSix(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride
   }
 }
 
-void SubtractRows(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride, const float* HWY_RESTRICT rows, float* HWY_RESTRICT x) {
+void SubtractRows(std::size_t n, const float* HWY_RESTRICT by, std::size_t stride, const float* HWY_RESTRICT rows,
+                  float* HWY_RESTRICT x) {
   const Wide d;
   for (std::size_t j = 0; j < n; j += wide) {
     auto sum = hn::LoadU(d, x + j);
-    for (std::size_t k = 0; k < 6; ++k) sum = hn::Sub(sum, hn::Mul(hn::Set(d, by[k]), hn::LoadU(d, rows + k * stride + j)));
+    for (std::size_t k = 0; k < 6; ++k)
+      sum = hn::Sub(sum, hn::Mul(hn::Set(d, by[k]), hn::LoadU(d, rows + k * stride + j)));
     hn::StoreU(sum, d, x + j);
   }
 }
 
-void DotRows(std::size_t n, std::size_t stride, const float* HWY_RESTRICT rows, const float* HWY_RESTRICT x, float* HWY_RESTRICT out) {
+void DotRows(std::size_t n, std::size_t stride, const float* HWY_RESTRICT rows, const float* HWY_RESTRICT x,
+             float* HWY_RESTRICT out) {
   const Wide d;
   HWY_ALIGN float sums[6][band_room];
   for (std::size_t at = 0; at < band_room; at += wide) {
@@ -78,12 +83,19 @@ HWY_EXPORT(SubtractSix);
 HWY_EXPORT(SubtractRows);
 HWY_EXPORT(DotRows);
 
-void eliminate_six(std::size_t n, std::size_t stride, const float* upper, const float* inverse, float* rows) { HWY_DYNAMIC_DISPATCH(EliminateSix)(n, stride, upper, inverse, rows); }
-void subtract_six(std::size_t n, const float* by, std::size_t stride_of, const float* of, std::size_t stride, float* rows) {
+void eliminate_six(std::size_t n, std::size_t stride, const float* upper, const float* inverse, float* rows) {
+  HWY_DYNAMIC_DISPATCH(EliminateSix)(n, stride, upper, inverse, rows);
+}
+void subtract_six(std::size_t n, const float* by, std::size_t stride_of, const float* of, std::size_t stride,
+                  float* rows) {
   HWY_DYNAMIC_DISPATCH(SubtractSix)(n, by, stride_of, of, stride, rows);
 }
-void subtract_rows(std::size_t n, const float* by, std::size_t stride, const float* rows, float* x) { HWY_DYNAMIC_DISPATCH(SubtractRows)(n, by, stride, rows, x); }
-void dot_rows(std::size_t n, std::size_t stride, const float* rows, const float* x, float* out) { HWY_DYNAMIC_DISPATCH(DotRows)(n, stride, rows, x, out); }
+void subtract_rows(std::size_t n, const float* by, std::size_t stride, const float* rows, float* x) {
+  HWY_DYNAMIC_DISPATCH(SubtractRows)(n, by, stride, rows, x);
+}
+void dot_rows(std::size_t n, std::size_t stride, const float* rows, const float* x, float* out) {
+  HWY_DYNAMIC_DISPATCH(DotRows)(n, stride, rows, x, out);
+}
 
 }  // namespace geo
 #endif

@@ -1,5 +1,5 @@
-// Compiled once for each kind of vector, like point_lanes.cpp. Product and sum are one operation, where the processor has it,
-// only in the loop over pairs of slots.
+// Compiled once for each kind of vector, like point_lanes.cpp. Product and sum are one operation, where the processor
+// has it, only in the loop over pairs of slots.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/coarse_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -18,37 +18,45 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Eight = hn::CappedTag<float, 8>;
 constexpr std::size_t eight = hn::MaxLanes(Eight());
 
-// Of a slot: six rows of eight modes of strains and of stresses. `moment`: three times Σ arm g; `turn`: what is to go with it, of each column of the rotation.
-HWY_INLINE void strain_and_stress(const float* HWY_RESTRICT moment, const float* HWY_RESTRICT turn, float w, const Moduli& moduli, float* HWY_RESTRICT strain, float* HWY_RESTRICT stress) {
+// Of a slot: six rows of eight modes of strains and of stresses. `moment`: three times Σ arm g; `turn`: what is to go
+// with it, of each column of the rotation.
+HWY_INLINE void strain_and_stress(const float* HWY_RESTRICT moment, const float* HWY_RESTRICT turn, float w,
+                                  const Moduli& moduli, float* HWY_RESTRICT strain, float* HWY_RESTRICT stress) {
   const Eight d;
-  const auto twice = hn::Set(d, 2 * moduli.shear), bulk = hn::Set(d, moduli.bulk), weight = hn::Set(d, w), weighted = hn::Set(d, w * moduli.shear);
+  const auto twice = hn::Set(d, 2 * moduli.shear), bulk = hn::Set(d, moduli.bulk), weight = hn::Set(d, w),
+             weighted = hn::Set(d, w * moduli.shear);
   for (std::size_t k = 0; k < 8; k += eight) {
     // Row (a, b) of the gradient in the rotated frame, by modes: translations r_a g_b, rotations m_b × r_a.
     const auto row = [&](std::size_t a, std::size_t b) HWY_ATTR {
       const float *const r = turn + 16 * a + k, *const m = moment + 16 * b + k;
       return hn::Sub(hn::Mul(hn::LoadU(d, m), hn::LoadU(d, r)), hn::Mul(hn::LoadU(d, m + 8), hn::LoadU(d, r + 8)));
     };
-    const hn::Vec<Eight> own[3] = {row(0, 0), row(1, 1), row(2, 2)}, shared[3] = {hn::Add(row(0, 1), row(1, 0)), hn::Add(row(0, 2), row(2, 0)), hn::Add(row(1, 2), row(2, 1))};
+    const hn::Vec<Eight> own[3] = {row(0, 0), row(1, 1), row(2, 2)},
+                         shared[3] = {hn::Add(row(0, 1), row(1, 0)), hn::Add(row(0, 2), row(2, 0)),
+                                      hn::Add(row(1, 2), row(2, 1))};
     const auto trace = hn::Mul(bulk, hn::Add(hn::Add(own[0], own[1]), own[2]));
     for (std::size_t q = 0; q < 3; ++q) {
       hn::StoreU(own[q], d, strain + 8 * q + k), hn::StoreU(shared[q], d, strain + 24 + 8 * q + k);
-      hn::StoreU(hn::Mul(weight, hn::Add(hn::Mul(twice, own[q]), trace)), d, stress + 8 * q + k), hn::StoreU(hn::Mul(weighted, shared[q]), d, stress + 24 + 8 * q + k);
+      hn::StoreU(hn::Mul(weight, hn::Add(hn::Mul(twice, own[q]), trace)), d, stress + 8 * q + k),
+          hn::StoreU(hn::Mul(weighted, shared[q]), d, stress + 24 + 8 * q + k);
     }
   }
 }
 
-void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const float* weight, const Moduli* moduli, std::size_t stride, const std::uint16_t* slot,
-                    std::size_t slots, const float* arm, float* out) {
+void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const float* weight, const Moduli* moduli,
+                    std::size_t stride, const std::uint16_t* slot, std::size_t slots, const float* arm, float* out) {
   const Eight d8;
   using Wide = hn::CappedTag<float, 16>;
   const Wide d;
-  std::vector<float> moments(48 * slots, 0.0f), strain(tile * slots), stress(tile * slots);  // the first per slot of the block, all zero between points; the others per slot of a point
+  std::vector<float> moments(48 * slots, 0.0f), strain(tile * slots),
+      stress(tile * slots);  // the first per slot of the block, all zero between points; the others per slot of a point
   std::vector<std::uint32_t> here(slots + 1);
   std::vector<std::uint8_t> among(slots, 0);
   for (std::size_t i = 0; i < block.points.size(); i += stride) {
     // Points so far apart are not fetched by themselves.
     if (const std::size_t ahead = i + 2 * stride; ahead < block.points.size()) {
-      for (std::size_t q = 3 * block.first[ahead]; q < 3 * block.first[ahead + 1]; q += 16) hwy::Prefetch(&block.rounded[q]);
+      for (std::size_t q = 3 * block.first[ahead]; q < 3 * block.first[ahead + 1]; q += 16)
+        hwy::Prefetch(&block.rounded[q]);
       for (std::size_t k = 0; k < 18; k += 4) hwy::Prefetch(&modes.frame[modes.number(ahead, 18) + 8 * k]);
     }
     const float w = static_cast<float>(stride) * weight[i];
@@ -62,7 +70,8 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
       const float *const at = arm + 16 * to[q], *const g = &block.rounded[3 * q];
       for (std::size_t k = 0; k < 16; k += hn::MaxLanes(d)) {
         const auto of_node = hn::LoadU(d, at + k);
-        for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Add(hn::LoadU(d, m + 16 * c + k), hn::Mul(hn::Set(d, g[c]), of_node)), d, m + 16 * c + k);
+        for (std::size_t c = 0; c < 3; ++c)
+          hn::StoreU(hn::Add(hn::LoadU(d, m + 16 * c + k), hn::Mul(hn::Set(d, g[c]), of_node)), d, m + 16 * c + k);
       }
     }
     const Eigen::Matrix3f rotation = modes.rotation(i);
@@ -70,7 +79,8 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t k = 0; k < 4; ++k) {
         const float* const column = rotation.data() + 3 * c;
-        turn[16 * c + k] = column[k % 3], turn[16 * c + 4 + k] = column[(k + 2) % 3], turn[16 * c + 12 + k] = column[(k + 1) % 3];
+        turn[16 * c + k] = column[k % 3], turn[16 * c + 4 + k] = column[(k + 2) % 3],
+                      turn[16 * c + 12 + k] = column[(k + 1) % 3];
       }
     for (std::size_t s = 0; s < count; ++s) {
       float* const m = &moments[48 * here[s]];
@@ -106,10 +116,12 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(RigidStiffness);
 
-void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight, std::span<const Moduli> moduli, std::size_t stride,
-                     std::span<const std::uint16_t> slot, const float* arm, float* out) {
+void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight,
+                     std::span<const Moduli> moduli, std::size_t stride, std::span<const std::uint16_t> slot,
+                     const float* arm, float* out) {
   const std::size_t slots = slot.empty() ? 0 : std::size_t(*std::max_element(slot.begin(), slot.end())) + 1;
-  HWY_DYNAMIC_DISPATCH(RigidStiffness)(block, modes, weight.data(), moduli.data(), stride, slot.data(), slots, arm, out);
+  HWY_DYNAMIC_DISPATCH(RigidStiffness)
+  (block, modes, weight.data(), moduli.data(), stride, slot.data(), slots, arm, out);
 }
 
 }  // namespace geo

@@ -14,15 +14,19 @@ struct BlockTiles {
   std::vector<float> tiles;           // of pairs s ≥ t at s (s + 1) / 2 + t
 };
 
-// Of the coarse motions in the sum of both levels. Patches overlap, so that all of them have a part in motions of large parts, too; with all
-// of the coarse ones added to it, what is farthest from 1 is too long. Fewest products at 0.35 to 0.4, a tenth to a fifth fewer than at 1.
+// Of the coarse motions in the sum of both levels. Patches overlap, so that all of them have a part in motions of large
+// parts, too; with all of the coarse ones added to it, what is farthest from 1 is too long. Fewest products at 0.35 to
+// 0.4, a tenth to a fifth fewer than at 1.
 constexpr float share = 0.4f;
 
-bool is_zero(const float* tiles) { return std::all_of(tiles, tiles + tile, [](float x) { return x == 0; }); }
+bool is_zero(const float* tiles) {
+  return std::all_of(tiles, tiles + tile, [](float x) { return x == 0; });
+}
 
 }  // namespace
 
-CoarseMotion::CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at, const std::vector<std::uint8_t>& fixed)
+CoarseMotion::CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at,
+                           const std::vector<std::uint8_t>& fixed)
     : groups_(groups), first_(groups.count() + 1, 0), arm_(at.size(), Vec3::Zero()), free_(at.size()), matrix_({}) {
   std::vector<Vec3> middle(groups.count(), Vec3::Zero());
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -39,8 +43,9 @@ CoarseMotion::CoarseMotion(const NodeGroups& groups, const std::vector<Vec3>& at
     if (free_[i]) member_[next[groups.of[i]]++] = i, arm_[i] = at[i] - middle[groups.of[i]];
 }
 
-void CoarseMotion::factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes, const std::vector<std::vector<float>>& weight,
-                          std::span<const Moduli> moduli, std::size_t stride, const std::vector<Mat3>& blocks) {
+void CoarseMotion::factor(const MaterialPoints& points, const std::vector<StiffnessModes>& modes,
+                          const std::vector<std::vector<float>>& weight, std::span<const Moduli> moduli,
+                          std::size_t stride, const std::vector<Mat3>& blocks) {
   std::vector<BlockTiles> parts(points.blocks.size());
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -52,7 +57,8 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
       std::vector<std::uint16_t> slot;
       std::vector<float> arm;
       for (const auto j : block.nodes) {
-        slot.push_back(static_cast<std::uint16_t>(std::lower_bound(part.groups.begin(), part.groups.end(), groups_.of[j]) - part.groups.begin()));
+        slot.push_back(static_cast<std::uint16_t>(
+            std::lower_bound(part.groups.begin(), part.groups.end(), groups_.of[j]) - part.groups.begin()));
         const auto numbers = arm_numbers(arm_[j], free_[j]);
         arm.insert(arm.end(), numbers.begin(), numbers.end());
       }
@@ -85,7 +91,8 @@ void CoarseMotion::factor(const MaterialPoints& points, const std::vector<Stiffn
         sum += rigid.transpose() * blocks[member_[k]] * rigid;
       }
       for (int m = 0; m < 6; ++m)
-        for (int k = 0; k <= m; ++k) matrix_.at(6 * g + static_cast<std::size_t>(k), 6 * g + static_cast<std::size_t>(m)) += float(sum(k, m));
+        for (int k = 0; k <= m; ++k)
+          matrix_.at(6 * g + static_cast<std::size_t>(k), 6 * g + static_cast<std::size_t>(m)) += float(sum(k, m));
     }
   });
   matrix_.factor();
@@ -97,8 +104,11 @@ void CoarseMotion::solve(const std::vector<Vec3>& r, const StepParts& parts) {
     for (std::size_t g = begin; g < end; ++g) {
       if (first_[g] == first_[g + 1] || !parts.chosen()[parts.of(member_[first_[g]])]) continue;
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-      for (auto k = first_[g]; k < first_[g + 1]; ++k) force += r[member_[k]], torque += arm_[member_[k]].cross(r[member_[k]]);
-      for (int k = 0; k < 3; ++k) values_[6 * g + static_cast<std::size_t>(k)] = float(force[k]), values_[6 * g + 3 + static_cast<std::size_t>(k)] = float(torque[k]);
+      for (auto k = first_[g]; k < first_[g + 1]; ++k)
+        force += r[member_[k]], torque += arm_[member_[k]].cross(r[member_[k]]);
+      for (int k = 0; k < 3; ++k)
+        values_[6 * g + static_cast<std::size_t>(k)] = float(force[k]),
+                        values_[6 * g + 3 + static_cast<std::size_t>(k)] = float(torque[k]);
     }
   });
   matrix_.solve(values_.data());

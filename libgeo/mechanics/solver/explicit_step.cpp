@@ -2,15 +2,17 @@
 #include <cmath>
 #include <limits>
 
-#include "mechanics/solver/ground.h"
 #include "kerf/solid.h"
+#include "mechanics/solver/ground.h"
 
 namespace geo {
 
 namespace {
 
-// What contact does from now on for h seconds, the given shares of the step; returns how much energy that can have brought.
-double touch(const Environment& env, State& s, double h, double from, double to, const std::vector<double>& inverse_mass) {
+// What contact does from now on for h seconds, the given shares of the step; returns how much energy that can have
+// brought.
+double touch(const Environment& env, State& s, double h, double from, double to,
+             const std::vector<double>& inverse_mass) {
   if (env.contact.empty()) return 0;
   const std::vector<Vec3> before = s.velocity;
   for (Potential* p : env.contact) {
@@ -19,7 +21,8 @@ double touch(const Environment& env, State& s, double h, double from, double to,
   }
   double brought = 0;
   for (std::size_t i = 0; i < before.size(); ++i)
-    if (inverse_mass[i] > 0) brought += std::abs((s.velocity[i] - before[i]).dot(s.velocity[i] + before[i])) / (2 * inverse_mass[i]);
+    if (inverse_mass[i] > 0)
+      brought += std::abs((s.velocity[i] - before[i]).dot(s.velocity[i] + before[i])) / (2 * inverse_mass[i]);
   return brought;
 }
 
@@ -28,7 +31,8 @@ double touch(const Environment& env, State& s, double h, double from, double to,
 StepReport Solid::step_explicit(State& state, double dt, const Environment& env) const {
   // No wave crosses a third of the smallest neighbourhood of its material in one substep.
   std::vector<double> finest(materials_.count(), std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < size(); ++i) finest[materials_.number(i)] = std::min(finest[materials_.number(i)], spacing_[i]);
+  for (std::size_t i = 0; i < size(); ++i)
+    finest[materials_.number(i)] = std::min(finest[materials_.number(i)], spacing_[i]);
   double limit = std::numeric_limits<double>::infinity(), stiffest = 0;
   for (std::size_t k = 0; k < finest.size(); ++k) {
     const Material& m = materials_[k];
@@ -42,13 +46,15 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
     if (!is_fixed(env, i)) inverse_mass[i] = 1 / mass_[i];
   for (Potential* p : env.contact) {
     p->begin(state.displacement, 0, 1);
-    if (const double firmest = p->stiffest(inverse_mass); firmest > 0) limit = std::min(limit, 0.3 / std::sqrt(firmest));
+    if (const double firmest = p->stiffest(inverse_mass); firmest > 0)
+      limit = std::min(limit, 0.3 / std::sqrt(firmest));
   }
   StepReport report;
   report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
   const auto rest = relaxed(state);
   std::vector<Vec3> force;
-  // Energy may only come from outside: where it rises beyond what loads and ground can have brought, the step was too long.
+  // Energy may only come from outside: where it rises beyond what loads and ground can have brought, the step was too
+  // long.
   for (int attempt = 0;; ++attempt, report.substeps *= 2) {
     State s = state;
     const double h = dt / report.substeps;
@@ -72,7 +78,8 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
           const double d = depth(env, i, position_[i] + s.displacement[i]);
           if (d > 0) {
             const double normal = env.ground_normal.dot(v);
-            v = normal * env.ground_normal + std::max(0.0, 1 - env.friction * h / 0.01) * (v - normal * env.ground_normal);
+            v = normal * env.ground_normal +
+                std::max(0.0, 1 - env.friction * h / 0.01) * (v - normal * env.ground_normal);
             v += h * env.ground_stiffness * d * env.ground_normal;
             outside += mass_[i] * env.ground_stiffness * d * env.ground_normal;
           }

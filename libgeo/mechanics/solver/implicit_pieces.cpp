@@ -1,4 +1,5 @@
-// Pieces of a solid that move as a whole in an implicit step: what is stiff turns without a strain, and what nothing touches keeps its momenta.
+// Pieces of a solid that move as a whole in an implicit step: what is stiff turns without a strain, and what nothing
+// touches keeps its momenta.
 #include <algorithm>
 
 #include "mechanics/solver/ground.h"
@@ -10,27 +11,33 @@ namespace {
 // Of a spacing: how much too long the straight way of what turns may be before it goes round.
 constexpr double felt = 1e-4;
 
-bool goes_round(const RigidMotion& motion, double spacing) { return 0.5 * motion.turning.squaredNorm() * motion.reach > felt * spacing; }
+bool goes_round(const RigidMotion& motion, double spacing) {
+  return 0.5 * motion.turning.squaredNorm() * motion.reach > felt * spacing;
+}
 
 }  // namespace
 
-// Where a node of the nodal discretisation sees too little to know a rotation from a strain, its piece turns as the potential has it, and is not told to.
+// Where a node of the nodal discretisation sees too little to know a rotation from a strain, its piece turns as the
+// potential has it, and is not told to.
 void ImplicitStep::find_pieces() {
   pieces_.resize(parts_.pieces()), freedom_.assign(parts_.pieces(), Freedom::way_and_turn);
   for (std::size_t i = 0; i < n_; ++i) {
     Piece& piece = pieces_[piece_of(i)];
     piece.part = parts_.of(i), piece.spacing = std::min(piece.spacing, s_.spacing_[i]);
     Freedom& freedom = freedom_[piece_of(i)];
-    if (is_fixed(env_, i)) freedom = Freedom::none;
-    else if (freedom == Freedom::way_and_turn && !s_.galerkin_ && s_.rows_.rung(i) != Rung::full) freedom = Freedom::way;
+    if (is_fixed(env_, i))
+      freedom = Freedom::none;
+    else if (freedom == Freedom::way_and_turn && !s_.galerkin_ && s_.rows_.rung(i) != Rung::full)
+      freedom = Freedom::way;
   }
 }
 
-// Where pieces that nothing holds would be, had they gone where u_ is as rigid bodies do. Marks the parts of those that turn by enough to matter; nothing
-// where there are none.
+// Where pieces that nothing holds would be, had they gone where u_ is as rigid bodies do. Marks the parts of those that
+// turn by enough to matter; nothing where there are none.
 std::vector<Vec3> ImplicitStep::gone_round(std::vector<char>& turns) const {
   const auto at = [&](std::size_t i) -> Vec3 { return s_.position_[i] + state_.displacement[i]; };
-  const auto motion = rigid_motions(parts_.piece_of_nodes(), freedom_, s_.mass_, at, [&](std::size_t i) -> Vec3 { return u_[i] - state_.displacement[i]; });
+  const auto motion = rigid_motions(parts_.piece_of_nodes(), freedom_, s_.mass_, at,
+                                    [&](std::size_t i) -> Vec3 { return u_[i] - state_.displacement[i]; });
   turns.assign(parts_.count(), 0);
   bool any = false;
   for (std::size_t p = 0; p < motion.size(); ++p)
@@ -44,17 +51,19 @@ std::vector<Vec3> ImplicitStep::gone_round(std::vector<char>& turns) const {
   return displacement;
 }
 
-// How a direction from u_ on turns pieces that nothing holds, where that is enough to matter: these go round, and not straight on.
+// How a direction from u_ on turns pieces that nothing holds, where that is enough to matter: these go round, and not
+// straight on.
 std::vector<RigidMotion> ImplicitStep::turning_by(const std::vector<Vec3>& direction) const {
   const auto at = [&](std::size_t i) -> Vec3 { return s_.position_[i] + u_[i]; };
-  auto motion = rigid_motions(parts_.piece_of_nodes(), freedom_, s_.mass_, at, [&](std::size_t i) -> Vec3 { return direction[i]; });
+  auto motion = rigid_motions(parts_.piece_of_nodes(), freedom_, s_.mass_, at,
+                              [&](std::size_t i) -> Vec3 { return direction[i]; });
   for (std::size_t p = 0; p < motion.size(); ++p)
     if (!goes_round(motion[p], pieces_[p].spacing)) motion[p] = {};
   return motion;
 }
 
-// Internal forces do not change how a piece that nothing touches moves and turns as a whole: neither must rounding or an unfinished solve.
-// The direction takes such a piece to where inertia and loads alone bring it.
+// Internal forces do not change how a piece that nothing touches moves and turns as a whole: neither must rounding or
+// an unfinished solve. The direction takes such a piece to where inertia and loads alone bring it.
 void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
   std::vector<Freedom> freedom = freedom_;
   for (std::size_t i = 0; i < n_; ++i)
@@ -64,7 +73,9 @@ void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
     }
   if (std::all_of(freedom.begin(), freedom.end(), [](Freedom f) { return f == Freedom::none; })) return;
   const auto at = [&](std::size_t i) -> Vec3 { return s_.position_[i] + u_[i]; };
-  const auto missing = [&](std::size_t i) -> Vec3 { return target_[i] + dt_ * dt_ / s_.mass_[i] * load_[i] - u_[i] - direction[i]; };
+  const auto missing = [&](std::size_t i) -> Vec3 {
+    return target_[i] + dt_ * dt_ / s_.mass_[i] * load_[i] - u_[i] - direction[i];
+  };
   const auto motion = rigid_motions(parts_.piece_of_nodes(), freedom, s_.mass_, at, missing);
   parts_.each_node([&](std::size_t i) {
     if (freedom[piece_of(i)] != Freedom::none) direction[i] += motion[piece_of(i)].straight(at(i));

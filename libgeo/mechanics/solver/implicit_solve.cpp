@@ -3,16 +3,17 @@
 #include <cmath>
 #include <numeric>
 
+#include "mechanics/discretisation/product_lanes.h"
 #include "mechanics/solver/ground.h"
 #include "mechanics/solver/implicit_step.h"
-#include "mechanics/discretisation/product_lanes.h"
 
 namespace geo {
 
 // The stiffness of points of parts at work, at u_, after evaluate(u_).
 void ImplicitStep::linearise() {
   std::vector<StiffnessConstants> constants;
-  for (const Material& m : s_.materials_.all()) constants.push_back(stiffness_constants(m)), constants.back().viscous = float(m.viscosity / dt_);
+  for (const Material& m : s_.materials_.all())
+    constants.push_back(stiffness_constants(m)), constants.back().viscous = float(m.viscosity / dt_);
   const auto blocks = parts_.blocks();
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     Columns<float> relaxed;
@@ -21,11 +22,13 @@ void ImplicitStep::linearise() {
       const std::size_t b = blocks[k];
       if (!relaxed_.empty()) {
         relaxed.resize(s_.points_.blocks[b].points.size());
-        for (int c = 0; c < 3; ++c) std::copy(relaxed_[b].column[c].begin(), relaxed_[b].column[c].end(), relaxed.column[c].begin());
+        for (int c = 0; c < 3; ++c)
+          std::copy(relaxed_[b].column[c].begin(), relaxed_[b].column[c].end(), relaxed.column[c].begin());
       }
       modes_[b].resize(weight_[b].size());
       for (const MaterialRun& run : s_.points_.blocks[b].runs) {
-        const Columns<float>* const own = relaxed_.empty() || !(s_.materials_[run.material].yield > 0) ? nullptr : &relaxed;
+        const Columns<float>* const own =
+            relaxed_.empty() || !(s_.materials_[run.material].yield > 0) ? nullptr : &relaxed;
         StiffnessModes& to = run.alone ? modes_[b] : aside;
         to.resize(weight_[b].size());
         stiffness_modes(constants[run.material], run.begin, run.end, gradient_[b], own, weight_[b], to);
@@ -111,16 +114,20 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
     s_.penalty_->add(s_.rows_, p, &out);
   }
   parts_.sums(curvature, 0.0, [&](std::size_t i) {
-    if (is_fixed(env_, i)) out[i].setZero();
-    else if (!s_.penalty_) out[i] = sum(i);
+    if (is_fixed(env_, i))
+      out[i].setZero();
+    else if (!s_.penalty_)
+      out[i] = sum(i);
     return p[i].dot(out[i]);
   });
 }
 
-// For each part at work, until what the preconditioner would still add is less than half the accuracy, after one iteration at least, or, where Newton
-// will go on anyhow, until less than a quarter (√0.05) is left in the norm that counts, whose square is r · z. Of a step's first direction no more than
-// 0.55 (√0.3) of that may be left, however little is to add, or what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
-int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left) {
+// For each part at work, until what the preconditioner would still add is less than half the accuracy, after one
+// iteration at least, or, where Newton will go on anyhow, until less than a quarter (√0.05) is left in the norm that
+// counts, whose square is r · z. Of a step's first direction no more than 0.55 (√0.3) of that may be left, however
+// little is to add, or what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
+int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x,
+                        const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();
   std::vector<char> working = all;
   std::vector<Vec3> r(n_), z(n_), p(n_, Vec3::Zero()), hp(n_);
@@ -140,8 +147,10 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
   int k = 0;
   for (; k < 500; ++k) {
     for (std::size_t q = 0; q < working.size(); ++q) {
-      const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.05 * begun[q], little = k > 0 && left[q] < 0.5 * accuracy_;
-      if (working[q] && (!(rz[q] > 0) || (little && (!first || rz[q] <= 0.3 * begun[q])) || (reduced && far_from_done))) working[q] = 0;
+      const bool far_from_done = far[q] * (far[q] + moved[q]) > trusted(), reduced = rz[q] <= 0.05 * begun[q],
+                 little = k > 0 && left[q] < 0.5 * accuracy_;
+      if (working[q] && (!(rz[q] > 0) || (little && (!first || rz[q] <= 0.3 * begun[q])) || (reduced && far_from_done)))
+        working[q] = 0;
     }
     if (std::find(working.begin(), working.end(), 1) == working.end()) break;
     parts_.choose(working);

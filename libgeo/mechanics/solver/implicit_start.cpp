@@ -6,8 +6,9 @@
 
 namespace geo {
 
-// Nodes go on as they are, and parts whose accelerations are much the same from node to node, as those of what falls or swings, accelerate
-// as in the step before, or, where that is unknown, as they would on their own. Other accelerations are mostly of what trembles, which goes on otherwise.
+// Nodes go on as they are, and parts whose accelerations are much the same from node to node, as those of what falls or
+// swings, accelerate as in the step before, or, where that is unknown, as they would on their own. Other accelerations
+// are mostly of what trembles, which goes on otherwise.
 void ImplicitStep::go_on() {
   constexpr double alike = 0.8;  // of squares
   u_ = target_;
@@ -15,7 +16,8 @@ void ImplicitStep::go_on() {
   std::vector<Vec3> more(n_, Vec3::Zero());
   parts_.each_node([&](std::size_t i) {
     const Vec3 way = dt_ * dt_ * (known ? state_.acceleration[i] : Vec3(load_[i] / s_.mass_[i]));
-    if (!is_fixed(env_, i) && way.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i]) more[i] = way;  // else it is too far from anything
+    if (!is_fixed(env_, i) && way.norm() < (known ? 0.5 : 1.0) * s_.spacing_[i])
+      more[i] = way;  // else it is too far from anything
   });
   // The squares that the affine field nearest to them has, of all.
   std::vector<double> mass, squares;
@@ -42,10 +44,11 @@ void ImplicitStep::go_on() {
   });
 }
 
-// How much of the way back to where the step began Newton had better go before it begins: after an impact or a cut, or where it is pushed, a part does not go
-// on as before. By a parabola through the potential here, its slope there, and the potential where the step began. That is asked only of parts for which
-// forces say that it could have less there, by how far they pull and what inertia alone has against it. Parts with pieces that turn
-// begin where these have gone round, if the potential is less there than at both ends.
+// How much of the way back to where the step began Newton had better go before it begins: after an impact or a cut, or
+// where it is pushed, a part does not go on as before. By a parabola through the potential here, its slope there, and
+// the potential where the step began. That is asked only of parts for which forces say that it could have less there,
+// by how far they pull and what inertia alone has against it. Parts with pieces that turn begin where these have gone
+// round, if the potential is less there than at both ends.
 void ImplicitStep::go_back(const std::vector<Vec3>& force, const std::vector<double>& value, std::vector<char>& moved) {
   constexpr double least = 0.2;  // less is not worth the evaluation
   std::vector<double> pull, inert, at_start, at_turned, share(parts_.count(), 0);
@@ -69,7 +72,9 @@ void ImplicitStep::go_back(const std::vector<Vec3>& force, const std::vector<dou
   parts_.choose(moved);
   parts_.each_node([&](std::size_t i) {
     const auto p = parts_.of(i);
-    u_[i] = turns[p] ? rigid[i] : share[p] == 1 ? state_.displacement[i] : Vec3((1 - share[p]) * u_[i] + share[p] * state_.displacement[i]);
+    u_[i] = turns[p]        ? rigid[i]
+            : share[p] == 1 ? state_.displacement[i]
+                            : Vec3((1 - share[p]) * u_[i] + share[p] * state_.displacement[i]);
   });
 }
 

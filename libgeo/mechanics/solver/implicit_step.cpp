@@ -6,18 +6,20 @@
 
 #include "kerf/error.h"
 #include "mechanics/discretisation/elastic_block.h"
-#include "mechanics/solver/ground.h"
 #include "mechanics/material/plasticity.h"
+#include "mechanics/solver/ground.h"
 
 namespace geo {
 
 namespace {
 
-// Of what is nearly incompressible the pressure has what rounding makes of strain many times over, so that is done in double precision as well.
-BlockStrain strain_of(const Materials& materials, const MaterialPoints& points, const std::vector<Vec3>& position, const std::vector<std::uint32_t>& component,
-                      const std::vector<Vec3>& u, double accuracy) {
+// Of what is nearly incompressible the pressure has what rounding makes of strain many times over, so that is done in
+// double precision as well.
+BlockStrain strain_of(const Materials& materials, const MaterialPoints& points, const std::vector<Vec3>& position,
+                      const std::vector<std::uint32_t>& component, const std::vector<Vec3>& u, double accuracy) {
   constexpr double loose = 0.005, stiffer = 50;
-  const bool exact = accuracy < loose || materials.any([](const Material& m) { return m.lambda() + m.volume_term > stiffer * m.mu(); });
+  const bool exact = accuracy < loose ||
+                     materials.any([](const Material& m) { return m.lambda() + m.volume_term > stiffer * m.mu(); });
   return exact ? BlockStrain(points) : BlockStrain(points, position, component, u);
 }
 
@@ -32,9 +34,24 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() con
 }
 
 ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, const Environment& env, double accuracy)
-    : s_(solid), state_(state), env_(env), dt_(dt), accuracy_(accuracy), n_(solid.size()), rows_(env.contact, state.displacement),
-      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()), u_(n_), target_(n_), load_(n_), drag_(n_, 0),
-      strain_(strain_of(solid.materials_, solid.points_, solid.position_, solid.part_, state.displacement, accuracy)), relaxed_(solid.relaxed(state)), gradient_(solid.points_.blocks.size()), modes_(gradient_.size()), weight_(gradient_.size()), local_(n_) {
+    : s_(solid),
+      state_(state),
+      env_(env),
+      dt_(dt),
+      accuracy_(accuracy),
+      n_(solid.size()),
+      rows_(env.contact, state.displacement),
+      parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()),
+      u_(n_),
+      target_(n_),
+      load_(n_),
+      drag_(n_, 0),
+      strain_(strain_of(solid.materials_, solid.points_, solid.position_, solid.part_, state.displacement, accuracy)),
+      relaxed_(solid.relaxed(state)),
+      gradient_(solid.points_.blocks.size()),
+      modes_(gradient_.size()),
+      weight_(gradient_.size()),
+      local_(n_) {
   std::vector<double> keep;  // per material
   for (const Material& m : s_.materials_.all()) {
     keep.push_back(1 / (1 + m.damping * dt));
@@ -50,7 +67,8 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
   // Drag along the ground: lagged, from where the step began.
   if (env.ground)
     for (std::size_t i = 0; i < n_; ++i)
-      if (depth(env, i, s_.position_[i] + state.displacement[i]) > 0) drag_[i] = s_.mass_[i] * env.friction / (0.01 * dt);
+      if (depth(env, i, s_.position_[i] + state.displacement[i]) > 0)
+        drag_[i] = s_.mass_[i] * env.friction / (0.01 * dt);
   const bool viscous = s_.materials_.any([](const Material& m) { return m.viscosity > 0; });
   if (viscous) before_.resize(weight_.size());
   parallel_for(weight_.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -58,7 +76,8 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     for (std::size_t b = begin; b < end; ++b) {
       const auto& points = s_.points_.blocks[b].points;
       weight_[b].assign((points.size() + 7) / 8 * 8, 0);
-      for (std::size_t i = 0; i < points.size(); ++i) weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
       if (viscous) strain_.gradients(b, state.displacement, room, before_[b]);
     }
   });
@@ -68,7 +87,8 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   if (std::find(parts_.chosen().begin(), parts_.chosen().end(), 1) == parts_.chosen().end()) return;
   const MaterialPoints& points = s_.points_;
   const auto blocks = parts_.blocks();
-  energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()), elastic_.resize(parts_.count());
+  energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()),
+      elastic_.resize(parts_.count());
   std::vector<double> elastic(parts_.count(), 0), contact(parts_.count(), 0);
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     thread_local ElasticBlock::Room room;  // a hundred bytes a point: too many to ask for, and to clear, block by block
@@ -76,10 +96,12 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t b = blocks[at];
       const PointHistory history{relaxed_.empty() ? nullptr : &relaxed_[b], before_.empty() ? nullptr : &before_[b]};
-      const auto& of_point = work.evaluate(b, u, history, force ? &gradient_[b] : nullptr, force ? &pull_[4 * points.part(b)] : nullptr);
+      const auto& of_point =
+          work.evaluate(b, u, history, force ? &gradient_[b] : nullptr, force ? &pull_[4 * points.part(b)] : nullptr);
       double* const energy = &energy_[parts_.block_first(b)];
       std::fill_n(energy, parts_.of_block(b).size(), 0.0);
-      for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) energy[parts_.slot(b, points.blocks[b], i)] += of_point[i];
+      for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i)
+        energy[parts_.slot(b, points.blocks[b], i)] += of_point[i];
     }
   });
   for (const auto b : blocks) {
@@ -98,7 +120,8 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
       for (std::size_t i = 0; i < n_; ++i) (*force)[i] -= pull[i];
   }
   parts_.sums(value, 0.0, [&](std::size_t i) {
-    double sum = 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm() - load_[i].dot(u[i] - state_.displacement[i]);
+    double sum = 0.5 * s_.mass_[i] / (dt_ * dt_) * (u[i] - target_[i]).squaredNorm() -
+                 load_[i].dot(u[i] - state_.displacement[i]);
     if (!env_.ground) return sum;
     const double d = depth(env_, i, s_.position_[i] + u[i]);
     if (d > 0) sum += 0.5 * s_.mass_[i] * env_.ground_stiffness * d * d;
@@ -163,11 +186,15 @@ bool ImplicitStep::run(StepReport& report) {
     for (std::size_t p = 0; p < parts; ++p) {
       if (!active[p]) continue;
       if (!std::isfinite(longest[p])) return false;
-      // What is left of a direction grows with its square, or with what the stiffness is behind. Where that is less than the accuracy, and what the
-      // solve has left, too, the direction is taken as it is: it changes the potential by too little to tell. Not so one that turns a piece, of which rounding may strain what is stiff.
-      if (!turning[p] && longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_) active[p] = wanted[p] = 0, elastic_[p] += more[p];
+      // What is left of a direction grows with its square, or with what the stiffness is behind. Where that is less
+      // than the accuracy, and what the solve has left, too, the direction is taken as it is: it changes the potential
+      // by too little to tell. Not so one that turns a piece, of which rounding may strain what is stiff.
+      if (!turning[p] && longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_)
+        active[p] = wanted[p] = 0, elastic_[p] += more[p];
     }
-    const auto go = [&](std::size_t i, double share) { trial[i] = u_[i] + share * direction[i] + turns[piece_of(i)].bend(s_.position_[i] + u_[i], direction[i], share); };
+    const auto go = [&](std::size_t i, double share) {
+      trial[i] = u_[i] + share * direction[i] + turns[piece_of(i)].bend(s_.position_[i] + u_[i], direction[i], share);
+    };
     parts_.each_node([&](std::size_t i) { go(i, 1); });
     for (int halvings = 0; any(wanted); ++halvings) {
       parts_.choose(wanted);
@@ -207,7 +234,8 @@ std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std
 }
 
 std::vector<Columns<double>> Solid::relaxed(const State& state) const {
-  if (!state.plastic.empty() && state.plastic.size() != points_.size()) throw InputError("the plastic strains are not those of this solid");
+  if (!state.plastic.empty() && state.plastic.size() != points_.size())
+    throw InputError("the plastic strains are not those of this solid");
   std::vector<Columns<double>> all(flows() && !state.plastic.empty() ? points_.blocks.size() : 0);
   parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -230,7 +258,8 @@ void Solid::update_plasticity(State& state, double dt) const {
       for (std::size_t i = 0; i < gradient.size(); ++i) {
         Mat3& plastic = state.plastic[points_.first(b) + i];
         const Material& of = materials_[points_.blocks[b].points[i].material];
-        if (of.yield > 0 && points_.blocks[b].points[i].rung != Rung::rigid) plastic = flow(of, plastic, Mat3::Identity() + gradient[i], dt);
+        if (of.yield > 0 && points_.blocks[b].points[i].rung != Rung::rigid)
+          plastic = flow(of, plastic, Mat3::Identity() + gradient[i], dt);
       }
     }
   });

@@ -1,19 +1,19 @@
-// One time step by backward Euler as an incremental potential (Kane et al. 2000, Li et al. 2020): Newton's method with each
-// point's stiffness made positive, conjugate gradients preconditioned on two levels, line search on the potential.
+// One time step by backward Euler as an incremental potential (Kane et al. 2000, Li et al. 2020): Newton's method with
+// each point's stiffness made positive, conjugate gradients preconditioned on two levels, line search on the potential.
 #pragma once
 
 #include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "kerf/solid.h"
 #include "mechanics/discretisation/block_strain.h"
+#include "mechanics/discretisation/stiffness_lanes.h"
 #include "mechanics/solver/coarse_motion.h"
-#include "mechanics/terms/contact_rows.h"
 #include "mechanics/solver/patch_motion.h"
 #include "mechanics/solver/rigid_motion.h"
-#include "kerf/solid.h"
 #include "mechanics/solver/step_parts.h"
-#include "mechanics/discretisation/stiffness_lanes.h"
+#include "mechanics/terms/contact_rows.h"
 
 namespace geo {
 
@@ -28,7 +28,8 @@ class ImplicitStep {
   std::vector<Vec3> product(const std::vector<Vec3>& u, const std::vector<Vec3>& p);
 
  private:
-  /// The potential of each part at work at u. `force`, where given: the elastic one; then their elastic energy and gradients are kept, too.
+  /// The potential of each part at work at u. `force`, where given: the elastic one; then their elastic energy and
+  /// gradients are kept, too.
   void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
   void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
@@ -43,9 +44,12 @@ class ImplicitStep {
     const auto sum = s_.points_.sum<4>(product_.data(), node);
     return {sum[0], sum[1], sum[2]};
   }
-  int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved, std::vector<double>& left);
+  int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved,
+            std::vector<double>& left);
   void most(const std::vector<Vec3>& moved, std::vector<double>& most) const;
-  double squared_in_spacings(const std::vector<Vec3>& moved, std::size_t node) const { return moved[node].squaredNorm() / (s_.spacing_[node] * s_.spacing_[node]); }
+  double squared_in_spacings(const std::vector<Vec3>& moved, std::size_t node) const {
+    return moved[node].squaredNorm() / (s_.spacing_[node] * s_.spacing_[node]);
+  }
   void take_roots(std::vector<double>& squares) const;  // of parts at work
   // Pieces that nothing holds.
   void find_pieces();
@@ -68,18 +72,18 @@ class ImplicitStep {
     double spacing = 1e300;  // the least of its nodes'
   };
   std::vector<Piece> pieces_;
-  std::vector<Freedom> freedom_;  // of pieces: what holds or joins them, but for contact
+  std::vector<Freedom> freedom_;         // of pieces: what holds or joins them, but for contact
   std::vector<Vec3> u_, target_, load_;  // where it goes by its own inertia; what gravity and loads pull
   std::vector<double> drag_;
   std::vector<Moduli> moduli_;  // per material, of the preconditioner
   BlockStrain strain_;
-  std::vector<Columns<double>> relaxed_;        // per block: of plastic strain, where there is any
-  std::vector<Columns<double>> before_;         // per block: ∇u at the start, where there is viscosity
-  std::vector<Columns<float>> gradient_;        // per block: ∇u of the last evaluation (of F times relaxation, less 1)
+  std::vector<Columns<double>> relaxed_;  // per block: of plastic strain, where there is any
+  std::vector<Columns<double>> before_;   // per block: ∇u at the start, where there is viscosity
+  std::vector<Columns<float>> gradient_;  // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
-  std::vector<Mat3> local_;   // what nodes have that acts on nothing else
-  std::vector<Mat3> blocks_;  // that and what contact and penalty have for them, as patches_ knows it
+  std::vector<Mat3> local_;      // what nodes have that acts on nothing else
+  std::vector<Mat3> blocks_;     // that and what contact and penalty have for them, as patches_ knows it
   std::vector<double> elastic_;  // per part: energy at its last evaluation
   std::vector<double> energy_;   // per block, of each of its parts
   std::vector<double> pull_;     // what blocks have for their nodes: forces,

@@ -5,13 +5,14 @@
 
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/elastic_lanes.h"
-#include "mechanics/solver/node_sums.h"
 #include "mechanics/material/plasticity.h"
+#include "mechanics/solver/node_sums.h"
 #include "mechanics/terms/row_sums.h"
 
 namespace geo {
 
-std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
+std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph,
+                                        const State& state) {
   const auto gradient = solid.gradient_columns(state.displacement);
   const std::vector<FourNumbers> displacement = four_numbers(state.displacement);
   std::vector<FourNumbers> place = four_numbers(nodes.position);
@@ -47,7 +48,8 @@ std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, c
     std::vector<float> aside(8 * ((block.points.size() + 7) / 8 * 8));
     for (const MaterialRun& run : block.runs) {
       float* const to = run.alone ? own : aside.data();
-      cauchy_stresses(constants[run.material], run.begin, run.end, state.plastic.empty() ? nullptr : &relaxed, gradient, to);
+      cauchy_stresses(constants[run.material], run.begin, run.end, state.plastic.empty() ? nullptr : &relaxed, gradient,
+                      to);
       for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.alone; ++i)
         if (block.is_of(run, i)) std::copy_n(&aside[8 * i], 8, own + 8 * i);
     }
@@ -57,7 +59,9 @@ std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, c
     const StressSums& sum = sums[i];
     if (!(sum[6] > 0)) continue;
     const double xy = sum[0] - sum[1], yz = sum[1] - sum[2], zx = sum[2] - sum[0];
-    result[i] = std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3 * (sum[3] * sum[3] + sum[4] * sum[4] + sum[5] * sum[5])) / sum[6];
+    result[i] =
+        std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3 * (sum[3] * sum[3] + sum[4] * sum[4] + sum[5] * sum[5])) /
+        sum[6];
   }
   return result;
 }

@@ -36,7 +36,8 @@ struct Boxes {
 
 }  // namespace
 
-NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<std::uint32_t>& part_of, std::uint32_t parts, std::size_t fewest,
+NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows,
+                       const std::vector<std::uint32_t>& part_of, std::uint32_t parts, std::size_t fewest,
                        std::size_t most_groups)
     : of(position.size(), ~0u) {
   const std::size_t n = position.size();
@@ -71,7 +72,8 @@ NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows, 
   std::vector<std::uint32_t> order(place.size()), rank(place.size());
   for (std::size_t g = 0; g < place.size(); ++g) place[g].second /= size[g];
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return std::pair(place[a], a) < std::pair(place[b], b); });
+  std::sort(order.begin(), order.end(),
+            [&](auto a, auto b) { return std::pair(place[a], a) < std::pair(place[b], b); });
   for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k, part.push_back(place[order[k]].first);
   for (auto& g : of) g = rank[g];
 }

@@ -20,19 +20,26 @@ std::size_t tiles(std::size_t nodes) { return 12 * (nodes * (nodes + 1) / 2); }
 
 using Boxes = std::vector<std::span<std::uint32_t>>;  // the nodes of each
 
-// Halves a box, one axis after another, until `most_inside` nodes are left in each part: what it comes to depends on no node outside.
-void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, const Vec3& middle, const Vec3& half, int depth, Boxes& found) {
+// Halves a box, one axis after another, until `most_inside` nodes are left in each part: what it comes to depends on no
+// node outside.
+void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, const Vec3& middle, const Vec3& half,
+            int depth, Boxes& found) {
   constexpr std::size_t many = 2048;
   if (nodes.empty()) return;
   if (nodes.size() <= most_inside || depth == deepest) return found.push_back(nodes);
   const int axis = depth % 3;
-  const auto upper = std::partition(nodes.begin(), nodes.end(), [&](auto i) { return position[i][axis] < middle[axis]; });
+  const auto upper =
+      std::partition(nodes.begin(), nodes.end(), [&](auto i) { return position[i][axis] < middle[axis]; });
   const auto below = static_cast<std::size_t>(upper - nodes.begin());
   Vec3 quarter = half;
   quarter[axis] *= 0.5;
   const Vec3 step = quarter[axis] * Vec3::Unit(axis);
-  const auto divide_lower = [&](Boxes& out) { divide(position, nodes.first(below), middle - step, quarter, depth + 1, out); };
-  const auto divide_upper = [&](Boxes& out) { divide(position, nodes.subspan(below), middle + step, quarter, depth + 1, out); };
+  const auto divide_lower = [&](Boxes& out) {
+    divide(position, nodes.first(below), middle - step, quarter, depth + 1, out);
+  };
+  const auto divide_upper = [&](Boxes& out) {
+    divide(position, nodes.subspan(below), middle + step, quarter, depth + 1, out);
+  };
   if (nodes.size() < many) return divide_lower(found), divide_upper(found);
   Boxes above;
   at_once([&] { divide_lower(found); }, [&] { divide_upper(above); });
@@ -48,8 +55,10 @@ Boxes boxes_of(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes
   return found;
 }
 
-// What hangs together in a box, each with its neighbours. `nodes`: the box's, ascending; `box`: per node, its number; `taken`: per node, 0 before, 1 then.
-std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t> nodes, const std::vector<std::uint32_t>& box, const NodeRows& rows,
+// What hangs together in a box, each with its neighbours. `nodes`: the box's, ascending; `box`: per node, its number;
+// `taken`: per node, 0 before, 1 then.
+std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t> nodes,
+                                                   const std::vector<std::uint32_t>& box, const NodeRows& rows,
                                                    const std::vector<double>& spacing, std::vector<char>& taken) {
   std::vector<std::vector<std::uint32_t>> patches;
   std::vector<std::uint32_t> own;
@@ -62,7 +71,8 @@ std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t
     auto& patch = patches.emplace_back(own);
     for (const auto o : own)
       for (std::size_t q = 0; q < rows[o].to.size(); ++q)
-        if (const auto j = rows[o].to[q]; rows[o].x[q].norm() < overlap * std::min(spacing[o], spacing[j])) patch.push_back(j);
+        if (const auto j = rows[o].to[q]; rows[o].x[q].norm() < overlap * std::min(spacing[o], spacing[j]))
+          patch.push_back(j);
     std::sort(patch.begin(), patch.end());
     patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
   }
@@ -71,13 +81,15 @@ std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t
 
 }  // namespace
 
-NodePatches::NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const MaterialPoints& points) {
+NodePatches::NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
+                         const MaterialPoints& points) {
   list(position, rows, spacing);
   sum_points(points, std::vector<char>(count(), 1));
 }
 
-std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
-                                               const std::vector<char>& other, const MaterialPoints& points, const PointChanges& changes) {
+std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position, const NodeRows& rows,
+                                               const std::vector<double>& spacing, const std::vector<char>& other,
+                                               const MaterialPoints& points, const PointChanges& changes) {
   NodePatches before = std::move(*this);
   *this = NodePatches();
   list(position, rows, spacing, &before, &other);
@@ -85,11 +97,14 @@ std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position
   std::vector<std::uint32_t> old(count(), ~0u);
   for (std::size_t p = 0; p < count(); ++p) {
     const auto now = nodes(p);
-    if (now[0] + 1 >= before.begin_.size() || std::any_of(now.begin(), now.end(), [&](auto i) { return changes.nodes[i]; })) continue;
+    if (now[0] + 1 >= before.begin_.size() ||
+        std::any_of(now.begin(), now.end(), [&](auto i) { return changes.nodes[i]; }))
+      continue;
     for (const Incidence& at : before.patches_of(now[0])) {
       const auto was = before.nodes(at.patch);
       if (before.outer_[at.patch].empty() || !std::equal(now.begin(), now.end(), was.begin(), was.end())) continue;
-      outer_[p] = std::move(before.outer_[at.patch]), point_[p] = before.point_[at.patch], wanted[p] = 0, old[p] = at.patch;
+      outer_[p] = std::move(before.outer_[at.patch]), point_[p] = before.point_[at.patch], wanted[p] = 0,
+      old[p] = at.patch;
       if (point_[p].first != ~0u) point_[p].first = changes.blocks[point_[p].first];
       break;
     }
@@ -98,7 +113,8 @@ std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position
   return old;
 }
 
-void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing, const NodePatches* before, const std::vector<char>* other) {
+void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
+                       const NodePatches* before, const std::vector<char>* other) {
   std::vector<std::uint32_t> all(position.size());
   std::iota(all.begin(), all.end(), 0);
   const Boxes boxes = boxes_of(position, all);
@@ -111,7 +127,9 @@ void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, 
   // A box of the same nodes, of which none is another, has the patches that it had.
   const auto same = [&](std::span<const std::uint32_t> nodes) {
     if (!before || nodes[0] >= before->box_.size() || size_before[before->box_[nodes[0]]] != nodes.size()) return false;
-    return std::all_of(nodes.begin(), nodes.end(), [&](auto i) { return i < before->box_.size() && before->box_[i] == before->box_[nodes[0]] && !(*other)[i]; });
+    return std::all_of(nodes.begin(), nodes.end(), [&](auto i) {
+      return i < before->box_.size() && before->box_[i] == before->box_[nodes[0]] && !(*other)[i];
+    });
   };
   std::vector<std::vector<std::vector<std::uint32_t>>> patches(boxes.size());  // of each box
   std::vector<char> taken(position.size(), 0);
@@ -119,7 +137,8 @@ void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, 
     for (std::size_t b = begin; b < end; ++b) {
       if (same(boxes[b])) {
         const auto was = before->box_[boxes[b][0]];
-        for (auto p = before->first_patch_[was]; p < before->first_patch_[was + 1]; ++p) patches[b].emplace_back(before->nodes(p).begin(), before->nodes(p).end());
+        for (auto p = before->first_patch_[was]; p < before->first_patch_[was + 1]; ++p)
+          patches[b].emplace_back(before->nodes(p).begin(), before->nodes(p).end());
       } else {
         std::sort(boxes[b].begin(), boxes[b].end());
         patches[b] = patches_in(boxes[b], box_, rows, spacing, taken);
@@ -167,7 +186,10 @@ void NodePatches::sum_points(const MaterialPoints& points, const std::vector<cha
       for (const auto j : block.nodes) {
         for (const Incidence& at : patches_of(j))
           if (wanted[at.patch])
-            places.push_back({static_cast<std::uint32_t>(std::lower_bound(part.patches.begin(), part.patches.end(), at.patch) - part.patches.begin()), at.slot});
+            places.push_back(
+                {static_cast<std::uint32_t>(std::lower_bound(part.patches.begin(), part.patches.end(), at.patch) -
+                                            part.patches.begin()),
+                 at.slot});
         first.push_back(static_cast<std::uint32_t>(places.size()));
       }
       add_outer_products(block, first, places, part);

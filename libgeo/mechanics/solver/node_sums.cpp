@@ -4,12 +4,13 @@
 
 #include "base/fresh_array.h"
 #include "kerf/parallel.h"
-#include "mechanics/material/plasticity.h"
 #include "mechanics/discretisation/point_lanes.h"
+#include "mechanics/material/plasticity.h"
 
 namespace geo {
 
-std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const BlockStress& stress) {
+std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state,
+                                  const BlockStress& stress) {
   constexpr std::size_t width = 8, used = std::tuple_size_v<StressSums>;
   const MaterialPoints& points = solid.points();
   FreshArray<float> parts(width * points.parts());
@@ -23,7 +24,8 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
       place.clear();
       for (const auto j : block.nodes) {
         const Vec3 x = nodes.position[j] - base;
-        place.insert(place.end(), {float(x[0]), float(x[1]), float(x[2]), float(1 / (nodes.radius[j] * nodes.radius[j]))});
+        place.insert(place.end(),
+                     {float(x[0]), float(x[1]), float(x[2]), float(1 / (nodes.radius[j] * nodes.radius[j]))});
       }
       points.values(b, state.displacement, values);
       point_gradients(block, values.data(), gradient);
@@ -46,7 +48,8 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
   return sums;
 }
 
-std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state, const PointStress& stress) {
+std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, const State& state,
+                                  const PointStress& stress) {
   const MaterialPoints& points = solid.points();
   return node_sums(solid, nodes, state, [&](std::size_t b, const Columns<double>& gradient, float* own) {
     const PointBlock& block = points.blocks[b];

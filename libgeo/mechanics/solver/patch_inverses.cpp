@@ -33,7 +33,9 @@ void PatchInverses::follow(const NodePatches& patches, std::span<const std::uint
 }
 
 bool PatchInverses::knows(std::size_t p, std::span<const Besides> besides, const Moduli& moduli) const {
-  return known_[p] && moduli_[p] == moduli && std::equal(besides.begin(), besides.end(), besides_.begin() + static_cast<std::ptrdiff_t>(node_[p]), besides_.begin() + static_cast<std::ptrdiff_t>(node_[p + 1]));
+  return known_[p] && moduli_[p] == moduli &&
+         std::equal(besides.begin(), besides.end(), besides_.begin() + static_cast<std::ptrdiff_t>(node_[p]),
+                    besides_.begin() + static_cast<std::ptrdiff_t>(node_[p + 1]));
 }
 
 void PatchInverses::tell(std::size_t p, std::span<const Besides> besides, const Moduli& moduli) {

@@ -22,7 +22,8 @@ class PatchInverses {
 
   /// Room for all patches; nothing is known of any.
   void begin(const NodePatches& patches);
-  /// The same after they have changed; `was`: as NodePatches::follow() says. What is known of those that were there stays.
+  /// The same after they have changed; `was`: as NodePatches::follow() says. What is known of those that were there
+  /// stays.
   void follow(const NodePatches& patches, std::span<const std::uint32_t> was);
   std::size_t count() const { return moduli_.size(); }
 
@@ -38,8 +39,8 @@ class PatchInverses {
  private:
   std::vector<std::size_t> node_, first_;  // per patch and one more: of its nodes, of its numbers
   FreshArray<std::uint16_t> matrix_;
-  std::vector<Besides> besides_;           // per node of a patch
-  std::vector<Moduli> moduli_;             // per patch
+  std::vector<Besides> besides_;  // per node of a patch
+  std::vector<Moduli> moduli_;    // per patch
   std::vector<char> known_;
 };
 

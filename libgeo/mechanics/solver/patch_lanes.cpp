@@ -14,7 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void OuterProducts(const PointBlock& block, const std::uint32_t* first, const NodePatches::Incidence* places, PatchParts& out) {
+void OuterProducts(const PointBlock& block, const std::uint32_t* first, const NodePatches::Incidence* places,
+                   PatchParts& out) {
   using Four = hn::CappedTag<float, 4>;
   const Four d;
   constexpr std::size_t step = hn::MaxLanes(Four());
@@ -43,10 +44,12 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const No
           float* const to = tiles + 12 * (s * (s + 1) / 2 + t);
           for (std::size_t k = 0; k < 4; k += step) {
             const auto g = hn::LoadU(d, list[b].g + k);
-            for (std::size_t r = 0; r < 3; ++r) hn::StoreU(hn::MulAdd(hn::Set(d, w * list[a].g[r]), g, hn::LoadU(d, to + 4 * r + k)), d, to + 4 * r + k);
+            for (std::size_t r = 0; r < 3; ++r)
+              hn::StoreU(hn::MulAdd(hn::Set(d, w * list[a].g[r]), g, hn::LoadU(d, to + 4 * r + k)), d, to + 4 * r + k);
           }
         }
-      if (list.size() > out.most[p].count) out.most[p] = {static_cast<std::uint32_t>(list.size()), static_cast<std::uint32_t>(i)};
+      if (list.size() > out.most[p].count)
+        out.most[p] = {static_cast<std::uint32_t>(list.size()), static_cast<std::uint32_t>(i)};
       list.clear();
     }
     touched.clear();
@@ -78,7 +81,9 @@ HWY_INLINE Tile transposed(const Tile& t) {
 HWY_INLINE Tile product(const Tile& a, const Tile& b) {
   Tile out;
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) out.at[r][c] = hn::MulAdd(a.at[r][2], b.at[2][c], hn::MulAdd(a.at[r][1], b.at[1][c], hn::Mul(a.at[r][0], b.at[0][c])));
+    for (int c = 0; c < 3; ++c)
+      out.at[r][c] =
+          hn::MulAdd(a.at[r][2], b.at[2][c], hn::MulAdd(a.at[r][1], b.at[1][c], hn::Mul(a.at[r][0], b.at[0][c])));
   return out;
 }
 /// Takes a · bᵀ off another.
@@ -89,7 +94,8 @@ HWY_INLINE void take_off(const Tile& a, const Tile& b, Tile& from) {
 }
 constexpr std::size_t tile_at(std::size_t a, std::size_t b) { return 72 * (a * (a + 1) / 2 + b); }
 
-// In place of Σ w g_a g_bᵀ what an isotropic stiffness makes of it: Σ w (shear (g_a · g_b) 1 + shear g_b g_aᵀ + bulk g_a g_bᵀ); and blocks, turned back.
+// In place of Σ w g_a g_bᵀ what an isotropic stiffness makes of it: Σ w (shear (g_a · g_b) 1 + shear g_b g_aᵀ + bulk
+// g_a g_bᵀ); and blocks, turned back.
 HWY_INLINE void add_up(EightPatches& p, std::size_t lane) {
   const Lanes<float> d;
   const auto shear = hn::LoadU(d, &p.shear[lane]), bulk = hn::LoadU(d, &p.bulk[lane]);
@@ -116,7 +122,8 @@ HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
   const auto one = hn::Set(Lanes<float>(), 1.0f);
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const auto over = hn::IfThenElseZero(hn::Gt(t.at[k][k], least[k]), hn::Div(one, t.at[k][k])), by = t.at[i][k], next = t.at[j][k];
+    const auto over = hn::IfThenElseZero(hn::Gt(t.at[k][k], least[k]), hn::Div(one, t.at[k][k])), by = t.at[i][k],
+               next = t.at[j][k];
     const auto own = hn::Mul(by, over), other = hn::Mul(next, over);
     t.at[i][i] = hn::NegMulAdd(by, own, t.at[i][i]), t.at[j][j] = hn::NegMulAdd(next, other, t.at[j][j]);
     t.at[i][j] = t.at[j][i] = hn::NegMulAdd(by, other, t.at[i][j]);
@@ -127,15 +134,18 @@ HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
   return t;
 }
 
-// Node by node: K becomes −K⁻¹ of those that were taken, with what they are to the others beside it, and the others keep what is left of
-// them. Symmetric all the way, so that half of the tiles will do.
+// Node by node: K becomes −K⁻¹ of those that were taken, with what they are to the others beside it, and the others
+// keep what is left of them. Symmetric all the way, so that half of the tiles will do.
 HWY_INLINE void sweep(EightPatches& p, std::size_t lane) {
   const Lanes<float> d;
-  float *const tiles = p.tiles.data() + lane, *const column = p.aside.data() + lane, *const least = column + 72 * p.nodes;
+  float *const tiles = p.tiles.data() + lane, *const column = p.aside.data() + lane,
+               *const least = column + 72 * p.nodes;
   for (std::size_t a = 0; a < p.nodes; ++a)
-    for (std::size_t c = 0; c < 3; ++c) hn::StoreU(hn::Mul(hn::Set(d, 1e-5f), hn::LoadU(d, tiles + tile_at(a, a) + 32 * c)), d, least + 8 * (3 * a + c));
+    for (std::size_t c = 0; c < 3; ++c)
+      hn::StoreU(hn::Mul(hn::Set(d, 1e-5f), hn::LoadU(d, tiles + tile_at(a, a) + 32 * c)), d, least + 8 * (3 * a + c));
   for (std::size_t k = 0; k < p.nodes; ++k) {
-    const Vector lost[3] = {hn::LoadU(d, least + 24 * k), hn::LoadU(d, least + 24 * k + 8), hn::LoadU(d, least + 24 * k + 16)};
+    const Vector lost[3] = {hn::LoadU(d, least + 24 * k), hn::LoadU(d, least + 24 * k + 8),
+                            hn::LoadU(d, least + 24 * k + 16)};
     Tile own = inverse(load_tile(tiles + tile_at(k, k)), lost);
     for (std::size_t a = 0; a < p.nodes; ++a) {
       if (a == k) continue;
@@ -182,7 +192,9 @@ void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* 
   const hn::Rebind<std::uint16_t, Wide> d16;
   const hn::RebindToUnsigned<Wide> d32;
   const std::size_t row = padded(size);
-  const auto column = [&](std::size_t at) HWY_ATTR { return hn::BitCast(d, hn::ShiftLeft<16>(hn::PromoteTo(d32, hn::LoadU(d16, matrix + at)))); };
+  const auto column = [&](std::size_t at) HWY_ATTR {
+    return hn::BitCast(d, hn::ShiftLeft<16>(hn::PromoteTo(d32, hn::LoadU(d16, matrix + at))));
+  };
   std::size_t at = 0;
   for (; at + 2 * wide <= row; at += 2 * wide) {
     auto sum = hn::Zero(d), next = hn::Zero(d);
@@ -208,16 +220,20 @@ HWY_EXPORT(OuterProducts);
 HWY_EXPORT(InvertPositive);
 HWY_EXPORT(MultiplyHalves);
 
-void add_outer_products(const PointBlock& block, std::span<const std::uint32_t> first, std::span<const NodePatches::Incidence> places, PatchParts& out) {
+void add_outer_products(const PointBlock& block, std::span<const std::uint32_t> first,
+                        std::span<const NodePatches::Incidence> places, PatchParts& out) {
   HWY_DYNAMIC_DISPATCH(OuterProducts)(block, first.data(), places.data(), out);
 }
 void EightPatches::begin(std::size_t count) {
   nodes = count;
-  tiles.assign(72 * (count * (count + 1) / 2), 0), blocks.assign(72 * count, 0), share.assign(8 * count, 0), turn.fill(0), shear.fill(0), bulk.fill(0);
+  tiles.assign(72 * (count * (count + 1) / 2), 0), blocks.assign(72 * count, 0), share.assign(8 * count, 0),
+      turn.fill(0), shear.fill(0), bulk.fill(0);
   halves.resize(tiles.size()), aside.resize(96 * count);
 }
 void invert_positive(EightPatches& patches) { HWY_DYNAMIC_DISPATCH(InvertPositive)(patches); }
-void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) { HWY_DYNAMIC_DISPATCH(MultiplyHalves)(size, matrix, x, out); }
+void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {
+  HWY_DYNAMIC_DISPATCH(MultiplyHalves)(size, matrix, x, out);
+}
 
 }  // namespace geo
 #endif

@@ -11,9 +11,15 @@ namespace geo {
 
 using Mat3f = Eigen::Matrix3f;
 
-PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli, const std::vector<StiffnessModes>& modes,
-                         const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, PatchInverses& inverses)
-    : patches_(patches), materials_(materials), moduli_(moduli), inverse_(inverses), rotation_(patches.count(), Mat3f::Identity()), parts_(4 * patches.first(patches.count())) {
+PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli,
+                         const std::vector<StiffnessModes>& modes, const std::vector<Mat3>& blocks,
+                         const std::vector<std::uint8_t>& fixed, PatchInverses& inverses)
+    : patches_(patches),
+      materials_(materials),
+      moduli_(moduli),
+      inverse_(inverses),
+      rotation_(patches.count(), Mat3f::Identity()),
+      parts_(4 * patches.first(patches.count())) {
   if (inverse_.count() != patches.count()) inverse_.begin(patches);
   std::vector<char> known(patches.count());
   parallel_for(patches.count(), 64, [&](std::size_t begin, std::size_t end) {
@@ -31,7 +37,8 @@ PatchMotion::PatchMotion(const NodePatches& patches, const Materials& materials,
 }
 
 // None where what nodes have is not the same in all directions: it would turn with the patch.
-void PatchMotion::besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::vector<PatchInverses::Besides>& all) const {
+void PatchMotion::besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed,
+                          std::vector<PatchInverses::Besides>& all) const {
   all.clear();
   for (const auto i : patches_.nodes(patch)) {
     const Mat3& k = blocks[i];
@@ -42,9 +49,12 @@ void PatchMotion::besides(std::size_t patch, const std::vector<Mat3>& blocks, co
 }
 
 // Those of as many nodes side by side.
-void PatchMotion::renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed) {
+void PatchMotion::renew(std::span<const std::uint32_t> which, const std::vector<Mat3>& blocks,
+                        const std::vector<std::uint8_t>& fixed) {
   std::vector<std::uint32_t> order(which.begin(), which.end());
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return std::pair(patches_.nodes(a).size(), a) < std::pair(patches_.nodes(b).size(), b); });
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) {
+    return std::pair(patches_.nodes(a).size(), a) < std::pair(patches_.nodes(b).size(), b);
+  });
   parallel_for((order.size() + 7) / 8, 4, [&](std::size_t begin, std::size_t end) {
     EightPatches room;
     std::vector<PatchInverses::Besides> plain;
@@ -63,7 +73,8 @@ void PatchMotion::renew(std::span<const std::uint32_t> which, const std::vector<
 }
 
 // A patch among eight. A plain one is not turned: what is kept of it is good wherever it turns.
-void PatchMotion::put(std::size_t patch, bool plain, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed, std::size_t lane, EightPatches& to) const {
+void PatchMotion::put(std::size_t patch, bool plain, const std::vector<Mat3>& blocks,
+                      const std::vector<std::uint8_t>& fixed, std::size_t lane, EightPatches& to) const {
   const auto nodes = patches_.nodes(patch);
   const Mat3f turn = plain ? Mat3f::Identity() : rotation_[patch];
   for (std::size_t k = 0; k < 9; ++k) to.turn[8 * k + lane] = turn.data()[k];
@@ -89,7 +100,8 @@ void PatchMotion::take(std::size_t patch, std::size_t lane, const EightPatches& 
   for (std::size_t a = 0; a < nodes; ++a)
     for (std::size_t b = 0; b <= a; ++b, tile += 72)
       for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 3; ++c) to[(3 * a + r) * row + 3 * b + c] = to[(3 * b + c) * row + 3 * a + r] = tile[8 * (3 * r + c)];
+        for (std::size_t c = 0; c < 3; ++c)
+          to[(3 * a + r) * row + 3 * b + c] = to[(3 * b + c) * row + 3 * a + r] = tile[8 * (3 * r + c)];
   for (std::size_t i = 0; i < 3 * nodes; ++i) std::fill(to + i * row + 3 * nodes, to + (i + 1) * row, std::uint16_t(0));
 }
 
@@ -102,10 +114,12 @@ void PatchMotion::solve(const std::vector<Vec3>& r, std::span<const std::uint32_
       const std::size_t size = 3 * nodes.size();
       x.resize(padded(size)), y.resize(padded(size));
       const Mat3f &turn = rotation_[p], back = turn.transpose();
-      for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>{&x[3 * a]} = back * r[nodes[a]].cast<float>();
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        Eigen::Map<Eigen::Vector3f>{&x[3 * a]} = back * r[nodes[a]].cast<float>();
       multiply_halves(size, inverse_.matrix(p), x.data(), y.data());
       float* const out = &parts_[4 * patches_.first(p)];
-      for (std::size_t a = 0; a < nodes.size(); ++a) Eigen::Map<Eigen::Vector3f>(out + 4 * a) = turn * Eigen::Map<const Eigen::Vector3f>(&y[3 * a]);
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        Eigen::Map<Eigen::Vector3f>(out + 4 * a) = turn * Eigen::Map<const Eigen::Vector3f>(&y[3 * a]);
     }
   });
 }

@@ -24,7 +24,8 @@ RigidMotion motion_of(const Sums& sums, const Vec3& base, Freedom freedom) {
   if (!(sums.mass > 0)) return motion;
   const Vec3 arm = sums.arm / sums.mass;
   motion.middle = base + arm, motion.way = sums.way / sums.mass;
-  const Mat3 spread = sums.spread / sums.mass - arm * arm.transpose(), moved = sums.moved / sums.mass - motion.way * arm.transpose();
+  const Mat3 spread = sums.spread / sums.mass - arm * arm.transpose(),
+             moved = sums.moved / sums.mass - motion.way * arm.transpose();
   motion.reach = std::sqrt(std::max(0.0, spread.trace()));
   if (freedom == Freedom::way || !(motion.reach > 0) || !moved.allFinite()) return motion;
   constexpr double thin = 1e-9;  // of the spread: what is rounding
@@ -37,7 +38,8 @@ RigidMotion motion_of(const Sums& sums, const Vec3& base, Freedom freedom) {
   const Vec3 momentum(moved(2, 1) - moved(1, 2), moved(0, 2) - moved(2, 0), moved(1, 0) - moved(0, 1));
   const Eigen::SelfAdjointEigenSolver<Mat3> inertia(Mat3(spread.trace() * Mat3::Identity() - spread));
   for (int k = 0; k < 3; ++k)
-    if (const Vec3 axis = inertia.eigenvectors().col(k); inertia.eigenvalues()[k] > thin * spread.trace()) motion.turning += axis.dot(momentum) / inertia.eigenvalues()[k] * axis;
+    if (const Vec3 axis = inertia.eigenvectors().col(k); inertia.eigenvalues()[k] > thin * spread.trace())
+      motion.turning += axis.dot(momentum) / inertia.eigenvalues()[k] * axis;
   return motion;
 }
 
@@ -47,12 +49,15 @@ Vec3 RigidMotion::bend(const Vec3& at, const Vec3& displacement, double share) c
   const double size = turning.norm(), angle = share * size;
   if (!(size > 0)) return Vec3::Zero();
   const Vec3 axis = turning / size;
-  const auto across = [&](const Vec3& arm, double sine) -> Vec3 { return sine * axis.cross(arm) + (1 - std::cos(angle)) * axis.cross(axis.cross(arm)); };
+  const auto across = [&](const Vec3& arm, double sine) -> Vec3 {
+    return sine * axis.cross(arm) + (1 - std::cos(angle)) * axis.cross(axis.cross(arm));
+  };
   return across(at - middle, std::sin(angle) - angle) + across(share * (displacement - straight(at)), std::sin(angle));
 }
 
-std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& piece, const std::vector<Freedom>& freedom, const std::vector<double>& mass,
-                                       const std::function<Vec3(std::size_t)>& from, const std::function<Vec3(std::size_t)>& way) {
+std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& piece, const std::vector<Freedom>& freedom,
+                                       const std::vector<double>& mass, const std::function<Vec3(std::size_t)>& from,
+                                       const std::function<Vec3(std::size_t)>& way) {
   std::vector<Vec3> base(freedom.size());
   std::vector<char> seen(freedom.size(), 0);
   for (std::size_t i = 0; i < piece.size(); ++i)

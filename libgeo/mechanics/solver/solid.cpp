@@ -36,7 +36,8 @@ Solid::Solid(const Body& body, Materials materials) : materials_(std::move(mater
   }
 }
 
-Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials) : materials_(std::move(materials)) {
+Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials)
+    : materials_(std::move(materials)) {
   if (materials_.unfit(nodes.size())) throw InputError("a solid of several materials needs one for each node");
   materials_.set(Discretisation::mueller04);
   State none;
@@ -52,7 +53,8 @@ void Solid::update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId fi
 void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
   std::vector<Vec3> before;
   for (const NodeId i : delta.moved_nodes) before.push_back(position_[i.index()]);
-  follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state, !delta.parted.empty());
+  follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state,
+               !delta.parted.empty());
   if (!galerkin_) return nodal_points(delta.updated_nodes);
   galerkin_->note(body, delta, before);
   other_.resize(size(), 0);
@@ -100,7 +102,8 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
   points_.set_materials(materials_);
   group_nodes();
   std::vector<double> penalty;
-  for (std::size_t i = 0; i < n; ++i) penalty.push_back(materials_.of(i).mode_penalty * materials_.of(i).young * volume_[i]);
+  for (std::size_t i = 0; i < n; ++i)
+    penalty.push_back(materials_.of(i).mode_penalty * materials_.of(i).young * volume_[i]);
   penalty_.emplace(rows_, std::move(penalty));
 }
 
@@ -113,7 +116,8 @@ RungCounts Solid::rungs() const {
   RungCounts counts;
   for (std::size_t i = 0; i < rows_.size(); ++i) ++counts.nodes[static_cast<std::size_t>(rows_.rung(i))];
   for (const PointBlock& b : points_.blocks)
-    for (const MaterialPoint& p : b.points) ++counts.points[static_cast<std::size_t>(p.rung)], counts.widened += p.growth > 0;
+    for (const MaterialPoint& p : b.points)
+      ++counts.points[static_cast<std::size_t>(p.rung)], counts.widened += p.growth > 0;
   return counts;
 }
 
@@ -123,14 +127,16 @@ void Solid::gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) co
   out.push_back({i, row.g_self});
 }
 
-double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force, const std::vector<Columns<double>>& relaxed) const {
+double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force,
+                            const std::vector<Columns<double>>& relaxed) const {
   std::vector<double> energy(points_.blocks.size(), 0), pull(force ? 4 * points_.parts() : 0);
   const BlockStrain strain(points_);
   parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
     ElasticBlock::Room room;
     ElasticBlock work(room, strain, materials_);
     for (std::size_t b = begin; b < end; ++b) {
-      const auto& of_point = work.evaluate(b, u, {relaxed.empty() ? nullptr : &relaxed[b], nullptr}, nullptr, force ? &pull[4 * points_.part(b)] : nullptr);
+      const auto& of_point = work.evaluate(b, u, {relaxed.empty() ? nullptr : &relaxed[b], nullptr}, nullptr,
+                                           force ? &pull[4 * points_.part(b)] : nullptr);
       energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
     }
   });
@@ -158,7 +164,8 @@ std::vector<Vec3> Solid::forces(const std::vector<Vec3>& u) const {
   return f;
 }
 
-Mat3 Solid::stress_at(const State& state, const Vec3& x, double radius, const std::function<bool(const Vec3&)>& sees) const {
+Mat3 Solid::stress_at(const State& state, const Vec3& x, double radius,
+                      const std::function<bool(const Vec3&)>& sees) const {
   Mat3 sum = Mat3::Zero();
   double total = 0;
   for (std::size_t b = 0; b < points_.blocks.size(); ++b) {
@@ -189,7 +196,8 @@ Vec3 Solid::momentum(const State& state) const {
 
 Vec3 Solid::angular_momentum(const State& state) const {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < size(); ++i) sum += mass_[i] * (position_[i] + state.displacement[i]).cross(state.velocity[i]);
+  for (std::size_t i = 0; i < size(); ++i)
+    sum += mass_[i] * (position_[i] + state.displacement[i]).cross(state.velocity[i]);
   return sum;
 }
 

@@ -10,7 +10,8 @@ constexpr std::uint32_t most_a_run = 512;
 
 }  // namespace
 
-StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
+StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches,
+                     const std::vector<std::uint32_t>& component, std::uint32_t components,
                      std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled)
     : all_patches_(patches), of_(component.size(), 0), piece_(of_), node_(component.size()) {
   Joined joined(components);
@@ -26,13 +27,15 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
     const PointBlock& block = points.blocks[b];
     if (of_one[b]) continue;
     for (std::size_t i = 0; i < block.points.size(); ++i)
-      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q) joined.join(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
+      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q)
+        joined.join(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
   }
   // Of each node, the number of what it is joined to, in the order of their first components.
   std::vector<std::uint32_t> number(components, 0);
   const auto number_all = [&](std::size_t& count, std::vector<std::uint32_t>& of) {
     count = 0;
-    for (std::uint32_t c = 0; c < components; ++c) number[c] = joined[c] == c ? static_cast<std::uint32_t>(count++) : number[joined[c]];
+    for (std::uint32_t c = 0; c < components; ++c)
+      number[c] = joined[c] == c ? static_cast<std::uint32_t>(count++) : number[joined[c]];
     for (std::size_t i = 0; i < of.size(); ++i) of[i] = number[component[i]];
   };
   number_all(pieces_, piece_);
@@ -60,7 +63,8 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches, c
 std::size_t StepParts::slot(std::size_t block, const PointBlock& points, std::size_t point) const {
   const auto parts = of_block(block);
   if (parts.size() < 2 || points.first[point] == points.first[point + 1]) return 0;
-  return static_cast<std::size_t>(std::lower_bound(parts.begin(), parts.end(), of_[points.nodes[points.to[points.first[point]]]]) - parts.begin());
+  return static_cast<std::size_t>(
+      std::lower_bound(parts.begin(), parts.end(), of_[points.nodes[points.to[points.first[point]]]]) - parts.begin());
 }
 
 void StepParts::choose(const std::vector<char>& chosen) {
@@ -69,7 +73,8 @@ void StepParts::choose(const std::vector<char>& chosen) {
   runs_.clear(), blocks_.clear(), patches_.clear(), nodes_at_work_ = 0;
   for (std::uint32_t p = 0; p < count_; ++p) {
     if (!chosen_[p]) continue;
-    for (auto k = first_[p]; k < first_[p + 1]; k += most_a_run) runs_.push_back({p, k, std::min(k + most_a_run, first_[p + 1])});
+    for (auto k = first_[p]; k < first_[p + 1]; k += most_a_run)
+      runs_.push_back({p, k, std::min(k + most_a_run, first_[p + 1])});
     nodes_at_work_ += first_[p + 1] - first_[p];
   }
   for (std::uint32_t b = 0; b + 1 < block_first_.size(); ++b) {

@@ -1,5 +1,5 @@
-// What of a solid can be solved on its own in a time step: nodes that neither material points nor contact join to others. One that has
-// converged costs nothing more, and none waits for another's line search.
+// What of a solid can be solved on its own in a time step: nodes that neither material points nor contact join to
+// others. One that has converged costs nothing more, and none waits for another's line search.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,10 @@ namespace geo {
 
 class StepParts {
  public:
-  /// `component`: per node, of the graph, of so many; `coupled`: components that something else joins. Refers to `patches`.
-  StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component, std::uint32_t components,
-            std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled);
+  /// `component`: per node, of the graph, of so many; `coupled`: components that something else joins. Refers to
+  /// `patches`.
+  StepParts(const MaterialPoints& points, const NodePatches& patches, const std::vector<std::uint32_t>& component,
+            std::uint32_t components, std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled);
   std::size_t count() const { return count_; }
   std::uint32_t of(std::size_t node) const { return of_[node]; }
   /// The same of all nodes.
@@ -27,7 +28,9 @@ class StepParts {
   std::size_t pieces() const { return pieces_; }
   const std::vector<std::uint32_t>& piece_of_nodes() const { return piece_; }
   /// Parts that a block's points belong to, ascending; empty: it has no nodes.
-  std::span<const std::uint32_t> of_block(std::size_t block) const { return {&block_part_[block_first_[block]], block_first_[block + 1] - block_first_[block]}; }
+  std::span<const std::uint32_t> of_block(std::size_t block) const {
+    return {&block_part_[block_first_[block]], block_first_[block + 1] - block_first_[block]};
+  }
   /// Number of a block's first part in a list of all blocks' parts; that list's length after the last.
   std::size_t block_first(std::size_t block) const { return block_first_[block]; }
   /// Which of its block's parts a point belongs to; 0 for one without nodes.
@@ -47,25 +50,32 @@ class StepParts {
       for (auto k = run.begin; k < run.end; ++k) work(node_[k]);
     });
   }
-  /// sum[part] of term(node) for each part at work, from `zero` on, in an order that no number of threads changes; those of others stay.
+  /// sum[part] of term(node) for each part at work, from `zero` on, in an order that no number of threads changes;
+  /// those of others stay.
   template <class Sum, class Term>
   void sums(std::vector<Sum>& sum, const Sum& zero, const Term& term) const {
-    reduce(sum, zero, [&](Sum& total, std::uint32_t node) { total += term(node); }, [](Sum& total, const Sum& run) { total += run; });
+    reduce(
+        sum, zero, [&](Sum& total, std::uint32_t node) { total += term(node); },
+        [](Sum& total, const Sum& run) { total += run; });
   }
   /// The same of the largest, where none is negative; NaN is larger than any.
   template <class Term>
   void most(std::vector<double>& most, const Term& term) const {
-    reduce(most, 0.0, [&](double& own, std::uint32_t node) { keep_larger(own, term(node)); }, keep_larger);
+    reduce(
+        most, 0.0, [&](double& own, std::uint32_t node) { keep_larger(own, term(node)); }, keep_larger);
   }
   /// Both at once: of what term(node) returns, the first is summed, of the second there is the largest.
   template <class Term>
   void sums_and_most(std::vector<double>& sum, std::vector<double>& most, const Term& term) const {
     using Both = std::pair<double, double>;
     std::vector<Both> both;
-    reduce(both, Both(0, 0), [&](Both& own, std::uint32_t node) {
-      const Both more = term(node);
-      own.first += more.first, keep_larger(own.second, more.second);
-    }, [](Both& own, const Both& run) { own.first += run.first, keep_larger(own.second, run.second); });
+    reduce(
+        both, Both(0, 0),
+        [&](Both& own, std::uint32_t node) {
+          const Both more = term(node);
+          own.first += more.first, keep_larger(own.second, more.second);
+        },
+        [](Both& own, const Both& run) { own.first += run.first, keep_larger(own.second, run.second); });
     sum.resize(count_, 0), most.resize(count_, 0);
     for (std::size_t p = 0; p < count_; ++p)
       if (chosen_[p]) sum[p] = both[p].first, most[p] = both[p].second;
@@ -78,9 +88,10 @@ class StepParts {
   };
   template <class Work>
   void each_run(const Work& work) const {
-    parallel_for(runs_.size(), std::max<std::size_t>(1, 1024 * runs_.size() / (nodes_at_work_ + 1)), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) work(runs_[k]);
-    });
+    parallel_for(runs_.size(), std::max<std::size_t>(1, 1024 * runs_.size() / (nodes_at_work_ + 1)),
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t k = begin; k < end; ++k) work(runs_[k]);
+                 });
   }
   template <class Result, class Take, class Join>
   void reduce(std::vector<Result>& result, const Result& zero, const Take& take, const Join& join) const {
@@ -97,7 +108,8 @@ class StepParts {
 
   const NodePatches& all_patches_;
   std::size_t count_ = 0, pieces_ = 0, nodes_at_work_ = 0;
-  std::vector<std::uint32_t> of_, piece_, node_, first_;  // per node, its part and piece; nodes by part; per part and one more: its first there
+  std::vector<std::uint32_t> of_, piece_, node_,
+      first_;  // per node, its part and piece; nodes by part; per part and one more: its first there
   std::vector<std::uint32_t> block_part_;
   std::vector<std::size_t> block_first_;
   std::vector<char> chosen_;

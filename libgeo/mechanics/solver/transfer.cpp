@@ -24,9 +24,9 @@ struct RigidMotion {
   Vec3 middle, velocity, spin;
 };
 
-// The rigid motion that brings a part's momenta from `now` to what they were: the linear one, and the angular one about its
-// centre of mass. (About a fixed point it may change, for mass is shared out anew: were that made good, a part that only
-// travels would begin to turn.) A part on a line or point has no inertia about it, and can have no such momentum.
+// The rigid motion that brings a part's momenta from `now` to what they were: the linear one, and the angular one about
+// its centre of mass. (About a fixed point it may change, for mass is shared out anew: were that made good, a part that
+// only travels would begin to turn.) A part on a line or point has no inertia about it, and can have no such momentum.
 RigidMotion correction(const PartMotion& was, const PartMotion& now) {
   const Vec3 c = now.middle / now.mass, linear = was.linear - now.linear;
   const Vec3 turning = was.angular - (was.middle / was.mass).cross(was.linear) - now.angular + c.cross(now.linear);
@@ -41,7 +41,8 @@ RigidMotion correction(const PartMotion& was, const PartMotion& now) {
 
 }  // namespace
 
-// Where nothing came off: new nodes are of the part of those that they see. The lowest node of each part decides its number, so all stay.
+// Where nothing came off: new nodes are of the part of those that they see. The lowest node of each part decides its
+// number, so all stay.
 void Solid::number_parts(const VisibilityGraph& graph, std::size_t first_new) {
   for (std::size_t i = first_new; i < graph.node_count(); ++i) {
     std::uint32_t part = ~0u;
@@ -55,8 +56,8 @@ void Solid::number_parts(const VisibilityGraph& graph, std::size_t first_new) {
   }
 }
 
-void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
-                         std::span<const NodeId> updated, State& state, bool parted) {
+void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new,
+                         std::span<const NodeId> donors, std::span<const NodeId> updated, State& state, bool parted) {
   const std::size_t n = nodes.size(), old = first_new.index();
   const bool moving = !state.displacement.empty();
   // Where the mass of those was that change, and how it moved: a new node's at its donor.
@@ -80,7 +81,8 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
     for (const NodeId i : updated)
       if (i.index() < old && position_[i.index()] != nodes.position[i.index()]) {
         changed.push_back({i.value, position_[i.index()] + state.displacement[i.index()], state.velocity[i.index()]});
-        state.displacement[i.index()] += rows_.gradient(i.index(), state.displacement) * (nodes.position[i.index()] - position_[i.index()]);
+        state.displacement[i.index()] +=
+            rows_.gradient(i.index(), state.displacement) * (nodes.position[i.index()] - position_[i.index()]);
       }
   }
   volume_ = nodes.volume, spacing_ = nodes.spacing, position_ = nodes.position;
@@ -89,8 +91,10 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
   for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
   at_once([&] { rows_.update(nodes, graph, updated); },
           [&] {
-            if (parted || part_.size() != old) parts_ = graph.components(part_);
-            else number_parts(graph, old);
+            if (parted || part_.size() != old)
+              parts_ = graph.components(part_);
+            else
+              number_parts(graph, old);
           });
   if (changed.empty()) return;
   std::vector<char> concerned(parts_, 0);
@@ -106,14 +110,17 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
     if (changes && !std::exchange(differs[p], 1)) was[p] = now[p];
     const Vec3 place = position_[i] + state.displacement[i];
     now[p].add(mass_[i], place, state.velocity[i]);
-    if (changes) was[p].add(mass_[i], next->place, next->velocity), ++next;
-    else if (differs[p]) was[p].add(mass_[i], place, state.velocity[i]);
+    if (changes)
+      was[p].add(mass_[i], next->place, next->velocity), ++next;
+    else if (differs[p])
+      was[p].add(mass_[i], place, state.velocity[i]);
   }
   std::vector<RigidMotion> by(parts_);
   for (std::uint32_t p = 0; p < parts_; ++p)
     if (concerned[p]) by[p] = correction(was[p], now[p]);
   for (std::size_t i = 0; i < n; ++i)
-    if (const auto p = part_[i]; concerned[p]) state.velocity[i] += by[p].velocity + by[p].spin.cross(position_[i] + state.displacement[i] - by[p].middle);
+    if (const auto p = part_[i]; concerned[p])
+      state.velocity[i] += by[p].velocity + by[p].spin.cross(position_[i] + state.displacement[i] - by[p].middle);
 }
 
 }  // namespace geo

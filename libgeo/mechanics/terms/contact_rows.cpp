@@ -27,26 +27,31 @@ ContactRows::ContactRows(std::span<Potential* const> potentials, const std::vect
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ContactRows::couples(std::span<const std::uint32_t> part) const {
   // Those of runs of rows one after another.
   constexpr std::size_t rows_a_run = 512;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> of_run((joining_.size() + rows_a_run - 1) / rows_a_run);
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> of_run((joining_.size() + rows_a_run - 1) /
+                                                                           rows_a_run);
   parallel_for(of_run.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       for (std::size_t j = k * rows_a_run; j < std::min(joining_.size(), (k + 1) * rows_a_run); ++j)
         for (const auto& e : entries_[joining_[j]])
-          if (const std::pair pair(part[entries_[joining_[j]][0].node], part[e.node]); pair.first != pair.second && (of_run[k].empty() || pair != of_run[k].back())) of_run[k].push_back(pair);
+          if (const std::pair pair(part[entries_[joining_[j]][0].node], part[e.node]);
+              pair.first != pair.second && (of_run[k].empty() || pair != of_run[k].back()))
+            of_run[k].push_back(pair);
   });
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (const auto& some : of_run) pairs.insert(pairs.end(), some.begin(), some.end());
   return pairs;
 }
 
-std::vector<std::uint32_t> ContactRows::rows_at_work(std::span<const std::uint32_t> part, const std::vector<char>& chosen) const {
+std::vector<std::uint32_t> ContactRows::rows_at_work(std::span<const std::uint32_t> part,
+                                                     const std::vector<char>& chosen) const {
   std::vector<std::uint32_t> rows;
   for (std::uint32_t r = 0; r < rows_.size(); ++r)
     if (!idle_[r] && chosen[part[rows_[r].node]]) rows.push_back(r);
   return rows;
 }
 
-void ContactRows::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen, std::vector<double>& sum) {
+void ContactRows::add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part,
+                             const std::vector<char>& chosen, std::vector<double>& sum) {
   if (empty()) return;
   std::vector<double> moved(chosen.size(), 0);
   for (std::size_t i = 0; i < u.size(); ++i)
@@ -56,10 +61,12 @@ void ContactRows::add_energy(const std::vector<Vec3>& u, std::span<const std::ui
     if (const auto p = part[rows_[r].node]; chosen[p]) idle_[r] = !listed_[r] && moved[p] < rows_[r].reach;
   const auto rows = rows_at_work(part, chosen);
   std::vector<double> energy(rows.size());
-  each_row_sum(rows.size(), u, [&](std::size_t k) { return entries_[rows[k]]; }, [&](std::size_t k, const Vec3& way) {
-    const auto r = rows[k];
-    way_[r] = way, energy[k] = rows_[r].of->energy(rows_[r].number, way);
-  });
+  each_row_sum(
+      rows.size(), u, [&](std::size_t k) { return entries_[rows[k]]; },
+      [&](std::size_t k, const Vec3& way) {
+        const auto r = rows[k];
+        way_[r] = way, energy[k] = rows_[r].of->energy(rows_[r].number, way);
+      });
   for (std::size_t k = 0; k < rows.size(); ++k) sum[part[rows_[rows[k]].node]] += energy[k];
 }
 
@@ -116,7 +123,8 @@ void ContactRows::multiply(const std::vector<Vec3>& p) {
     parallel_for(lists.size(), few, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const auto shares = lists.of_row(k);
-        Eigen::Vector4f some[4] = {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()};
+        Eigen::Vector4f some[4] = {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(),
+                                   Eigen::Vector4f::Zero()};
         std::size_t at = 0;
         for (; at + 4 <= shares.size(); at += 4)
           for (std::size_t c = 0; c < 4; ++c) some[c] += shares[at + c].weight * single_[shares[at + c].of];

@@ -1,5 +1,5 @@
-// The rows of all that acts on nodes besides elasticity in a time step, beside each other: what they make depend on each other, their energies, forces and
-// product.
+// The rows of all that acts on nodes besides elasticity in a time step, beside each other: what they make depend on
+// each other, their energies, forces and product.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,12 @@ class ContactRows {
   /// Pairs that join the parts of all nodes of each row, where `part` is each node's; none of a part with itself.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(std::span<const std::uint32_t> part) const;
 
-  /// Adds to sum[part] the energies, J, at displacements u of rows of parts that are chosen. `part`: of each node, a row's nodes of one.
-  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen, std::vector<double>& sum);
-  /// Takes over what rows of parts that are chosen do, each at the displacements of the last add_energy() that it was chosen in.
+  /// Adds to sum[part] the energies, J, at displacements u of rows of parts that are chosen. `part`: of each node, a
+  /// row's nodes of one.
+  void add_energy(const std::vector<Vec3>& u, std::span<const std::uint32_t> part, const std::vector<char>& chosen,
+                  std::vector<double>& sum);
+  /// Takes over what rows of parts that are chosen do, each at the displacements of the last add_energy() that it was
+  /// chosen in.
   void push(std::span<const std::uint32_t> part, const std::vector<char>& chosen);
   /// Whether a row of a node does something, or has done so since the step began.
   bool acts_on(std::size_t node) const { return !lists_[0].of_node(node).empty() || !lists_[1].of_node(node).empty(); }
@@ -35,8 +38,8 @@ class ContactRows {
       for (const auto& share : lists.of_node(node)) sum += share.weight * pull_[share.of];
     return sum.head<3>().cast<double>();
   }
-  /// Adds for each node a 3×3 block, N/m, for a preconditioner: that of ∂²E/∂u², and more where a row's weight is spread over many nodes, as those near
-  /// each other move together.
+  /// Adds for each node a 3×3 block, N/m, for a preconditioner: that of ∂²E/∂u², and more where a row's weight is
+  /// spread over many nodes, as those near each other move together.
   void add_blocks(std::vector<Mat3>& out) const;
 
  private:
@@ -53,15 +56,16 @@ class ContactRows {
   std::vector<Row> rows_;
   std::vector<std::span<const NodeWeight>> entries_;
   std::vector<std::uint32_t> joining_;  // rows whose nodes may be of several parts
-  std::vector<std::uint8_t> idle_;  // has never done anything, nor could where nodes were at its last evaluation
+  std::vector<std::uint8_t> idle_;      // has never done anything, nor could where nodes were at its last evaluation
   std::vector<Vec3> way_, force_;
   using Curvature = Eigen::Matrix<float, 4, 3>;  // a row of zeros below
   std::vector<Curvature> curvature_;
-  // Rows that do something, or have done so since the step began: those that did when the first list was made, and the few that came since.
+  // Rows that do something, or have done so since the step began: those that did when the first list was made, and the
+  // few that came since.
   RowLists lists_[2];
-  std::vector<std::uint8_t> listed_;  // 1 + of which
+  std::vector<std::uint8_t> listed_;     // 1 + of which
   std::vector<Eigen::Vector4f> single_;  // what multiply() is given
-  std::vector<Eigen::Vector4f> pull_;  // of each that is listed: what it has for its nodes, but for their weights
+  std::vector<Eigen::Vector4f> pull_;    // of each that is listed: what it has for its nodes, but for their weights
 };
 
 }  // namespace geo

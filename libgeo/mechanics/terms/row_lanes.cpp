@@ -13,7 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void SumRows(const std::span<const NodeWeight> (&rows)[rows_together], const FourNumbers* values, FourNumbers (&sums)[rows_together]) {
+void SumRows(const std::span<const NodeWeight> (&rows)[rows_together], const FourNumbers* values,
+             FourNumbers (&sums)[rows_together]) {
   using Tag = hn::CappedTag<double, 4>;
   const Tag d;
   constexpr std::size_t step = hn::MaxLanes(Tag());
@@ -42,7 +43,10 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(SumRows);
 
-void sum_rows(const std::span<const NodeWeight> (&rows)[rows_together], const FourNumbers* values, FourNumbers (&sums)[rows_together]) { HWY_DYNAMIC_DISPATCH(SumRows)(rows, values, sums); }
+void sum_rows(const std::span<const NodeWeight> (&rows)[rows_together], const FourNumbers* values,
+              FourNumbers (&sums)[rows_together]) {
+  HWY_DYNAMIC_DISPATCH(SumRows)(rows, values, sums);
+}
 
 }  // namespace geo
 #endif

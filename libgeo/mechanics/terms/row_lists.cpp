@@ -7,7 +7,8 @@
 
 namespace geo {
 
-RowLists::RowLists(std::span<const std::uint32_t> rows, const std::vector<std::span<const NodeWeight>>& entries, std::size_t nodes)
+RowLists::RowLists(std::span<const std::uint32_t> rows, const std::vector<std::span<const NodeWeight>>& entries,
+                   std::size_t nodes)
     : rows_(rows.begin(), rows.end()), first_own_(1, 0), first_share_(nodes + 1, 0) {
   first_own_.reserve(rows_.size() + 1);
   for (const auto r : rows_) first_own_.push_back(first_own_.back() + entries[r].size());

@@ -5,8 +5,8 @@
 #include "base/random.h"
 #include "body/agreement.h"
 #include "cases.h"
-#include "kerf/crossing.h"
 #include "contact/self_contact.h"
+#include "kerf/crossing.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
 
@@ -24,18 +24,21 @@ TEST_CASE("sheets cut in a body at rest are born together") {
   for (int blade = 0; blade < 2; ++blade) {
     const auto edge = [&](double z) {
       std::vector<Vec3> points;
-      for (int i = 0; i <= 12; ++i) points.push_back({0.52 + 0.48 * blade + 0.3 * (z - 0.6) + 0.02 * std::sin(7 * z + i), -0.2 + 1.4 * i / 12, z});
+      for (int i = 0; i <= 12; ++i)
+        points.push_back({0.52 + 0.48 * blade + 0.3 * (z - 0.6) + 0.02 * std::sin(7 * z + i), -0.2 + 1.4 * i / 12, z});
       return points;
     };
     FrontState front = begin_front(edge(1.3), false, blade + 1);
     for (int step = 1; step <= 8; ++step) {
-      const BodyDelta delta = split(body, front, edge(1.3 - 0.14 * step), {}, nullptr,
-                                    [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
+      const BodyDelta delta = split(
+          body, front, edge(1.3 - 0.14 * step), {}, nullptr,
+          [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
       solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
       surface.follow(body, solid, delta);
       const auto& s = surface.surface();
       for (std::size_t v = 0; v < s.site.size(); ++v)
-        if (body.surface.alive(SurfaceVertexId(v))) CHECK((surface.positions()[v] - body.surface.point(VertexId(s.site[v]))).norm() < 1e-14);
+        if (body.surface.alive(SurfaceVertexId(v)))
+          CHECK((surface.positions()[v] - body.surface.point(VertexId(s.site[v]))).norm() < 1e-14);
       TriangleMesh mesh_now;
       mesh_now.vertices = surface.positions(), mesh_now.triangles = s.triangles, mesh_now.site = s.site;
       CHECK(count_crossings(mesh_now) == 0);
@@ -43,7 +46,8 @@ TEST_CASE("sheets cut in a body at rest are born together") {
   }
 }
 
-TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over itself, are born together", "[campaign]") {
+TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over itself, are born together",
+          "[campaign]") {
   const auto [first, count] = seeds(6);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -65,13 +69,16 @@ TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over i
     surface.resolve(body, solid, state.displacement, 1, {}, state);
     const auto edge = [&](double z) {
       std::vector<Vec3> points;
-      for (int i = 0; i <= 10; ++i) points.push_back({0.5 + random.uniform(-0.1, 0.1), -0.15 + 0.13 * i + random.uniform(-0.2, 0.2), z + random.uniform(-0.2, 0.2)});
+      for (int i = 0; i <= 10; ++i)
+        points.push_back({0.5 + random.uniform(-0.1, 0.1), -0.15 + 0.13 * i + random.uniform(-0.2, 0.2),
+                          z + random.uniform(-0.2, 0.2)});
       return points;
     };
     FrontState front = begin_front(edge(1.2), false, 1);
     for (int step = 1; step <= 8; ++step) {
-      const BodyDelta delta = split(body, front, edge(1.2 - 0.18 * step), {}, nullptr,
-                                    [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
+      const BodyDelta delta = split(
+          body, front, edge(1.2 - 0.18 * step), {}, nullptr,
+          [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
       const std::size_t known = solid.size();
       solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
       bend(known);
@@ -82,7 +89,9 @@ TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over i
       CHECK(grown.site == made.site);
       CHECK(grown.edge == made.edge);
       for (const FaceId f : delta.crack.new_crack_faces)
-        for (int c = 0; c < 3; ++c) CHECK(surface.positions()[body.surface.surface_vertex({f, 0}, c).index()] == surface.positions()[body.surface.surface_vertex({f, 1}, c).index()]);
+        for (int c = 0; c < 3; ++c)
+          CHECK(surface.positions()[body.surface.surface_vertex({f, 0}, c).index()] ==
+                surface.positions()[body.surface.surface_vertex({f, 1}, c).index()]);
     }
   }
 }

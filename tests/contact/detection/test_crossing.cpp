@@ -4,11 +4,11 @@
 #include <array>
 #include <numeric>
 
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
 #include "contact/detection/close_pairs.h"
 #include "kerf/crossing.h"
+#include "kerf/parallel.h"
 #include "kerf/shapes.h"
 #include "vectors.h"
 
@@ -19,7 +19,8 @@ TEST_CASE("a fresh crack's sheets touch, and cross once one is pushed through th
   TriangleMesh m;
   for (int copy = 0; copy < 2; ++copy)
     for (int i = 0; i < 6; ++i)
-      if (copy == 0 || i >= 2) m.vertices.push_back({double(i % 2), double(i / 2), 0}), m.site.push_back(static_cast<std::uint32_t>(i));
+      if (copy == 0 || i >= 2)
+        m.vertices.push_back({double(i % 2), double(i / 2), 0}), m.site.push_back(static_cast<std::uint32_t>(i));
   const auto other = [](std::uint32_t v) { return v < 2 ? v : v + 4; };
   for (const Triangle t : {Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{2, 3, 4}, Triangle{4, 3, 5}})
     m.triangles.push_back(t), m.triangles.push_back({other(t[0]), other(t[2]), other(t[1])});
@@ -56,8 +57,9 @@ TEST_CASE("crossings of crumpled, torn and doubled surfaces are those that a dou
     const double rough = std::array{0.0, 0.05, 0.3, 1.0}[random.below(4)];
     for (Vec3& p : m.vertices) p += rough * random.uniform() * random.direction();
     const bool two_sided = random.below(2) == 0;
-    if (random.below(2) == 0) std::erase_if(m.triangles, [&](const Triangle&) { return random.below(8) == 0; });  // open fans
-    if (random.below(2) == 0)  // flat: exact answers only
+    if (random.below(2) == 0)
+      std::erase_if(m.triangles, [&](const Triangle&) { return random.below(8) == 0; });  // open fans
+    if (random.below(2) == 0)                                                             // flat: exact answers only
       for (Vec3& p : m.vertices) p.z() = 0;
     // Other sides of some, with vertices of their own at the same sites, some of them elsewhere.
     std::vector<std::uint32_t> site(m.vertices.size());
@@ -72,7 +74,8 @@ TEST_CASE("crossings of crumpled, torn and doubled surfaces are those that a dou
         if (random.below(4) == 0) continue;  // joined there
         if (copy[v] == ~0u) {
           copy[v] = static_cast<std::uint32_t>(m.vertices.size()), site.push_back(v);
-          m.vertices.push_back(random.below(3) == 0 ? Vec3(m.vertices[v] + 0.1 * random.direction()) : Vec3(m.vertices[v]));
+          m.vertices.push_back(random.below(3) == 0 ? Vec3(m.vertices[v] + 0.1 * random.direction())
+                                                    : Vec3(m.vertices[v]));
         }
         v = copy[v];
       }
@@ -80,7 +83,9 @@ TEST_CASE("crossings of crumpled, torn and doubled surfaces are those that a dou
     }
     const auto together = vertices_together(site, m.vertices);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
-    const auto standing = [&](std::uint32_t t) { return Triangle{together[m.triangles[t][0]], together[m.triangles[t][1]], together[m.triangles[t][2]]}; };
+    const auto standing = [&](std::uint32_t t) {
+      return Triangle{together[m.triangles[t][0]], together[m.triangles[t][1]], together[m.triangles[t][2]]};
+    };
     for (std::uint32_t s = 0; s < m.triangles.size(); ++s)
       for (std::uint32_t t = s + 1; t < m.triangles.size(); ++t)
         if (triangles_cross(standing(s), standing(t), m.vertices, two_sided)) expected.push_back({s, t});
@@ -93,7 +98,9 @@ TEST_CASE("crossings of crumpled, torn and doubled surfaces are those that a dou
   }
 }
 
-TEST_CASE("crossings are counted one surface after the other as each for itself, whether triangles, places, sites or the number of vertices have changed") {
+TEST_CASE(
+    "crossings are counted one surface after the other as each for itself, whether triangles, places, sites or the "
+    "number of vertices have changed") {
   const auto [first, count] = seeds(100);
   std::size_t crossed = 0, clean = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
@@ -109,11 +116,20 @@ TEST_CASE("crossings are counted one surface after the other as each for itself,
       for (Vec3& p : m.vertices) p += rough * random.uniform() * random.direction();
       const auto some = [&] { return random.below(static_cast<std::uint32_t>(m.triangles.size())); };
       switch (random.below(6)) {
-        case 0: std::swap(m.triangles[some()], m.triangles[some()]); break;
-        case 1: std::swap(m.triangles[some()][0], m.triangles[some()][0]); break;  // as many triangles, of other vertices
-        case 2: m.vertices.push_back(m.vertices[0]); break;
-        case 3: m.triangles.pop_back(); break;
-        default: break;
+        case 0:
+          std::swap(m.triangles[some()], m.triangles[some()]);
+          break;
+        case 1:
+          std::swap(m.triangles[some()][0], m.triangles[some()][0]);
+          break;  // as many triangles, of other vertices
+        case 2:
+          m.vertices.push_back(m.vertices[0]);
+          break;
+        case 3:
+          m.triangles.pop_back();
+          break;
+        default:
+          break;
       }
       m.site.clear();
       if (random.below(2) == 0) {
@@ -133,13 +149,15 @@ TEST_CASE("what is larger than all floats is counted like anything else") {
   for (const double scale : {1.0, 0x1p100, 0x1p130, 0x1p198}) {  // exact; floats end before 2¹²⁸
     INFO(scale);
     TriangleMesh few;  // each of whose boxes is larger than all floats
-    few.vertices = {{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}, few.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    few.vertices = {{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}},
+    few.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     for (Vec3& p : few.vertices) p *= scale;
     CHECK(count_crossings(few) == 0);
     TriangleMesh mesh = make_sphere(2);
     CHECK(count_crossings(mesh) == 0);
     const std::size_t first = mesh.vertices.size();
-    for (const Triangle& t : std::vector<Triangle>(mesh.triangles)) mesh.triangles.push_back({t[0] + std::uint32_t(first), t[1] + std::uint32_t(first), t[2] + std::uint32_t(first)});
+    for (const Triangle& t : std::vector<Triangle>(mesh.triangles))
+      mesh.triangles.push_back({t[0] + std::uint32_t(first), t[1] + std::uint32_t(first), t[2] + std::uint32_t(first)});
     for (std::size_t v = 0; v < first; ++v) mesh.vertices.push_back(mesh.vertices[v] + Vec3(0.3, 0.2, 0.1));
     const std::size_t here = count_crossings(mesh);
     for (Vec3& p : mesh.vertices) p *= scale;
@@ -159,7 +177,9 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
     for (std::uint32_t i = 0; i < count; ++i) {
       const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       const double size = random.below(10) == 0 ? random.uniform(0, 1) : random.uniform(0, 0.1);
-      boxes.push_back(random.below(20) == 0 ? Box3() : Box3{p, p + size * Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1))});
+      boxes.push_back(random.below(20) == 0
+                          ? Box3()
+                          : Box3{p, p + size * Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1))});
       if (random.below(5) == 0 && !boxes.back().empty()) boxes.push_back(boxes.back());
     }
     std::vector<std::uint8_t> some;
@@ -168,7 +188,8 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
       std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
       for (std::uint32_t i = 0; i < boxes.size(); ++i)
         for (std::uint32_t j = i + 1; j < boxes.size(); ++j)
-          if (!boxes[i].empty() && !boxes[j].empty() && boxes[i].meets(boxes[j]) && (!only || some[i] || some[j])) pairs.push_back({i, j});
+          if (!boxes[i].empty() && !boxes[j].empty() && boxes[i].meets(boxes[j]) && (!only || some[i] || some[j]))
+            pairs.push_back({i, j});
       return pairs;
     };
     const auto sorted = [](std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs) {
@@ -191,9 +212,11 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
       CHECK(tree.pairs() == all);
       CHECK(tree.pairs(&some) == with_some);
     });
-    // All go elsewhere, some far, or all so far that floats hardly tell them apart; one that was empty keeps the tree from following.
+    // All go elsewhere, some far, or all so far that floats hardly tell them apart; one that was empty keeps the tree
+    // from following.
     std::vector<Box3> others = boxes;
-    const Vec3 all_by = random.below(3) == 0 ? Vec3(std::pow(10.0, random.uniform(0, 9)) * random.direction()) : Vec3(Vec3::Zero());
+    const Vec3 all_by =
+        random.below(3) == 0 ? Vec3(std::pow(10.0, random.uniform(0, 9)) * random.direction()) : Vec3(Vec3::Zero());
     for (Box3& b : others) {
       const Vec3 by = all_by + random.uniform(0, random.below(10) == 0 ? 4 : 0.1) * random.direction();
       if (!b.empty()) b.lo += by, b.hi += by;
@@ -210,13 +233,15 @@ TEST_CASE("pairs of boxes are those that a double loop finds") {
   }
 }
 
-TEST_CASE("pairs of many boxes are the same in the same order for any number of threads, also after all were replaced") {
+TEST_CASE(
+    "pairs of many boxes are the same in the same order for any number of threads, also after all were replaced") {
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   Random random(5);
   std::vector<Box3> first, then;
   std::vector<std::uint8_t> some;
   for (int i = 0; i < 10000; ++i) {
-    const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)), by = random.uniform(0, 0.1) * random.direction();
+    const Vec3 p(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)),
+        by = random.uniform(0, 0.1) * random.direction();
     const Vec3 size = 0.1 * Vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
     const bool none = random.below(50) == 0;
     first.push_back(none ? Box3() : Box3{p, p + size});
@@ -224,15 +249,19 @@ TEST_CASE("pairs of many boxes are the same in the same order for any number of 
     some.push_back(random.below(4) == 0);
   }
   const auto same = [](const std::vector<Box3>& a, const std::vector<Box3>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Box3& p, const Box3& q) { return p.lo == q.lo && p.hi == q.hi; });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Box3& p, const Box3& q) { return p.lo == q.lo && p.hi == q.hi; });
   };
   const auto run = [&] {
     BoxTree tree(first);
     std::vector<Pairs> found{tree.pairs(), tree.pairs(&some)};
     // What is refused changes nothing on either side: a box where there was none, one too few, one too many.
     auto wrong = then;
-    wrong[static_cast<std::size_t>(std::find_if(first.begin(), first.end(), [](const Box3& b) { return b.empty(); }) - first.begin())].add(Vec3::Zero());
-    for (const auto& refused : {wrong, std::vector<Box3>(then.begin(), then.end() - 1), std::vector<Box3>(then.size() + 1)}) {
+    wrong[static_cast<std::size_t>(std::find_if(first.begin(), first.end(), [](const Box3& b) { return b.empty(); }) -
+                                   first.begin())]
+        .add(Vec3::Zero());
+    for (const auto& refused :
+         {wrong, std::vector<Box3>(then.begin(), then.end() - 1), std::vector<Box3>(then.size() + 1)}) {
       auto given = refused;
       CHECK(!tree.replace(given));
       CHECK(same(given, refused));

@@ -30,7 +30,8 @@ struct StruckBlock {
   std::vector<double> inverse_mass;
   Copies alone{{}};
 
-  StruckBlock(double edge, double spacing) : body(sampled(make_block({1, 1, 1}, edge), spacing)), solid(body.nodes, body.graph, Material()) {
+  StruckBlock(double edge, double spacing)
+      : body(sampled(make_block({1, 1, 1}, edge), spacing)), solid(body.nodes, body.graph, Material()) {
     weights.update(body, solid);
     for (std::size_t i = 0; i < solid.size(); ++i) inverse_mass.push_back(1 / solid.mass(NodeId(i)));
     alone = Copies::each_alone(weights.size());
@@ -77,7 +78,8 @@ TEST_CASE("impulses keep momentum, stop what approaches, and take energy") {
     options.sweeps = 200, options.tolerance = 1e-5;
     options.softness = 0;
     apply_impulses(block.weights, touching, block.alone, block.inverse_mass, options, velocity);
-    CHECK((momentum(block.solid, velocity) - momentum(block.solid, before)).norm() < 1e-12 * 1000);  // of a mass of 1000 at 1 m/s
+    CHECK((momentum(block.solid, velocity) - momentum(block.solid, before)).norm() <
+          1e-12 * 1000);  // of a mass of 1000 at 1 m/s
     CHECK(kinetic(block.solid, velocity) <= kinetic(block.solid, before) * (1 + 1e-12));
     if (options.friction > 0) continue;
     for (const auto& t : touching) {
@@ -92,7 +94,9 @@ TEST_CASE("friction stops a slow slide and slows a fast one") {
   const StruckBlock block(0.5, 0.3);
   // Two far corners of the block: the motion below brings them together at 1, and past each other at `slide`.
   std::uint32_t a = 0, b = 0;
-  const auto at = [&](std::uint32_t v) { return block.body.surface.point(block.body.surface.site(SurfaceVertexId(v))); };
+  const auto at = [&](std::uint32_t v) {
+    return block.body.surface.point(block.body.surface.site(SurfaceVertexId(v)));
+  };
   for (std::uint32_t v = 0; v < block.weights.size(); ++v) {
     if (at(v).sum() < at(a).sum()) a = v;
     if (at(v).sum() > at(b).sum()) b = v;
@@ -100,12 +104,14 @@ TEST_CASE("friction stops a slow slide and slows a fast one") {
   for (const double slide : {0.1, 3.0}) {
     const TouchingPlaces t{{{b}, {1}, 1}, {{a}, {1}, 1}, Vec3::UnitX(), 0};
     std::vector<Vec3> velocity;
-    for (std::size_t i = 0; i < block.solid.size(); ++i) velocity.push_back(block.body.nodes.position[i].x() * Vec3(-1, slide, 0));
+    for (std::size_t i = 0; i < block.solid.size(); ++i)
+      velocity.push_back(block.body.nodes.position[i].x() * Vec3(-1, slide, 0));
     ImpulseOptions options;
     options.friction = 0.5, options.softness = 0, options.sweeps = 200, options.tolerance = 1e-5;
     apply_impulses(block.weights, std::span(&t, 1), block.alone, block.inverse_mass, options, velocity);
     const Vec3 left = block.weights.at(b, velocity) - block.weights.at(a, velocity);
     CHECK(std::abs(left.x()) < 1e-6);
-    CHECK(left.y() == Approx(slide < 0.5 ? 0 : slide - 0.5).margin(1e-6));  // the impulse along y is half of that along x, at most
+    CHECK(left.y() ==
+          Approx(slide < 0.5 ? 0 : slide - 0.5).margin(1e-6));  // the impulse along y is half of that along x, at most
   }
 }

@@ -36,7 +36,8 @@ struct Block {
 
 TEST_CASE("the field of a mesh: distance and side of random points, its derivatives") {
   const auto [first, count] = seeds(6);
-  const std::vector<TriangleMesh> models{make_block({1, 0.6, 0.1}, 0.5), make_apple(4), make_letter('K', 0.3, 12), make_pumpkin(5)};
+  const std::vector<TriangleMesh> models{make_block({1, 0.6, 0.1}, 0.5), make_apple(4), make_letter('K', 0.3, 12),
+                                         make_pumpkin(5)};
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
@@ -46,10 +47,12 @@ TEST_CASE("the field of a mesh: distance and side of random points, its derivati
       const TriangleBvh bvh(corners);
       const Box3 box = bvh.box().grown(0.2);
       for (int i = 0; i < 200; ++i) {
-        const Vec3 x(random.uniform(box.lo.x(), box.hi.x()), random.uniform(box.lo.y(), box.hi.y()), random.uniform(box.lo.z(), box.hi.z()));
+        const Vec3 x(random.uniform(box.lo.x(), box.hi.x()), random.uniform(box.lo.y(), box.hi.y()),
+                     random.uniform(box.lo.z(), box.hi.z()));
         const auto field = shape.at(x);
         double least = 1e300;
-        for (const auto& t : corners) least = std::min(least, (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm());
+        for (const auto& t : corners)
+          least = std::min(least, (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm());
         CHECK(std::abs(field.distance) == Approx(least).margin(1e-14));
         CHECK((field.distance < 0) == bvh.inside(x));
         CHECK(field.normal.norm() == Approx(1));
@@ -70,7 +73,8 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
   const std::size_t n = block.solid.size();
   const std::vector<std::uint8_t> all(n, 1);
   for (const bool plane : {true, false}) {
-    const auto shape = std::make_shared<RigidShape>(plane ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
+    const auto shape =
+        std::make_shared<RigidShape>(plane ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
     const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
     Obstacle o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
@@ -93,11 +97,14 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
         return sum;
       };
       const double h = 1e-7;
-      const std::vector<Vec3> behind = acting.force(moved(h)), before = acting.force(moved(-h)), force = acting.force(u), turned = acting.product(way);
+      const std::vector<Vec3> behind = acting.force(moved(h)), before = acting.force(moved(-h)),
+                              force = acting.force(u), turned = acting.product(way);
       // Central differences; where a vertex passes a ridge of the field between, the derivative jumps.
       const double slope = (acting.energy(moved(h)) - acting.energy(moved(-h))) / (2 * h);
       CHECK(-along(force) == Approx(slope).epsilon(1e-4));
-      if (plane) CHECK(along(turned) >= -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
+      if (plane)
+        CHECK(along(turned) >=
+              -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
       CHECK(along(turned) > 0);
     }
   }
@@ -114,14 +121,16 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   o.begin(u, 0, 1);
   const std::vector<Vec3> force = Acting(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
-  for (std::size_t i = 0; i < n; ++i) sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
+  for (std::size_t i = 0; i < n; ++i)
+    sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
   const auto reaction = o.reaction(u);
   REQUIRE(sum.norm() > 1);
   CHECK((reaction.force + sum).norm() < 1e-12 * sum.norm());
   CHECK((reaction.torque + torque).norm() < 1e-9 * sum.norm());  // weights are exact for linear fields
 }
 
-TEST_CASE("rows that are left out while nodes have not gone far do nothing there: energy and force are those of all rows") {
+TEST_CASE(
+    "rows that are left out while nodes have not gone far do nothing there: energy and force are those of all rows") {
   const Block block(0.3);
   const auto [first, count] = seeds(40);
   const std::size_t n = block.solid.size();
@@ -130,16 +139,22 @@ TEST_CASE("rows that are left out while nodes have not gone far do nothing there
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const auto shape = std::make_shared<RigidShape>(random.below(2) == 0 ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
-    const Vec3 below = shape->extent() == 0 ? Vec3(0.5, 0.5, random.uniform(-0.2, 0.05)) : Vec3(0.5, 0.45, random.uniform(-0.8, -0.4));
-    Obstacle o(shape, {1e4, 0.4}, at(below), at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
+    const auto shape = std::make_shared<RigidShape>(random.below(2) == 0 ? RigidShape::half_space({0.1, -0.2, 1})
+                                                                         : RigidShape(make_pumpkin(4)));
+    const Vec3 below =
+        shape->extent() == 0 ? Vec3(0.5, 0.5, random.uniform(-0.2, 0.05)) : Vec3(0.5, 0.45, random.uniform(-0.8, -0.4));
+    Obstacle o(shape, {1e4, 0.4}, at(below),
+               at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
     TouchPenalty touch({0.4, 0.05});
     std::vector<Vec3> u, part;
     for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());
     o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
     for (int r = 0; r < 30; ++r) {
       RelativeRow row;
-      for (int k = 0; k < 4; ++k) row.entries.push_back({static_cast<std::uint32_t>(4 * random.below(static_cast<std::uint32_t>(n / 4)) + static_cast<std::uint32_t>(k)), random.uniform(-1, 1)});
+      for (int k = 0; k < 4; ++k)
+        row.entries.push_back({static_cast<std::uint32_t>(4 * random.below(static_cast<std::uint32_t>(n / 4)) +
+                                                          static_cast<std::uint32_t>(k)),
+                               random.uniform(-1, 1)});
       touch.add(row, random.direction(), random.uniform(-0.3, 0.1), random.uniform(1, 5), u);
     }
     // Of a step's first part, and of one that begins later, where nodes have gone on since.
@@ -159,7 +174,8 @@ TEST_CASE("rows that are left out while nodes have not gone far do nothing there
           CHECK(acting.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));
           const auto force = acting.force(x), expected = force_of(*p, x);
           double size = 1e-12, wrong = 0;
-          for (std::size_t i = 0; i < n; ++i) size = std::max(size, expected[i].norm()), wrong = std::max(wrong, (force[i] - expected[i]).norm());
+          for (std::size_t i = 0; i < n; ++i)
+            size = std::max(size, expected[i].norm()), wrong = std::max(wrong, (force[i] - expected[i]).norm());
           CHECK(wrong < 1e-11 * size);
           acted += wanted > 0;
           for (std::size_t r = 0; r < p->size(); ++r) skipped += p->reach(r) > far;
@@ -168,7 +184,9 @@ TEST_CASE("rows that are left out while nodes have not gone far do nothing there
         for (std::size_t r = 0; r < p->size(); ++r) {
           if (!(p->reach(r) > 0)) continue;
           double most = 0;
-          for (int k = 0; k < 20; ++k) most = std::max(most, p->energy(r, weighed(p->row(r), begun) + 0.999 * p->reach(r) * spread(p->row(r)) * random.direction()));
+          for (int k = 0; k < 20; ++k)
+            most = std::max(most, p->energy(r, weighed(p->row(r), begun) +
+                                                   0.999 * p->reach(r) * spread(p->row(r)) * random.direction()));
           CHECK(most == 0);
         }
       }

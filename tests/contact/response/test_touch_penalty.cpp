@@ -8,11 +8,11 @@
 #include "base/random.h"
 #include "body/agreement.h"
 #include "cases.h"
-#include "kerf/crossing.h"
-#include "contact/response/mutual_contact.h"
-#include "contact/self_contact.h"
-#include "contact/response/touch_penalty.h"
 #include "contact/detection/triangle_planes.h"
+#include "contact/response/mutual_contact.h"
+#include "contact/response/touch_penalty.h"
+#include "contact/self_contact.h"
+#include "kerf/crossing.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
 
@@ -71,7 +71,8 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
     for (const Vec3& f : force) sum += f;
     CHECK(sum.norm() < 1e-12);
     const double step = 1e-6;
-    CHECK((acting.energy(moved(step)) - acting.energy(moved(-step))) / (2 * step) == Approx(-along(force)).epsilon(1e-4).margin(1e-5));
+    CHECK((acting.energy(moved(step)) - acting.energy(moved(-step))) / (2 * step) ==
+          Approx(-along(force)).epsilon(1e-4).margin(1e-5));
     CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
     std::vector<Mat3> blocks(n, Mat3::Zero());
     acting.rows().add_blocks(blocks);
@@ -86,14 +87,17 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
   }
 }
 
-TEST_CASE("nodes that a penalty makes depend on each other hang together by the pairs that it tells, and each part has its own energy") {
+TEST_CASE(
+    "nodes that a penalty makes depend on each other hang together by the pairs that it tells, and each part has its "
+    "own energy") {
   const auto [first, count] = seeds(50);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     constexpr std::uint32_t n = 24;
     std::vector<Vec3> u, at;
-    for (std::uint32_t i = 0; i < n; ++i) u.push_back(random.direction()), at.push_back(u.back() + 0.3 * random.direction());
+    for (std::uint32_t i = 0; i < n; ++i)
+      u.push_back(random.direction()), at.push_back(u.back() + 0.3 * random.direction());
     TouchPenalty touch({0.4, 0.05});
     MutualContact mutual(0.4, 0.05);
     for (int r = 0; r < 7; ++r) {
@@ -148,7 +152,9 @@ struct Sleepers : Potential {
 
 }  // namespace
 
-TEST_CASE("rows that come to act in the middle of a step, or cease to, are in forces and products like those that did from the first") {
+TEST_CASE(
+    "rows that come to act in the middle of a step, or cease to, are in forces and products like those that did from "
+    "the first") {
   const auto [first, count] = seeds(30);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -157,9 +163,12 @@ TEST_CASE("rows that come to act in the middle of a step, or cease to, are in fo
     Sleepers sleepers;
     for (std::size_t r = 0; r < total; ++r) {
       std::vector<NodeWeight> row;
-      for (std::uint32_t i = static_cast<std::uint32_t>(random.below(8)); i < n && r % 17 != 3; i += 1 + static_cast<std::uint32_t>(random.below(9))) row.push_back({i, random.uniform(-1, 1)});
+      for (std::uint32_t i = static_cast<std::uint32_t>(random.below(8)); i < n && r % 17 != 3;
+           i += 1 + static_cast<std::uint32_t>(random.below(9)))
+        row.push_back({i, random.uniform(-1, 1)});
       const Vec3 d = random.direction();
-      sleepers.nodes.push_back(row), sleepers.firm.push_back(random.uniform(1, 3) * d * d.transpose()), sleepers.awake.push_back(0);
+      sleepers.nodes.push_back(row), sleepers.firm.push_back(random.uniform(1, 3) * d * d.transpose()),
+          sleepers.awake.push_back(0);
     }
     const std::vector<Vec3> begun(n, Vec3::Zero());
     Acting acting(sleepers, begun);
@@ -174,7 +183,8 @@ TEST_CASE("rows that come to act in the middle of a step, or cease to, are in fo
         if (!sleepers.awake[r]) continue;
         const Vec3 way = weighed(sleepers.nodes[r], u), pull = sleepers.firm[r] * weighed(sleepers.nodes[r], p);
         energy += sleepers.energy(r, way);
-        for (const auto& e : sleepers.nodes[r]) force[e.node] -= e.weight * sleepers.firm[r] * way, product[e.node] += e.weight * pull;
+        for (const auto& e : sleepers.nodes[r])
+          force[e.node] -= e.weight * sleepers.firm[r] * way, product[e.node] += e.weight * pull;
       }
       CHECK(acting.energy(u) == Approx(energy).epsilon(1e-12).margin(1e-300));
       const auto pushed = acting.force(u), multiplied = acting.product(p);
@@ -196,8 +206,10 @@ TEST_CASE("what a triangle's plane parts at both ends does not meet in between")
     const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
     const std::vector<std::uint32_t> together = {0, 1, 2, 3, 4, 5};
     std::vector<Vec3> from, to;
-    for (int v = 0; v < 6; ++v) from.push_back(Vec3(v < 3 ? 0 : 0.4, 0, 0) + random.uniform(0.2, 0.6) * random.direction());
-    for (int v = 0; v < 6; ++v) to.push_back(from[static_cast<std::size_t>(v)] + random.uniform(0, 0.8) * random.direction());
+    for (int v = 0; v < 6; ++v)
+      from.push_back(Vec3(v < 3 ? 0 : 0.4, 0, 0) + random.uniform(0.2, 0.6) * random.direction());
+    for (int v = 0; v < 6; ++v)
+      to.push_back(from[static_cast<std::size_t>(v)] + random.uniform(0, 0.8) * random.direction());
     const TrianglePlanes planes(triangles, from, to);
     bool meets = false;
     for (int step = 0; step <= 500 && !meets; ++step) {
@@ -225,8 +237,9 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
   State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
   SelfContact contact(body, solid);
   auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 0.5, 0.53}, {-0.3, 1.3, 0.52}}, false, 1);
-  const auto delta = split(body, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}}, {}, nullptr,
-                           [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
+  const auto delta =
+      split(body, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}}, {}, nullptr,
+            [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
   solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
   contact.follow(body, solid, delta);
   Environment environment;
@@ -236,7 +249,8 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
   ContactWork last;
   for (int step = 0; step < 40; ++step) {
     environment.contact.clear();
-    if (Potential* touch = contact.begin(body, solid, state, 0.02, environment.gravity, environment.fixed)) environment.contact.push_back(touch);
+    if (Potential* touch = contact.begin(body, solid, state, 0.02, environment.gravity, environment.fixed))
+      environment.contact.push_back(touch);
     const std::vector<Vec3> before = state.displacement;
     solid.step_implicit(state, 0.02, environment);
     const std::vector<Vec3> after = state.displacement;
@@ -244,7 +258,8 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
     contact.resolve(body, solid, before, 0.02, environment.fixed, state, &last);
     CHECK(state.displacement == after);  // the nodes have met in the step
     TriangleMesh surface;
-    surface.vertices = contact.positions(), surface.triangles = contact.surface().triangles, surface.site = contact.surface().site;
+    surface.vertices = contact.positions(), surface.triangles = contact.surface().triangles,
+    surface.site = contact.surface().site;
     CHECK(count_crossings(surface) == 0);
   }
   CHECK(last.touching > 10);

@@ -8,14 +8,16 @@
 
 using namespace geo;
 
-TEST_CASE("after each step of a cut the weights are those of a surface looked at from scratch, to the bit", "[campaign]") {
+TEST_CASE("after each step of a cut the weights are those of a surface looked at from scratch, to the bit",
+          "[campaign]") {
   const auto [first, count] = seeds(6);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     SampleOptions sampling;
     sampling.spacing = 0.12, sampling.seed = seed;
-    Body body = build_body(Complex::from_skin(make_block({1, 1, 1}, 0.2)), sample_nodes(make_block({1, 1, 1}, 0.2), sampling), {26, NeighborMethod::automatic});
+    Body body = build_body(Complex::from_skin(make_block({1, 1, 1}, 0.2)),
+                           sample_nodes(make_block({1, 1, 1}, 0.2), sampling), {26, NeighborMethod::automatic});
     body.resample_limit = random.below(2) == 0 ? 0 : body.resample_limit;
     Solid solid(body, Material{});
     State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
@@ -35,14 +37,17 @@ TEST_CASE("after each step of a cut the weights are those of a surface looked at
       std::size_t other = 0;
       for (std::size_t v = 0; v < whole.size(); ++v) {
         const auto a = weights.row(v), b = whole.row(v);
-        other += !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NodeWeight& p, const NodeWeight& q) { return p.node == q.node && p.weight == q.weight; });
+        other += !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NodeWeight& p, const NodeWeight& q) {
+          return p.node == q.node && p.weight == q.weight;
+        });
       }
       CHECK(other == 0);
       // Many at once are what each is alone, to the bit, in any order.
       std::vector<Vec3> values;
       for (std::size_t i = 0; i < solid.size(); ++i) values.push_back(random.direction());
       std::vector<std::uint32_t> asked;
-      for (std::size_t k = 0; k < whole.size() + 1; ++k) asked.push_back(random.below(static_cast<std::uint32_t>(whole.size())));
+      for (std::size_t k = 0; k < whole.size() + 1; ++k)
+        asked.push_back(random.below(static_cast<std::uint32_t>(whole.size())));
       const std::vector<Vec3> many = whole.at_each(asked, values);
       std::size_t differ = 0;
       for (std::size_t k = 0; k < asked.size(); ++k) differ += many[k] != whole.at(asked[k], values);

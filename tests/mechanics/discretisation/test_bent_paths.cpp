@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
-#include "mechanics/discretisation/bent_paths.h"
 #include "mechanics/bodies.h"
+#include "mechanics/discretisation/bent_paths.h"
 
 using namespace geo;
 
@@ -19,11 +19,13 @@ struct Cracked {
 Cracked cracked(int steps) {
   Cracked c{block_body({1, 1, 1}, 0.2), {}, {}};
   auto front = begin_front(blade_at({0.5, -0.2, 1.1}, {0.5, 1.2, 1.1}, {0, 0, -0.3}, 0, 5), false, 1);
-  for (int k = 1; k <= steps; ++k) split(c.body, front, blade_at({0.5, -0.2, 1.1}, {0.5, 1.2, 1.1}, {0, 0, -0.3}, k, 5));
+  for (int k = 1; k <= steps; ++k)
+    split(c.body, front, blade_at({0.5, -0.2, 1.1}, {0.5, 1.2, 1.1}, {0, 0, -0.3}, k, 5));
   std::vector<FaceId> alive;
   std::vector<std::array<Vec3, 3>> corners;
   for (std::uint32_t f = 0; f < c.body.surface.face_count(); ++f)
-    if (c.body.surface.alive(FaceId(f))) alive.push_back(FaceId(f)), corners.push_back(c.body.surface.corners(FaceId(f)));
+    if (c.body.surface.alive(FaceId(f)))
+      alive.push_back(FaceId(f)), corners.push_back(c.body.surface.corners(FaceId(f)));
   c.faces = TriangleBvh(corners);
   c.edges = front_edges(c.body.surface, alive);
   return c;
@@ -50,11 +52,13 @@ TEST_CASE("a node behind a crack is as far as the way round its front says") {
   const double straight = (node - x).norm(), way = std::hypot(0.07, 0.06);
   const Vec3 high(0.46, 0.47, 0.53), over(0.53, 0.53, 0.54);
   const double reach = 0.4, bent = std::hypot(0.05 + 0.05, 0.06), apart = (over - high).norm();
-  const auto level = sight_round(x, node, reach, c.edges, c.faces), found = sight_round(high, over, reach, c.edges, c.faces);
+  const auto level = sight_round(x, node, reach, c.edges, c.faces),
+             found = sight_round(high, over, reach, c.edges, c.faces);
   REQUIRE(level);
   CHECK(level->distance == Approx(std::pow(way / straight, 4) * straight).epsilon(0.02));
   REQUIRE(found);
-  CHECK(found->distance == Approx(std::pow(bent / apart, 4) * apart).epsilon(0.05));  // it bends a little ahead of the front
+  CHECK(found->distance ==
+        Approx(std::pow(bent / apart, 4) * apart).epsilon(0.05));  // it bends a little ahead of the front
   CHECK_FALSE(sight_round(high, over, 0.99 * found->distance, c.edges, c.faces));
   CHECK_FALSE(sight_round({0.46, 0.47, 0.8}, {0.53, 0.53, 0.8}, reach, c.edges, c.faces));
   for (const FrontEdge& e : c.edges) CHECK_FALSE(sight_round(high, over, reach, std::span(&e, 1), cracked(5).faces));
@@ -66,7 +70,9 @@ TEST_CASE("distances round a front slope as differences say, and are no less tha
   int seen = 0;
   for (std::uint64_t seed = first; seed < first + std::uint64_t(count); ++seed) {
     Random random(seed);
-    const auto side = [&](double sign) { return Vec3(0.5 + sign * random.uniform(0.01, 0.2), random.uniform(0.3, 0.7), random.uniform(0.45, 0.65)); };
+    const auto side = [&](double sign) {
+      return Vec3(0.5 + sign * random.uniform(0.01, 0.2), random.uniform(0.3, 0.7), random.uniform(0.45, 0.65));
+    };
     const Vec3 x = side(-1), node = side(1);
     const double reach = 0.6, step = 1e-7;
     if (!c.faces.blocks(x, node)) continue;
@@ -76,8 +82,11 @@ TEST_CASE("distances round a front slope as differences say, and are no less tha
     ++seen;
     CHECK(here->distance >= (node - x).norm());
     const Vec3 d = step * random.direction();
-    const auto forward = sight_round(x + d, node, reach, c.edges, c.faces), back = sight_round(x - d, node, reach, c.edges, c.faces);
-    if (forward && back) CHECK(forward->distance - back->distance == Approx(2 * here->slope.dot(d)).margin(1e-4 * step * here->slope.norm()));
+    const auto forward = sight_round(x + d, node, reach, c.edges, c.faces),
+               back = sight_round(x - d, node, reach, c.edges, c.faces);
+    if (forward && back)
+      CHECK(forward->distance - back->distance ==
+            Approx(2 * here->slope.dot(d)).margin(1e-4 * step * here->slope.norm()));
   }
   CHECK(seen > 50);
 }

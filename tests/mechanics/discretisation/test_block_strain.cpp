@@ -6,9 +6,9 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/discretisation/elastic_block.h"
-#include "kerf/solid.h"
 #include "vectors.h"
 
 using namespace geo;
@@ -34,7 +34,8 @@ struct Affine {
 };
 // Turned by any angle, far away, and stretched by a tenth.
 Affine any_affine(Random& random) {
-  const Mat3 turned = Eigen::AngleAxisd(random.uniform(0, 3.1), random.direction()).toRotationMatrix(), stretch = Mat3::NullaryExpr([&] { return random.uniform(-0.1, 0.1); });
+  const Mat3 turned = Eigen::AngleAxisd(random.uniform(0, 3.1), random.direction()).toRotationMatrix(),
+             stretch = Mat3::NullaryExpr([&] { return random.uniform(-0.1, 0.1); });
   return {turned * (Mat3::Identity() + stretch) - Mat3::Identity(), 1e3 * random.direction()};
 }
 
@@ -50,20 +51,25 @@ Mat3 matrix(const Columns<double>& columns, std::size_t point) {
   return m;
 }
 
-double most_apart(const MaterialPoints& points, const BlockStrain& one, const BlockStrain& other, const std::vector<Vec3>& u) {
+double most_apart(const MaterialPoints& points, const BlockStrain& one, const BlockStrain& other,
+                  const std::vector<Vec3>& u) {
   BlockStrain::Room room;
   Columns<double> a, b;
   double most = 0;
   for (std::size_t block = 0; block < points.blocks.size(); ++block) {
     one.gradients(block, u, room, a), other.gradients(block, u, room, b);
-    for (std::size_t i = 0; i < points.blocks[block].points.size(); ++i) most = std::max(most, (matrix(a, i) - matrix(b, i)).norm());
+    for (std::size_t i = 0; i < points.blocks[block].points.size(); ++i)
+      most = std::max(most, (matrix(a, i) - matrix(b, i)).norm());
   }
   return most;
 }
 
 }  // namespace
 
-TEST_CASE("what has moved affinely has no strain from single precision, and strains about it are off by ten-thousandths of themselves", "[mechanics]") {
+TEST_CASE(
+    "what has moved affinely has no strain from single precision, and strains about it are off by ten-thousandths of "
+    "themselves",
+    "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
   const Solid solid(body, steel());
   const MaterialPoints& points = solid.points();
@@ -77,7 +83,8 @@ TEST_CASE("what has moved affinely has no strain from single precision, and stra
     const Affine affine = any_affine(random);
     const double size = std::pow(10.0, random.uniform(-8, -0.5));
     const auto waves = any_waves(random, size);
-    const auto moved = field(body, affine), bent = field(body, [&](const Vec3& x) -> Vec3 { return affine(x) + waves(x); });
+    const auto moved = field(body, affine),
+               bent = field(body, [&](const Vec3&x) -> Vec3 { return affine(x) + waves(x); });
     on_every_target([&] {
       const BlockStrain loose(points, body.nodes.position, whole, moved);
       CHECK(most_apart(points, exact, loose, moved) < 1e-11);  // of a shift of 1e3, in places 1e-13 of that
@@ -102,7 +109,9 @@ TEST_CASE("forces in single precision are those of the energies beside them", "[
     ElasticBlock::Room room;
     ElasticBlock block(room, loose, Materials(steel()));
     // Two places on either side, and the force between.
-    const auto at = [&](double t) { return field(body, [&](const Vec3& x) -> Vec3 { return affine(x) + waves(x) + t * way(x); }); };
+    const auto at = [&](double t) {
+      return field(body, [&](const Vec3& x) -> Vec3 { return affine(x) + waves(x) + t * way(x); });
+    };
     constexpr double step = 1e-3;
     const auto before = at(-step), here = at(0), after = at(step), direction = field(body, way);
     double less = 0, more = 0, work = 0, size = 0;
@@ -113,14 +122,16 @@ TEST_CASE("forces in single precision are those of the energies beside them", "[
       block.evaluate(b, here, {}, nullptr, pull.data());
       for (std::size_t j = 0; j < points.blocks[b].nodes.size(); ++j) {
         const Vec3 own = Eigen::Map<const Vec3>(&pull[4 * j]);
-        work += own.dot(direction[points.blocks[b].nodes[j]]), size += own.norm() * direction[points.blocks[b].nodes[j]].norm();
+        work += own.dot(direction[points.blocks[b].nodes[j]]),
+            size += own.norm() * direction[points.blocks[b].nodes[j]].norm();
       }
     }
     CHECK(std::abs((more - less) / (2 * step) - work) < 1e-5 * size);
   }
 }
 
-TEST_CASE("blocks of several pieces, and points that do not know what is affine, stay in double precision", "[mechanics]") {
+TEST_CASE("blocks of several pieces, and points that do not know what is affine, stay in double precision",
+          "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
   Solid solid(body, steel());
   MaterialPoints points = solid.points();
@@ -140,7 +151,9 @@ TEST_CASE("blocks of several pieces, and points that do not know what is affine,
   }
   CHECK(mixed > 0);
   for (PointBlock& block : points.blocks) block.points[0].rung = Rung::regularised;
-  CHECK(most_apart(points, BlockStrain(points), BlockStrain(points, body.nodes.position, std::vector<std::uint32_t>(body.nodes.size(), 0), u), u) == 0);
+  CHECK(most_apart(points, BlockStrain(points),
+                   BlockStrain(points, body.nodes.position, std::vector<std::uint32_t>(body.nodes.size(), 0), u),
+                   u) == 0);
 }
 
 TEST_CASE("a stiff bar that has turned stays as it is, however little accuracy is asked for", "[mechanics]") {

@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "graph/lane_search.h"
-#include "mechanics/bodies.h"
+#include "kerf/parallel.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 
 using namespace geo;
 
@@ -19,7 +19,9 @@ Material soft() {
   return m;
 }
 
-State at_rest(const Body& body) { return {std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), {}}; }
+State at_rest(const Body& body) {
+  return {std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), {}};
+}
 
 std::vector<Vec3> field(const Body& body, const std::function<Vec3(const Vec3&)>& u) {
   std::vector<Vec3> values;
@@ -27,7 +29,9 @@ std::vector<Vec3> field(const Body& body, const std::function<Vec3(const Vec3&)>
   return values;
 }
 
-bool same(const Solid& a, const Solid& b) { return a.points().blocks == b.points().blocks && a.patches() == b.patches(); }
+bool same(const Solid& a, const Solid& b) {
+  return a.points().blocks == b.points().blocks && a.patches() == b.patches();
+}
 
 // A block with a slanting cut half way through it.
 Body cut_block(int steps, double spacing = 0.14) {
@@ -71,7 +75,8 @@ TEST_CASE("patch test: linear fields have constant strain at all points, with a 
   for (std::size_t b = 0; b < solid.points().blocks.size(); ++b) {
     const auto g = solid.points().gradients(b, u);
     for (std::size_t i = 0; i < g.size(); ++i)
-      if (solid.points().blocks[b].points[i].rung != Rung::rigid) worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
+      if (solid.points().blocks[b].points[i].rung != Rung::rigid)
+        worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
   }
   CHECK(worst < 1e-10);
   CHECK(solid.rungs().points[2] == 0);
@@ -86,7 +91,8 @@ TEST_CASE("no point takes a node from beyond the crack") {
     for (std::size_t i = 0; i < b.points.size(); ++i)
       for (const auto j : b.row(i).to) CHECK((b.points[i].position.x() < 0.47) == (body.nodes.position[j].x() < 0.47));
   }
-  const double energy = solid.energy(field(body, [](const Vec3& x) { return x.x() < 0.47 ? Vec3(-1, 0, 0) : Vec3(1, 2, 3); }));
+  const double energy =
+      solid.energy(field(body, [](const Vec3& x) { return x.x() < 0.47 ? Vec3(-1, 0, 0) : Vec3(1, 2, 3); }));
   CHECK(energy < 1e-20 * soft().young);
 }
 
@@ -111,7 +117,8 @@ TEST_CASE("a solid that follows cuts equals one built anew, bit for bit") {
 // Of some nodes, a little less or more.
 std::vector<std::pair<NodeId, double>> other_radii(const Body& body, Random& random) {
   std::vector<std::pair<NodeId, double>> radii;
-  for (std::uint32_t i = random.below(5); i < body.nodes.size(); i += 1 + random.below(40)) radii.push_back({NodeId(i), body.nodes.radius[i] * random.uniform(0.8, 1.2)});
+  for (std::uint32_t i = random.below(5); i < body.nodes.size(); i += 1 + random.below(40))
+    radii.push_back({NodeId(i), body.nodes.radius[i] * random.uniform(0.8, 1.2)});
   return radii;
 }
 
@@ -125,12 +132,14 @@ TEST_CASE("a solid that follows random cuts and other radii, several at once, eq
     for (int cut = 1; cut <= 3; ++cut) {
       const double x = 0.2 + 0.6 * random.uniform(), y = 0.15 + 0.5 * random.uniform();
       const bool across = random.uniform() < 0.5;
-      const Vec3 a = across ? Vec3(x, -0.2, 0.9) : Vec3(-0.2, y, 0.9), b = across ? Vec3(1 - x, 1, 0.9) : Vec3(1.2, 0.8 - y, 0.9);
+      const Vec3 a = across ? Vec3(x, -0.2, 0.9) : Vec3(-0.2, y, 0.9),
+                 b = across ? Vec3(1 - x, 1, 0.9) : Vec3(1.2, 0.8 - y, 0.9);
       const Vec3 step(0.04 * random.uniform(), 0.04 * random.uniform(), -0.1 - 0.1 * random.uniform());
       auto front = begin_front(blade_at(a, b, step, 0, 3), false, cut);
       for (int k = 1; k <= 5; ++k) {
         solid.follow(body, split(body, front, blade_at(a, b, step, k, 3)), state);
-        if (seed % 2 == 0 && random.uniform() < 0.5) solid.follow(body, resize_nodes(body, other_radii(body, random)), state);
+        if (seed % 2 == 0 && random.uniform() < 0.5)
+          solid.follow(body, resize_nodes(body, other_radii(body, random)), state);
         if (random.uniform() < 0.4) continue;
         solid.settle(body, state);
         CHECK(same(solid, Solid(body, soft())));
@@ -163,7 +172,8 @@ TEST_CASE("linear and angular momentum and mass carry over cuts and insertions")
   for (int k = 1; k <= 6; ++k) {
     solid.update(body, split(body, front, blade_at({0.47, -0.2, 1.2}, {0.53, 1.2, 1.2}, {0.01, 0, -0.25}, k)), state);
     CHECK((solid.momentum(state) - before * drift).norm() < 1e-12 * angular.norm());
-    if (k < 5 && drift.isZero()) CHECK((solid.angular_momentum(state) - angular).norm() < 1e-12 * angular.norm());  // one part yet
+    if (k < 5 && drift.isZero())
+      CHECK((solid.angular_momentum(state) - angular).norm() < 1e-12 * angular.norm());  // one part yet
   }
   CHECK(body.nodes.size() > nodes);
   CHECK(mass() == Approx(before).epsilon(1e-13));
@@ -193,7 +203,8 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
     // A little larger in all directions: every point's stiffness is positive, and none is changed.
     auto u = field(body, [&](const Vec3& x) { return Vec3(0.08 * x + 0.002 * random.direction()); });
     std::vector<Vec3> p, plus = u, minus = u;
-    for (std::size_t i = 0; i < u.size(); ++i) p.push_back(random.direction()), plus[i] += 1e-5 * p[i], minus[i] -= 1e-5 * p[i];
+    for (std::size_t i = 0; i < u.size(); ++i)
+      p.push_back(random.direction()), plus[i] += 1e-5 * p[i], minus[i] -= 1e-5 * p[i];
     const auto forward = solid.forces(plus), backward = solid.forces(minus), product = solid.stiffness_product(u, p);
     double error = 0, size = 0;
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -209,7 +220,9 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
   }
 }
 
-TEST_CASE("steps give the same bytes for any number of threads and all vectors that multiply and add at once, others the same to the accuracy") {
+TEST_CASE(
+    "steps give the same bytes for any number of threads and all vectors that multiply and add at once, others the "
+    "same to the accuracy") {
   constexpr double spacing = 0.08;  // several ranges of patches' boxes for threads
   const Body body = block_body({1, 0.6, 0.6}, spacing);
   Material m = soft();
@@ -238,7 +251,8 @@ TEST_CASE("steps give the same bytes for any number of threads and all vectors t
       continue;
     }
     std::size_t off = 0;
-    for (std::size_t i = 0; i < found.second.size(); ++i) off += !((found.second[i] - expected.second[i]).norm() < 1e-3 * spacing);  // NaN is off, too
+    for (std::size_t i = 0; i < found.second.size(); ++i)
+      off += !((found.second[i] - expected.second[i]).norm() < 1e-3 * spacing);  // NaN is off, too
     CHECK(off == 0);
   }
   use_vector_target("");
@@ -249,7 +263,8 @@ TEST_CASE("a crushed, an inverted and a torn block come back without NaN") {
   const Solid solid(body, soft());
   for (const double squeeze : {0.1, -0.5, 0.0}) {
     State state = at_rest(body);
-    for (std::size_t i = 0; i < body.nodes.size(); ++i) state.displacement[i].x() = (squeeze - 1) * body.nodes.position[i].x();
+    for (std::size_t i = 0; i < body.nodes.size(); ++i)
+      state.displacement[i].x() = (squeeze - 1) * body.nodes.position[i].x();
     const double before = solid.energy(state.displacement);
     Environment env;
     env.gravity.setZero();
@@ -266,7 +281,8 @@ TEST_CASE("plastic material keeps a part of its strain, elastic none, and the pa
   Solid solid(body, m);
   State state = at_rest(body);
   const auto stretch = [&](double by) {
-    for (std::size_t i = 0; i < state.displacement.size(); ++i) state.displacement[i] = Vec3(by * body.nodes.position[i].x(), 0, 0), state.velocity[i].setZero();
+    for (std::size_t i = 0; i < state.displacement.size(); ++i)
+      state.displacement[i] = Vec3(by * body.nodes.position[i].x(), 0, 0), state.velocity[i].setZero();
   };
   Environment still;
   still.gravity.setZero();
@@ -278,7 +294,8 @@ TEST_CASE("plastic material keeps a part of its strain, elastic none, and the pa
   CHECK(kept > 0.15);  // of 0.22: it flows until less than the yield is left
   CHECK(kept < 0.22);
   auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.3}, 0), false, 1);
-  for (int k = 1; k <= 2; ++k) solid.update(body, split(body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.3}, k)), state);
+  for (int k = 1; k <= 2; ++k)
+    solid.update(body, split(body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.3}, k)), state);
   REQUIRE(state.plastic.size() == solid.points().size());
   Environment free;
   free.gravity.setZero();
@@ -286,7 +303,9 @@ TEST_CASE("plastic material keeps a part of its strain, elastic none, and the pa
   double longest = 0;
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
     for (std::size_t j = 0; j < body.nodes.size(); ++j)
-      longest = std::max(longest, (body.nodes.position[i] + state.displacement[i] - body.nodes.position[j] - state.displacement[j]).x());
+      longest = std::max(
+          longest,
+          (body.nodes.position[i] + state.displacement[i] - body.nodes.position[j] - state.displacement[j]).x());
   const double length = 1 - 0.2;
   CHECK(longest > 1.1 * length);
 }
@@ -296,7 +315,8 @@ TEST_CASE("stress at a point is that of a uniform stretch") {
   const Material m = soft();
   const Solid solid(body, m);
   State state = at_rest(body);
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) state.displacement[i] = 1e-5 * Vec3(body.nodes.position[i].x(), 0, 0);
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    state.displacement[i] = 1e-5 * Vec3(body.nodes.position[i].x(), 0, 0);
   const Mat3 s = solid.stress_at(state, {0.5, 0.3, 0.3}, 0.3);
   CHECK(s(0, 0) == Approx(1e-5 * (m.lambda() + 2 * m.mu())).epsilon(1e-3));
   CHECK(s(1, 1) == Approx(1e-5 * m.lambda()).epsilon(1e-3));

@@ -9,13 +9,15 @@
 
 using namespace geo;
 
-TEST_CASE("Points turn as the singular value decomposition says, and alike whichever stand beside them, in all vectors", "[mechanics]") {
+TEST_CASE("Points turn as the singular value decomposition says, and alike whichever stand beside them, in all vectors",
+          "[mechanics]") {
   const auto [first_seed, count] = seeds(100);
   for (int i = 0; i < count; ++i) {
     const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(i);
     CAPTURE(seed);
     Random random(seed);
-    const std::size_t points = 8 * (1 + random.below(6)), begin = 8 * random.below(static_cast<std::uint32_t>(points / 8));
+    const std::size_t points = 8 * (1 + random.below(6)),
+                      begin = 8 * random.below(static_cast<std::uint32_t>(points / 8));
     const double far = random.uniform() < 0.3 ? 0 : random.uniform(0, 1.5);  // from the rest
     Columns<float> gradient;
     gradient.resize(points);
@@ -42,9 +44,11 @@ TEST_CASE("Points turn as the singular value decomposition says, and alike which
           for (std::size_t r = 0; r < 3; ++r) f(Eigen::Index(r), Eigen::Index(c)) += gradient.column[c][4 * at + r];
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> squares(f.transpose() * f);
         Vec3 sigma = squares.eigenvalues().cwiseMax(0).cwiseSqrt();  // ascending
-        if (sigma[0] < 0.05 || (f.determinant() < 0 && sigma[1] - sigma[0] < 0.1)) continue;  // which direction is turned inside out is open
+        if (sigma[0] < 0.05 || (f.determinant() < 0 && sigma[1] - sigma[0] < 0.1))
+          continue;  // which direction is turned inside out is open
         if (f.determinant() < 0) sigma[0] *= -1;
-        const Eigen::Matrix3d rotation = f * squares.eigenvectors() * sigma.cwiseInverse().asDiagonal() * squares.eigenvectors().transpose();
+        const Eigen::Matrix3d rotation =
+            f * squares.eigenvectors() * sigma.cwiseInverse().asDiagonal() * squares.eigenvectors().transpose();
         CHECK((all.rotation(at).cast<double>() - rotation).norm() < 2e-3);
       }
       if (first.points == 0) first = all;

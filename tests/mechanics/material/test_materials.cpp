@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "kerf/error.h"
 #include "base/random.h"
 #include "graph/lane_search.h"
-#include "mechanics/bodies.h"
+#include "kerf/error.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 
 using namespace geo;
 
@@ -61,7 +61,8 @@ Material soft() {
 Material other(Discretisation discretisation) {
   Material m;
   m.model = ElasticModel::saint_venant_kirchhoff, m.discretisation = discretisation;
-  m.young = 6e5, m.poisson = 0.1, m.density = 2000, m.volume_term = 1e5, m.damping = 4, m.viscosity = 300, m.mode_penalty = 0.2;
+  m.young = 6e5, m.poisson = 0.1, m.density = 2000, m.volume_term = 1e5, m.damping = 4, m.viscosity = 300,
+  m.mode_penalty = 0.2;
   m.yield = 0.001, m.creep = 5, m.most_plastic = 0.3;
   return m;
 }
@@ -78,19 +79,23 @@ Environment clamped(const Body& body) {
 
 }  // namespace
 
-TEST_CASE("forces and stiffness of a body are those of its own material, also where points of several stand side by side") {
+TEST_CASE(
+    "forces and stiffness of a body are those of its own material, also where points of several stand side by side") {
   const Body body = both(0.03);
   for (const auto discretisation : {Discretisation::galerkin, Discretisation::mueller04}) {
     Material first = soft(), second = other(discretisation);
     first.discretisation = discretisation;
-    const Solid mixed(body, Materials({first, second}, numbers(body))), uniform[2] = {Solid(body, first), Solid(body, second)};
+    const Solid mixed(body, Materials({first, second}, numbers(body))),
+        uniform[2] = {Solid(body, first), Solid(body, second)};
     std::size_t among = 0;
     for (const PointBlock& b : mixed.points().blocks)
       for (const MaterialRun& run : b.runs) among += !run.alone;
     CHECK(among > 0);
     Random random(3);
-    std::vector<Vec3> u(body.nodes.size()), p(u.size()), own[2] = {std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.02 * random.direction(), p[i] = random.direction(), own[is_second(body, i)][i] = u[i];
+    std::vector<Vec3> u(body.nodes.size()), p(u.size()),
+        own[2] = {std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
+    for (std::size_t i = 0; i < u.size(); ++i)
+      u[i] = 0.02 * random.direction(), p[i] = random.direction(), own[is_second(body, i)][i] = u[i];
     State strained{u, u}, flown = strained;
     for (std::size_t k = 0; k < mixed.points().size(); ++k) {
       const Vec3 by = 0.05 * random.direction();
@@ -99,13 +104,16 @@ TEST_CASE("forces and stiffness of a body are those of its own material, also wh
     for (const auto& target : vector_targets()) {
       use_vector_target(target);
       for (const State* state : {&strained, &flown}) {
-        const auto stress = von_mises_stress(mixed, body.nodes, *state), of_first = von_mises_stress(uniform[0], body.nodes, *state), of_second = von_mises_stress(uniform[1], body.nodes, *state);
+        const auto stress = von_mises_stress(mixed, body.nodes, *state),
+                   of_first = von_mises_stress(uniform[0], body.nodes, *state),
+                   of_second = von_mises_stress(uniform[1], body.nodes, *state);
         for (std::size_t i = 0; i < u.size(); ++i) REQUIRE(stress[i] == (is_second(body, i) ? of_second : of_first)[i]);
         CHECK(*std::min_element(stress.begin(), stress.end()) > 0);
       }
       for (const bool second_bar : {false, true}) {
         const Solid& alike = uniform[second_bar];
-        const auto force = mixed.forces(u), forces = alike.forces(u), product = mixed.stiffness_product(u, p), products = alike.stiffness_product(u, p);
+        const auto force = mixed.forces(u), forces = alike.forces(u), product = mixed.stiffness_product(u, p),
+                   products = alike.stiffness_product(u, p);
         for (std::size_t i = 0; i < u.size(); ++i) {
           if (is_second(body, i) != second_bar) continue;
           REQUIRE(force[i] == forces[i]);
@@ -163,7 +171,8 @@ TEST_CASE("a body among others hangs as it does alone") {
       const Environment env = clamped(body);
       for (int k = 0; k < 80; ++k) solid.step_implicit(state, 0.1, env, 1e-5);
       double lowest[2] = {0, 0};
-      for (std::size_t i = 0; i < body.nodes.size(); ++i) lowest[is_second(body, i)] = std::min(lowest[is_second(body, i)], state.displacement[i].z());
+      for (std::size_t i = 0; i < body.nodes.size(); ++i)
+        lowest[is_second(body, i)] = std::min(lowest[is_second(body, i)], state.displacement[i].z());
       return std::array{lowest[0], lowest[1]};
     };
     const auto mixed = hang(together, Materials({of[0], of[1]}, numbers(together)));
@@ -185,7 +194,8 @@ TEST_CASE("materials follow a cut through bodies as if they had been built of it
     State state = at_rest(body);
     const std::size_t nodes = body.nodes.size();
     auto front = begin_front(blade_at({0.52, -0.2, 0.7}, {0.49, 1, 0.7}, {0, 0, -0.15}, 0), false, 1);
-    for (int k = 1; k <= 6; ++k) solid.update(body, split(body, front, blade_at({0.52, -0.2, 0.7}, {0.49, 1, 0.7}, {0, 0, -0.15}, k)), state);
+    for (int k = 1; k <= 6; ++k)
+      solid.update(body, split(body, front, blade_at({0.52, -0.2, 0.7}, {0.49, 1, 0.7}, {0, 0, -0.15}, k)), state);
     REQUIRE(body.nodes.size() > nodes);
     const Solid scratch(body, Materials({first, second}, numbers(body)));
     CHECK(solid.points().blocks == scratch.points().blocks);

@@ -17,15 +17,18 @@ struct Band {
   Eigen::MatrixXf matrix;
 };
 
-// Tiles at random up to `last` of each row, each row's diagonal larger than all beside it; blocks of rows that nothing joins.
+// Tiles at random up to `last` of each row, each row's diagonal larger than all beside it; blocks of rows that nothing
+// joins.
 Band random_band(Random& random) {
   Band b;
   const auto tiles = 1 + static_cast<std::size_t>(random.uniform() * 20);
-  for (std::size_t g = 0; g < tiles; ++g) b.last.push_back(std::min(tiles - 1, g + static_cast<std::size_t>(random.uniform() * random.uniform() * 8)));
+  for (std::size_t g = 0; g < tiles; ++g)
+    b.last.push_back(std::min(tiles - 1, g + static_cast<std::size_t>(random.uniform() * random.uniform() * 8)));
   const auto n = static_cast<Eigen::Index>(6 * tiles);
   b.matrix = Eigen::MatrixXf::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = i; j < std::min(n, static_cast<Eigen::Index>(6 * (b.last[static_cast<std::size_t>(i / 6)] + 1))); ++j)
+    for (Eigen::Index j = i;
+         j < std::min(n, static_cast<Eigen::Index>(6 * (b.last[static_cast<std::size_t>(i / 6)] + 1))); ++j)
       if (i != j) b.matrix(i, j) = b.matrix(j, i) = static_cast<float>(random.uniform() - 0.5);
   for (Eigen::Index i = 0; i < n; ++i) b.matrix(i, i) = 0.5f + b.matrix.row(i).cwiseAbs().sum();
   return b;

@@ -15,7 +15,9 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 Eigen::Matrix3d any_turn(Random& random) {
-  return Eigen::Quaterniond(Eigen::Vector4d::NullaryExpr([&] { return random.uniform(-1, 1); })).normalized().toRotationMatrix();
+  return Eigen::Quaterniond(Eigen::Vector4d::NullaryExpr([&] { return random.uniform(-1, 1); }))
+      .normalized()
+      .toRotationMatrix();
 }
 
 struct Case {
@@ -34,7 +36,8 @@ Case any_case(Random& random) {
   const std::size_t nodes = 1 + random.below(20), points = 1 + random.below(40);
   const auto slots = 1 + random.below(6);
   c.stride = 1 + random.below(4);
-  for (int k = 0; k < 2; ++k) c.moduli.push_back({static_cast<float>(random.uniform(0.1, 1)), static_cast<float>(random.uniform(0, 3))});
+  for (int k = 0; k < 2; ++k)
+    c.moduli.push_back({static_cast<float>(random.uniform(0.1, 1)), static_cast<float>(random.uniform(0, 3))});
   for (std::size_t j = 0; j < nodes; ++j) {
     c.slot.push_back(static_cast<std::uint16_t>(random.below(slots))), c.free.push_back(random.below(6) > 0);
     c.arm.push_back(Vec3::NullaryExpr([&] { return random.uniform(-1, 1); }));
@@ -53,13 +56,16 @@ Case any_case(Random& random) {
     c.block.first.push_back(static_cast<std::uint32_t>(c.block.to.size()));
     for (const std::size_t from : {0, 9}) {
       const Eigen::Matrix3d turn = any_turn(random);
-      for (std::size_t k = 0; k < 9; ++k) c.modes.frame[StiffnessModes::number(i, 18) + 8 * (from + k)] = static_cast<std::int16_t>(std::lround(StiffnessModes::full * turn.data()[k]));
+      for (std::size_t k = 0; k < 9; ++k)
+        c.modes.frame[StiffnessModes::number(i, 18) + 8 * (from + k)] =
+            static_cast<std::int16_t>(std::lround(StiffnessModes::full * turn.data()[k]));
     }
   }
   return c;
 }
 
-// Rows of the strain in the rotated frame, the last three √2 as long; six motions of each slot as columns; then the trace.
+// Rows of the strain in the rotated frame, the last three √2 as long; six motions of each slot as columns; then the
+// trace.
 Matrix strains(const Case& c, std::size_t point, Eigen::Index slots) {
   Matrix all = Matrix::Zero(10, 6 * slots);
   const Eigen::Matrix3d turn = c.modes.rotation(point).cast<double>();
@@ -69,7 +75,8 @@ Matrix strains(const Case& c, std::size_t point, Eigen::Index slots) {
     const Vec3 g = Eigen::Map<const Eigen::Vector3f>(&c.block.rounded[3 * q]).cast<double>();
     for (int m = 0; m < 6; ++m) {
       const Vec3 moves = m < 3 ? Vec3(Vec3::Unit(m)) : Vec3(Vec3::Unit(m - 3).cross(c.arm[j]));
-      const Eigen::Matrix3d gradient = turn.transpose() * moves * g.transpose(), strain = (gradient + gradient.transpose()) / 2;
+      const Eigen::Matrix3d gradient = turn.transpose() * moves * g.transpose(),
+                            strain = (gradient + gradient.transpose()) / 2;
       all.block<9, 1>(0, 6 * c.slot[j] + m) += strain.reshaped();
       all(9, 6 * c.slot[j] + m) += strain.trace();
     }
@@ -91,7 +98,9 @@ TEST_CASE("Rigid motions of groups have the stiffness of their strains, in all v
     for (std::size_t k = 0; k < c.block.points.size(); k += c.stride) {
       const Matrix e = strains(c, k, Eigen::Index(slots));
       const Moduli& moduli = c.moduli[c.block.points[k].material];
-      expected += double(c.stride) * c.weight[k] * (2 * moduli.shear * e.topRows(9).transpose() * e.topRows(9) + moduli.bulk * e.row(9).transpose() * e.row(9));
+      expected +=
+          double(c.stride) * c.weight[k] *
+          (2 * moduli.shear * e.topRows(9).transpose() * e.topRows(9) + moduli.bulk * e.row(9).transpose() * e.row(9));
     }
     std::vector<float> arms;
     for (std::size_t j = 0; j < c.arm.size(); ++j)
@@ -104,7 +113,9 @@ TEST_CASE("Rigid motions of groups have the stiffness of their strains, in all v
         for (std::size_t t = 0; t <= s; ++t, at += tile)
           for (std::size_t m = 0; m < 6; ++m)
             for (std::size_t k = 0; k < 6; ++k)
-              if (!(std::abs(at[8 * m + mode_at(k)] - expected(Eigen::Index(6 * s + m), Eigen::Index(6 * t + k))) <= 1e-5 * (1 + expected.norm()))) FAIL_CHECK("slots " << s << " " << t << ", motions " << m << " " << k);
+              if (!(std::abs(at[8 * m + mode_at(k)] - expected(Eigen::Index(6 * s + m), Eigen::Index(6 * t + k))) <=
+                    1e-5 * (1 + expected.norm())))
+                FAIL_CHECK("slots " << s << " " << t << ", motions " << m << " " << k);
     });
   }
 }

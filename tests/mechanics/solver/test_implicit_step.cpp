@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
-#include "mechanics/discretisation/elastic_lanes.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
+#include "mechanics/discretisation/elastic_lanes.h"
 
 using namespace geo;
 
@@ -30,7 +30,9 @@ Halves two_halves() {
   Body body = block_body({1, 0.6, 0.6}, 0.12);
   Halves made{body, Solid(body, rubber()), at_rest(body)};
   auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, 0), false, 1);
-  for (int k = 1; k <= 3; ++k) made.solid.update(made.body, split(made.body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, k)), made.state);
+  for (int k = 1; k <= 3; ++k)
+    made.solid.update(made.body, split(made.body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.4}, k)),
+                      made.state);
   return made;
 }
 
@@ -77,7 +79,9 @@ TEST_CASE("what one part does is nothing to another") {
   solid.step_implicit(state, 0.03, env, 1e-4), solid.step_implicit(torn, 0.03, env, 1e-4);
   double most = 0, moved = 0;
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
-    if (body.nodes.position[i].x() < 0.5) most = std::max(most, (torn.displacement[i] - state.displacement[i]).norm()), moved = std::max(moved, state.displacement[i].norm());
+    if (body.nodes.position[i].x() < 0.5)
+      most = std::max(most, (torn.displacement[i] - state.displacement[i]).norm()),
+      moved = std::max(moved, state.displacement[i].norm());
   CHECK(moved > 0.01);
   CHECK(most < 1e-4 * 0.12);
 }
@@ -95,7 +99,9 @@ struct Bed : Potential {
   }
   std::size_t size() const override { return on.size(); }
   std::span<const NodeWeight> row(std::size_t r) const override { return {&on[r], 1}; }
-  double energy(std::size_t, const Vec3& way) const override { return 0.5 * firm * std::pow(std::max(0.0, -way.y()), 2); }
+  double energy(std::size_t, const Vec3& way) const override {
+    return 0.5 * firm * std::pow(std::max(0.0, -way.y()), 2);
+  }
   Push push(std::size_t, const Vec3& way) override {
     if (way.y() < 0) return {-firm * way.y() * Vec3::UnitY(), firm * Vec3::UnitY() * Vec3::UnitY().transpose()};
     return {};
@@ -152,7 +158,8 @@ TEST_CASE("points side by side have the energy and the stress of one point's for
       energy.resize(count);
       elastic_points(elastic_constants(m), 0, count, volume, {}, gradient, energy, &deformed);
       for (std::size_t i = 0; i < count; ++i) {
-        CHECK(energy[i] == Approx(volume[i] * energy_density(m, f[i])).epsilon(1e-8).margin(1e-14 * m.young * size * size));
+        CHECK(energy[i] ==
+              Approx(volume[i] * energy_density(m, f[i])).epsilon(1e-8).margin(1e-14 * m.young * size * size));
         Mat3 p;
         for (int c = 0; c < 3; ++c) p.col(c) = Eigen::Map<const Vec3>(&gradient.column[c][4 * i]);
         CHECK((p - volume[i] * stress(m, f[i])).norm() < 1e-13 * m.young * (1 + std::pow(size, 5)));
@@ -173,8 +180,10 @@ TEST_CASE("what a solid keeps from step to step changes nothing but time") {
     auto front = begin_front(blade_at(a, b, down, 0), false, 1);
     Environment env;
     for (int k = 1; k <= 8; ++k) {
-      if (random.below(2)) solid.update(body, split(body, front, blade_at(a, b, down, static_cast<int>(front.step) + 1)), state);
-      env.ground = random.below(2), env.ground_point = Vec3(0, 0, 0.02);  // what touches it has another stiffness upwards
+      if (random.below(2))
+        solid.update(body, split(body, front, blade_at(a, b, down, static_cast<int>(front.step) + 1)), state);
+      env.ground = random.below(2),
+      env.ground_point = Vec3(0, 0, 0.02);  // what touches it has another stiffness upwards
       env.fixed.assign(body.nodes.size(), 0);
       for (std::size_t i = 0; i < body.nodes.size(); ++i) env.fixed[i] = body.nodes.position[i].x() < 0.1 && k % 3 != 0;
       const double dt = random.below(3) ? 0.01 : 0.02;

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
+#include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/discretisation/deformation.h"
-#include "kerf/solid.h"
 
 using namespace geo;
 
@@ -25,7 +25,8 @@ TEST_CASE("Nodes of a linear field move with it and have its stress") {
     for (std::size_t i = 0; i < moved.size(); ++i) CHECK((moved[i] - state.displacement[i]).norm() < 1e-9);
     const Mat3 f = Mat3::Identity() + slope, cauchy = stress(m, f) * f.transpose() / f.determinant();
     const Mat3 deviator = cauchy - cauchy.trace() / 3 * Mat3::Identity();
-    for (const double s : von_mises_stress(solid, body.nodes, state)) CHECK(s == Approx(std::sqrt(1.5) * deviator.norm()).epsilon(1e-6));
+    for (const double s : von_mises_stress(solid, body.nodes, state))
+      CHECK(s == Approx(std::sqrt(1.5) * deviator.norm()).epsilon(1e-6));
   }
 }
 
@@ -36,15 +37,19 @@ TEST_CASE("Nodes are moved by Eq. 1, whatever they do") {
     INFO("seed " << seed);
     Random random(seed);
     State state;
-    for (std::size_t i = 0; i < body.nodes.size(); ++i) state.displacement.push_back(random.uniform(0, 0.3) * random.direction());
+    for (std::size_t i = 0; i < body.nodes.size(); ++i)
+      state.displacement.push_back(random.uniform(0, 0.3) * random.direction());
     const auto moved = material_displacement(solid, body.nodes, body.graph, state);
     const auto gradient = solid.gradients(state.displacement);
     for (std::uint32_t i = 0; i < moved.size(); ++i) {
       CHECK((gradient[i] - solid.gradients_when_asked(state.displacement)[i]).norm() < 1e-12);
       std::vector<std::pair<NodeId, double>> nodes{{NodeId(i), 0.0}};
-      for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i))) nodes.emplace_back(n.to, (body.nodes.position[n.to.index()] - body.nodes.position[i]).norm());
+      for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i)))
+        nodes.emplace_back(n.to, (body.nodes.position[n.to.index()] - body.nodes.position[i]).norm());
       std::erase_if(nodes, [&](const auto& n) { return !(n.second < body.nodes.radius[n.first.index()]); });
-      CHECK((moved[i] - displacement_at(body.nodes.position[i], nodes, body.nodes, state.displacement, gradient)).norm() < 1e-12);
+      CHECK(
+          (moved[i] - displacement_at(body.nodes.position[i], nodes, body.nodes, state.displacement, gradient)).norm() <
+          1e-12);
     }
   }
 }
@@ -55,7 +60,8 @@ TEST_CASE("A node of a crowd that is away from it does not take its material alo
   State state{std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), {}};
   state.displacement[body.nodes.size() / 2] = Vec3(1, 0, 0);
   double farthest = 0;
-  for (const Vec3& u : material_displacement(solid, body.nodes, body.graph, state)) farthest = std::max(farthest, u.norm());
+  for (const Vec3& u : material_displacement(solid, body.nodes, body.graph, state))
+    farthest = std::max(farthest, u.norm());
   CHECK(farthest > 0);
   CHECK(farthest < 0.5);
 }

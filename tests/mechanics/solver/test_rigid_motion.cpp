@@ -4,25 +4,28 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "cases.h"
 #include "kerf/graph.h"
-#include "mechanics/bodies.h"
+#include "kerf/parallel.h"
 #include "kerf/solid.h"
+#include "mechanics/bodies.h"
 
 using namespace geo;
 
 namespace {
 
-Mat3 turned(const Vec3& by) { return by.norm() > 0 ? Eigen::AngleAxisd(by.norm(), by.normalized()).toRotationMatrix() : Mat3(Mat3::Identity()); }
+Mat3 turned(const Vec3& by) {
+  return by.norm() > 0 ? Eigen::AngleAxisd(by.norm(), by.normalized()).toRotationMatrix() : Mat3(Mat3::Identity());
+}
 
 struct Nodes {
   std::vector<Vec3> place, way;
   std::vector<double> mass;
   std::vector<std::uint32_t> piece;
   std::vector<RigidMotion> motions(const std::vector<Freedom>& freedom) const {
-    return rigid_motions(piece, freedom, mass, [&](std::size_t i) { return place[i]; }, [&](std::size_t i) { return way[i]; });
+    return rigid_motions(
+        piece, freedom, mass, [&](std::size_t i) { return place[i]; }, [&](std::size_t i) { return way[i]; });
   }
 };
 
@@ -35,7 +38,8 @@ Material stiff(double young, double poisson) {
 // A bar from the left end to the right one: its angle to the ground.
 double slope(const Body& body, const State& state) {
   Vec3 way = Vec3::Zero();
-  for (std::size_t i = 0; i < body.nodes.size(); ++i) way += (body.nodes.position[i].x() > 1 ? 1 : -1) * (body.nodes.position[i] + state.displacement[i]);
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    way += (body.nodes.position[i].x() > 1 ? 1 : -1) * (body.nodes.position[i] + state.displacement[i]);
   return std::atan2(way.z(), way.x());
 }
 
@@ -57,15 +61,19 @@ TEST_CASE("rigid motions are found, whatever else the nodes do, and by any numbe
     for (auto& t : truth) t = {random.uniform(0, 3) * random.direction(), size * random.direction()};
     Nodes nodes;
     for (std::size_t i = 0; i < n; ++i) {
-      const auto p = static_cast<std::uint32_t>(i < 4 * pieces ? i % pieces : random.below(static_cast<std::uint32_t>(pieces)));
-      nodes.piece.push_back(p), nodes.mass.push_back(random.uniform(0.1, 2)), nodes.place.push_back(far + size * random.direction());
+      const auto p =
+          static_cast<std::uint32_t>(i < 4 * pieces ? i % pieces : random.below(static_cast<std::uint32_t>(pieces)));
+      nodes.piece.push_back(p), nodes.mass.push_back(random.uniform(0.1, 2)),
+          nodes.place.push_back(far + size * random.direction());
       nodes.way.push_back(turned(truth[p].turn) * (nodes.place[i] - far) + far + truth[p].way - nodes.place[i]);
     }
     const std::vector<Freedom> all(pieces, Freedom::way_and_turn);
     const auto found = nodes.motions(all);
-    for (std::size_t i = 0; i < n; ++i) CHECK((found[nodes.piece[i]].displacement(nodes.place[i]) - nodes.way[i]).norm() < 1e-9 * size);
+    for (std::size_t i = 0; i < n; ++i)
+      CHECK((found[nodes.piece[i]].displacement(nodes.place[i]) - nodes.way[i]).norm() < 1e-9 * size);
 
-    // Of any ways: what is left beside straight() has neither momentum. bend() is what a turn of that axis and angle adds.
+    // Of any ways: what is left beside straight() has neither momentum. bend() is what a turn of that axis and angle
+    // adds.
     for (Vec3& way : nodes.way) way = 0.3 * size * random.direction();
     const auto mean = nodes.motions(all);
     std::vector<Vec3> linear(pieces, Vec3::Zero()), angular = linear;
@@ -83,7 +91,8 @@ TEST_CASE("rigid motions are found, whatever else the nodes do, and by any numbe
       CHECK(angular[p].norm() < 1e-9 * size * size * double(n));
     }
 
-    // A piece without freedom has no motion, one that only goes does not turn; others are as they were, with one thread, too.
+    // A piece without freedom has no motion, one that only goes does not turn; others are as they were, with one
+    // thread, too.
     std::vector<Freedom> some(all);
     some[0] = k % 2 ? Freedom::none : Freedom::way;
     set_threads(1);
@@ -91,12 +100,16 @@ TEST_CASE("rigid motions are found, whatever else the nodes do, and by any numbe
     set_threads(0);
     CHECK(other[0].way == (k % 2 ? Vec3(Vec3::Zero()) : mean[0].way));
     CHECK((other[0].turning == Vec3(Vec3::Zero()) && other[0].turn == Mat3(Mat3::Identity())));
-    for (std::size_t p = 1; p < pieces; ++p) CHECK((other[p].way == mean[p].way && other[p].turning == mean[p].turning && other[p].turn == mean[p].turn));
+    for (std::size_t p = 1; p < pieces; ++p)
+      CHECK((other[p].way == mean[p].way && other[p].turning == mean[p].turning && other[p].turn == mean[p].turn));
   }
 }
 
 TEST_CASE("nodes on a line or in one place turn about nothing", "[mechanics]") {
-  Nodes line{{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {5, 5, 5}}, {{0, 0, 0}, {0, 1, 0}, {0, 3, 0}, {1, 2, 3}}, {1, 1, 1, 1}, {0, 0, 0, 1}};
+  Nodes line{{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {5, 5, 5}},
+             {{0, 0, 0}, {0, 1, 0}, {0, 3, 0}, {1, 2, 3}},
+             {1, 1, 1, 1},
+             {0, 0, 0, 1}};
   const auto motion = line.motions({Freedom::way_and_turn, Freedom::way_and_turn});
   CHECK((motion[0].turning - Vec3(0, 0, 1)).norm() < 1e-12);
   CHECK(motion[0].turn == Mat3(Mat3::Identity()));
@@ -104,10 +117,12 @@ TEST_CASE("nodes on a line or in one place turn about nothing", "[mechanics]") {
   CHECK((motion[1].turning.isZero(0) && motion[1].reach == 0));
 }
 
-TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its penalty alone, gains no energy by turning", "[mechanics]") {
+TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its penalty alone, gains no energy by turning",
+          "[mechanics]") {
   NodeSet nodes;
   VisibilityGraph graph;
-  for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0.1, 0)}) nodes.position.push_back(x), nodes.radius.push_back(1.9), nodes.spacing.push_back(1), nodes.volume.push_back(1);
+  for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0.1, 0)})
+    nodes.position.push_back(x), nodes.radius.push_back(1.9), nodes.spacing.push_back(1), nodes.volume.push_back(1);
   graph.resize(2);
   graph.add(nodes, NodeId(1u), NodeId(0u));
   build_neighborhoods(nodes, graph, TriangleBvh());
@@ -137,7 +152,8 @@ TEST_CASE("a stiff bar topples as a softer one does, and lies flat", "[mechanics
   const auto fall = [&](double young, double accuracy) {
     const Solid solid(body, stiff(young, 0.3));
     State state{std::vector<Vec3>(n), std::vector<Vec3>(n, Vec3::Zero())};
-    for (std::size_t i = 0; i < n; ++i) state.displacement[i] = tilted * body.nodes.position[i] + Vec3(0, 0, 0.3) - body.nodes.position[i];
+    for (std::size_t i = 0; i < n; ++i)
+      state.displacement[i] = tilted * body.nodes.position[i] + Vec3(0, 0, 0.3) - body.nodes.position[i];
     Environment env;
     env.ground = true;
     std::vector<double> slopes;

@@ -1,11 +1,11 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "kerf/parallel.h"
 #include "base/random.h"
 #include "kerf/graph.h"
-#include "mechanics/discretisation/deformation.h"
+#include "kerf/parallel.h"
 #include "kerf/solid.h"
+#include "mechanics/discretisation/deformation.h"
 
 using namespace geo;
 
@@ -23,18 +23,23 @@ Bar bar(int nx, int ny, int nz, double jitter, std::uint64_t seed = 1) {
   const double h = 1.0 / ny;
   for (int i = 0; i < nx * ny * nz; ++i) {
     const Vec3 p(i % nx, i / nx % ny, i / nx / ny);
-    b.nodes.position.push_back(h * (p + Vec3::Constant(0.5) + jitter * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
+    b.nodes.position.push_back(
+        h *
+        (p + Vec3::Constant(0.5) + jitter * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
     b.nodes.radius.push_back(1.9 * h), b.nodes.spacing.push_back(h), b.nodes.volume.push_back(h * h * h);
   }
   b.graph.resize(b.nodes.size());
   for (std::uint32_t i = 0; i < b.nodes.size(); ++i)
     for (std::uint32_t j = 0; j < i; ++j)
-      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i]) b.graph.add(b.nodes, NodeId(i), NodeId(j));
+      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i])
+        b.graph.add(b.nodes, NodeId(i), NodeId(j));
   build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   return b;
 }
 
-State at_rest(const Bar& b) { return {std::vector<Vec3>(b.nodes.size(), Vec3::Zero()), std::vector<Vec3>(b.nodes.size(), Vec3::Zero())}; }
+State at_rest(const Bar& b) {
+  return {std::vector<Vec3>(b.nodes.size(), Vec3::Zero()), std::vector<Vec3>(b.nodes.size(), Vec3::Zero())};
+}
 
 Material material(ElasticModel model) {
   Material m;
@@ -55,7 +60,8 @@ TEST_CASE("stress is the derivative of energy, and its derivative that of stress
       const double slope = (energy_density(m, f + e * d) - energy_density(m, f - e * d)) / (2 * e);
       CHECK((stress(m, f).array() * d.array()).sum() == Approx(slope).epsilon(1e-6).margin(1e-3));
       const Mat3 change = (stress(m, f + e * d) - stress(m, f - e * d)) / (2 * e);
-      const Eigen::Matrix<double, 9, 1> product = stress_derivative(m, f) * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(d.data());
+      const Eigen::Matrix<double, 9, 1> product =
+          stress_derivative(m, f) * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(d.data());
       CHECK((Eigen::Map<const Mat3>(product.data()) - change).norm() < 1e-5 * (1 + change.norm()));
     }
     CHECK(std::abs(energy_density(m, Mat3(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized())))) < 1e-9 * m.young);
@@ -81,13 +87,15 @@ TEST_CASE("forces are minus the derivative of the energy, and sum to zero") {
     const Solid solid(b.nodes, b.graph, material(model));
     Random random(5);
     std::vector<Vec3> u, d;
-    for (std::size_t i = 0; i < b.nodes.size(); ++i) u.push_back(0.05 * random.direction()), d.push_back(random.direction());
+    for (std::size_t i = 0; i < b.nodes.size(); ++i)
+      u.push_back(0.05 * random.direction()), d.push_back(random.direction());
     const auto f = solid.forces(u);
     double along = 0;
     Vec3 sum = Vec3::Zero();
     auto plus = u, minus = u;
     const double e = 1e-6;
-    for (std::size_t i = 0; i < u.size(); ++i) along -= f[i].dot(d[i]), sum += f[i], plus[i] += e * d[i], minus[i] -= e * d[i];
+    for (std::size_t i = 0; i < u.size(); ++i)
+      along -= f[i].dot(d[i]), sum += f[i], plus[i] += e * d[i], minus[i] -= e * d[i];
     CHECK(along == Approx((solid.energy(plus) - solid.energy(minus)) / (2 * e)).epsilon(1e-6));
     CHECK(sum.norm() < 1e-10 * 1e5);
   }
@@ -124,8 +132,9 @@ TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers with
   State state = at_rest(b);
   for (int i = 0; i < 300; ++i) solid.step_implicit(state, 0.1, env);
   // Timoshenko for its own weight on the free length: w L⁴ / 8 E I plus shear.
-  const double length = 4 - 1.0 / 3, w = 1000 * 0.05, tip = w * std::pow(length, 4) / (8 * 1e5 / 12) + w * length * length / (2 * 5.0 / 6 * m.mu());
-  CHECK(-state.displacement[11].z() > 0.5 * tip);   // nodal integration is soft, never stiff by half
+  const double length = 4 - 1.0 / 3, w = 1000 * 0.05,
+               tip = w * std::pow(length, 4) / (8 * 1e5 / 12) + w * length * length / (2 * 5.0 / 6 * m.mu());
+  CHECK(-state.displacement[11].z() > 0.5 * tip);  // nodal integration is soft, never stiff by half
   CHECK(-state.displacement[11].z() < 2.5 * tip);
   CHECK(state.velocity[11].norm() < 1e-4);
   State crushed = at_rest(b);
@@ -138,7 +147,8 @@ TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers with
 
 TEST_CASE("few, coplanar and no neighbours give no NaN") {
   Bar b = bar(4, 4, 1, 0.0);
-  b.nodes.position.push_back({50, 0, 0}), b.nodes.radius.push_back(0.5), b.nodes.spacing.push_back(0.25), b.nodes.volume.push_back(0.01);
+  b.nodes.position.push_back({50, 0, 0}), b.nodes.radius.push_back(0.5), b.nodes.spacing.push_back(0.25),
+      b.nodes.volume.push_back(0.01);
   b.graph.resize(b.nodes.size());
   const Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   CHECK(solid.rung(NodeId(0u)) == Rung::regularised);
@@ -158,7 +168,8 @@ TEST_CASE("momentum is conserved through insertion") {
   const Vec3 before = solid.momentum(state);
   b.nodes.volume[5] *= 0.5;
   b.nodes.position.push_back(b.nodes.position[5] + Vec3(0.05, 0.03, 0.02));
-  b.nodes.radius.push_back(b.nodes.radius[5]), b.nodes.spacing.push_back(0.2), b.nodes.volume.push_back(b.nodes.volume[5]);
+  b.nodes.radius.push_back(b.nodes.radius[5]), b.nodes.spacing.push_back(0.2),
+      b.nodes.volume.push_back(b.nodes.volume[5]);
   b.graph.resize(b.nodes.size());
   b.graph.add(b.nodes, NodeId(5u), NodeId(64u));
   build_neighborhoods(b.nodes, b.graph, TriangleBvh());

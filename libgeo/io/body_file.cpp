@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "body/nodes.h"
-#include "io/json_internal.h"
+#include "io/json_integer.h"
 
 namespace geo {
 namespace {
@@ -309,10 +309,10 @@ void read_about(const KerfFile& in, Body& body) {
   const auto about = nlohmann::json::parse(in.text("about"), nullptr, false);
   double cell = 0, widest = 0;  // 0: that of the nodes as they are
   try {
-    body.k = whole<int>(about.at("k")), body.updates = whole<std::uint32_t>(about.at("updates"));
+    body.k = json_integer<int>(about.at("k")), body.updates = json_integer<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
     body.guides = about.value("guides", 0.0), widest = about.value("widest", 0.0);
-    body.sampled = about.contains("sampled") ? whole<std::uint32_t>(about.at("sampled"))
+    body.sampled = about.contains("sampled") ? json_integer<std::uint32_t>(about.at("sampled"))
                                              : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
       body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(),

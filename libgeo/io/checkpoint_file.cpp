@@ -1,6 +1,6 @@
 #include "kerf/run_files.h"
 
-#include "io/json_internal.h"
+#include "io/json_integer.h"
 #include "kerf/body_file.h"
 #include "kerf/surface_file.h"
 
@@ -65,11 +65,11 @@ class Supply {
 FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const KerfFile& file) {
   FrontState front;
   front.name = about.at("name").get<std::string>(), front.closed = about.at("closed").get<bool>();
-  front.crack = whole<std::int32_t>(about.at("crack")), front.step = whole<std::uint32_t>(about.at("step"));
+  front.crack = json_integer<std::int32_t>(about.at("crack")), front.step = json_integer<std::uint32_t>(about.at("step"));
   for (const auto& segment : about.at("segments")) {
     front.segments.emplace_back();
     for (const auto& id : segment) {
-      const auto v = whole<std::int64_t>(id);
+      const auto v = json_integer<std::int64_t>(id);
       front.segments.back().push_back(
           {places.next(), v < 0 || v > ~0u ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
     }
@@ -155,8 +155,8 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   Supply<double> at(file.read<double>("run/front_at"), file);
   const auto about = nlohmann::json::parse(file.text("run/about"), nullptr, false);
   try {
-    state.frame = whole<int>(about.at("frame"));
-    c.scene = whole<std::uint64_t>(about.at("scene"));
+    state.frame = json_integer<int>(about.at("frame"));
+    c.scene = json_integer<std::uint64_t>(about.at("scene"));
     for (const auto& blade : about.at("fronts")) {
       state.fronts.emplace_back();
       for (const auto& front : blade) {
@@ -165,7 +165,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
         state.fronts.back().push_back(std::move(edge));
       }
     }
-    state.fracture.cracks = whole<std::int32_t>(about.at("cracks"));
+    state.fracture.cracks = json_integer<std::int32_t>(about.at("cracks"));
     for (const auto& f : about.at("growing")) {
       FrontState front = front_from(f, places, file);
       std::vector<Vec3> normal;
@@ -178,7 +178,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       state.fracture.fronts.push_back(std::move(g));
     }
     counts(state.total,
-           [&](const char* name, std::size_t& count) { count = whole<std::size_t>(about.at("counts").at(name)); });
+           [&](const char* name, std::size_t& count) { count = json_integer<std::size_t>(about.at("counts").at(name)); });
   } catch (const nlohmann::json::exception&) {
     file.fail("section 'run/about' is malformed");
   } catch (const std::out_of_range&) {

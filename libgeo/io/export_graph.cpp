@@ -1,6 +1,6 @@
 #include <functional>
 
-#include "io/export_internal.h"
+#include "io/graph_edges.h"
 #include "io/kerf_writer.h"
 #include "kerf/export.h"
 

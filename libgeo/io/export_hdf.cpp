@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "io/export_internal.h"
+#include "io/graph_edges.h"
 #include "io/kerf_writer.h"
 #include "kerf/error.h"
 #include "kerf/export.h"

@@ -1,8 +1,8 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "io/kerf_layout_internal.h"
-#include "io/text_internal.h"
+#include "io/kerf_layout.h"
+#include "io/line_reader.h"
 #include "kerf/export.h"
 
 namespace geo {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "io/text_internal.h"
+#include "io/line_reader.h"
 #include "kerf/stream.h"
 
 namespace geo {
@@ -27,7 +27,7 @@ void check(const Front& front, const std::string& name, std::size_t least_steps)
 
 // OBJ polylines: each object is a time step, in the order of their names.
 std::vector<Front> from_obj(const std::string& bytes, const std::string& name, std::size_t least_steps) {
-  Lines lines(bytes, name);
+  LineReader lines(bytes, name);
   std::vector<std::string_view> words;
   std::vector<Vec3> points;
   std::map<std::string, std::vector<long long>> objects;
@@ -63,7 +63,7 @@ std::vector<Front> from_obj(const std::string& bytes, const std::string& name, s
 }
 
 std::vector<Front> parse(const std::string& bytes, const std::string& name, std::size_t least_steps) {
-  Lines lines(bytes, name);
+  LineReader lines(bytes, name);
   std::vector<std::string_view> words;
   std::vector<Front> fronts;
   bool sheet = false;  // the last one is

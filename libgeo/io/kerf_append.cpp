@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "io/kerf_delta_internal.h"
-#include "io/kerf_segment_internal.h"
+#include "io/kerf_delta.h"
+#include "io/kerf_segment.h"
 #include "kerf/error.h"
 #include "kerf/stream.h"
 

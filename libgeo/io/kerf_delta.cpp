@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/kerf_delta_internal.h"
+#include "io/kerf_delta.h"
 
 namespace geo::kerf {
 namespace {

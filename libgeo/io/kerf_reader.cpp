@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "io/json_internal.h"
-#include "io/kerf_segment_internal.h"
-#include "io/text_internal.h"
+#include "io/json_integer.h"
+#include "io/kerf_segment.h"
+#include "io/line_reader.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 
@@ -135,9 +135,9 @@ void KerfFile::take_table(const std::string& text, std::uint64_t start, std::uin
     try {
       key = row.at("name").get<std::string>(), s.dtype = row.at("dtype").get<std::string>(),
       hash = row.at("xxh3").get<std::string>();
-      for (const auto& d : row.at("shape")) s.shape.push_back(whole<std::uint64_t>(d));
-      stored.from = whole<std::uint64_t>(row.at("offset")), stored.size = whole<std::uint64_t>(row.at("length"));
-      if (row.contains("runs")) runs = whole<std::uint64_t>(row.at("runs"));
+      for (const auto& d : row.at("shape")) s.shape.push_back(json_integer<std::uint64_t>(d));
+      stored.from = json_integer<std::uint64_t>(row.at("offset")), stored.size = json_integer<std::uint64_t>(row.at("length"));
+      if (row.contains("runs")) runs = json_integer<std::uint64_t>(row.at("runs"));
     } catch (const nlohmann::json::exception&) {
       fail("its table of sections is malformed");
     } catch (const std::out_of_range&) {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "io/kerf_segment_internal.h"
+#include "io/kerf_segment.h"
 
 namespace geo {
 

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "io/kerf_reader.h"
-#include "io/ply_internal.h"
-#include "io/text_internal.h"
+#include "io/ply.h"
+#include "io/line_reader.h"
 #include "kerf/stream.h"
 
 namespace geo {
@@ -53,7 +53,7 @@ NodeSet from_ply(const std::string& bytes, const std::string& name) {
 }
 
 NodeSet from_pcd(const std::string& bytes, const std::string& name) {
-  Lines header(bytes, name);
+  LineReader header(bytes, name);
   std::vector<std::string_view> words;
   std::vector<std::string> names, sizes, types, counts;
   long long width = -1, height = 1, points = -1;
@@ -129,7 +129,7 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
     }
     return nodes;
   }
-  Lines rows(std::string_view(bytes).substr(at), name);
+  LineReader rows(std::string_view(bytes).substr(at), name);
   for (long long i = 0; i < points; ++i) {
     if (!rows.next(words))
       throw InputError(name + ": ends after " + std::to_string(i) + " of " + std::to_string(points) +

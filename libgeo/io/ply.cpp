@@ -3,8 +3,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "io/ply_internal.h"
-#include "io/text_internal.h"
+#include "io/ply.h"
+#include "io/line_reader.h"
 
 namespace geo {
 namespace {
@@ -154,7 +154,7 @@ const PlyElement* Ply::find(std::string_view element) const {
 Ply parse_ply(std::string_view bytes, const std::string& name) {
   static_assert(std::endian::native == std::endian::little);
   Ply ply;
-  Lines header(bytes, name, 0);
+  LineReader header(bytes, name, 0);
   std::vector<std::string_view> words;
   int format = -1;  // 0 ASCII, 1 little, 2 big
   bool ended = false;
@@ -195,7 +195,7 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
   if (!ended || format < 0) throw InputError(name + ": the PLY header is not complete; the file is truncated");
 
   std::size_t at = header.position();
-  Lines rows(bytes.substr(at), name, 0);
+  LineReader rows(bytes.substr(at), name, 0);
   const auto truncated = [&](const std::string& element) -> void {
     throw InputError(name + ": ends within element '" + shown(element) + "'; the file is truncated");
   };

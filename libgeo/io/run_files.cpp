@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "io/ply_internal.h"
+#include "io/ply.h"
 #include "kerf/error.h"
 #include "kerf/node_file.h"
 

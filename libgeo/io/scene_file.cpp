@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <sstream>
 
-#include "io/scene_keys_internal.h"
+#include "io/scene_keys.h"
 #include "kerf/check.h"
 #include "kerf/front_file.h"
 #include "kerf/stream.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "io/scene_keys_internal.h"
+#include "io/scene_keys.h"
 #include "kerf/scene_file.h"
 
 namespace geo {
@@ -63,7 +63,7 @@ std::vector<Motion::Key> parse_motion(const std::string& text, const std::string
   std::string blanks = text;
   std::replace_if(
       blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-  Lines lines(blanks, name);
+  LineReader lines(blanks, name);
   std::vector<Motion::Key> keys;
   std::vector<std::string_view> words;
   for (bool first = true; lines.next(words); first = false) {

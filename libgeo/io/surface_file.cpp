@@ -1,8 +1,8 @@
 #include "kerf/surface_file.h"
 
 #include "io/kerf_reader.h"
-#include "io/surface_internal.h"
-#include "io/text_internal.h"
+#include "io/surface_formats.h"
+#include "io/line_reader.h"
 #include "kerf/stream.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"
@@ -11,7 +11,7 @@ namespace geo {
 namespace {
 
 bool looks_like_obj(const std::string& bytes) {
-  Lines lines(bytes, "");
+  LineReader lines(bytes, "");
   std::vector<std::string_view> words;
   for (int i = 0; i < 200 && lines.next(words); ++i)
     if (words[0] == "v" || words[0] == "vn" || words[0] == "f") return true;
@@ -19,7 +19,7 @@ bool looks_like_obj(const std::string& bytes) {
 }
 
 bool looks_like_off(const std::string& bytes) {
-  Lines lines(std::string_view(bytes).substr(0, 4096), "");
+  LineReader lines(std::string_view(bytes).substr(0, 4096), "");
   std::vector<std::string_view> words;
   // COFF and NOFF carry colours and normals behind the coordinates; other prefixes change what a coordinate is.
   return lines.next(words) && (words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF");

@@ -2,8 +2,8 @@
 #include <bit>
 #include <map>
 
-#include "io/surface_internal.h"
-#include "io/text_internal.h"
+#include "io/surface_formats.h"
+#include "io/line_reader.h"
 
 namespace geo {
 namespace {
@@ -29,7 +29,7 @@ std::string rest_of(const std::vector<std::string_view>& words) {
 }
 
 // The row that an index of a face means: from 1 on, or backwards from the last one so far.
-std::uint32_t row_at(const Lines& lines, std::string_view word, std::size_t count, const char* what) {
+std::uint32_t row_at(const LineReader& lines, std::string_view word, std::size_t count, const char* what) {
   const auto i = lines.integer(word);
   const auto size = static_cast<long long>(count);
   if (i > size || i < -size || i == 0)
@@ -46,7 +46,7 @@ struct CornerRows {
 }  // namespace
 
 TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
-  Lines lines(bytes, name);
+  LineReader lines(bytes, name);
   std::vector<std::string_view> words;
   TriangleMesh mesh;
   std::vector<Vec2> uv;

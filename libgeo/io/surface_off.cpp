@@ -1,13 +1,13 @@
 // OFF, with normals (NOFF) and colours (COFF) of vertices.
 #include <algorithm>
 
-#include "io/surface_internal.h"
-#include "io/text_internal.h"
+#include "io/surface_formats.h"
+#include "io/line_reader.h"
 
 namespace geo {
 
 TriangleMesh parse_off(const std::string& bytes, const std::string& name) {
-  Lines lines(bytes, name);
+  LineReader lines(bytes, name);
   std::vector<std::string_view> words;
   if (!lines.next(words)) lines.fail("is empty");
   const bool normals = words[0].find('N') != std::string_view::npos, colored = words[0][0] == 'C';

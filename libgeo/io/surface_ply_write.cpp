@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "io/surface_internal.h"
+#include "io/surface_formats.h"
 
 namespace geo {
 namespace {

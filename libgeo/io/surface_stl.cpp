@@ -1,8 +1,8 @@
 // STL, ASCII and binary: triangles only, three vertices each.
 #include <cstring>
 
-#include "io/surface_internal.h"
-#include "io/text_internal.h"
+#include "io/surface_formats.h"
+#include "io/line_reader.h"
 
 namespace geo {
 namespace {
@@ -36,7 +36,7 @@ TriangleMesh parse_stl(const std::string& bytes, const std::string& name) {
     }
     return mesh;
   }
-  Lines lines(bytes, name, 0);
+  LineReader lines(bytes, name, 0);
   std::vector<std::string_view> words;
   std::vector<Vec3> corners;
   bool ended = false;

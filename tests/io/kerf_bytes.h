@@ -9,7 +9,7 @@
 #include <string>
 
 #include "io/kerf_append.h"
-#include "io/kerf_layout_internal.h"
+#include "io/kerf_layout.h"
 
 /// The last segment of a file's bytes: where it begins, and its table.
 struct LastSegment {

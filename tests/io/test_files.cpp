@@ -9,7 +9,7 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "io/kerf_layout_internal.h"
+#include "io/kerf_layout.h"
 #include "kerf/body.h"
 #include "kerf/body_file.h"
 #include "kerf/error.h"

@@ -8,7 +8,7 @@
 
 #include "cases.h"
 #include "io/kerf_bytes.h"
-#include "io/kerf_delta_internal.h"
+#include "io/kerf_delta.h"
 #include "io/kerf_values.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"

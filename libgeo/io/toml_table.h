@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/text_internal.h"
+#include "io/line_reader.h"
 #include "kerf/error.h"
 #include "kerf/vec.h"
 

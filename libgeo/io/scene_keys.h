@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/toml_table_internal.h"
+#include "io/toml_table.h"
 #include "kerf/scene.h"
 
 namespace geo {

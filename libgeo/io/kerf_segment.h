@@ -1,7 +1,7 @@
 // One segment of a `.kerf` file as it is written: a whole file has one, each update appends one.
 #pragma once
 
-#include "io/kerf_layout_internal.h"
+#include "io/kerf_layout.h"
 #include "io/kerf_writer.h"
 
 namespace geo::kerf {

@@ -9,7 +9,7 @@ namespace geo {
 
 /// The integer that a value is. Throws std::out_of_range when it is none, or none that T holds.
 template <class T>
-T whole(const nlohmann::json& value) {
+T json_integer(const nlohmann::json& value) {
   bool fits = false;
   if (value.is_number_unsigned())
     fits = value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<T>::max());

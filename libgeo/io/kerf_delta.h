@@ -1,7 +1,7 @@
 // What changed from one array to another, whatever they mean.
 #pragma once
 
-#include "io/kerf_layout_internal.h"
+#include "io/kerf_layout.h"
 
 namespace geo::kerf {
 

@@ -22,9 +22,9 @@ inline std::string shown(std::string_view text, std::size_t most = 60) {
 }
 
 /// Walks over the lines of a text, dropping what follows `comment` (0: nothing) and empty lines.
-class Lines {
+class LineReader {
  public:
-  Lines(std::string_view text, std::string name, char comment = '#')
+  LineReader(std::string_view text, std::string name, char comment = '#')
       : text_(text), name_(std::move(name)), comment_(comment) {}
 
   /// The words of the next line that has any; false at the end.

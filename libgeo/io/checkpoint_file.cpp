@@ -65,7 +65,8 @@ class Supply {
 FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const KerfFile& file) {
   FrontState front;
   front.name = about.at("name").get<std::string>(), front.closed = about.at("closed").get<bool>();
-  front.crack = json_integer<std::int32_t>(about.at("crack")), front.step = json_integer<std::uint32_t>(about.at("step"));
+  front.crack = json_integer<std::int32_t>(about.at("crack")),
+  front.step = json_integer<std::uint32_t>(about.at("step"));
   for (const auto& segment : about.at("segments")) {
     front.segments.emplace_back();
     for (const auto& id : segment) {
@@ -177,8 +178,9 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       }
       state.fracture.fronts.push_back(std::move(g));
     }
-    counts(state.total,
-           [&](const char* name, std::size_t& count) { count = json_integer<std::size_t>(about.at("counts").at(name)); });
+    counts(state.total, [&](const char* name, std::size_t& count) {
+      count = json_integer<std::size_t>(about.at("counts").at(name));
+    });
   } catch (const nlohmann::json::exception&) {
     file.fail("section 'run/about' is malformed");
   } catch (const std::out_of_range&) {

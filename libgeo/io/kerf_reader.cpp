@@ -136,7 +136,8 @@ void KerfFile::take_table(const std::string& text, std::uint64_t start, std::uin
       key = row.at("name").get<std::string>(), s.dtype = row.at("dtype").get<std::string>(),
       hash = row.at("xxh3").get<std::string>();
       for (const auto& d : row.at("shape")) s.shape.push_back(json_integer<std::uint64_t>(d));
-      stored.from = json_integer<std::uint64_t>(row.at("offset")), stored.size = json_integer<std::uint64_t>(row.at("length"));
+      stored.from = json_integer<std::uint64_t>(row.at("offset")),
+      stored.size = json_integer<std::uint64_t>(row.at("length"));
       if (row.contains("runs")) runs = json_integer<std::uint64_t>(row.at("runs"));
     } catch (const nlohmann::json::exception&) {
       fail("its table of sections is malformed");

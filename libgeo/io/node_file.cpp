@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "io/kerf_reader.h"
-#include "io/ply.h"
 #include "io/line_reader.h"
+#include "io/ply.h"
 #include "kerf/stream.h"
 
 namespace geo {

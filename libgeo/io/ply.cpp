@@ -3,8 +3,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "io/ply.h"
 #include "io/line_reader.h"
+#include "io/ply.h"
 
 namespace geo {
 namespace {

@@ -2,8 +2,8 @@
 #include <bit>
 #include <map>
 
-#include "io/surface_formats.h"
 #include "io/line_reader.h"
+#include "io/surface_formats.h"
 
 namespace geo {
 namespace {

@@ -1,8 +1,8 @@
 // OFF, with normals (NOFF) and colours (COFF) of vertices.
 #include <algorithm>
 
-#include "io/surface_formats.h"
 #include "io/line_reader.h"
+#include "io/surface_formats.h"
 
 namespace geo {
 

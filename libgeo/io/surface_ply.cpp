@@ -3,9 +3,9 @@
 #include <initializer_list>
 #include <map>
 
+#include "io/line_reader.h"
 #include "io/ply.h"
 #include "io/surface_formats.h"
-#include "io/line_reader.h"
 
 namespace geo {
 namespace {

@@ -1,8 +1,8 @@
 // STL, ASCII and binary: triangles only, three vertices each.
 #include <cstring>
 
-#include "io/surface_formats.h"
 #include "io/line_reader.h"
+#include "io/surface_formats.h"
 
 namespace geo {
 namespace {

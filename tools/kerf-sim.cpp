@@ -226,14 +226,14 @@ int main(int argc, char** argv) {
                            4 * double(fs::file_size(folder.checkpoint())));
     }
     Forecast forecast;
-    geo::FrameWork total = run.state().total;
+    geo::FrameStats total = run.state().total;
     geo::Stopwatch watch;
     double waited = 0;  // for files of the frame before
     while (run.state().frame < last) {
       const int frame = run.state().frame + 1;
       const std::string phase =
           "frame " + std::to_string(frame) + " of " + std::to_string(last) + forecast.left(last - frame + 1);
-      geo::FrameWork work = run.advance_frame([&](std::string_view, std::size_t step, std::size_t steps) {
+      geo::FrameStats work = run.advance_frame([&](std::string_view, std::size_t step, std::size_t steps) {
         return !progress || progress(phase, static_cast<std::size_t>(frame - 1) * steps + step,
                                      static_cast<std::size_t>(last) * steps);
       });

@@ -38,7 +38,7 @@ constexpr std::size_t most_between =
 
 }  // namespace
 
-ContactWork& ContactWork::operator+=(const ContactWork& o) {
+ContactStats& ContactStats::operator+=(const ContactStats& o) {
   watched += o.watched, touching += o.touching, in_zones += o.in_zones, opened += o.opened, held += o.held;
   lag = std::max(lag, o.lag), seconds += o.seconds;
   return *this;
@@ -235,9 +235,9 @@ std::vector<Vec3> SelfContact::likely(const std::vector<Vec3>& goal, std::span<c
 }
 
 void SelfContact::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-                          const std::vector<std::uint8_t>& fixed, State& state, ContactWork* told) {
+                          const std::vector<std::uint8_t>& fixed, State& state, ContactStats* told) {
   Stopwatch clock;
-  ContactWork work;
+  ContactStats work;
   work.touching =
       begun_ ? touch_.pressing()
              : apply_impulses_after(body, solid, before, dt, fixed, standing().together, standing().copies, state);

@@ -42,7 +42,7 @@ class SelfContact {
   /// velocities are corrected by impulses before, unless begin() was called. `fixed` (per node, or empty) as in
   /// Environment.
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-               const std::vector<std::uint8_t>& fixed, State& state, ContactWork* work = nullptr);
+               const std::vector<std::uint8_t>& fixed, State& state, ContactStats* work = nullptr);
 
   /// World positions, per surface vertex; of dead ones nothing is said.
   const std::vector<Vec3>& positions() const { return positions_; }

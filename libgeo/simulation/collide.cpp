@@ -44,7 +44,7 @@ void Collisions::follow(const Body& body, const Solid& solid, const BodyDelta& d
 }
 
 void Collisions::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-                         const Environment& environment, State& motion, ContactWork& work) {
+                         const Environment& environment, State& motion, ContactStats& work) {
   if (surface_) surface_->resolve(body, solid, before, dt, environment.fixed, motion, &work);
 }
 

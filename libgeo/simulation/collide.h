@@ -22,7 +22,7 @@ class Collisions {
   /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
   void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-               const Environment& environment, State& motion, ContactWork& work);
+               const Environment& environment, State& motion, ContactStats& work);
 
   /// False: the scene asks for none, and the surface is where Eq. 1 has it.
   bool on() const { return surface_.has_value(); }

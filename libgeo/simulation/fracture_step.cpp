@@ -114,8 +114,8 @@ void turn(Drive& d, const GrowingFront& g, double angle) {
 
 void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body,
                    const Solid& solid, const State& motion, double dt, FractureState& state, const SplitStep& split,
-                   FractureWork* work) {
-  FractureWork done;
+                   FractureStats* work) {
+  FractureStats done;
   std::vector<GrowingFront> fronts;
   fronts.swap(state.fronts);
   const auto keep = [&](std::vector<GrowingFront> parts) {

@@ -15,7 +15,7 @@ struct FractureState {
   std::int32_t cracks = 0;           ///< how many have begun, branches included
 };
 
-struct FractureWork {
+struct FractureStats {
   std::size_t begun = 0, divided = 0, advanced = 0,
               refused = 0;  ///< cracks; branches; steps of fronts; those that could not be made
 };
@@ -33,6 +33,6 @@ using SplitStep = std::function<bool(FrontState&, const std::vector<Vec3>& next)
 /// its body of the scene. It, `body` and `motion` change through `split` only. The same for any number of threads.
 void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body,
                    const Solid& solid, const State& motion, double dt, FractureState& state, const SplitStep& split,
-                   FractureWork* work = nullptr);
+                   FractureStats* work = nullptr);
 
 }  // namespace geo

@@ -111,7 +111,7 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
   if (!mutual_->empty()) environment.contact.push_back(&*mutual_);
 }
 
-void Obstacles::reaction(const State& motion, double share, FrameWork& work) const {
+void Obstacles::reaction(const State& motion, double share, FrameStats& work) const {
   work.obstacle_force.resize(shapes_.size(), Vec3::Zero()), work.obstacle_torque.resize(shapes_.size(), Vec3::Zero());
   for (std::size_t k = 0; k < acting_.size(); ++k) {
     const Obstacle::Reaction r = acting_[k].reaction(motion.displacement);

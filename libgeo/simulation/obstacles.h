@@ -29,7 +29,7 @@ class Obstacles {
   /// After a crack step.
   void follow() { own_.reset(); }
   /// After a step: adds `share` of what was done to the scene's obstacles.
-  void reaction(const State& motion, double share, FrameWork& work) const;
+  void reaction(const State& motion, double share, FrameStats& work) const;
 
  private:
   const SurfaceWeights& weights_of(const SurfaceWeights* given, const Body& body, const Solid& solid);

@@ -2,7 +2,7 @@
 
 namespace geo {
 
-FrameWork& FrameWork::operator+=(const FrameWork& o) {
+FrameStats& FrameStats::operator+=(const FrameStats& o) {
   split.crack += o.split.crack;
   split.edges_cut += o.split.edges_cut, split.edges_added += o.split.edges_added,
       split.nodes_updated += o.split.nodes_updated;
@@ -21,7 +21,7 @@ FrameWork& FrameWork::operator+=(const FrameWork& o) {
   return *this;
 }
 
-double FrameWork::split_seconds() const {
+double FrameStats::split_seconds() const {
   return split.crack.seconds() + split.graph_seconds + split.resample_seconds + split.binding_seconds;
 }
 

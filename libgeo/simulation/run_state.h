@@ -22,7 +22,7 @@ struct RunState {
   std::vector<std::uint32_t> part;  ///< per node: the body of the scene that it belongs to
   double time = 0;
   int frame = 0;
-  FrameWork total;  ///< counts since the run began; its seconds since the program did
+  FrameStats total;  ///< counts since the run began; its seconds since the program did
 };
 
 struct Beginning {

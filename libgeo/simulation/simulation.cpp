@@ -85,7 +85,7 @@ void Simulation::prepare() {
 }
 
 // What follows the body after a crack.
-void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
+void Simulation::adopt(const BodyDelta& delta, FrameStats& work) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
   cut_ = true;
@@ -101,7 +101,7 @@ void Simulation::adopt(const BodyDelta& delta, FrameWork& work) {
   work.contact_seconds += watch.lap();
 }
 
-bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work) {
+bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& work) {
   CrackOptions options;
   options.seed = scene_.seed;
   try {
@@ -116,7 +116,7 @@ bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, Fr
 }
 
 // From where the blades are to where they will be at the end of the step, in parts where an edge goes far.
-void Simulation::cut(double dt, FrameWork& work) {
+void Simulation::cut(double dt, FrameStats& work) {
   for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
     const Blade& blade = scene_.blades[b];
     if (!blade.active(state_.time)) {
@@ -133,7 +133,7 @@ void Simulation::cut(double dt, FrameWork& work) {
   }
 }
 
-void Simulation::cut_at(std::size_t b, double time, FrameWork& work) {
+void Simulation::cut_at(std::size_t b, double time, FrameStats& work) {
   Stopwatch watch;
   const Blade& blade = scene_.blades[b];
   std::vector<EdgeFront>& fronts = state_.fronts[b];
@@ -211,7 +211,7 @@ void Simulation::push(double dt) {
   if (!wedge_.empty()) environment_.contact.push_back(&wedge_);
 }
 
-void Simulation::meet_obstacles(double dt, FrameWork& work) {
+void Simulation::meet_obstacles(double dt, FrameStats& work) {
   Stopwatch watch;
   const std::span<const Vec3> at =
       obstacles_.any() ? collisions_->wanted(body_, state_.motion) : std::span<const Vec3>();
@@ -221,7 +221,7 @@ void Simulation::meet_obstacles(double dt, FrameWork& work) {
   work.contact_seconds += watch.lap();
 }
 
-void Simulation::integrate(double dt, FrameWork& work) {
+void Simulation::integrate(double dt, FrameStats& work) {
   Stopwatch watch;
   solid_.settle(body_, state_.motion);
   const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_, scene_.accuracy)
@@ -242,13 +242,13 @@ void Simulation::integrate(double dt, FrameWork& work) {
   work.mechanics_seconds += watch.lap();
 }
 
-void Simulation::collide(const std::vector<Vec3>& before, double dt, FrameWork& work) {
+void Simulation::collide(const std::vector<Vec3>& before, double dt, FrameStats& work) {
   Stopwatch watch;
   collisions_->resolve(body_, solid_, before, dt, environment_, state_.motion, work.contact);
   work.contact_seconds += watch.lap();
 }
 
-void Simulation::fracture(double dt, FrameWork& work) {
+void Simulation::fracture(double dt, FrameStats& work) {
   if (!scene_.fracture.on || state_.time < scene_.fracture.start) return;
   Stopwatch watch;
   const auto others = [&] { return work.split_seconds() + work.mechanics_seconds + work.contact_seconds; };
@@ -260,7 +260,7 @@ void Simulation::fracture(double dt, FrameWork& work) {
 }
 
 // One time step, a phase a line.
-void Simulation::step(double dt, FrameWork& work) {
+void Simulation::step(double dt, FrameStats& work) {
   cut(dt, work);
   const std::vector<Vec3> before = state_.motion.displacement;
   move_grips(dt);
@@ -273,8 +273,8 @@ void Simulation::step(double dt, FrameWork& work) {
   fracture(dt, work);
 }
 
-FrameWork Simulation::advance_frame(const Progress& progress) {
-  FrameWork work;
+FrameStats Simulation::advance_frame(const Progress& progress) {
+  FrameStats work;
   const double frame_time = 1 / scene_.frame_rate;
   const int steps = std::max(1, static_cast<int>(std::ceil(frame_time / scene_.dt - 1e-9)));
   for (int s = 0; s < steps; ++s) {

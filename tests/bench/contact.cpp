@@ -57,7 +57,7 @@ int contact(const Options& options) {
     environment.fixed.assign(solid.size(), 0);
     for (std::size_t i = 0; i < solid.size(); ++i) environment.fixed[i] = body.nodes.position[i].z() < 1.2 * spacing;
     double moving = 0, touching = 0, worst = 0;
-    geo::ContactWork work;
+    geo::ContactStats work;
     constexpr int steps = 24;
     for (int step = 0; step < steps; ++step) {
       const std::vector<geo::Vec3> before = state.displacement;

@@ -45,7 +45,7 @@ TEST_CASE("random steps of cut bodies never make the surface cross itself", "[ca
     Environment environment;
     environment.gravity.setZero();
     const int depth = 2 + static_cast<int>(random.below(6));
-    ContactWork work;
+    ContactStats work;
     for (int step = 0; step < 14; ++step) {
       if (step < depth) {
         const double z = 1.1 - 0.22 * (step + 1), sway = random.uniform(-0.05, 0.05);
@@ -63,7 +63,7 @@ TEST_CASE("random steps of cut bodies never make the surface cross itself", "[ca
       const std::vector<Vec3> before = state.displacement;
       solid.step_implicit(state, 0.02, environment);
       Vec3 momentum = solid.momentum(state);
-      ContactWork one;
+      ContactStats one;
       contact.resolve(body, solid, before, 0.02, {}, state, &one);
       work += one;
       CHECK((solid.momentum(state) - momentum).norm() < 1e-9);

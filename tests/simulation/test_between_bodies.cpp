@@ -42,7 +42,7 @@ TEST_CASE("of two blocks, one on the other, each carries what is above it") {
                       "[contact]\nstiffness = 2e4\n[[obstacle]]\nnormal = [0, 0, 1]\nstiffness = 2e4\n",
                   "s.toml");
   Simulation sim(scene, place_models(scene, {make_block({1, 1, 0.5}, 0.125), make_block({0.8, 0.8, 0.5}, 0.125)}));
-  FrameWork work;
+  FrameStats work;
   for (int i = 0; i < 24; ++i) work = sim.advance_frame();
   const Middle lower = middle_of(sim, 0), upper = middle_of(sim, 1);
   CHECK(-work.obstacle_force.at(0).z() == Approx(9.81 * (lower.mass + upper.mass)).epsilon(0.01));

@@ -149,7 +149,7 @@ TEST_CASE(
                         (self ? "true" : "false") + "\n[time]\nframe_rate = 20\nstep = 0.025\n",
                     "s.toml");
     Simulation sim(scene, cubes(scene));
-    FrameWork work;
+    FrameStats work;
     for (int frame = 0; frame < 8; ++frame) work += sim.advance_frame();
     // It stands on the other one, dents it, and keeps its own shape.
     double low = 0, high = 0, middle = 0, count = 0;

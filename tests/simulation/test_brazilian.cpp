@@ -26,7 +26,7 @@ TEST_CASE("the first crack of a pressed disk runs along the loaded diameter, at 
   double force = 0;
   std::size_t begun = 0;
   for (int i = 0; i < 60 && begun == 0; ++i) {
-    const FrameWork work = sim.advance_frame();
+    const FrameStats work = sim.advance_frame();
     begun += work.fracture.begun;
     if (begun == 0) force = work.obstacle_force.at(1).z();
   }

@@ -54,7 +54,7 @@ TEST_CASE("mode I: a notch in tension runs straight through and parts the plate"
   scene.fracture.cracks = 0;
   Simulation sim = gripped(scene, notched_block({1, 1, 0.16}, 0.06, 0.31, 0.507, static_cast<std::uint64_t>(seed)),
                            0.02 * Vec3::UnitY() * Vec3::UnitY().transpose());
-  FrameWork work;
+  FrameStats work;
   double before = sim.solid().energy(sim.state().motion.displacement);
   for (int i = 0; i < 60 && !sim.state().fracture.fronts.empty(); ++i) work += sim.advance_frame();
   INFO("seed " << seed);
@@ -176,7 +176,7 @@ TEST_CASE("nothing breaks below the strength, before the start, or where it is o
           "[fracture]") {
   const auto begun = [](const Scene& scene, int frames) {
     Simulation sim = stretched_bar(scene, 0.02);
-    FrameWork work;
+    FrameStats work;
     for (int i = 0; i < frames; ++i) work += sim.advance_frame();
     CHECK(sim.state().fracture.cracks == static_cast<std::int32_t>(work.fracture.begun));
     return work.fracture.begun;

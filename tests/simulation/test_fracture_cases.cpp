@@ -65,7 +65,7 @@ TEST_CASE("random bodies break and keep every invariant, the same with any threa
     set_threads(2);
     Simulation sim = begin(c);
     std::string half;
-    FrameWork work;
+    FrameStats work;
     for (int i = 0; i < frames; ++i) {
       work += sim.advance_frame();
       INFO("KERF_CASE=" << seed << ", frame " << i);

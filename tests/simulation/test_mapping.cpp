@@ -121,7 +121,7 @@ TEST_CASE("a blade that meets two bodies cuts both, wherever they have moved") {
       "s.toml");
   Simulation sim(scene, place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)}));
   REQUIRE(find_pieces(sim.body().surface).count == 2);
-  FrameWork work = sim.advance_frame();
+  FrameStats work = sim.advance_frame();
   CHECK(find_pieces(sim.body().surface).count == 2);
   work += sim.advance_frame();
   CHECK(work.refused == 0);
@@ -141,7 +141,7 @@ TEST_CASE("a step is cut in as many parts as its blade's limit asks for") {
             limit,
         "s.toml");
     Simulation sim(scene, make_block({1, 1, 1}, 0.25));
-    const FrameWork work = sim.advance_frame();
+    const FrameStats work = sim.advance_frame();
     CHECK(work.refused == 0);
     CHECK(find_pieces(sim.body().surface).count == 2);
     CHECK(check_complex(sim.body().surface, true).good());

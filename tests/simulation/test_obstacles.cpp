@@ -85,7 +85,7 @@ TEST_CASE("what obstacles take in a frame is what the body's momentum lacks, wit
     double most = 0;
     for (int i = 0; i < 8; ++i) {
       const Middle before = middle_of(sim);
-      const FrameWork work = sim.advance_frame();
+      const FrameStats work = sim.advance_frame();
       const Middle after = middle_of(sim);
       const Vec3 weight = before.mass * scene.gravity, gained = before.mass * (after.velocity - before.velocity) * 40;
       REQUIRE(work.obstacle_force.size() == 1);
@@ -111,7 +111,7 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     const Model model = place_models(scene, {make_block({1, 1, 1}, 0.2)});
     set_threads(2);
     Simulation sim(scene, model);
-    FrameWork work;
+    FrameStats work;
     std::string half;
     double lifted = 0;  // the second obstacle: it comes down about as fast as the body sinks
     for (int i = 0; i < 8; ++i) {

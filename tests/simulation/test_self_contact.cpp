@@ -45,7 +45,7 @@ keys = [[0.0, 0.013, 0.457, 1.3, 0, 0, 1, 2], [0.2, 0.013, 0.551, -0.4, 0, 0, 1,
 TEST_CASE("a block that is cut while it is pressed together and dropped has no crossing in any frame") {
   const Scene scene = parse_scene(scene_text("2e4", "0.021"), "s.toml");
   Simulation sim(scene, make_block({1, 1, 1}, 0.25));
-  FrameWork work;
+  FrameStats work;
   for (int i = 0; i < scene.frames; ++i) {
     work += sim.advance_frame();
     CHECK(count_crossings(sim.surface()) == 0);

@@ -73,7 +73,7 @@ TEST_CASE("a blade turns and moves by its keys") {
 TEST_CASE("a falling cube is halved and both halves go on falling as one") {
   const Scene scene = parse_scene(scene_text, "s.toml");
   Simulation sim(scene, make_block({1, 1, 1}, 0.2));
-  FrameWork work;
+  FrameStats work;
   for (int i = 0; i < scene.frames; ++i) work += sim.advance_frame();
   CHECK(work.refused == 0);
   CHECK(find_pieces(sim.body().surface).count == 2);
@@ -104,7 +104,7 @@ TEST_CASE("a thick blade pushes the sheets apart, and feels them") {
     Simulation sim(scene, make_block({1, 1, 1}, 0.2));
     Vec3 force = Vec3::Zero();
     for (int i = 0; i < 4; ++i) {
-      const FrameWork work = sim.advance_frame();
+      const FrameStats work = sim.advance_frame();
       CHECK(work.refused == 0);
       force += work.blade_force.at(0);
     }

@@ -14,7 +14,7 @@ std::string vector(const geo::Vec3& v) {
   return "[" + tool::number(v.x()) + "," + tool::number(v.y()) + "," + tool::number(v.z()) + "]";
 }
 
-std::vector<std::pair<std::string, double>> phases(const geo::FrameWork& w) {
+std::vector<std::pair<std::string, double>> phases(const geo::FrameStats& w) {
   return {{"front", w.front_seconds},
           {"mesh", w.split.crack.seconds()},
           {"graph", w.split.graph_seconds},
@@ -28,13 +28,13 @@ std::vector<std::pair<std::string, double>> phases(const geo::FrameWork& w) {
 
 }  // namespace
 
-std::string seconds(const geo::FrameWork& w) {
+std::string seconds(const geo::FrameStats& w) {
   std::string text;
   for (const auto& [name, s] : phases(w)) text += (text.empty() ? "{\"" : ",\"") + name + "\":" + tool::number(s);
   return text + "}";
 }
 
-std::string seconds_in_words(const geo::FrameWork& w) {
+std::string seconds_in_words(const geo::FrameStats& w) {
   double all = 0;
   std::string text;
   char shown[32];
@@ -46,7 +46,7 @@ std::string seconds_in_words(const geo::FrameWork& w) {
   return text.empty() ? std::string() : "; " + rounded(all) + " s: " + text;
 }
 
-std::string counts(const geo::FrameWork& w) {
+std::string counts(const geo::FrameStats& w) {
   const auto of = [](const char* name, std::size_t n) { return std::string("\"") + name + "\":" + std::to_string(n); };
   return of("steps", w.steps) + "," + of("newton", w.newton) + "," + of("cg", w.cg) + "," + of("fronts", w.fronts) +
          "," + of("cracks_begun", w.fracture.begun + w.fracture.divided) + "," + of("refused", w.refused) + "," +

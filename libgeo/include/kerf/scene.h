@@ -94,11 +94,11 @@ struct ContactOptions {
   int rounds = 2;         ///< of finding what touches and applying impulses
 };
 
-struct ContactWork {
+struct ContactStats {
   std::size_t watched = 0, touching = 0, in_zones = 0, opened = 0, held = 0;
   double lag = 0;  ///< largest distance of a vertex from where Eq. 1 has it, model units
   double seconds = 0;
-  ContactWork& operator+=(const ContactWork& o);
+  ContactStats& operator+=(const ContactStats& o);
 };
 
 // ---- A scene: bodies, blades that cut them, what holds them, the ground, and how time goes.

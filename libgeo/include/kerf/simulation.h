@@ -32,7 +32,7 @@ class Simulation {
 
   /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when
   /// `progress` says so. A crack step that is refused is counted, and its front tried again in the next step.
-  FrameWork advance_frame(const Progress& progress = {});
+  FrameStats advance_frame(const Progress& progress = {});
 
   /// The deformed two-sided surface (Eq. 1, but for what contact holds back), patch, site and source included. With the
   /// model of the run it also has the model's attributes, except normals: these change with the shape.
@@ -43,20 +43,20 @@ class Simulation {
 
  private:
   Simulation(const Scene& scene, Beginning begun);
-  void step(double dt, FrameWork& work);
-  void cut(double dt, FrameWork& work);
-  void cut_at(std::size_t blade, double time, FrameWork& work);
+  void step(double dt, FrameStats& work);
+  void cut(double dt, FrameStats& work);
+  void cut_at(std::size_t blade, double time, FrameStats& work);
   std::int32_t next_crack() const;
   std::vector<Pose> grip_poses(double time) const;
   void move_grips(double dt);
-  void integrate(double dt, FrameWork& work);
+  void integrate(double dt, FrameStats& work);
   void push(double dt);
-  void meet_obstacles(double dt, FrameWork& work);
-  void collide(const std::vector<Vec3>& before, double dt, FrameWork& work);
-  void fracture(double dt, FrameWork& work);
-  void adopt(const BodyDelta& delta, FrameWork& work);
+  void meet_obstacles(double dt, FrameStats& work);
+  void collide(const std::vector<Vec3>& before, double dt, FrameStats& work);
+  void fracture(double dt, FrameStats& work);
+  void adopt(const BodyDelta& delta, FrameStats& work);
   /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
-  bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameWork& work);
+  bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& work);
   void begin();
   void prepare();
 

@@ -246,7 +246,7 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
   environment.gravity = {0, 0, -9.81};
   environment.fixed.assign(solid.size(), 0);
   for (std::size_t i = 0; i < solid.size(); ++i) environment.fixed[i] = body.nodes.position[i].z() < 0.2;
-  ContactWork last;
+  ContactStats last;
   for (int step = 0; step < 40; ++step) {
     environment.contact.clear();
     if (Potential* touch = contact.begin(body, solid, state, 0.02, environment.gravity, environment.fixed))

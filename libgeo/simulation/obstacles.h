@@ -8,8 +8,8 @@
 
 #include "contact/response/mutual_contact.h"
 #include "contact/response/obstacle.h"
-#include "kerf/scene.h"
 #include "kerf/run.h"
+#include "kerf/scene.h"
 
 namespace geo {
 

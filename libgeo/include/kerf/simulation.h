@@ -1,4 +1,5 @@
-// The loop of § 3.3 and § 4: blades move, fronts follow into the material, the body is split, nodes move, surface follows.
+// The loop of § 3.3 and § 4: blades move, fronts follow into the material, the body is split, nodes move, surface
+// follows.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +16,6 @@
 #include "simulation/wedge.h"
 
 namespace geo {
-
 
 class Simulation {
  public:

@@ -1,3 +1,4 @@
+// The parallel primitives of kerf/parallel.h, on top of oneTBB.
 #include "kerf/parallel.h"
 
 #include <tbb/blocked_range.h>
@@ -11,34 +12,34 @@
 namespace geo {
 namespace {
 std::unique_ptr<tbb::global_control> limit;
-int wanted = 0;
-thread_local int alone = 0;
+int requested_threads = 0;           // 0: one for each core
+thread_local int serial_scopes = 0;  // number of living SerialScopes of this thread
 }  // namespace
 
-Alone::Alone() { ++alone; }
-Alone::~Alone() { --alone; }
+SerialScope::SerialScope() { ++serial_scopes; }
+SerialScope::~SerialScope() { --serial_scopes; }
 
 void set_threads(int count) {
-  wanted = count > 0 ? count : 0;
+  requested_threads = count > 0 ? count : 0;
   limit.reset();
-  if (wanted > 0)
+  if (requested_threads > 0)
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                  static_cast<std::size_t>(wanted));
+                                                  static_cast<std::size_t>(requested_threads));
 }
 
-int threads() { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
+int threads() { return requested_threads > 0 ? requested_threads : tbb::info::default_concurrency(); }
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
-  if (threads() == 1 || alone > 0 || count <= grain) return body(0, count);
+  if (threads() == 1 || serial_scopes > 0 || count <= grain) return body(0, count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
 }
 
-void at_once(const std::function<void()>& one, const std::function<void()>& other) {
-  if (threads() > 1 && alone == 0) return tbb::parallel_invoke(one, other);
-  one();
-  other();
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
+  if (threads() > 1 && serial_scopes == 0) return tbb::parallel_invoke(first, second);
+  first();
+  second();
 }
 
 }  // namespace geo

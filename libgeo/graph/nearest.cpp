@@ -30,9 +30,9 @@ void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId,
   });
 }
 
-FreshArray<NodeId> nearest_nodes(const NodeTree& tree, int k) {
+UninitializedArray<NodeId> nearest_nodes(const NodeTree& tree, int k) {
   const auto width = static_cast<std::size_t>(std::max(k, 0));
-  FreshArray<NodeId> rows(tree.size() * width);
+  UninitializedArray<NodeId> rows(tree.size() * width);
   visit_nearest(tree, k, [&](NodeId i, std::span<const NodeId> row) {
     NodeId* const to = rows.data() + i.index() * width;
     std::fill(std::copy(row.begin(), row.end(), to), to + width, NodeId());
@@ -40,7 +40,7 @@ FreshArray<NodeId> nearest_nodes(const NodeTree& tree, int k) {
   return rows;
 }
 
-FreshArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k) {
+UninitializedArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k) {
   return nearest_nodes(NodeTree(positions), k);
 }
 

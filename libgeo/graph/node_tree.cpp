@@ -65,9 +65,9 @@ void encode(std::span<const Vec3> positions, const Box3& box, std::span<std::uin
 
 // By digits, lowest first: rows that ascend stay so among equal codes. Each part counts its digits, and then writes
 // where those of lower digits and of the parts before it end.
-void sort_by_digits(FreshArray<std::uint64_t>& keyed) {
+void sort_by_digits(UninitializedArray<std::uint64_t>& keyed) {
   constexpr int digit = 10, values = 1 << digit;
-  FreshArray<std::uint64_t> other(keyed.size());
+  UninitializedArray<std::uint64_t> other(keyed.size());
   std::vector<std::array<std::uint32_t, values>> next(part_count(keyed.size()));
   for (int pass = 0; pass < code_bits / digit; ++pass) {
     const auto place = [&](std::uint64_t k) { return k >> (32 + digit * pass) & (values - 1); };
@@ -92,7 +92,7 @@ struct Job {
 
 class Splitter {
  public:
-  Splitter(std::span<const Vec3> positions, FreshArray<std::uint64_t>& keyed) : positions_(positions), keyed_(keyed) {}
+  Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed) : positions_(positions), keyed_(keyed) {}
 
   // Splits a cell at the highest bit in which its first code and the last differ, and appends the jobs that this makes,
   // the first part's last. False when it stays a leaf.
@@ -128,7 +128,7 @@ class Splitter {
 
  private:
   std::span<const Vec3> positions_;
-  FreshArray<std::uint64_t>& keyed_;
+  UninitializedArray<std::uint64_t>& keyed_;
 };
 
 void join_boxes(Cell& cell, const Cell& l, const Cell& r) {
@@ -141,12 +141,12 @@ void join_boxes(Cell& cell, const Cell& l, const Cell& r) {
 NodeTree::NodeTree(std::span<const Vec3> positions) {
   const auto n = static_cast<std::uint32_t>(positions.size());
   const auto same = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
-  FreshArray<std::uint64_t> keyed(n);
+  UninitializedArray<std::uint64_t> keyed(n);
   encode(positions, box_of_nodes(positions, n, same), {keyed.data(), n}, same);
   sort_by_digits(keyed);
   Splitter splitter(positions, keyed);
-  node_ = FreshArray<std::uint32_t>(n);
-  for (auto& c : coordinate_) c = FreshArray<double>(n + 16), std::fill(c.end() - 16, c.end(), 0.0);
+  node_ = UninitializedArray<std::uint32_t>(n);
+  for (auto& c : coordinate_) c = UninitializedArray<double>(n + 16), std::fill(c.end() - 16, c.end(), 0.0);
 
   // Large cells are split one after another, what is in the others at the same time.
   std::vector<Cell> top{{{0, 0, 0}, {0, 0, 0}, 0, n, 0}};
@@ -191,7 +191,7 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
   std::vector<std::uint32_t> place(trees.size() + 1, static_cast<std::uint32_t>(top.size()));
   for (std::size_t t = 0; t < trees.size(); ++t)
     place[t + 1] = place[t] + static_cast<std::uint32_t>(trees[t].size()) - 1;
-  cells_ = FreshArray<Cell>(place.back());
+  cells_ = UninitializedArray<Cell>(place.back());
   parallel_for(trees.size(), 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t t = from; t < to; ++t) {
       const auto root = small[t].cell, shift = place[t] - 1;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -55,9 +55,9 @@ class NodeTree {
   const double* along(int axis) const { return coordinate_[axis].data(); }
 
  private:
-  FreshArray<Cell> cells_;
-  FreshArray<std::uint32_t> node_;
-  FreshArray<double> coordinate_[3];
+  UninitializedArray<Cell> cells_;
+  UninitializedArray<std::uint32_t> node_;
+  UninitializedArray<double> coordinate_[3];
 };
 
 }  // namespace geo

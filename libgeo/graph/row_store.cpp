@@ -15,7 +15,7 @@ bool operator==(const RowView& a, const RowView& b) {
 
 RowStore::RowStore(const RowStore& o) : places_(o.places_), free_(o.free_), open_(o.open_) {
   for (const auto& block : o.blocks_) {
-    FreshArray<std::byte> mine(block.size());
+    UninitializedArray<std::byte> mine(block.size());
     std::copy(block.begin(), block.end(), mine.begin());
     blocks_.push_back(std::move(mine));
   }

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 
 namespace geo {
 
@@ -115,10 +115,10 @@ class RowStore {
   Room open_room(std::uint32_t words);
 
   std::vector<Place> places_;
-  std::vector<FreshArray<std::byte>> blocks_;
+  std::vector<UninitializedArray<std::byte>> blocks_;
   std::vector<std::vector<std::uint32_t>> free_;  // offsets by words
   std::vector<Room> open_;                        // blocks that are not full yet
-  std::vector<FreshArray<std::byte>> spare_;      // given and not used yet
+  std::vector<UninitializedArray<std::byte>> spare_;      // given and not used yet
   std::mutex mutex_;                              // of blocks_, free_, open_ and spare_, for writers
 };
 

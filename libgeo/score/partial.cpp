@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "base/joined.h"
+#include "base/union_find.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 
@@ -74,16 +74,16 @@ class Rim {
 
   // Triangles that meet in the material across an edge which no other wall has belong together: one level for all.
   void find_levels(const TriangleBvh& skin, double depth) {
-    Joined joined(level_.size());
+    UnionFind joined(level_.size());
     for (const auto& [name, e] : edges_)
       if (e.triangles.size() == 2 && std::max(deep_[name >> 32], deep_[static_cast<std::uint32_t>(name)]) > 0)
-        joined.join(e.triangles[0], e.triangles[1]);
+        joined.unite(e.triangles[0], e.triangles[1]);
     std::vector<double> deepest(level_.size(), 0);
-    for (std::uint32_t t = 0; t < level_.size(); ++t) deepest[joined[t]] = std::max(deepest[joined[t]], deepest_of(t));
+    for (std::uint32_t t = 0; t < level_.size(); ++t) deepest[joined.find(t)] = std::max(deepest[joined.find(t)], deepest_of(t));
     for (std::uint32_t t = 0; t < level_.size(); ++t) {
       const auto& c = walls_.triangles[t];
       if (deepest_of(t) > 0)
-        level_[t] = depth * deepest[joined[t]];
+        level_[t] = depth * deepest[joined.find(t)];
       else if (skin.inside((walls_.vertices[c[0]] + walls_.vertices[c[1]] + walls_.vertices[c[2]]) / 3))
         level_[t] = -whole;  // all of a thin place
     }

@@ -89,7 +89,7 @@ void Simulation::adopt(const BodyDelta& delta, FrameStats& work) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
   cut_ = true;
-  at_once([&] { prepare(); },
+  parallel_invoke([&] { prepare(); },
           [&] {
             solid_.follow(body_, delta, state_.motion);
             if (scene_.fracture.on) solid_.settle(body_, state_.motion);

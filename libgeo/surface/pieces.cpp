@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/joined.h"
+#include "base/union_find.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 
@@ -53,12 +53,12 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
 
 // Shells that share faces, in groups: the group of each shell.
 std::vector<std::uint32_t> group(std::size_t shells, const std::vector<std::int32_t>& of_side) {
-  Joined joined(shells);
+  UnionFind joined(shells);
   for (std::size_t f = 0; f + 1 < of_side.size(); f += 2)
     if (of_side[f] >= 0 && of_side[f + 1] >= 0)
-      joined.join(static_cast<std::uint32_t>(of_side[f]), static_cast<std::uint32_t>(of_side[f + 1]));
+      joined.unite(static_cast<std::uint32_t>(of_side[f]), static_cast<std::uint32_t>(of_side[f + 1]));
   std::vector<std::uint32_t> group(shells);
-  for (std::uint32_t s = 0; s < shells; ++s) group[s] = joined[s];
+  for (std::uint32_t s = 0; s < shells; ++s) group[s] = joined.find(s);
   return group;
 }
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "base/joined.h"
+#include "base/union_find.h"
 
 namespace geo {
 namespace {
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> open_vertices(const TriangleMesh& mesh) {
   return open;
 }
 
-void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open, double reach, Joined& joined) {
+void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open, double reach, UnionFind& joined) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // of the size of the reach
   for (const auto v : open) {
     const Vec3& p = mesh.vertices[v];
@@ -35,7 +35,7 @@ void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open,
       if (const auto at = cells.find({cell.x() + i % 3 - 1, cell.y() + i / 3 % 3 - 1, cell.z() + i / 9 - 1});
           at != cells.end())
         for (const auto other : at->second)
-          if ((mesh.vertices[other] - p).norm() <= reach) joined.join(v, other);
+          if ((mesh.vertices[other] - p).norm() <= reach) joined.unite(v, other);
     cells[{cell.x(), cell.y(), cell.z()}].push_back(v);
   }
 }
@@ -44,7 +44,7 @@ void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open,
 
 std::size_t weld_seams(TriangleMesh& mesh, double reach) {
   auto open = open_vertices(mesh);
-  Joined joined(mesh.vertices.size());  // the vertex that each becomes
+  UnionFind joined(mesh.vertices.size());  // the vertex that each becomes
   const auto place = [&](std::uint32_t v) {
     return std::tie(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z());
   };
@@ -53,12 +53,12 @@ std::size_t weld_seams(TriangleMesh& mesh, double reach) {
   } else {
     std::sort(open.begin(), open.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
     for (std::size_t i = 1; i < open.size(); ++i)
-      if (place(open[i]) == place(open[i - 1])) joined.join(open[i], open[i - 1]);
+      if (place(open[i]) == place(open[i - 1])) joined.unite(open[i], open[i - 1]);
   }
   std::vector<std::uint32_t> row(mesh.vertices.size());
   std::uint32_t count = 0;
   for (std::uint32_t v = 0; v < row.size(); ++v) {
-    const auto first = joined[v];
+    const auto first = joined.find(v);
     if (first == v) mesh.vertices[count] = mesh.vertices[v];
     row[v] = first == v ? count++ : row[first];
   }

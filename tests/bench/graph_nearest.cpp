@@ -23,7 +23,7 @@ struct Cloud {
   }
 };
 
-void by_nanoflann(std::span<const geo::Vec3> x, geo::FreshArray<geo::NodeId>& rows) {
+void by_nanoflann(std::span<const geo::Vec3> x, geo::UninitializedArray<geo::NodeId>& rows) {
   const Cloud cloud{x};
   const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t> index(
       3, cloud);
@@ -42,7 +42,7 @@ void by_nanoflann(std::span<const geo::Vec3> x, geo::FreshArray<geo::NodeId>& ro
 void measure_nearest(const GraphCase& c, const Options& options, Figures& figures) {
   const auto& x = c.nodes.position;
   const double n = double(x.size());
-  geo::FreshArray<geo::NodeId> ours, theirs(x.size() * k);
+  geo::UninitializedArray<geo::NodeId> ours, theirs(x.size() * k);
   double t_ours = 1e300, t_theirs = 1e300;
   geo::set_threads(1);
   // In turn, and often enough that both meet a moment in which the machine does nothing else.

@@ -25,7 +25,7 @@ std::vector<NodeId> by_full_scan(const std::vector<Vec3>& x, int k) {
   return rows;
 }
 
-bool rows_are(const FreshArray<NodeId>& rows, const std::vector<NodeId>& expected) {
+bool rows_are(const UninitializedArray<NodeId>& rows, const std::vector<NodeId>& expected) {
   return std::equal(rows.begin(), rows.end(), expected.begin(), expected.end());
 }
 

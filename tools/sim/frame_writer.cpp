@@ -57,7 +57,7 @@ const std::string& FrameWriter::log() {
 
 void FrameWriter::run() {
   give_way();
-  const geo::Alone alone;
+  const geo::SerialScope serial;
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return ended_ || !waiting_.empty(); });

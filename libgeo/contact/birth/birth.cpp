@@ -54,7 +54,7 @@ class Midwife {
   }
 
   Birth run(const CrackDelta& crack, double gap) {
-    at_once([&] { birth_.surface.edge = mean_edge(birth_.surface, k_); },
+    parallel_invoke([&] { birth_.surface.edge = mean_edge(birth_.surface, k_); },
             [&] {
               for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
               on_old_sides(crack);

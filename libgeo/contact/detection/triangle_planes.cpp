@@ -116,7 +116,7 @@ void TrianglePlanes::place(std::span<const Triangle> triangles, const std::vecto
   triangles_ = triangles, to_ = &to;
   // Where a surface is cut, triangles become more step by step; the system gives memory where it is written to.
   if (planes_.size() < triangles.size())
-    planes_ = {}, planes_ = FreshArray<Plane>(triangles.size() + triangles.size() / 8);
+    planes_ = {}, planes_ = UninitializedArray<Plane>(triangles.size() + triangles.size() / 8);
   parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Plane& p = planes_[t];

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -55,7 +55,7 @@ class TrianglePlanes {
  private:
   std::span<const Triangle> triangles_;
   const std::vector<Vec3>* to_ = nullptr;
-  FreshArray<Plane> planes_;
+  UninitializedArray<Plane> planes_;
 };
 
 }  // namespace geo

@@ -32,7 +32,7 @@ VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t verti
   });
 }
 
-bool VertexFans::open_out(std::uint32_t v, const FreshArray<Front>& fronts, std::span<const std::uint32_t> together,
+bool VertexFans::open_out(std::uint32_t v, const UninitializedArray<Front>& fronts, std::span<const std::uint32_t> together,
                           const std::vector<Vec3>& at) const {
   if (!closed_[v]) return false;
   // Well beyond the rounding of a product of three vectors, over their lengths.
@@ -63,7 +63,7 @@ std::vector<std::uint32_t> VertexFans::find_shut(const std::vector<std::uint8_t>
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     if (changed[t])
       for (const auto v : triangles_[t]) asked[v] = 1;
-  FreshArray<Front> fronts(triangles_.size());  // of triangles about a vertex that is asked for
+  UninitializedArray<Front> fronts(triangles_.size());  // of triangles about a vertex that is asked for
   parallel_for(triangles_.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& [a, b, c] = triangles_[t];

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -54,7 +54,7 @@ class VertexFans {
     double normal[3], longest;
     Eigen::Map<const Vec3> way() const { return Eigen::Map<const Vec3>(normal); }
   };
-  bool open_out(std::uint32_t v, const FreshArray<Front>& fronts, std::span<const std::uint32_t> together,
+  bool open_out(std::uint32_t v, const UninitializedArray<Front>& fronts, std::span<const std::uint32_t> together,
                 const std::vector<Vec3>& at) const;
 
   std::vector<Triangle> triangles_;

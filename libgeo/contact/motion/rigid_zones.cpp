@@ -8,14 +8,14 @@ namespace geo {
 bool RigidZones::join(const Triangle& s, const Triangle& t) {
   const bool is_new = !have(s, t);
   for (const auto& of : {s, t})
-    for (const auto v : of) joined_.join(s[0], v), in_zone_[v] = 1;
+    for (const auto v : of) joined_.unite(s[0], v), in_zone_[v] = 1;
   return is_new;
 }
 
 bool RigidZones::have(const Triangle& s, const Triangle& t) const {
   for (const auto& of : {s, t})
     for (const auto v : of)
-      if (!in_zone_[v] || joined_.lowest(v) != joined_.lowest(s[0])) return false;
+      if (!in_zone_[v] || joined_.find_shared(v) != joined_.find_shared(s[0])) return false;
   return true;
 }
 
@@ -26,7 +26,7 @@ std::size_t RigidZones::size() const {
 std::vector<std::vector<std::uint32_t>> RigidZones::members() const {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of;
   for (std::uint32_t v = 0; v < in_zone_.size(); ++v)
-    if (in_zone_[v]) of[joined_.lowest(v)].push_back(v);
+    if (in_zone_[v]) of[joined_.find_shared(v)].push_back(v);
   std::vector<std::vector<std::uint32_t>> all;
   for (auto& [one, rows] : of) all.push_back(std::move(rows));
   return all;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/joined.h"
+#include "base/union_find.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -24,7 +24,7 @@ class RigidZones {
   std::vector<std::vector<std::uint32_t>> members() const;
 
  private:
-  Joined joined_;
+  UnionFind joined_;
   std::vector<std::uint8_t> in_zone_;
 };
 

@@ -1,4 +1,5 @@
-// Threads: one loop and one pair, deterministic for any number of them because each index writes only its own slots.
+// Shared-memory parallelism. Results do not depend on the number of threads, provided that each
+// index writes only to its own elements.
 #pragma once
 
 #include <cstddef>
@@ -6,27 +7,30 @@
 
 namespace geo {
 
-/// Sets how many threads `parallel_for` may use from now on; 0 means all cores. Call it before any work starts.
+/// Sets the number of threads that the library uses; 0: one for each core. Must be called while no
+/// parallel work runs.
 void set_threads(int count);
 
-/// How many threads `parallel_for` uses.
+/// The number of threads that the library uses.
 int threads();
 
-/// While one lives, loops of the thread that made it go on in that thread alone: for work that others do not wait for,
-/// beside work that they do.
-class Alone {
+/// While an object of this class lives, parallel_for() and parallel_invoke() run serially if called
+/// from the thread that created it. Intended for background work, which would otherwise compete for
+/// threads with the work in the foreground.
+class SerialScope {
  public:
-  Alone();
-  ~Alone();
-  Alone(const Alone&) = delete;
-  Alone& operator=(const Alone&) = delete;
+  /// Begins the scope for the calling thread. Scopes may be nested.
+  SerialScope();
+  ~SerialScope();
+  SerialScope(const SerialScope&) = delete;
+  SerialScope& operator=(const SerialScope&) = delete;
 };
 
-/// Calls body(begin, end) for disjoint ranges that cover [0, count), in any order and from any thread.
-/// `grain` is the smallest range worth a task. Exceptions thrown by `body` are passed on to the caller.
+/// Calls body(begin, end) for disjoint ranges that cover [0, count), in any order and from any
+/// thread. Ranges of `grain` indices or fewer are not divided. Rethrows an exception of `body`.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Calls both, in any order and from any thread. Exceptions are passed on as by parallel_for().
-void at_once(const std::function<void()>& one, const std::function<void()>& other);
+/// Calls both functions, in any order and from any thread. Rethrows an exception of either.
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
 }  // namespace geo

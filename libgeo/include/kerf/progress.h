@@ -1,4 +1,4 @@
-// How a long call says how far it is, and how it is asked to stop.
+// Progress reports of long calls, their cancellation, and a stopwatch.
 #pragma once
 
 #include <chrono>
@@ -9,20 +9,20 @@
 
 namespace geo {
 
-/// Called with the name of the phase, what is done and what there is to do. Return false to stop the work:
-/// the call then throws Interrupted and leaves everything as it was. An empty function means "nobody listens".
+/// Receives the name of the current phase, the work done and the total work, in units of the phase.
+/// Returning false cancels the call, which then throws Interrupted and changes nothing. An empty
+/// function is allowed: progress is then not reported.
 using Progress = std::function<bool(std::string_view phase, std::size_t done, std::size_t total)>;
 
-/// Reports to `progress` if somebody listens; throws Interrupted when asked to stop.
+/// Calls `progress` if it is not empty; throws Interrupted if it returns false.
 inline void report(const Progress& progress, std::string_view phase, std::size_t done, std::size_t total) {
   if (progress && !progress(phase, done, total)) throw Interrupted();
 }
 
-// ---- Seconds by phase.
-
+/// Wall-clock time of consecutive phases.
 class Stopwatch {
  public:
-  /// Seconds since the last call or the construction.
+  /// Seconds since the previous call, at first since the construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - last_).count();

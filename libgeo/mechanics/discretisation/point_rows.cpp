@@ -132,7 +132,7 @@ Obstacles near_obstacles(const Complex& surface, std::span<const Run> runs) {
 }  // namespace
 
 Obstacles::Obstacles(const Complex& surface, std::span<const FaceId> ids) {
-  at_once([&] { fronts = front_edges(surface, ids); },
+  parallel_invoke([&] { fronts = front_edges(surface, ids); },
           [&] {
             std::vector<std::array<Vec3, 3>> corners;
             for (const FaceId f : ids) corners.push_back(surface.corners(f));

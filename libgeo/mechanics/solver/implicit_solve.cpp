@@ -65,7 +65,7 @@ void ImplicitStep::precondition() {
     s_.penalty_->add_diagonal(s_.rows_, penalty);
     for (std::size_t i = 0; i < n_; ++i) blocks[i] += penalty[i] * Mat3::Identity();
   }
-  at_once(make_coarse, [&] {
+  parallel_invoke(make_coarse, [&] {
     if (!patches_) {
       patches_.emplace(s_.patches_, s_.materials_, moduli_, modes_, blocks, env_.fixed, s_.inverses_);
       return;
@@ -133,7 +133,7 @@ int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<
   std::vector<Vec3> r(n_), z(n_), p(n_, Vec3::Zero()), hp(n_);
   std::vector<double> rz, next, curvature, along(parts_.count()), begun, far(parts_.count(), 0);
   const auto improve = [&](std::vector<double>& product) {
-    at_once([&] { coarse_->solve(r, parts_); }, [&] { patches_->solve(r, parts_.patches()); });
+    parallel_invoke([&] { coarse_->solve(r, parts_); }, [&] { patches_->solve(r, parts_.patches()); });
     parts_.sums_and_most(product, left, [&](std::size_t i) {
       z[i] = patches_->at(i) + coarse_->at(i);
       return std::pair(r[i].dot(z[i]), squared_in_spacings(z, i));

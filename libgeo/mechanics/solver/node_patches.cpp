@@ -42,7 +42,7 @@ void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, c
   };
   if (nodes.size() < many) return divide_lower(found), divide_upper(found);
   Boxes above;
-  at_once([&] { divide_lower(found); }, [&] { divide_upper(above); });
+  parallel_invoke([&] { divide_lower(found); }, [&] { divide_upper(above); });
   found.insert(found.end(), above.begin(), above.end());
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/point_lanes.h"
 #include "mechanics/material/plasticity.h"
@@ -13,7 +13,7 @@ std::vector<StressSums> node_sums(const Solid& solid, const NodeSet& nodes, cons
                                   const BlockStress& stress) {
   constexpr std::size_t width = 8, used = std::tuple_size_v<StressSums>;
   const MaterialPoints& points = solid.points();
-  FreshArray<float> parts(width * points.parts());
+  UninitializedArray<float> parts(width * points.parts());
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<double> values;
     std::vector<float> place, own;

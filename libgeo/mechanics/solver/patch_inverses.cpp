@@ -14,7 +14,7 @@ void PatchInverses::begin(const NodePatches& patches) {
     const std::size_t nodes = patches.nodes(p).size();
     node_.push_back(node_.back() + nodes), first_.push_back(first_.back() + 3 * nodes * padded(3 * nodes));
   }
-  matrix_ = FreshArray<std::uint16_t>(first_.back());
+  matrix_ = UninitializedArray<std::uint16_t>(first_.back());
   besides_.resize(node_.back()), moduli_.resize(patches.count()), known_.assign(patches.count(), 0);
 }
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "kerf/material.h"
 #include "mechanics/solver/node_patches.h"
 
@@ -38,7 +38,7 @@ class PatchInverses {
 
  private:
   std::vector<std::size_t> node_, first_;  // per patch and one more: of its nodes, of its numbers
-  FreshArray<std::uint16_t> matrix_;
+  UninitializedArray<std::uint16_t> matrix_;
   std::vector<Besides> besides_;  // per node of a patch
   std::vector<Moduli> moduli_;    // per patch
   std::vector<char> known_;

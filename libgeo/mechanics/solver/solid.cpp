@@ -64,7 +64,7 @@ void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
 void Solid::settle(const Body& body, State& state) {
   if (!galerkin_ || !galerkin_->is_due()) return;
   PointChanges changes;
-  at_once([&] { groups_ = NodeGroups(position_, rows_, part_, parts_); },
+  parallel_invoke([&] { groups_ = NodeGroups(position_, rows_, part_, parts_); },
           [&] {
             changes = galerkin_->settle(body, points_);
             points_.set_materials(materials_);

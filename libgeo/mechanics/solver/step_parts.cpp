@@ -1,6 +1,6 @@
 #include "mechanics/solver/step_parts.h"
 
-#include "base/joined.h"
+#include "base/union_find.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -14,7 +14,7 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches,
                      const std::vector<std::uint32_t>& component, std::uint32_t components,
                      std::span<const std::pair<std::uint32_t, std::uint32_t>> coupled)
     : all_patches_(patches), of_(component.size(), 0), piece_(of_), node_(component.size()) {
-  Joined joined(components);
+  UnionFind joined(components);
   std::vector<char> of_one(points.blocks.size());
   parallel_for(of_one.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -28,18 +28,18 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches,
     if (of_one[b]) continue;
     for (std::size_t i = 0; i < block.points.size(); ++i)
       for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q)
-        joined.join(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
+        joined.unite(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
   }
   // Of each node, the number of what it is joined to, in the order of their first components.
   std::vector<std::uint32_t> number(components, 0);
   const auto number_all = [&](std::size_t& count, std::vector<std::uint32_t>& of) {
     count = 0;
     for (std::uint32_t c = 0; c < components; ++c)
-      number[c] = joined[c] == c ? static_cast<std::uint32_t>(count++) : number[joined[c]];
+      number[c] = joined.find(c) == c ? static_cast<std::uint32_t>(count++) : number[joined.find(c)];
     for (std::size_t i = 0; i < of.size(); ++i) of[i] = number[component[i]];
   };
   number_all(pieces_, piece_);
-  for (const auto& [a, b] : coupled) joined.join(a, b);
+  for (const auto& [a, b] : coupled) joined.unite(a, b);
   number_all(count_, of_);
   first_.assign(count_ + 1, 0);
   for (const auto p : of_) ++first_[p + 1];

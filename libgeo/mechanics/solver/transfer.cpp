@@ -89,7 +89,7 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
   mass_.resize(n);
   for (std::size_t i = old; i < n; ++i) materials_.add(donors[i - old].index());
   for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
-  at_once([&] { rows_.update(nodes, graph, updated); },
+  parallel_invoke([&] { rows_.update(nodes, graph, updated); },
           [&] {
             if (parted || part_.size() != old)
               parts_ = graph.components(part_);

@@ -17,7 +17,7 @@ RowLists::RowLists(std::span<const std::uint32_t> rows, const std::vector<std::s
   const std::size_t runs = std::clamp<std::size_t>(rows_.size() / rows_a_run, 1, most_runs);
   const auto begin_of = [&](std::size_t run) { return rows_.size() * run / runs; };
   std::vector<std::vector<std::uint32_t>> next(runs);
-  own_ = FreshArray<Share>(first_own_.back());
+  own_ = UninitializedArray<Share>(first_own_.back());
   parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t run = begin; run < end; ++run) {
       next[run].assign(nodes, 0);
@@ -33,7 +33,7 @@ RowLists::RowLists(std::span<const std::uint32_t> rows, const std::vector<std::s
     for (auto& of_run : next) at += std::exchange(of_run[n], at);
   }
   first_share_[nodes] = at;
-  shares_ = FreshArray<Share>(at), weights_ = FreshArray<double>(at);
+  shares_ = UninitializedArray<Share>(at), weights_ = UninitializedArray<double>(at);
   parallel_for(runs, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t run = begin; run < end; ++run)
       for (std::size_t k = begin_of(run); k < begin_of(run + 1); ++k)

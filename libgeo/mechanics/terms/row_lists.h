@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "mechanics/terms/potential.h"
 
 namespace geo {
@@ -40,8 +40,8 @@ class RowLists {
  private:
   std::vector<std::uint32_t> rows_;
   std::vector<std::size_t> first_own_, first_share_;
-  FreshArray<Share> own_, shares_;
-  FreshArray<double> weights_;
+  UninitializedArray<Share> own_, shares_;
+  UninitializedArray<double> weights_;
 };
 
 }  // namespace geo

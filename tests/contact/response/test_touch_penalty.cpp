@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "acting.h"
-#include "base/joined.h"
+#include "base/union_find.h"
 #include "base/random.h"
 #include "body/agreement.h"
 #include "cases.h"
@@ -111,11 +111,11 @@ TEST_CASE(
     for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
       p->begin(u, 0, 1);
       Acting acting(*p, u);
-      Joined joined(n);
+      UnionFind joined(n);
       std::vector<std::uint32_t> part(n);
       std::iota(part.begin(), part.end(), 0u);
-      for (const auto& [i, j] : acting.rows().couples(part)) joined.join(i, j);
-      for (std::uint32_t i = 0; i < n; ++i) part[i] = joined[i];
+      for (const auto& [i, j] : acting.rows().couples(part)) joined.unite(i, j);
+      for (std::uint32_t i = 0; i < n; ++i) part[i] = joined.find(i);
       const std::vector<Vec3> force = acting.force(at);
       const std::vector<char> all(n, 1);
       std::vector<double> energy(n, 0), moved(n, 0);

@@ -1,4 +1,4 @@
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -8,13 +8,14 @@
 
 namespace geo {
 
-void give_in_large_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
+void advise_huge_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
   constexpr std::uintptr_t page = std::uintptr_t(2) << 20;
   if (bytes < 4 * page) return;
   const auto begin = reinterpret_cast<std::uintptr_t>(at);
   const auto first = (begin + page - 1) / page * page, last = (begin + bytes) / page * page;
-  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);  // a hint: where it is refused, nothing is lost
+  // Advice only: its failure is harmless, so the return value is ignored.
+  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 #endif
 }
 

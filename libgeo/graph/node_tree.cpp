@@ -92,7 +92,8 @@ struct Job {
 
 class Splitter {
  public:
-  Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed) : positions_(positions), keyed_(keyed) {}
+  Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed)
+      : positions_(positions), keyed_(keyed) {}
 
   // Splits a cell at the highest bit in which its first code and the last differ, and appends the jobs that this makes,
   // the first part's last. False when it stays a leaf.

@@ -116,10 +116,10 @@ class RowStore {
 
   std::vector<Place> places_;
   std::vector<UninitializedArray<std::byte>> blocks_;
-  std::vector<std::vector<std::uint32_t>> free_;  // offsets by words
-  std::vector<Room> open_;                        // blocks that are not full yet
-  std::vector<UninitializedArray<std::byte>> spare_;      // given and not used yet
-  std::mutex mutex_;                              // of blocks_, free_, open_ and spare_, for writers
+  std::vector<std::vector<std::uint32_t>> free_;      // offsets by words
+  std::vector<Room> open_;                            // blocks that are not full yet
+  std::vector<UninitializedArray<std::byte>> spare_;  // given and not used yet
+  std::mutex mutex_;                                  // of blocks_, free_, open_ and spare_, for writers
 };
 
 }  // namespace geo

@@ -79,7 +79,8 @@ class Rim {
       if (e.triangles.size() == 2 && std::max(deep_[name >> 32], deep_[static_cast<std::uint32_t>(name)]) > 0)
         joined.unite(e.triangles[0], e.triangles[1]);
     std::vector<double> deepest(level_.size(), 0);
-    for (std::uint32_t t = 0; t < level_.size(); ++t) deepest[joined.find(t)] = std::max(deepest[joined.find(t)], deepest_of(t));
+    for (std::uint32_t t = 0; t < level_.size(); ++t)
+      deepest[joined.find(t)] = std::max(deepest[joined.find(t)], deepest_of(t));
     for (std::uint32_t t = 0; t < level_.size(); ++t) {
       const auto& c = walls_.triangles[t];
       if (deepest_of(t) > 0)

@@ -90,10 +90,10 @@ void Simulation::adopt(const BodyDelta& delta, FrameStats& work) {
   Stopwatch watch;
   cut_ = true;
   parallel_invoke([&] { prepare(); },
-          [&] {
-            solid_.follow(body_, delta, state_.motion);
-            if (scene_.fracture.on) solid_.settle(body_, state_.motion);
-          });
+                  [&] {
+                    solid_.follow(body_, delta, state_.motion);
+                    if (scene_.fracture.on) solid_.settle(body_, state_.motion);
+                  });
   for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
   work.mechanics_seconds += watch.lap();
   if (collisions_) collisions_->follow(body_, solid_, delta);

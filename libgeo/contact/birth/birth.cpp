@@ -55,14 +55,14 @@ class Midwife {
 
   Birth run(const CrackDelta& crack, double gap) {
     parallel_invoke([&] { birth_.surface.edge = mean_edge(birth_.surface, k_); },
-            [&] {
-              for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
-              on_old_sides(crack);
-              on_parts(crack);
-              across(crack);
-              inside(crack);
-              part(crack, gap);
-            });
+                    [&] {
+                      for (const auto v : crack.new_surface_vertices) placed_[v.index()] = 0;
+                      on_old_sides(crack);
+                      on_parts(crack);
+                      across(crack);
+                      inside(crack);
+                      part(crack, gap);
+                    });
     return std::move(birth_);
   }
 

@@ -32,8 +32,8 @@ VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t verti
   });
 }
 
-bool VertexFans::open_out(std::uint32_t v, const UninitializedArray<Front>& fronts, std::span<const std::uint32_t> together,
-                          const std::vector<Vec3>& at) const {
+bool VertexFans::open_out(std::uint32_t v, const UninitializedArray<Front>& fronts,
+                          std::span<const std::uint32_t> together, const std::vector<Vec3>& at) const {
   if (!closed_[v]) return false;
   // Well beyond the rounding of a product of three vectors, over their lengths.
   constexpr double rounding = 1e-13;

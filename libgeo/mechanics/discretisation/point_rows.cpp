@@ -133,11 +133,11 @@ Obstacles near_obstacles(const Complex& surface, std::span<const Run> runs) {
 
 Obstacles::Obstacles(const Complex& surface, std::span<const FaceId> ids) {
   parallel_invoke([&] { fronts = front_edges(surface, ids); },
-          [&] {
-            std::vector<std::array<Vec3, 3>> corners;
-            for (const FaceId f : ids) corners.push_back(surface.corners(f));
-            faces = TriangleBvh(corners);
-          });
+                  [&] {
+                    std::vector<std::array<Vec3, 3>> corners;
+                    for (const FaceId f : ids) corners.push_back(surface.corners(f));
+                    faces = TriangleBvh(corners);
+                  });
 }
 
 Obstacles all_obstacles(const Complex& surface) {

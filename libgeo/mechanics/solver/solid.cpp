@@ -65,11 +65,11 @@ void Solid::settle(const Body& body, State& state) {
   if (!galerkin_ || !galerkin_->is_due()) return;
   PointChanges changes;
   parallel_invoke([&] { groups_ = NodeGroups(position_, rows_, part_, parts_); },
-          [&] {
-            changes = galerkin_->settle(body, points_);
-            points_.set_materials(materials_);
-            inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, other_, points_, changes));
-          });
+                  [&] {
+                    changes = galerkin_->settle(body, points_);
+                    points_.set_materials(materials_);
+                    inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, other_, points_, changes));
+                  });
   other_.clear();
   const auto& kept = changes.kept;
   if (state.plastic.empty() || kept.empty()) return;

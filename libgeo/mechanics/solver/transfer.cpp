@@ -90,12 +90,12 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
   for (std::size_t i = old; i < n; ++i) materials_.add(donors[i - old].index());
   for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
   parallel_invoke([&] { rows_.update(nodes, graph, updated); },
-          [&] {
-            if (parted || part_.size() != old)
-              parts_ = graph.components(part_);
-            else
-              number_parts(graph, old);
-          });
+                  [&] {
+                    if (parted || part_.size() != old)
+                      parts_ = graph.components(part_);
+                    else
+                      number_parts(graph, old);
+                  });
   if (changed.empty()) return;
   std::vector<char> concerned(parts_, 0);
   for (const Was& w : changed) concerned[part_[w.node]] = 1;

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "acting.h"
-#include "base/union_find.h"
 #include "base/random.h"
+#include "base/union_find.h"
 #include "body/agreement.h"
 #include "cases.h"
 #include "contact/detection/triangle_planes.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "contact/response/touching.h"
+#include "contact/response/contact_constraints.h"
 #include "contact/surface/open_sheets.h"
 #include "kerf/crossing.h"
 #include "kerf/parallel.h"
@@ -124,18 +124,18 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
   std::vector<double> stiffness;  // per material, 1/s²
   for (const Material& m : solid.materials().all())
     stiffness.push_back(firmness * m.young / (m.density * spacing * spacing) + 1 / (dt * dt));
-  const auto stiffness_at = [&](const SurfacePlace& p) {
+  const auto stiffness_at = [&](const SurfacePoint& p) {
     const auto node = weights_.heaviest()[p.vertex[0]];
     return stiffness[node == ~0u ? 0 : solid.materials().number(node)];
   };
   // Of two places: as of springs one behind the other.
-  const auto firm = [&](const TouchingPlaces& t, const RelativeRow& row) {
+  const auto firm = [&](const ContactConstraint& t, const RelativeStencil& row) {
     const double a = stiffness_at(t.a), b = stiffness_at(t.b);
     return a == b ? a / (row.of_a + row.of_b) : 1 / (row.of_a / a + row.of_b / b);
   };
   // How far along their normal places were made apart: what is less than they should keep stays so.
-  const auto made_apart = [&](const TouchingPlaces& t) {
-    const auto at_rest = [&](const SurfacePlace& p) {
+  const auto made_apart = [&](const ContactConstraint& t) {
+    const auto at_rest = [&](const SurfacePoint& p) {
       Vec3 sum = Vec3::Zero();
       for (int k = 0; k < p.size; ++k) sum += p.weight[k] * body.surface.point(VertexId(surface_.site[p.vertex[k]]));
       return sum;
@@ -143,9 +143,9 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
     return (at_rest(t.a) - at_rest(t.b)).norm() *
            t.normal.dot((place(t.a, positions_) - place(t.b, positions_)).normalized());
   };
-  const auto add = [&](const std::vector<TouchingPlaces>& touching, const Copies& stands_for,
+  const auto add = [&](const std::vector<ContactConstraint>& touching, const Copies& stands_for,
                        const std::vector<Vec3>& at, double distance) {
-    const std::vector<RelativeRow> rows = relative_rows(weights_, touching, stands_for, inverse_mass);
+    const std::vector<RelativeStencil> rows = relative_stencils(weights_, touching, stands_for, inverse_mass);
     std::vector<double> depth(rows.size());
     std::vector<Vec3> start(rows.size());
     parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -163,12 +163,12 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
       if (alone > 0) touch_.add(rows[i], touching[i].normal, depth[i], firm(touching[i], rows[i]), start[i]);
     }
   };
-  add(deepest(touching_places(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}),
+  add(deepest_constraints(contact_constraints(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}),
               weights_, most_between),
       copies, here, gap + clear * surface_.edge);
-  std::vector<TouchingPlaces> sides;
-  touching_copies(copies, free, vertex_normals(surface_, fans(), copies, positions_), -reach, {dt}, sides);
-  add(deepest(sides, weights_, most_between), Copies::each_alone(copies.size()), now, 0);
+  std::vector<ContactConstraint> sides;
+  add_sheet_constraints(copies, free, vertex_normals(surface_, fans(), copies, positions_), -reach, {dt}, sides);
+  add(deepest_constraints(sides, weights_, most_between), Copies::each_alone(copies.size()), now, 0);
   begun_ = true;
   return touch_.size() > 0 ? &touch_ : nullptr;
 }
@@ -190,14 +190,14 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
   const Copies alone = Copies::each_alone(copies.size());
   // What touches in the motion to where u has the surface, and the change of velocities that keeps it from approaching.
   std::vector<Watched> watched;
-  const auto respond = [&](const Constraint& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
+  const auto respond = [&](const ConstraintOptions& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
     const std::vector<Vec3> to = targets(body, u), goal = averaged(to, together, copies);
     const SurfaceMotion motion{surface_.triangles, together, positions_, goal, gap, 2 * gap};
     if (watched.empty()) watched = watch(motion, near_);
-    const auto touching = deepest(touching_places(watched, motion, constraint), weights_, most_between);
-    std::vector<TouchingPlaces> all_sides;
-    touching_copies(copies, to, normals, 0.01 * gap, constraint, all_sides);
-    const auto sides = deepest(all_sides, weights_, most_between);
+    const auto touching = deepest_constraints(contact_constraints(watched, motion, constraint), weights_, most_between);
+    std::vector<ContactConstraint> all_sides;
+    add_sheet_constraints(copies, to, normals, 0.01 * gap, constraint, all_sides);
+    const auto sides = deepest_constraints(all_sides, weights_, most_between);
     const std::size_t count = apply_impulses(weights_, touching, copies, inverse_mass, how, change).touching;
     return count + apply_impulses(weights_, sides, alone, inverse_mass, how, change).touching;
   };
@@ -249,7 +249,7 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   const std::vector<Vec3> goal = averaged(to, together, copies);
   const double gap = options_.gap * surface_.edge;
   const std::vector<Vec3> guess = likely(goal, together);
-  BoundedMotion bounded;
+  BoundedMotionStats bounded;
   positions_ =
       move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap, begun_ ? &guess : nullptr},
                             true, &bounded, &near_, &fans());

@@ -15,7 +15,7 @@
 #include "contact/birth/birth.h"
 #include "contact/detection/near_pairs.h"
 #include "contact/motion/bounded_motion.h"
-#include "contact/response/touch_penalty.h"
+#include "contact/response/self_contact_penalty.h"
 #include "contact/surface/contact_surface.h"
 #include "contact/surface/surface_weights.h"
 #include "kerf/scene.h"
@@ -69,7 +69,7 @@ class SelfContact {
   ContactSurface surface_;
   SurfaceWeights weights_;
   std::vector<Vec3> positions_;
-  TouchPenalty touch_{TouchPenaltyOptions{}};
+  SelfContactPenalty touch_{SelfContactPenaltyOptions{}};
   NearPairs near_;                    // of the step that is worked on
   VertexFans fans_;                   // of the surface; empty: not asked for yet
   std::optional<Standing> standing_;  // empty: not asked for since positions_ changed

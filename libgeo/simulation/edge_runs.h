@@ -5,7 +5,7 @@
 
 #include "kerf/scene.h"
 #include "simulation/edge_front.h"
-#include "simulation/point_map.h"
+#include "mechanics/discretisation/point_map.h"
 
 namespace geo {
 

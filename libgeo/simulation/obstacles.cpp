@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "kerf/parallel.h"
-#include "simulation/between_bodies.h"
+#include "contact/response/body_contact.h"
 
 namespace geo {
 namespace {
@@ -84,7 +84,7 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
   const double fall = dt * environment.gravity.norm();
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
-    ObstacleOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness,
+    ObstaclePenaltyOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness,
                             ground ? scene.friction : scene.obstacles[k].friction};
     options.pressure *= each;
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
@@ -102,10 +102,10 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
                            1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
   }
   if (scene.ground && scene.self_contact) environment.ground = false;
-  for (Obstacle& o : acting_)
+  for (ObstaclePenalty& o : acting_)
     if (!o.empty()) environment.contact.push_back(&o);
   if (!mutual || !parts_meet(body.nodes, part, motion, dt, fall)) return;
-  mutual_ = between_bodies(body, solid, weights_of(weights, body, solid), part, motion.displacement,
+  mutual_ = body_contact(body, solid, weights_of(weights, body, solid), part, motion.displacement,
                            {scene.contact_stiffness * each, scene.contact.friction, 4 * dt * (fastest + fall) + spacing,
                             1e-2 * dt * fall + 1e-6 * spacing, firmness});
   if (!mutual_->empty()) environment.contact.push_back(&*mutual_);
@@ -114,7 +114,7 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
 void Obstacles::reaction(const State& motion, double share, FrameStats& work) const {
   work.obstacle_force.resize(shapes_.size(), Vec3::Zero()), work.obstacle_torque.resize(shapes_.size(), Vec3::Zero());
   for (std::size_t k = 0; k < acting_.size(); ++k) {
-    const Obstacle::Reaction r = acting_[k].reaction(motion.displacement);
+    const ObstaclePenalty::Reaction r = acting_[k].reaction(motion.displacement);
     work.obstacle_force[k] += share * r.force, work.obstacle_torque[k] += share * r.torque;
   }
 }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "contact/response/mutual_contact.h"
-#include "contact/response/obstacle.h"
+#include "contact/response/body_contact_penalty.h"
+#include "contact/response/obstacle_penalty.h"
 #include "kerf/run.h"
 #include "kerf/scene.h"
 
@@ -34,8 +34,8 @@ class Obstacles {
  private:
   const SurfaceWeights& weights_of(const SurfaceWeights* given, const Body& body, const Solid& solid);
   std::vector<std::shared_ptr<const RigidShape>> shapes_;  // of the scene's obstacles, then that of the ground
-  std::vector<Obstacle> acting_;
-  std::optional<MutualContact> mutual_;
+  std::vector<ObstaclePenalty> acting_;
+  std::optional<BodyContactPenalty> mutual_;
   std::optional<SurfaceWeights> own_;
 };
 

@@ -46,7 +46,7 @@ void contact_of_sheet(const Options& options) {
     for (const auto& [a, b, c] : triangles) boxes.push_back(geo::box_of(from[a], from[b], from[c]).grown(0.1 * edge));
     std::size_t own_pairs = 0, cgal_pairs = 0;
     const double own = own_pairs_seconds(boxes, own_pairs), cgal = cgal_pairs_seconds(boxes, cgal_pairs);
-    geo::BoundedMotion report;
+    geo::BoundedMotionStats report;
     std::vector<geo::Vec3> at;
     const geo::SurfaceMotion motion{triangles, together, from, to, gap, 2 * gap};
     const auto move = [&] { report = {}, at = geo::move_without_crossing(motion, false, &report); };

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/response/obstacle.h"
+#include "contact/response/obstacle_penalty.h"
 #include "mechanics/bodies.h"
 #include "mechanics/disk.h"
 #include "mechanics/validation.h"
@@ -43,14 +43,14 @@ class Press {
     const Vec3 middle = box_.center();
     const Eigen::Isometry3d low = pose({middle.x(), middle.y(), box_.lo.z() + depth}, Vec3::UnitZ()),
                             high = pose({middle.x(), middle.y(), box_.hi.z() - depth}, -Vec3::UnitZ());
-    Obstacle below(shape, {pressure_, 0}, low, low), above(shape, {pressure_, 0}, high, high);
+    ObstaclePenalty below(shape, {pressure_, 0}, low, low), above(shape, {pressure_, 0}, high, high);
     environment_.contact = {&below, &above};
     const std::vector<std::uint8_t> all(solid.size(), 1);
     // Nothing but inertia holds it from turning: steps no longer than that bounds this well, each from rest.
     for (int k = 0; k < 3; ++k) {
       for (Vec3& v : state.velocity) v.setZero();
       state.acceleration.clear();
-      for (Obstacle* o : {&below, &above})
+      for (ObstaclePenalty* o : {&below, &above})
         o->watch(body, weights_, {state.displacement, {}, all}, 0.2 * box_.diagonal(), 1);
       solid.step_implicit(state, 1, environment_, 1e-5);
     }

@@ -10,7 +10,7 @@
 #include "kerf/shapes.h"
 #include "kerf/simulation.h"
 #include "mechanics/discretisation/deformation.h"
-#include "simulation/point_map.h"
+#include "mechanics/discretisation/point_map.h"
 
 using namespace geo;
 

@@ -6,7 +6,7 @@
 #include "kerf/scene_file.h"
 #include "kerf/shapes.h"
 #include "kerf/simulation.h"
-#include "simulation/collide.h"
+#include "simulation/collisions.h"
 
 using namespace geo;
 

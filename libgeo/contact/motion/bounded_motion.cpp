@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "contact/detection/failing_pairs.h"
-#include "contact/motion/carried.h"
-#include "contact/motion/give_way.h"
-#include "contact/motion/settle.h"
+#include "contact/motion/fallback_motion.h"
+#include "contact/motion/separation_projection.h"
+#include "contact/motion/vertex_advance.h"
 #include "geometry/affine_motion.h"
 #include "kerf/crossing.h"
 #include "kerf/parallel.h"
@@ -17,7 +17,7 @@ namespace {
 
 class Mover {
  public:
-  Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, const VertexFans& fans, BoundedMotion& report)
+  Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, const VertexFans& fans, BoundedMotionStats& report)
       : m_(m), two_sided_(two_sided), near_(near), fans_(fans), report_(report), surface_(m), at_(m.from) {
     edge_ = mean_edge();
     double size = 0;
@@ -30,7 +30,7 @@ class Mover {
     for (int round = 0; round < most_rounds && wanting(); ++round) {
       const Way way = advance(round);
       if (way == Way::free) break;
-      report_.planes += settle(surface_.triangles, m_.to, edge_, m_.gap, at_);
+      report_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
       if (way == Way::carried) break;
     }
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.together[v]];
@@ -73,7 +73,7 @@ class Mover {
     next = straight(start, m_.to);
     cover(start, next);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
-    std::optional<Carried> carried;
+    std::optional<FallbackMotion> carried;
     const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
       return carried && carried->keep_apart(s, t, distance);
     };
@@ -106,7 +106,7 @@ class Mover {
 
   // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
-    GiveWay couples(surface_.triangles, start, m_.gap);
+    SeparationProjection couples(surface_.triangles, start, m_.gap);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
     const FailingPairs::KeptApart bound = [&](std::uint32_t s, std::uint32_t t, double) { return couples.bound(s, t); };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
@@ -173,7 +173,7 @@ class Mover {
   bool two_sided_;
   NearPairs& near_;
   const VertexFans& fans_;
-  BoundedMotion& report_;
+  BoundedMotionStats& report_;
   StandingRows surface_;
   std::vector<Vec3> at_;
   double edge_ = 0, rounding_ = 0;
@@ -181,9 +181,9 @@ class Mover {
 
 }  // namespace
 
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* told,
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotionStats* told,
                                         NearPairs* near, const VertexFans* fans) {
-  BoundedMotion own;
+  BoundedMotionStats own;
   NearPairs pairs;
   if (!fans) {
     const VertexFans made(motion.triangles, motion.from.size());

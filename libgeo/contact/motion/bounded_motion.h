@@ -7,7 +7,7 @@
 
 namespace geo {
 
-struct BoundedMotion {
+struct BoundedMotionStats {
   std::size_t planes = 0;    ///< between parts that might have met
   std::size_t in_zones = 0;  ///< vertices that had to move as rigid zones
   bool held = false;         ///< nothing could be carried along
@@ -23,7 +23,7 @@ struct BoundedMotion {
 /// From there, then, each vertex for itself goes straight on where nothing is in its way, and as far as planes between
 /// near parts let it (settle.h). `near`: what is known of the same triangles from watch(), about this motion or one
 /// like it; `fans`: of them.
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotion* report = nullptr,
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotionStats* report = nullptr,
                                         NearPairs* near = nullptr, const VertexFans* fans = nullptr);
 
 }  // namespace geo

@@ -7,30 +7,30 @@
 
 namespace geo {
 
-std::vector<RelativeRow> relative_rows(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
+std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
                                        const Copies& stands_for, const std::vector<double>& inverse_mass) {
-  std::vector<RelativeRow> rows(touching.size());
+  std::vector<RelativeStencil> rows(touching.size());
   parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
-    RelativeRows maker(weights, stands_for, inverse_mass);
+    RelativeStencilBuilder maker(weights, stands_for, inverse_mass);
     for (std::size_t i = begin; i < end; ++i) rows[i] = maker.make(touching[i].a, touching[i].b);
   });
   return rows;
 }
 
-ImpulseReport apply_impulses(const SurfaceWeights& weights, std::span<const TouchingPlaces> touching,
+ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
                              const Copies& stands_for, const std::vector<double>& inverse_mass,
                              const ImpulseOptions& options, std::vector<Vec3>& velocity) {
-  ImpulseReport report;
-  const std::vector<RelativeRow> rows = relative_rows(weights, touching, stands_for, inverse_mass);
+  ImpulseStats report;
+  const std::vector<RelativeStencil> rows = relative_stencils(weights, touching, stands_for, inverse_mass);
   std::vector<double> pressed(touching.size(), 0);
   std::vector<Vec3> rubbed(touching.size(), Vec3::Zero());
-  const auto kick = [&](const RelativeRow& row, const Vec3& impulse) {
+  const auto kick = [&](const RelativeStencil& row, const Vec3& impulse) {
     for (const auto& e : row.entries) velocity[e.node] += e.weight * inverse_mass[e.node] * impulse;
   };
   for (report.sweeps = 0; report.sweeps < options.sweeps; ++report.sweeps) {
     double change = 0, speed = 0;
     for (std::size_t i = 0; i < touching.size(); ++i) {
-      const RelativeRow& row = rows[i];
+      const RelativeStencil& row = rows[i];
       const Vec3& n = touching[i].normal;
       const double softness = options.softness * row.of_a, mobility = row.mobility + softness;
       if (!(mobility > 0)) continue;

@@ -9,11 +9,11 @@
 #include "kerf/run.h"
 #include "kerf/scene.h"
 #include "kerf/solid.h"
-#include "simulation/collide.h"
+#include "simulation/collisions.h"
 #include "simulation/fracture_step.h"
 #include "simulation/obstacles.h"
 #include "simulation/run_state.h"
-#include "simulation/wedge.h"
+#include "contact/response/blade_penalty.h"
 
 namespace geo {
 
@@ -65,7 +65,7 @@ class Simulation {
   Body body_;
   Solid solid_;
   Environment environment_;
-  Wedge wedge_;
+  BladePenalty wedge_;
   Obstacles obstacles_;
   std::optional<Collisions> collisions_;
   std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip

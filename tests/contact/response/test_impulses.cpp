@@ -62,9 +62,9 @@ TEST_CASE("impulses keep momentum, stop what approaches, and take energy") {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     const auto n = static_cast<std::uint32_t>(block.weights.size());
-    std::vector<TouchingPlaces> touching;
+    std::vector<ContactConstraint> touching;
     for (std::uint32_t k = 0; k < 1 + random.below(30); ++k) {
-      TouchingPlaces t{{{}, {}, 3}, {{}, {}, 1}, random.direction(), 0};
+      ContactConstraint t{{{}, {}, 3}, {{}, {}, 1}, random.direction(), 0};
       const double p = random.uniform(), q = random.uniform(0, 1 - p);
       for (int c = 0; c < 3; ++c) t.a.vertex[c] = random.below(n), t.a.weight[c] = c == 0 ? p : c == 1 ? q : 1 - p - q;
       t.b.vertex[0] = random.below(n), t.b.weight[0] = 1;
@@ -102,7 +102,7 @@ TEST_CASE("friction stops a slow slide and slows a fast one") {
     if (at(v).sum() > at(b).sum()) b = v;
   }
   for (const double slide : {0.1, 3.0}) {
-    const TouchingPlaces t{{{b}, {1}, 1}, {{a}, {1}, 1}, Vec3::UnitX(), 0};
+    const ContactConstraint t{{{b}, {1}, 1}, {{a}, {1}, 1}, Vec3::UnitX(), 0};
     std::vector<Vec3> velocity;
     for (std::size_t i = 0; i < block.solid.size(); ++i)
       velocity.push_back(block.body.nodes.position[i].x() * Vec3(-1, slide, 0));

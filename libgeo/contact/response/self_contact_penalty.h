@@ -7,28 +7,28 @@
 
 namespace geo {
 
-struct TouchPenaltyOptions {
+struct SelfContactPenaltyOptions {
   double friction = 0.3;  ///< Coulomb's coefficient
   double slow = 0;        ///< way along each other, model units, below which friction is smooth
 };
 
 /// ½ stiffness depth² for each couple of places that passes its normal's limit. Friction acts on the way since the step
 /// began, with the normal force of that moment, as friction.h has it.
-class TouchPenalty : public Potential {
+class SelfContactPenalty : public Potential {
  public:
-  explicit TouchPenalty(const TouchPenaltyOptions& options) : options_(options) {}
+  explicit SelfContactPenalty(const SelfContactPenaltyOptions& options) : options_(options) {}
   /// As if it were new; the memory is kept.
-  void restart(const TouchPenaltyOptions& options) { options_ = options, rows_.clear(), entries_.clear(); }
+  void restart(const SelfContactPenaltyOptions& options) { options_ = options, rows_.clear(), entries_.clear(); }
 
   /// A couple whose places, along its normal, have passed the limit by `depth` (negative: not yet) at displacements u,
   /// those at which the step begins.
-  void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u) {
+  void add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u) {
     add(row, normal, depth, stiffness, weighed(row.entries, u));
   }
   /// The same, given the row's relative displacement.
-  void add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start);
+  void add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness, const Vec3& start);
   /// Room for as many more.
-  void reserve(std::span<const RelativeRow> rows);
+  void reserve(std::span<const RelativeStencil> rows);
   /// How many press on each other, where each was last asked for its push().
   std::size_t pressing() const;
 
@@ -53,7 +53,7 @@ class TouchPenalty : public Potential {
   };
   double most_friction(const Row& row) const { return options_.friction * row.stiffness * row.depth; }
 
-  TouchPenaltyOptions options_;
+  SelfContactPenaltyOptions options_;
   bool begun_ = false;  // rows' starts are where nodes were at begin()
   std::vector<Row> rows_;
   std::vector<SurfaceWeights::Entry> entries_;

@@ -1,4 +1,4 @@
-#include "contact/motion/give_way.h"
+#include "contact/motion/separation_projection.h"
 
 #include <algorithm>
 #include <numeric>
@@ -10,7 +10,7 @@
 
 namespace geo {
 
-void GiveWay::add(std::span<const Pair> pairs, const std::vector<Vec3>& next) {
+void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Vec3>& next) {
   const auto choose = [&](std::size_t i, const Partings& p, std::size_t lane) {
     Kept& c = couples_[i];
     const bool neighbours = c.a.size < 3 || c.b.size < 3;
@@ -49,13 +49,13 @@ void GiveWay::add(std::span<const Pair> pairs, const std::vector<Vec3>& next) {
     if (couples_[i].normal.isZero(0)) bind({{{couples_[i].s, couples_[i].t}}});
 }
 
-bool GiveWay::bind(std::span<const Pair> pairs) {
+bool SeparationProjection::bind(std::span<const Pair> pairs) {
   bool is_new = false;
   for (const auto& [s, t] : pairs) is_new |= zones_.join(triangles_[s], triangles_[t]);
   return is_new;
 }
 
-void GiveWay::push(std::vector<Vec3>& at) const {
+void SeparationProjection::push(std::vector<Vec3>& at) const {
   constexpr int most_sweeps = 30;
   constexpr double spare = 0.1;  // of what they keep
   const auto each_corner = [](const Kept& c, const auto& take) {

@@ -1,4 +1,4 @@
-#include "simulation/point_map.h"
+#include "mechanics/discretisation/point_map.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -9,7 +9,7 @@ namespace geo {
 
 /// How constraints come out: on velocities, as the speed at which the two may still approach; on displacements, as the
 /// share of what they lack at the end of the motion that they must part by in a time step.
-struct Constraint {
+struct ConstraintOptions {
   double dt;
   double share = 0;  ///< 0: on velocities
   double reach = 0;  ///< model units: what the motion brings nearer to its gap than that counts, too
@@ -17,17 +17,17 @@ struct Constraint {
 
 /// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once;
 /// the same in whatever order pairs are watched.
-std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& motion,
-                                            const Constraint& how);
+std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& watched, const SurfaceMotion& motion,
+                                            const ConstraintOptions& how);
 
 /// Copies that are together and that their own targets would push through each other: the two sides of a sheet, parted
 /// by the difference of their normals.
-void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                     double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out);
+void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
+                     double tolerance, const ConstraintOptions& how, std::vector<ContactConstraint>& out);
 
 /// Of those between the same two neighbourhoods of nodes, the deepest `most`: more say the same, for nodes are farther
 /// apart than vertices. In the order given.
-std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights,
+std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& touching, const SurfaceWeights& weights,
                                     std::size_t most);
 
 }  // namespace geo

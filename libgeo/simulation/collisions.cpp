@@ -1,4 +1,4 @@
-#include "simulation/collide.h"
+#include "simulation/collisions.h"
 
 #include "kerf/error.h"
 #include "kerf/progress.h"

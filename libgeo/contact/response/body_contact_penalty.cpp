@@ -1,24 +1,24 @@
-#include "contact/response/mutual_contact.h"
+#include "contact/response/body_contact_penalty.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/response/friction.h"
+#include "mechanics/terms/contact_law.h"
 
 namespace geo {
 
-void MutualContact::begin(const std::vector<Vec3>& u, double, double) {
+void BodyContactPenalty::begin(const std::vector<Vec3>& u, double, double) {
   for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(row.start);
 }
 
-double MutualContact::energy(std::size_t r, const Vec3& apart) const {
+double BodyContactPenalty::energy(std::size_t r, const Vec3& apart) const {
   const Row& row = rows_[r];
   const double normal = 0.5 * row.stiffness * std::pow(row.depth(apart), 2);
   return row.pressed > 0 ? normal + friction_energy(friction_ * row.pressed, row.along(apart - row.start).norm(), slow_)
                          : normal;
 }
 
-Potential::Push MutualContact::push(std::size_t r, const Vec3& apart) {
+Potential::Push BodyContactPenalty::push(std::size_t r, const Vec3& apart) {
   const Row& row = rows_[r];
   const double depth = row.depth(apart);
   const Mat3 across = row.normal * row.normal.transpose();
@@ -31,7 +31,7 @@ Potential::Push MutualContact::push(std::size_t r, const Vec3& apart) {
   return push;
 }
 
-void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+void BodyContactPenalty::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
                             std::vector<Vec3>& velocity) {
   for (const Row& row : rows_) {
     const double push = h * row.stiffness * row.depth(row.at(u));
@@ -45,7 +45,7 @@ void MutualContact::impulse(const std::vector<Vec3>& u, double h, const std::vec
   }
 }
 
-double MutualContact::depth(const std::vector<Vec3>& u) const {
+double BodyContactPenalty::depth(const std::vector<Vec3>& u) const {
   double most = 0;
   for (const Row& row : rows_) most = std::max(most, row.depth(row.at(u)));
   return most;

@@ -3,8 +3,8 @@
 #include "acting.h"
 #include "base/random.h"
 #include "cases.h"
-#include "contact/response/obstacle.h"
-#include "contact/response/touch_penalty.h"
+#include "contact/response/obstacle_penalty.h"
+#include "contact/response/self_contact_penalty.h"
 #include "geometry/distance.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
@@ -76,7 +76,7 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     const auto shape =
         std::make_shared<RigidShape>(plane ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
     const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
-    Obstacle o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
+    ObstaclePenalty o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
     o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
     o.begin(u, 0, 1);
@@ -115,7 +115,7 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   const std::size_t n = block.solid.size();
   const std::vector<std::uint8_t> all(n, 1);
   const Vec3 place(0.5, 0.45, -0.5);
-  Obstacle o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
+  ObstaclePenalty o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero());
   o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
   o.begin(u, 0, 1);
@@ -143,14 +143,14 @@ TEST_CASE(
                                                                          : RigidShape(make_pumpkin(4)));
     const Vec3 below =
         shape->extent() == 0 ? Vec3(0.5, 0.5, random.uniform(-0.2, 0.05)) : Vec3(0.5, 0.45, random.uniform(-0.8, -0.4));
-    Obstacle o(shape, {1e4, 0.4}, at(below),
+    ObstaclePenalty o(shape, {1e4, 0.4}, at(below),
                at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
-    TouchPenalty touch({0.4, 0.05});
+    SelfContactPenalty touch({0.4, 0.05});
     std::vector<Vec3> u, part;
     for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());
     o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
     for (int r = 0; r < 30; ++r) {
-      RelativeRow row;
+      RelativeStencil row;
       for (int k = 0; k < 4; ++k)
         row.entries.push_back({static_cast<std::uint32_t>(4 * random.below(static_cast<std::uint32_t>(n / 4)) +
                                                           static_cast<std::uint32_t>(k)),

@@ -1,4 +1,4 @@
-#include "contact/response/touching.h"
+#include "contact/response/contact_constraints.h"
 
 #include <algorithm>
 #include <limits>
@@ -8,18 +8,18 @@
 
 namespace geo {
 
-std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched, const SurfaceMotion& m,
-                                            const Constraint& how) {
+std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& watched, const SurfaceMotion& m,
+                                            const ConstraintOptions& how) {
   using Key = std::array<std::uint32_t, 6>;
   using Name = std::pair<Key, Key>;  // of the places; and of the couple that has them, so that it does not depend on
                                      // the couples' order which of several is taken
   constexpr std::size_t stretch = 256;
-  std::vector<std::pair<std::vector<TouchingPlaces>, std::vector<Name>>> some((watched.size() + stretch - 1) / stretch);
-  const auto look_at = [&](const Watched& w, std::vector<TouchingPlaces>& result, std::vector<Name>& names) {
+  std::vector<std::pair<std::vector<ContactConstraint>, std::vector<Name>>> some((watched.size() + stretch - 1) / stretch);
+  const auto look_at = [&](const Watched& w, std::vector<ContactConstraint>& result, std::vector<Name>& names) {
     if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) return;
     const ClosestPlaces& c = w.closest;
-    TouchingPlaces t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
-    const auto take = [](SurfacePlace& place, const Simplex& s, const Vec3& weights) {
+    ContactConstraint t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
+    const auto take = [](SurfacePoint& place, const Simplex& s, const Vec3& weights) {
       for (int k = 0; k < s.size; ++k)
         if (weights[k] > 0) place.vertex[place.size] = s.v[k], place.weight[place.size++] = weights[k];
     };
@@ -45,21 +45,21 @@ std::vector<TouchingPlaces> touching_places(const std::vector<Watched>& watched,
       for (std::size_t i = s * stretch; i < std::min(watched.size(), (s + 1) * stretch); ++i)
         look_at(watched[i], some[s].first, some[s].second);
   });
-  std::vector<TouchingPlaces> result;
+  std::vector<ContactConstraint> result;
   std::vector<Name> names;
   for (const auto& [places, named] : some)
     result.insert(result.end(), places.begin(), places.end()), names.insert(names.end(), named.begin(), named.end());
   std::vector<std::uint32_t> order(result.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(names[i], i) < std::tie(names[j], j); });
-  std::vector<TouchingPlaces> once;
+  std::vector<ContactConstraint> once;
   for (std::size_t i = 0; i < order.size(); ++i)
     if (i == 0 || names[order[i]].first != names[order[i - 1]].first) once.push_back(result[order[i]]);
   return once;
 }
 
-void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                     double tolerance, const Constraint& how, std::vector<TouchingPlaces>& out) {
+void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
+                     double tolerance, const ConstraintOptions& how, std::vector<ContactConstraint>& out) {
   for (std::size_t v = 0; v < copies.size(); ++v)
     for (std::size_t i = 0; i < copies[v].size(); ++i)
       for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
@@ -73,9 +73,9 @@ void touching_copies(const Copies& copies, const std::vector<Vec3>& targets, con
       }
 }
 
-std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching, const SurfaceWeights& weights,
+std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& touching, const SurfaceWeights& weights,
                                     std::size_t most) {
-  const auto node = [&](const SurfacePlace& place) {
+  const auto node = [&](const SurfacePoint& place) {
     return weights.heaviest()[place.vertex[std::max_element(place.weight, place.weight + place.size) - place.weight]];
   };
   struct Entry {
@@ -99,7 +99,7 @@ std::vector<TouchingPlaces> deepest(const std::vector<TouchingPlaces>& touching,
     if (i - first < most) kept.push_back(order[i].row);
   }
   std::sort(kept.begin(), kept.end());
-  std::vector<TouchingPlaces> result;
+  std::vector<ContactConstraint> result;
   for (const auto i : kept) result.push_back(touching[i]);
   return result;
 }

@@ -11,7 +11,7 @@ namespace geo {
 /// Nodes beside the flanks of blades, each before a plane through the edge: an energy ½ m k d² where the material that
 /// the node stands for is d beyond it, as with the ground. Made anew for each time step, by the sides that nodes are
 /// on.
-class Wedge : public Potential {
+class BladePenalty : public Potential {
  public:
   /// Adds the nodes that a blade at `pose` has beside it. `x`, `u`, `clearance` (how far the material goes around
   /// each), `mass`: per node. `stiffness`: acceleration per depth, 1/s².

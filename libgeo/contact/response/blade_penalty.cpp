@@ -1,11 +1,11 @@
-#include "simulation/wedge.h"
+#include "contact/response/blade_penalty.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace geo {
 
-void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x,
+void BladePenalty::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x,
                 const std::vector<Vec3>& u, const std::vector<double>& clearance, const std::vector<double>& mass,
                 double stiffness) {
   const Vec3 back = pose.rotation * shape.back;
@@ -47,18 +47,18 @@ void Wedge::add(std::size_t blade, const Blade& shape, const Pose& pose, const s
   }
 }
 
-double Wedge::energy(std::size_t r, const Vec3& way) const {
+double BladePenalty::energy(std::size_t r, const Vec3& way) const {
   return 0.5 * contacts_[r].stiffness * std::pow(contacts_[r].depth(way), 2);
 }
 
-Potential::Push Wedge::push(std::size_t r, const Vec3& way) {
+Potential::Push BladePenalty::push(std::size_t r, const Vec3& way) {
   const Contact& c = contacts_[r];
   const double depth = c.depth(way);
   return {c.stiffness * depth * c.normal,
           depth > 0 ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero())};
 }
 
-std::vector<Vec3> Wedge::reaction(const std::vector<Vec3>& u, std::size_t blades) const {
+std::vector<Vec3> BladePenalty::reaction(const std::vector<Vec3>& u, std::size_t blades) const {
   std::vector<Vec3> sum(blades, Vec3::Zero());
   for (const Contact& c : contacts_) sum[c.blade] -= c.stiffness * c.depth(u[c.at.node]) * c.normal;
   return sum;

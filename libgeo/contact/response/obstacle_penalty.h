@@ -10,7 +10,7 @@
 
 namespace geo {
 
-struct ObstacleOptions {
+struct ObstaclePenaltyOptions {
   double pressure =
       1e6;  ///< Pa for a metre of depth: a body that presses with p stands p / pressure deep, in model units
   double friction = 0.5;  ///< Coulomb's coefficient
@@ -20,10 +20,10 @@ struct ObstacleOptions {
 /// inside. Friction acts on the way beside the obstacle since the step began, with the normal and the normal force of
 /// that moment: that is the derivative of a convex potential (Li et al. 2020, § 5). Vertices act on nodes by the
 /// weights of Eq. 1.
-class Obstacle : public Potential {
+class ObstaclePenalty : public Potential {
  public:
   /// Moves from one pose to the other during the step, its turn even.
-  Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options, const Eigen::Isometry3d& from,
+  ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options, const Eigen::Isometry3d& from,
            const Eigen::Isometry3d& to);
 
   /// Where a body is when a step begins.
@@ -90,7 +90,7 @@ class Obstacle : public Potential {
   void each_way(const std::vector<Vec3>& u, const Take& take) const;
 
   std::shared_ptr<const RigidShape> shape_;
-  ObstacleOptions options_;
+  ObstaclePenaltyOptions options_;
   Eigen::Isometry3d from_, to_, now_;        // now_: at the end of this part of the step
   double slow_ = 0, begun_ = 0, ended_ = 0;  // shares of the step
   Reaction sum_;                             // of the parts before this one, times their shares

@@ -7,11 +7,11 @@
 
 namespace geo {
 
-/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an Obstacle. Both sides get
+/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an ObstaclePenalty. Both sides get
 /// the same force, so that momentum is kept; the angular one to second order of the depth.
-class MutualContact : public Potential {
+class BodyContactPenalty : public Potential {
  public:
-  MutualContact(double friction, double slow) : friction_(friction), slow_(slow) {}
+  BodyContactPenalty(double friction, double slow) : friction_(friction), slow_(slow) {}
 
   /// Displacements of the two sides differ by `apart`: weights of nodes, the vertex's less those of the place on the
   /// triangle. `way`: from the place to the vertex at rest. `normal`: out of the body that the triangle bounds.

@@ -1,4 +1,4 @@
-#include "simulation/between_bodies.h"
+#include "contact/response/body_contact.h"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 #include "contact/surface/contact_surface.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
-#include "simulation/point_map.h"
+#include "mechanics/discretisation/point_map.h"
 
 namespace geo {
 namespace {
@@ -69,10 +69,10 @@ class Surroundings {
 
 }  // namespace
 
-MutualContact between_bodies(const Body& body, const Solid& solid, const SurfaceWeights& weights,
+BodyContactPenalty body_contact(const Body& body, const Solid& solid, const SurfaceWeights& weights,
                              const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
-                             const BetweenBodies& options) {
-  MutualContact contact(options.friction, options.slow);
+                             const BodyContactOptions& options) {
+  BodyContactPenalty contact(options.friction, options.slow);
   const std::uint32_t parts = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
   if (parts < 2) return contact;
   const Complex& k = body.surface;

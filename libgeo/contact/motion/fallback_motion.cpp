@@ -1,4 +1,4 @@
-#include "contact/motion/carried.h"
+#include "contact/motion/fallback_motion.h"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-
 
 }  // namespace
 
-Carried::Carried(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
+FallbackMotion::FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
                  const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge)
     : triangles_(triangles),
       rows_(rows),
@@ -38,7 +38,7 @@ Carried::Carried(const std::vector<Triangle>& triangles, std::span<const std::ui
   }
 }
 
-bool Carried::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs) {
+bool FallbackMotion::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs) {
   const std::vector<std::uint8_t> before = carried_;
   bool grown = false;
   for (const auto& [s, t] : pairs) {
@@ -54,19 +54,19 @@ bool Carried::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs
   return grown;
 }
 
-bool Carried::add_all() {
+bool FallbackMotion::add_all() {
   bool grown = false;
   for (const auto v : rows_) grown |= !carried_[v], carried_[v] = 1;
   return grown;
 }
 
-void Carried::place(std::vector<Vec3>& next) const {
+void FallbackMotion::place(std::vector<Vec3>& next) const {
   for (const auto v : rows_)
     if (carried_[v]) next[v] = field_[v];
   for (const auto& rows : zones_.members()) move_rigidly(rows, start_, field_, next);
 }
 
-bool Carried::keep_apart(std::uint32_t s, std::uint32_t t, double distance) const {
+bool FallbackMotion::keep_apart(std::uint32_t s, std::uint32_t t, double distance) const {
   const auto carried = [&](std::uint32_t v) { return carried_[v] != 0; };
   for (const auto of : {s, t})
     if (!std::all_of(triangles_[of].begin(), triangles_[of].end(), carried)) return false;

@@ -9,8 +9,8 @@
 #include "body/agreement.h"
 #include "cases.h"
 #include "contact/detection/triangle_planes.h"
-#include "contact/response/mutual_contact.h"
-#include "contact/response/touch_penalty.h"
+#include "contact/response/body_contact_penalty.h"
+#include "contact/response/self_contact_penalty.h"
 #include "contact/self_contact.h"
 #include "kerf/crossing.h"
 #include "kerf/nodes.h"
@@ -21,8 +21,8 @@ using namespace geo;
 namespace {
 
 // A row of these nodes with random weights that sum to zero.
-RelativeRow row_of(const std::vector<std::uint32_t>& nodes, Random& random) {
-  RelativeRow row;
+RelativeStencil row_of(const std::vector<std::uint32_t>& nodes, Random& random) {
+  RelativeStencil row;
   double left = 0;
   for (const auto node : nodes) {
     const double w = row.entries.size() + 1 < nodes.size() ? random.uniform(-0.5, 0.5) : -left;
@@ -45,11 +45,11 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
       return v;
     };
     const std::vector<Vec3> u = vectors(1);
-    TouchPenalty penalty({0.4, 0.05});
+    SelfContactPenalty penalty({0.4, 0.05});
     for (int i = 0; i < 6; ++i) {
       std::vector<std::uint32_t> all_nodes(n);
       std::iota(all_nodes.begin(), all_nodes.end(), 0);
-      const RelativeRow row = row_of(all_nodes, random);
+      const RelativeStencil row = row_of(all_nodes, random);
       penalty.add(row, random.direction(), random.uniform(-0.2, 0.5), random.uniform(1, 5), u);
     }
     std::vector<Vec3> at = u, way = vectors(1);
@@ -98,12 +98,12 @@ TEST_CASE(
     std::vector<Vec3> u, at;
     for (std::uint32_t i = 0; i < n; ++i)
       u.push_back(random.direction()), at.push_back(u.back() + 0.3 * random.direction());
-    TouchPenalty touch({0.4, 0.05});
-    MutualContact mutual(0.4, 0.05);
+    SelfContactPenalty touch({0.4, 0.05});
+    BodyContactPenalty mutual(0.4, 0.05);
     for (int r = 0; r < 7; ++r) {
       std::vector<std::uint32_t> some;
       for (int k = 0; k < 3; ++k) some.push_back(static_cast<std::uint32_t>(random.below(n)));
-      const RelativeRow row = row_of(some, random);
+      const RelativeStencil row = row_of(some, random);
       const Vec3 normal = random.direction();
       touch.add(row, normal, random.uniform(0, 0.5), random.uniform(1, 5), u);
       mutual.add(row.entries, random.uniform(-0.5, 0) * normal, normal, random.uniform(1, 5));

@@ -1,8 +1,8 @@
-#include "contact/response/relative_row.h"
+#include "contact/response/relative_stencil.h"
 
 namespace geo {
 
-RelativeRows::RelativeRows(const SurfaceWeights& weights, const Copies& stands_for,
+RelativeStencilBuilder::RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for,
                            const std::vector<double>& inverse_mass)
     : weights_(weights),
       stands_for_(stands_for),
@@ -10,8 +10,8 @@ RelativeRows::RelativeRows(const SurfaceWeights& weights, const Copies& stands_f
       sum_(inverse_mass.size(), Sums{0, 0}),
       taken_(inverse_mass.size(), 0) {}
 
-RelativeRow RelativeRows::make(const SurfacePlace& a, const SurfacePlace& b) {
-  RelativeRow row;
+RelativeStencil RelativeStencilBuilder::make(const SurfacePoint& a, const SurfacePoint& b) {
+  RelativeStencil row;
   used_.clear();
   add(a, 0), add(b, 1);
   row.entries.reserve(used_.size());
@@ -26,7 +26,7 @@ RelativeRow RelativeRows::make(const SurfacePlace& a, const SurfacePlace& b) {
   return row;
 }
 
-void RelativeRows::add(const SurfacePlace& place, std::size_t which) {
+void RelativeStencilBuilder::add(const SurfacePoint& place, std::size_t which) {
   for (int k = 0; k < place.size; ++k) {
     const auto copies = stands_for_[place.vertex[k]];
     for (const auto v : copies)

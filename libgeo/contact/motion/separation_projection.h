@@ -14,11 +14,11 @@ namespace geo {
 
 /// Couples of triangles, or of what they do not share (parts_apart()), each with a direction that parts them where a
 /// straight motion begins.
-class GiveWay {
+class SeparationProjection {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   /// `gap`: that couples keep, model units, or what the direction parts them by at the beginning.
-  GiveWay(const std::vector<Triangle>& triangles, const std::vector<Vec3>& start, double gap)
+  SeparationProjection(const std::vector<Triangle>& triangles, const std::vector<Vec3>& start, double gap)
       : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
 
   /// Pairs that the motion from start to `next` does not keep apart: of some directions that part one about as well as

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "contact/response/mutual_contact.h"
+#include "contact/response/body_contact_penalty.h"
 
 namespace geo {
 
-struct BetweenBodies {
+struct BodyContactOptions {
   double pressure = 1e6;  ///< Pa for a metre of depth
   double friction = 0.3;  ///< Coulomb's coefficient
   double reach = 0;  ///< vertices so near, or so deep, are looked at: no less than what bodies approach each other in a
@@ -24,8 +24,8 @@ struct BetweenBodies {
 /// where the vertex is mapped back to (point_map.h); so it follows cuts, costs nothing to keep, and is exact at corners
 /// and in thin parts. The sheets of a crack count where they are open wider than the vertex is deep. Each side's
 /// vertices get half the pressure.
-MutualContact between_bodies(const Body& body, const Solid& solid, const SurfaceWeights& weights,
+BodyContactPenalty body_contact(const Body& body, const Solid& solid, const SurfaceWeights& weights,
                              const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
-                             const BetweenBodies& options);
+                             const BodyContactOptions& options);
 
 }  // namespace geo

@@ -1,25 +1,25 @@
-#include "contact/response/obstacle.h"
+#include "contact/response/obstacle_penalty.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/response/friction.h"
+#include "mechanics/terms/contact_law.h"
 #include "kerf/parallel.h"
 #include "mechanics/terms/row_sums.h"
 
 namespace geo {
 
-Obstacle::Obstacle(std::shared_ptr<const RigidShape> shape, const ObstacleOptions& options,
+ObstaclePenalty::ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options,
                    const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
 template <class Take>
-void Obstacle::each_way(const std::vector<Vec3>& u, const Take& take) const {
+void ObstaclePenalty::each_way(const std::vector<Vec3>& u, const Take& take) const {
   each_row_sum(
       rows_.size(), u, [&](std::size_t r) { return rows_[r].weights; }, take);
 }
 
-Eigen::Isometry3d Obstacle::pose(double share) const {
+Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   if (share <= 0) return from_;
   if (share >= 1) return to_;
   Eigen::Isometry3d p = Eigen::Isometry3d::Identity();
@@ -28,7 +28,7 @@ Eigen::Isometry3d Obstacle::pose(double share) const {
   return p;
 }
 
-void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
+void ObstaclePenalty::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
                      std::span<const double> firmness) {
   const Complex& k = body.surface;
   slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
@@ -64,7 +64,7 @@ void Obstacle::watch(const Body& body, const SurfaceWeights& weights, const Watc
   });
 }
 
-void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
+void ObstaclePenalty::begin(const std::vector<Vec3>& u, double from, double to) {
   if (from <= 0)
     sum_ = {}, impulses_ = false;
   else if (from == ended_ && !impulses_)
@@ -88,7 +88,7 @@ void Obstacle::begin(const std::vector<Vec3>& u, double from, double to) {
   });
 }
 
-RigidShape::Field Obstacle::inside(const Row& row, const Vec3& y) const {
+RigidShape::Field ObstaclePenalty::inside(const Row& row, const Vec3& y) const {
   // No nearer than it was, less the ways that the vertex and what it would stick to have gone.
   if (row.outside > 0 && (y - row.stuck).norm() < row.outside) return {};
   RigidShape::Field field = shape_->at(now_.inverse() * y);
@@ -97,16 +97,16 @@ RigidShape::Field Obstacle::inside(const Row& row, const Vec3& y) const {
   return {field.distance, turn * field.normal, turn * field.square * turn.transpose()};
 }
 
-Vec3 Obstacle::slide(const Row& row, const Vec3& y) {
+Vec3 ObstaclePenalty::slide(const Row& row, const Vec3& y) {
   const Vec3 way = y - row.stuck;
   return way - row.normal.dot(way) * row.normal;
 }
 
-double Obstacle::drag(const Row& row, const Vec3& slide) const {
+double ObstaclePenalty::drag(const Row& row, const Vec3& slide) const {
   return friction_drag(options_.friction * row.pressed, slide.norm(), slow_);
 }
 
-double Obstacle::energy(std::size_t r, const Vec3& way) const {
+double ObstaclePenalty::energy(std::size_t r, const Vec3& way) const {
   const Row& row = rows_[r];
   const Vec3 y = row.rest + way;
   const double normal = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
@@ -114,7 +114,7 @@ double Obstacle::energy(std::size_t r, const Vec3& way) const {
                          : normal;
 }
 
-Potential::Push Obstacle::pushed(const Row& row, const Vec3& way) const {
+Potential::Push ObstaclePenalty::pushed(const Row& row, const Vec3& way) const {
   const Vec3 y = row.rest + way;
   const RigidShape::Field field = inside(row, y);
   Push push{-row.stiffness * field.distance * field.normal, row.stiffness * field.square};
@@ -126,7 +126,7 @@ Potential::Push Obstacle::pushed(const Row& row, const Vec3& way) const {
   return push;
 }
 
-void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+void ObstaclePenalty::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
                        std::vector<Vec3>& velocity) {
   const Eigen::Isometry3d start = pose(begun_);
   std::vector<RigidShape::Field> fields(rows_.size());
@@ -151,7 +151,7 @@ void Obstacle::impulse(const std::vector<Vec3>& u, double h, const std::vector<d
   }
 }
 
-void Obstacle::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
+void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
   const double share = ended_ - begun_;
   std::vector<Reaction> of(rows_.size());
   each_way(u, [&](std::size_t r, const Vec3& way) {
@@ -161,13 +161,13 @@ void Obstacle::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
   for (const Reaction& r : of) to.force -= r.force, to.torque -= r.torque;
 }
 
-Obstacle::Reaction Obstacle::reaction(const std::vector<Vec3>& u) const {
+ObstaclePenalty::Reaction ObstaclePenalty::reaction(const std::vector<Vec3>& u) const {
   Reaction all = sum_;
   if (!impulses_) add_reaction(u, all);
   return all;
 }
 
-double Obstacle::depth(const std::vector<Vec3>& u) const {
+double ObstaclePenalty::depth(const std::vector<Vec3>& u) const {
   double most = 0;
   for (const Row& row : rows_) most = std::max(most, -inside(row, row.rest + at(row, u)).distance);
   return most;

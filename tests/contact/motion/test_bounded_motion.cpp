@@ -7,7 +7,7 @@
 #include "contact/detection/watch.h"
 #include "contact/motion/bounded_motion.h"
 #include "contact/motion/straight_motion.h"
-#include "contact/response/touching.h"
+#include "contact/response/contact_constraints.h"
 #include "geometry/predicates.h"
 #include "kerf/crossing.h"
 #include "kerf/shapes.h"
@@ -26,7 +26,7 @@ struct Soup {
       together.push_back(static_cast<std::uint32_t>(from.size())), from.push_back(at + size * p);
     for (const auto& [a, b, c] : m.triangles) triangles.push_back({a + base, b + base, c + base});
   }
-  std::vector<Vec3> move(BoundedMotion* report = nullptr) const {
+  std::vector<Vec3> move(BoundedMotionStats* report = nullptr) const {
     return move_without_crossing({triangles, together, from, to, 1e-4, 2e-3}, false, report);
   }
   std::size_t crossings(const std::vector<Vec3>& at) const {
@@ -120,7 +120,7 @@ TEST_CASE("what is clear of everything goes where it wants to, to the bit") {
   s.add(make_sphere(2), {4, 0, 0}, 1);
   const Eigen::AngleAxisd turn(0.2, Vec3(1, 2, 3).normalized());
   for (const Vec3& x : s.from) s.to.push_back(turn * x + Vec3(5, 5, 5));
-  BoundedMotion report;
+  BoundedMotionStats report;
   CHECK(s.move(&report) == s.to);
   CHECK(report.in_zones == 0);
 }
@@ -259,11 +259,11 @@ TEST_CASE("what touches does not depend on what the list of near pairs was used 
     const auto of_fresh = watch(motion, fresh, owner, 2), of_used = watch(motion, used, owner, 2);
     for (std::size_t i = 0; i < std::min(of_fresh.size(), of_used.size()); ++i)
       in_another_order += !std::equal(of_fresh[i].a.v, of_fresh[i].a.v + 3, of_used[i].a.v);
-    const auto a = touching_places(of_fresh, motion, {0.01, 0, 0.1 * Sheets::edge}),
-               b = touching_places(of_used, motion, {0.01, 0, 0.1 * Sheets::edge});
+    const auto a = contact_constraints(of_fresh, motion, {0.01, 0, 0.1 * Sheets::edge}),
+               b = contact_constraints(of_used, motion, {0.01, 0, 0.1 * Sheets::edge});
     REQUIRE(a.size() == b.size());
     found += a.size();
-    const auto same = [](const SurfacePlace& p, const SurfacePlace& q) {
+    const auto same = [](const SurfacePoint& p, const SurfacePoint& q) {
       return p.size == q.size && std::equal(p.vertex, p.vertex + p.size, q.vertex) &&
              std::equal(p.weight, p.weight + p.size, q.weight);
     };
@@ -282,7 +282,7 @@ TEST_CASE("sheets that are pressed into each other while they slide give way by 
     Random random(seed);
     const Sheets soup(random);
     REQUIRE(soup.crossings(soup.from) == 0);
-    BoundedMotion report;
+    BoundedMotionStats report;
     const std::vector<Vec3> at = soup.move(&report);
     CHECK(soup.crossings(at) == 0);
     CHECK(report.in_zones == 0);
@@ -310,7 +310,7 @@ TEST_CASE("places so near each other that no direction is seen to part them are 
     }
     soup.from[v].z() = high + 2e-15 * (1 + random.uniform());
     REQUIRE(soup.crossings(soup.from) == 0);
-    BoundedMotion report;
+    BoundedMotionStats report;
     const std::vector<Vec3> at = soup.move(&report);
     CHECK(soup.crossings(at) == 0);
     CHECK(report.in_zones <= 24);

@@ -1,23 +1,23 @@
-#include "contact/response/touch_penalty.h"
+#include "contact/response/self_contact_penalty.h"
 
 #include <algorithm>
 
-#include "contact/response/friction.h"
+#include "mechanics/terms/contact_law.h"
 
 namespace geo {
-void TouchPenalty::add(const RelativeRow& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
+void SelfContactPenalty::add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
   rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness,
                    std::max(0.0, -depth) / spread(row.entries), start, false});
   entries_.insert(entries_.end(), row.entries.begin(), row.entries.end());
 }
 
-void TouchPenalty::reserve(std::span<const RelativeRow> rows) {
+void SelfContactPenalty::reserve(std::span<const RelativeStencil> rows) {
   std::size_t entries = entries_.size();
-  for (const RelativeRow& row : rows) entries += row.entries.size();
+  for (const RelativeStencil& row : rows) entries += row.entries.size();
   entries_.reserve(entries), rows_.reserve(rows_.size() + rows.size());
 }
 
-double TouchPenalty::energy(std::size_t r, const Vec3& way) const {
+double SelfContactPenalty::energy(std::size_t r, const Vec3& way) const {
   const Row& row = rows_[r];
   const Vec3 gone = way - row.start;
   const double along = row.normal.dot(gone), depth = std::max(0.0, row.depth - along);
@@ -27,7 +27,7 @@ double TouchPenalty::energy(std::size_t r, const Vec3& way) const {
              : normal;
 }
 
-Potential::Push TouchPenalty::push(std::size_t r, const Vec3& way) {
+Potential::Push SelfContactPenalty::push(std::size_t r, const Vec3& way) {
   Row& row = rows_[r];
   const Vec3& n = row.normal;
   const Vec3 gone = way - row.start;
@@ -43,7 +43,7 @@ Potential::Push TouchPenalty::push(std::size_t r, const Vec3& way) {
   return push;
 }
 
-std::size_t TouchPenalty::pressing() const {
+std::size_t SelfContactPenalty::pressing() const {
   return static_cast<std::size_t>(
       std::count_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.pressing; }));
 }

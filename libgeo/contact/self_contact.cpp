@@ -163,8 +163,9 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
       if (alone > 0) touch_.add(rows[i], touching[i].normal, depth[i], firm(touching[i], rows[i]), start[i]);
     }
   };
-  add(deepest_constraints(contact_constraints(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}),
-              weights_, most_between),
+  add(deepest_constraints(
+          contact_constraints(watch(motion, near_, weights_.heaviest(), 2 * most_between), motion, {dt, 0, reach}),
+          weights_, most_between),
       copies, here, gap + clear * surface_.edge);
   std::vector<ContactConstraint> sides;
   add_sheet_constraints(copies, free, vertex_normals(surface_, fans(), copies, positions_), -reach, {dt}, sides);

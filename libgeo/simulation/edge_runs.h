@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "kerf/scene.h"
-#include "simulation/edge_front.h"
 #include "mechanics/discretisation/point_map.h"
+#include "simulation/edge_front.h"
 
 namespace geo {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "kerf/parallel.h"
 #include "contact/response/body_contact.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -85,7 +85,7 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
     ObstaclePenaltyOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness,
-                            ground ? scene.friction : scene.obstacles[k].friction};
+                                   ground ? scene.friction : scene.obstacles[k].friction};
     options.pressure *= each;
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
     if (ground)
@@ -106,8 +106,8 @@ void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, 
     if (!o.empty()) environment.contact.push_back(&o);
   if (!mutual || !parts_meet(body.nodes, part, motion, dt, fall)) return;
   mutual_ = body_contact(body, solid, weights_of(weights, body, solid), part, motion.displacement,
-                           {scene.contact_stiffness * each, scene.contact.friction, 4 * dt * (fastest + fall) + spacing,
-                            1e-2 * dt * fall + 1e-6 * spacing, firmness});
+                         {scene.contact_stiffness * each, scene.contact.friction, 4 * dt * (fastest + fall) + spacing,
+                          1e-2 * dt * fall + 1e-6 * spacing, firmness});
   if (!mutual_->empty()) environment.contact.push_back(&*mutual_);
 }
 

@@ -23,7 +23,8 @@ struct BoundedMotionStats {
 /// From there, then, each vertex for itself goes straight on where nothing is in its way, and as far as planes between
 /// near parts let it (settle.h). `near`: what is known of the same triangles from watch(), about this motion or one
 /// like it; `fans`: of them.
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotionStats* report = nullptr,
-                                        NearPairs* near = nullptr, const VertexFans* fans = nullptr);
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided,
+                                        BoundedMotionStats* report = nullptr, NearPairs* near = nullptr,
+                                        const VertexFans* fans = nullptr);
 
 }  // namespace geo

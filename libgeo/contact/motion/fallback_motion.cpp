@@ -14,7 +14,7 @@ constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-
 }  // namespace
 
 FallbackMotion::FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
-                 const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge)
+                               const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge)
     : triangles_(triangles),
       rows_(rows),
       start_(start),

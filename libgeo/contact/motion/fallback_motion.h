@@ -15,8 +15,8 @@ class FallbackMotion {
  public:
   /// The field of `rows` that want to go from start to `to`, no further than it is one-to-one all the way. `edge`: that
   /// of the surface, model units. Refers to all of them; nothing is carried yet.
-  FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows, const std::vector<Vec3>& start,
-          const std::vector<Vec3>& to, double edge);
+  FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
+                 const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge);
 
   /// Carries all corners of these pairs of triangles; as a rigid zone those of a pair that were carried before. True
   /// when that is new.

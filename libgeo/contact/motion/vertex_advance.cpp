@@ -8,8 +8,8 @@
 
 namespace geo {
 
-std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& wanted, double edge, double gap,
-                   std::vector<Vec3>& at) {
+std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& wanted, double edge,
+                             double gap, std::vector<Vec3>& at) {
   constexpr double negligible = 0.01, farthest = 0.1;  // of an edge: not worth a plane, and as far as planes let one go
   std::vector<double> room(at.size(), 0);
   std::vector<Vec3> to = at;

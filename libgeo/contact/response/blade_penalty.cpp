@@ -6,8 +6,8 @@
 namespace geo {
 
 void BladePenalty::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x,
-                const std::vector<Vec3>& u, const std::vector<double>& clearance, const std::vector<double>& mass,
-                double stiffness) {
+                       const std::vector<Vec3>& u, const std::vector<double>& clearance,
+                       const std::vector<double>& mass, double stiffness) {
   const Vec3 back = pose.rotation * shape.back;
   const double width = back.norm(), slope = 0.5 * shape.thickness / width;
   const std::size_t n = shape.points.size(), segments = shape.closed ? n : n - 1;

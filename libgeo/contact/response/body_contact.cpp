@@ -70,8 +70,8 @@ class Surroundings {
 }  // namespace
 
 BodyContactPenalty body_contact(const Body& body, const Solid& solid, const SurfaceWeights& weights,
-                             const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
-                             const BodyContactOptions& options) {
+                                const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
+                                const BodyContactOptions& options) {
   BodyContactPenalty contact(options.friction, options.slow);
   const std::uint32_t parts = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
   if (parts < 2) return contact;

@@ -25,7 +25,7 @@ struct BodyContactOptions {
 /// and in thin parts. The sheets of a crack count where they are open wider than the vertex is deep. Each side's
 /// vertices get half the pressure.
 BodyContactPenalty body_contact(const Body& body, const Solid& solid, const SurfaceWeights& weights,
-                             const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
-                             const BodyContactOptions& options);
+                                const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
+                                const BodyContactOptions& options);
 
 }  // namespace geo

@@ -32,7 +32,7 @@ Potential::Push BodyContactPenalty::push(std::size_t r, const Vec3& apart) {
 }
 
 void BodyContactPenalty::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
-                            std::vector<Vec3>& velocity) {
+                                 std::vector<Vec3>& velocity) {
   for (const Row& row : rows_) {
     const double push = h * row.stiffness * row.depth(row.at(u));
     double lightness = 0;

@@ -7,8 +7,8 @@
 
 namespace geo {
 
-/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an ObstaclePenalty. Both sides get
-/// the same force, so that momentum is kept; the angular one to second order of the depth.
+/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an ObstaclePenalty. Both
+/// sides get the same force, so that momentum is kept; the angular one to second order of the depth.
 class BodyContactPenalty : public Potential {
  public:
   BodyContactPenalty(double friction, double slow) : friction_(friction), slow_(slow) {}

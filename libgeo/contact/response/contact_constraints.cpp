@@ -9,12 +9,13 @@
 namespace geo {
 
 std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& watched, const SurfaceMotion& m,
-                                            const ConstraintOptions& how) {
+                                                   const ConstraintOptions& how) {
   using Key = std::array<std::uint32_t, 6>;
   using Name = std::pair<Key, Key>;  // of the places; and of the couple that has them, so that it does not depend on
                                      // the couples' order which of several is taken
   constexpr std::size_t stretch = 256;
-  std::vector<std::pair<std::vector<ContactConstraint>, std::vector<Name>>> some((watched.size() + stretch - 1) / stretch);
+  std::vector<std::pair<std::vector<ContactConstraint>, std::vector<Name>>> some((watched.size() + stretch - 1) /
+                                                                                 stretch);
   const auto look_at = [&](const Watched& w, std::vector<ContactConstraint>& result, std::vector<Name>& names) {
     if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) return;
     const ClosestPlaces& c = w.closest;
@@ -59,7 +60,7 @@ std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& w
 }
 
 void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                     double tolerance, const ConstraintOptions& how, std::vector<ContactConstraint>& out) {
+                           double tolerance, const ConstraintOptions& how, std::vector<ContactConstraint>& out) {
   for (std::size_t v = 0; v < copies.size(); ++v)
     for (std::size_t i = 0; i < copies[v].size(); ++i)
       for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
@@ -73,8 +74,8 @@ void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& target
       }
 }
 
-std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& touching, const SurfaceWeights& weights,
-                                    std::size_t most) {
+std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& touching,
+                                                   const SurfaceWeights& weights, std::size_t most) {
   const auto node = [&](const SurfacePoint& place) {
     return weights.heaviest()[place.vertex[std::max_element(place.weight, place.weight + place.size) - place.weight]];
   };

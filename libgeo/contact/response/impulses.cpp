@@ -7,8 +7,9 @@
 
 namespace geo {
 
-std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
-                                       const Copies& stands_for, const std::vector<double>& inverse_mass) {
+std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
+                                               std::span<const ContactConstraint> touching, const Copies& stands_for,
+                                               const std::vector<double>& inverse_mass) {
   std::vector<RelativeStencil> rows(touching.size());
   parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
     RelativeStencilBuilder maker(weights, stands_for, inverse_mass);
@@ -18,8 +19,8 @@ std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights, st
 }
 
 ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
-                             const Copies& stands_for, const std::vector<double>& inverse_mass,
-                             const ImpulseOptions& options, std::vector<Vec3>& velocity) {
+                            const Copies& stands_for, const std::vector<double>& inverse_mass,
+                            const ImpulseOptions& options, std::vector<Vec3>& velocity) {
   ImpulseStats report;
   const std::vector<RelativeStencil> rows = relative_stencils(weights, touching, stands_for, inverse_mass);
   std::vector<double> pressed(touching.size(), 0);

@@ -20,8 +20,9 @@ struct ContactConstraint {
 
 /// Their rows (relative_row.h), in the order given. `stands_for`: which surface vertices carry one vertex of the places
 /// (together, they move as their average). Made by all threads.
-std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
-                                       const Copies& stands_for, const std::vector<double>& inverse_mass);
+std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
+                                               std::span<const ContactConstraint> touching, const Copies& stands_for,
+                                               const std::vector<double>& inverse_mass);
 
 struct ImpulseStats {
   std::size_t touching = 0;  ///< constraints with an impulse
@@ -41,7 +42,7 @@ struct ImpulseOptions {
       0.02;  ///< share of the places' own mobility that is added to the pair's: for places that share their nodes
 };
 ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
-                             const Copies& stands_for, const std::vector<double>& inverse_mass,
-                             const ImpulseOptions& options, std::vector<Vec3>& velocity);
+                            const Copies& stands_for, const std::vector<double>& inverse_mass,
+                            const ImpulseOptions& options, std::vector<Vec3>& velocity);
 
 }  // namespace geo

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mechanics/terms/contact_law.h"
 #include "kerf/parallel.h"
+#include "mechanics/terms/contact_law.h"
 #include "mechanics/terms/row_sums.h"
 
 namespace geo {
 
 ObstaclePenalty::ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options,
-                   const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
+                                 const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
 template <class Take>
@@ -28,8 +28,8 @@ Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   return p;
 }
 
-void ObstaclePenalty::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
-                     std::span<const double> firmness) {
+void ObstaclePenalty::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach,
+                            double slow, std::span<const double> firmness) {
   const Complex& k = body.surface;
   slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
   const auto rest = [&](std::uint32_t v) -> const Vec3& { return k.point(k.site(SurfaceVertexId(v))); };
@@ -127,7 +127,7 @@ Potential::Push ObstaclePenalty::pushed(const Row& row, const Vec3& way) const {
 }
 
 void ObstaclePenalty::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
-                       std::vector<Vec3>& velocity) {
+                              std::vector<Vec3>& velocity) {
   const Eigen::Isometry3d start = pose(begun_);
   std::vector<RigidShape::Field> fields(rows_.size());
   const double share = ended_ - begun_;

@@ -23,8 +23,8 @@ struct ObstaclePenaltyOptions {
 class ObstaclePenalty : public Potential {
  public:
   /// Moves from one pose to the other during the step, its turn even.
-  ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options, const Eigen::Isometry3d& from,
-           const Eigen::Isometry3d& to);
+  ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options,
+                  const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
   /// Where a body is when a step begins.
   struct Watched {

@@ -3,7 +3,7 @@
 namespace geo {
 
 RelativeStencilBuilder::RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for,
-                           const std::vector<double>& inverse_mass)
+                                               const std::vector<double>& inverse_mass)
     : weights_(weights),
       stands_for_(stands_for),
       inverse_mass_(inverse_mass),

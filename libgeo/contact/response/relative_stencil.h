@@ -33,7 +33,8 @@ inline Vec3 place(const SurfacePoint& p, const std::vector<Vec3>& at) {
 /// average).
 class RelativeStencilBuilder {
  public:
-  RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for, const std::vector<double>& inverse_mass);
+  RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for,
+                         const std::vector<double>& inverse_mass);
   RelativeStencil make(const SurfacePoint& a, const SurfacePoint& b);
 
  private:

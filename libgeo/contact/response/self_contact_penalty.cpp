@@ -5,7 +5,8 @@
 #include "mechanics/terms/contact_law.h"
 
 namespace geo {
-void SelfContactPenalty::add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
+void SelfContactPenalty::add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness,
+                             const Vec3& start) {
   rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness,
                    std::max(0.0, -depth) / spread(row.entries), start, false});
   entries_.insert(entries_.end(), row.entries.begin(), row.entries.end());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "contact/response/blade_penalty.h"
 #include "kerf/body.h"
 #include "kerf/run.h"
 #include "kerf/scene.h"
@@ -13,7 +14,6 @@
 #include "simulation/fracture_step.h"
 #include "simulation/obstacles.h"
 #include "simulation/run_state.h"
-#include "contact/response/blade_penalty.h"
 
 namespace geo {
 

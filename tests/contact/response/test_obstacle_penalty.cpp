@@ -115,7 +115,8 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   const std::size_t n = block.solid.size();
   const std::vector<std::uint8_t> all(n, 1);
   const Vec3 place(0.5, 0.45, -0.5);
-  ObstaclePenalty o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place), at(place + Vec3(0.02, 0.01, 0.01)));
+  ObstaclePenalty o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place),
+                    at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero());
   o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
   o.begin(u, 0, 1);
@@ -144,7 +145,7 @@ TEST_CASE(
     const Vec3 below =
         shape->extent() == 0 ? Vec3(0.5, 0.5, random.uniform(-0.2, 0.05)) : Vec3(0.5, 0.45, random.uniform(-0.8, -0.4));
     ObstaclePenalty o(shape, {1e4, 0.4}, at(below),
-               at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
+                      at(below + 0.05 * random.direction(), random.direction(), random.uniform(0, 0.1)));
     SelfContactPenalty touch({0.4, 0.05});
     std::vector<Vec3> u, part;
     for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());

@@ -78,7 +78,8 @@ std::vector<Vec3> SelfContact::targets(const Body& body, const std::vector<Vec3>
   return result;
 }
 
-// The same. Where nodes are where they were at the last call, only what has other weights since is worked out.
+// The same. Where nodes are where they were at the last call, only what has other weights since is
+// worked out.
 const std::vector<Vec3>& SelfContact::targets_at(const Body& body, const std::vector<Vec3>& u) {
   if (last_.of.size() <= u.size() && !last_.of.empty() && std::equal(last_.of.begin(), last_.of.end(), u.begin())) {
     last_.targets.resize(weights_.size(), Vec3::Zero());
@@ -152,7 +153,7 @@ Potential* SelfContact::begin(const Body& body, const Solid& solid, const State&
       for (std::size_t i = begin; i < end; ++i) {
         const double limit = distance > 0 ? std::min(distance, made_apart(touching[i])) : 0;
         const double lack = limit - touching[i].normal.dot(place(touching[i].a, at) - place(touching[i].b, at));
-        depth[i] = lack > 0 ? recovered * lack : lack, start[i] = weighed(rows[i].entries, state.displacement);
+        depth[i] = lack > 0 ? recovered * lack : lack, start[i] = weighted_sum(rows[i].entries, state.displacement);
       }
     });
     touch_.reserve(rows);
@@ -189,7 +190,8 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
   }
   const std::vector<Vec3> free = velocity, normals = vertex_normals(surface_, fans(), copies, positions_);
   const Copies alone = Copies::each_alone(copies.size());
-  // What touches in the motion to where u has the surface, and the change of velocities that keeps it from approaching.
+  // What touches in the motion to where u has the surface, and the change of velocities that keeps
+  // it from approaching.
   std::vector<Watched> watched;
   const auto respond = [&](const ConstraintOptions& constraint, const ImpulseOptions& how, std::vector<Vec3>& change) {
     const std::vector<Vec3> to = targets(body, u), goal = averaged(to, together, copies);
@@ -212,7 +214,8 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
     for (std::size_t i = 0; i < n; ++i) u[i] = state.displacement[i] + dt * (velocity[i] - free[i]);
   }
   if (touching == 0) return 0;
-  // Where nodes have let their surfaces pass through each other all the same, they are brought back without velocity.
+  // Where nodes have let their surfaces pass through each other all the same, they are brought back
+  // without velocity.
   std::vector<Vec3> back(n, Vec3::Zero());
   how.friction = 0;
   respond({dt, options_.recovery}, how, back);
@@ -223,8 +226,8 @@ std::size_t SelfContact::apply_impulses_after(const Body& body, const Solid& sol
   return touching;
 }
 
-// What kept places from where nodes would have them when the step began is likely to do so at its end. Where it does
-// not, they come back by and by.
+// What kept places from where nodes would have them when the step began is likely to do so at its
+// end. Where it does not, they come back by and by.
 std::vector<Vec3> SelfContact::likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const {
   constexpr double stays = 0.9, negligible = 1e-3;  // a step; of a mean edge
   std::vector<Vec3> result = goal;

@@ -51,7 +51,7 @@ double BladePenalty::energy(std::size_t r, const Vec3& way) const {
   return 0.5 * contacts_[r].stiffness * std::pow(contacts_[r].depth(way), 2);
 }
 
-Potential::Push BladePenalty::push(std::size_t r, const Vec3& way) {
+Potential::Derivatives BladePenalty::derivatives(std::size_t r, const Vec3& way) {
   const Contact& c = contacts_[r];
   const double depth = c.depth(way);
   return {c.stiffness * depth * c.normal,

@@ -7,7 +7,7 @@
 
 namespace geo {
 
-void BodyContactPenalty::begin(const std::vector<Vec3>& u, double, double) {
+void BodyContactPenalty::begin_substep(const std::vector<Vec3>& u, double, double) {
   for (Row& row : rows_) row.start = row.at(u), row.pressed = row.stiffness * row.depth(row.start);
 }
 
@@ -18,21 +18,21 @@ double BodyContactPenalty::energy(std::size_t r, const Vec3& apart) const {
                          : normal;
 }
 
-Potential::Push BodyContactPenalty::push(std::size_t r, const Vec3& apart) {
+Potential::Derivatives BodyContactPenalty::derivatives(std::size_t r, const Vec3& apart) {
   const Row& row = rows_[r];
   const double depth = row.depth(apart);
   const Mat3 across = row.normal * row.normal.transpose();
-  Push push{row.stiffness * depth * row.normal, depth > 0 ? Mat3(row.stiffness * across) : Mat3(Mat3::Zero())};
+  Derivatives result{row.stiffness * depth * row.normal, depth > 0 ? Mat3(row.stiffness * across) : Mat3(Mat3::Zero())};
   if (row.pressed > 0) {
     const Vec3 slide = row.along(apart - row.start);
     const double drag = friction_drag(friction_ * row.pressed, slide.norm(), slow_);
-    push.force -= drag * slide, push.curvature += drag * (Mat3::Identity() - across);
+    result.force -= drag * slide, result.hessian += drag * (Mat3::Identity() - across);
   }
-  return push;
+  return result;
 }
 
-void BodyContactPenalty::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
-                                 std::vector<Vec3>& velocity) {
+void BodyContactPenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+                                       std::vector<Vec3>& velocity) {
   for (const Row& row : rows_) {
     const double push = h * row.stiffness * row.depth(row.at(u));
     double lightness = 0;

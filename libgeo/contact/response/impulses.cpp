@@ -35,7 +35,7 @@ ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const Conta
       const Vec3& n = touching[i].normal;
       const double softness = options.softness * row.of_a, mobility = row.mobility + softness;
       if (!(mobility > 0)) continue;
-      Vec3 v = weighed(row.entries, velocity);
+      Vec3 v = weighted_sum(row.entries, velocity);
       const double lack = -touching[i].approach - n.dot(v) - softness * pressed[i];
       const double before = pressed[i];
       if (lack <= 0 && before == 0) continue;

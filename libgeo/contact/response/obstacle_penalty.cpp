@@ -5,7 +5,7 @@
 
 #include "kerf/parallel.h"
 #include "mechanics/terms/contact_law.h"
-#include "mechanics/terms/row_sums.h"
+#include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
 
@@ -15,7 +15,7 @@ ObstaclePenalty::ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const 
 
 template <class Take>
 void ObstaclePenalty::each_way(const std::vector<Vec3>& u, const Take& take) const {
-  each_row_sum(
+  for_each_weighted_sum(
       rows_.size(), u, [&](std::size_t r) { return rows_[r].weights; }, take);
 }
 
@@ -64,7 +64,7 @@ void ObstaclePenalty::watch(const Body& body, const SurfaceWeights& weights, con
   });
 }
 
-void ObstaclePenalty::begin(const std::vector<Vec3>& u, double from, double to) {
+void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, double to) {
   if (from <= 0)
     sum_ = {}, impulses_ = false;
   else if (from == ended_ && !impulses_)
@@ -114,20 +114,20 @@ double ObstaclePenalty::energy(std::size_t r, const Vec3& way) const {
                          : normal;
 }
 
-Potential::Push ObstaclePenalty::pushed(const Row& row, const Vec3& way) const {
+Potential::Derivatives ObstaclePenalty::pushed(const Row& row, const Vec3& way) const {
   const Vec3 y = row.rest + way;
   const RigidShape::Field field = inside(row, y);
-  Push push{-row.stiffness * field.distance * field.normal, row.stiffness * field.square};
+  Derivatives result{-row.stiffness * field.distance * field.normal, row.stiffness * field.square};
   if (row.pressed > 0) {
     const Vec3 slid = slide(row, y);
     const double rub = drag(row, slid);
-    push.force -= rub * slid, push.curvature += rub * (Mat3::Identity() - row.normal * row.normal.transpose());
+    result.force -= rub * slid, result.hessian += rub * (Mat3::Identity() - row.normal * row.normal.transpose());
   }
-  return push;
+  return result;
 }
 
-void ObstaclePenalty::impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
-                              std::vector<Vec3>& velocity) {
+void ObstaclePenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+                                    std::vector<Vec3>& velocity) {
   const Eigen::Isometry3d start = pose(begun_);
   std::vector<RigidShape::Field> fields(rows_.size());
   const double share = ended_ - begun_;

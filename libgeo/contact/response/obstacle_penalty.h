@@ -1,5 +1,5 @@
-// A rigid obstacle: a penalty on each vertex of the surface that is inside it, with Coulomb friction (§ 3.3, between
-// objects).
+// A rigid obstacle: a penalty on each vertex of the surface that is inside it, with Coulomb
+// friction (§ 3.3, between objects).
 #pragma once
 
 #include <memory>
@@ -16,10 +16,10 @@ struct ObstaclePenaltyOptions {
   double friction = 0.5;  ///< Coulomb's coefficient
 };
 
-/// ½ pressure area depth² at each surface vertex, area being a third of its triangles' at rest, depth how far it is
-/// inside. Friction acts on the way beside the obstacle since the step began, with the normal and the normal force of
-/// that moment: that is the derivative of a convex potential (Li et al. 2020, § 5). Vertices act on nodes by the
-/// weights of Eq. 1.
+/// ½ pressure area depth² at each surface vertex, area being a third of its triangles' at rest,
+/// depth how far it is inside. Friction acts on the way beside the obstacle since the step began,
+/// with the normal and the normal force of that moment: that is the derivative of a convex
+/// potential (Li et al. 2020, § 5). Vertices act on nodes by the weights of Eq. 1.
 class ObstaclePenalty : public Potential {
  public:
   /// Moves from one pose to the other during the step, its turn even.
@@ -32,27 +32,29 @@ class ObstaclePenalty : public Potential {
     std::span<const Vec3> at;            ///< its surface vertices; empty: found from u, where they may be near
     std::span<const std::uint8_t> near;  ///< then: nodes that carry surface that may be
   };
-  /// Which vertices may reach the obstacle in that step (those nearer than `reach`), and their weights, which must
-  /// outlive it. `slow`: a way along the obstacle, model units, below which friction is smooth. `firmness`: per node,
-  /// of what its surface is pressed with, times the pressure; empty: 1.
+  /// Which vertices may reach the obstacle in that step (those nearer than `reach`), and their
+  /// weights, which must outlive it. `slow`: a way along the obstacle, model units, below which
+  /// friction is smooth. `firmness`: per node, of what its surface is pressed with, times the
+  /// pressure; empty: 1.
   void watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
              std::span<const double> firmness = {});
 
   bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
 
   /// A step's first part begins at the displacements of watch().
-  void begin(const std::vector<Vec3>& u, double from, double to) override;
+  void begin_substep(const std::vector<Vec3>& u, double from, double to) override;
   std::size_t size() const override { return rows_.size(); }
-  std::span<const NodeWeight> row(std::size_t r) const override { return rows_[r].weights; }
+  Stencil stencil(std::size_t k) const override { return rows_[k].weights; }
   /// A vertex follows its master's node, that node's neighbours and theirs.
-  bool within_parts() const override { return true; }
-  double reach(std::size_t r) const override { return rows_[r].reach; }
-  double energy(std::size_t r, const Vec3& way) const override;
-  Push push(std::size_t r, const Vec3& way) override { return pushed(rows_[r], way); }
-  double stiffness(std::size_t r) const override { return rows_[r].stiffness; }
-  /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction can.
-  void impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
-               std::vector<Vec3>& velocity) override;
+  bool within_components() const override { return true; }
+  double activation_distance(std::size_t k) const override { return rows_[k].reach; }
+  double energy(std::size_t k, const Vec3& d) const override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) override { return pushed(rows_[k], d); }
+  double stiffness_bound(std::size_t k) const override { return rows_[k].stiffness; }
+  /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction
+  /// can.
+  void apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+                     std::vector<Vec3>& velocity) override;
 
   struct Reaction {
     Vec3 force = Vec3::Zero();   ///< N
@@ -76,12 +78,13 @@ class ObstaclePenalty : public Potential {
     Vec3 normal = Vec3::Zero();                    // world, then
     Vec3 stuck = Vec3::Zero();                     // where it would be had it stuck to the obstacle
   };
-  static Vec3 at(const Row& row, const std::vector<Vec3>& values) { return weighed(row.weights, values); }
-  Push pushed(const Row& row, const Vec3& way) const;
+  static Vec3 at(const Row& row, const std::vector<Vec3>& values) { return weighted_sum(row.weights, values); }
+  Derivatives pushed(const Row& row, const Vec3& way) const;
   Eigen::Isometry3d pose(double share) const;
   /// In world coordinates; distance 0 where the row is outside.
   RigidShape::Field inside(const Row& row, const Vec3& y) const;
-  /// The way beside the obstacle of a vertex that is at y now, and the force of friction over it, N/m.
+  /// The way beside the obstacle of a vertex that is at y now, and the force of friction over it,
+  /// N/m.
   static Vec3 slide(const Row& row, const Vec3& y);
   double drag(const Row& row, const Vec3& slide) const;
   void add_reaction(const std::vector<Vec3>& u, Reaction& to) const;

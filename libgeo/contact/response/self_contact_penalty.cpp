@@ -8,7 +8,7 @@ namespace geo {
 void SelfContactPenalty::add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness,
                              const Vec3& start) {
   rows_.push_back({entries_.size(), entries_.size() + row.entries.size(), normal, depth, stiffness,
-                   std::max(0.0, -depth) / spread(row.entries), start, false});
+                   std::max(0.0, -depth) / weight_norm(row.entries), start, false});
   entries_.insert(entries_.end(), row.entries.begin(), row.entries.end());
 }
 
@@ -28,20 +28,20 @@ double SelfContactPenalty::energy(std::size_t r, const Vec3& way) const {
              : normal;
 }
 
-Potential::Push SelfContactPenalty::push(std::size_t r, const Vec3& way) {
+Potential::Derivatives SelfContactPenalty::derivatives(std::size_t r, const Vec3& way) {
   Row& row = rows_[r];
   const Vec3& n = row.normal;
   const Vec3 gone = way - row.start;
   const double along = n.dot(gone), depth = std::max(0.0, row.depth - along);
-  Push push;
+  Derivatives result;
   row.pressing = depth > 0;
-  if (row.pressing) push.force = row.stiffness * depth * n, push.curvature = row.stiffness * n * n.transpose();
+  if (row.pressing) result.force = row.stiffness * depth * n, result.hessian = row.stiffness * n * n.transpose();
   if (row.depth > 0 && options_.friction > 0) {
     const Vec3 slide = gone - along * n;
     const double drag = friction_drag(most_friction(row), slide.norm(), options_.slow);
-    push.force -= drag * slide, push.curvature += drag * (Mat3::Identity() - n * n.transpose());
+    result.force -= drag * slide, result.hessian += drag * (Mat3::Identity() - n * n.transpose());
   }
-  return push;
+  return result;
 }
 
 std::size_t SelfContactPenalty::pressing() const {

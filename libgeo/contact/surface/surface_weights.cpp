@@ -7,7 +7,7 @@
 #include "contact/surface/contact_surface.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
-#include "mechanics/terms/row_sums.h"
+#include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
 
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
 std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertices,
                                           const std::vector<Vec3>& values) const {
   std::vector<Vec3> result(vertices.size());
-  each_row_sum(
+  for_each_weighted_sum(
       vertices.size(), values, [&](std::size_t k) { return row(vertices[k]); },
       [&](std::size_t k, const Vec3& sum) { result[k] = sum; });
   return result;
@@ -59,7 +59,8 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
-    // Of all nodes, zero between rows: each thread keeps its own, as there are few vertices to a range.
+    // Of all nodes, zero between rows: each thread keeps its own, as there are few vertices to a
+    // range.
     thread_local std::vector<double> weight;
     thread_local std::vector<std::uint64_t> used;  // a bit a node
     weight.resize(std::max(weight.size(), solid.size()), 0),
@@ -104,7 +105,7 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
       const auto most = std::max_element(rows_[v].begin(), rows_[v].end(),
                                          [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
       if (most != rows_[v].end()) heaviest_[v] = most->node;
-      spread_[v] = geo::spread(rows_[v]);
+      spread_[v] = weight_norm(rows_[v]);
     }
   });
 }

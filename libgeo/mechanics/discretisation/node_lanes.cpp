@@ -1,4 +1,5 @@
-// Compiled once for each kind of vector, like point_lanes.cpp. No sum is fused with a product, so all give the same.
+// Compiled once for each kind of vector, like point_lanes.cpp. No sum is fused with a product, so
+// all give the same.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/discretisation/node_lanes.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -13,8 +14,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<double, 4>;
 constexpr std::size_t step = hn::MaxLanes(Tag());
 
-void RowGradient(const std::uint32_t* to, std::size_t count, const Vec3* g, const FourNumbers* values,
-                 std::uint32_t own, FourColumns& out) {
+void RowGradient(const std::uint32_t* to, std::size_t count, const Vec3* g, const PaddedVec3* values, std::uint32_t own,
+                 FourColumns& out) {
   const Tag d;
   for (std::size_t at = 0; at < 4; at += step) {
     const auto self = hn::Load(d, values[own].at + at);
@@ -29,7 +30,7 @@ void RowGradient(const std::uint32_t* to, std::size_t count, const Vec3* g, cons
   }
 }
 
-void MovedBy(const std::uint32_t* to, std::size_t count, const MovedNodes& nodes, std::uint32_t own, FourNumbers& out) {
+void MovedBy(const std::uint32_t* to, std::size_t count, const MovedNodes& nodes, std::uint32_t own, PaddedVec3& out) {
   const Tag d;
   const double* const x = nodes.place[own].at;
   for (std::size_t at = 0; at < 4; at += step) {
@@ -59,15 +60,15 @@ namespace geo {
 HWY_EXPORT(RowGradient);
 HWY_EXPORT(MovedBy);
 
-FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const FourNumbers* values,
+FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const PaddedVec3* values,
                          std::uint32_t own) {
   FourColumns result;
   HWY_DYNAMIC_DISPATCH(RowGradient)(to.data(), to.size(), g, values, own, result);
   return result;
 }
 
-FourNumbers moved_by(std::span<const std::uint32_t> to, const MovedNodes& nodes, std::uint32_t own) {
-  FourNumbers result;
+PaddedVec3 moved_by(std::span<const std::uint32_t> to, const MovedNodes& nodes, std::uint32_t own) {
+  PaddedVec3 result;
   HWY_DYNAMIC_DISPATCH(MovedBy)(to.data(), to.size(), nodes, own, result);
   return result;
 }

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "kerf/vec.h"
-#include "mechanics/terms/row_lanes.h"
+#include "mechanics/terms/weighted_sum_lanes.h"
 
 namespace geo {
 
@@ -15,15 +15,16 @@ struct alignas(32) FourColumns {
 };
 
 /// Σ (values[to] − values[own]) gᵀ.
-FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const FourNumbers* values,
-                         std::uint32_t own);
+FourColumns row_gradient(std::span<const std::uint32_t> to, const Vec3* g, const PaddedVec3* values, std::uint32_t own);
 
-/// What Eq. 1 takes from a node: its place at rest with 1 over the square of its radius; its displacement and gradient.
+/// What Eq. 1 takes from a node: its place at rest with 1 over the square of its radius; its
+/// displacement and gradient.
 struct MovedNodes {
-  const FourNumbers *place, *displacement;
+  const PaddedVec3 *place, *displacement;
   const FourColumns* gradient;
 };
-/// Where Eq. 1 has the displacement of the material at node `own`, of itself and of those that it sees (`to`).
-FourNumbers moved_by(std::span<const std::uint32_t> to, const MovedNodes& nodes, std::uint32_t own);
+/// Where Eq. 1 has the displacement of the material at node `own`, of itself and of those that it
+/// sees (`to`).
+PaddedVec3 moved_by(std::span<const std::uint32_t> to, const MovedNodes& nodes, std::uint32_t own);
 
 }  // namespace geo

@@ -5,7 +5,7 @@
 
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
-#include "mechanics/terms/row_sums.h"
+#include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
 namespace {
@@ -27,7 +27,8 @@ NodeRows::Row build(std::uint32_t i, const NodeSet& nodes, const VisibilityGraph
     sum += w;
     moment += w / (scale * scale) * x * x.transpose();
   }
-  // Directions in which the neighbours hardly spread carry no gradient: their part of the inverse is left out.
+  // Directions in which the neighbours hardly spread carry no gradient: their part of the inverse
+  // is left out.
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(moment);
   const Vec3 values = eigen.eigenvalues();
   Vec3 inverse = Vec3::Zero();
@@ -62,7 +63,7 @@ Mat3 NodeRows::gradient(std::size_t i, const std::vector<Vec3>& u) const {
 }
 
 std::vector<FourColumns> NodeRows::columns(const std::vector<Vec3>& u) const {
-  const std::vector<FourNumbers> numbers = four_numbers(u);
+  const std::vector<PaddedVec3> numbers = padded(u);
   std::vector<FourColumns> g(size());
   parallel_for(size(), 128, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

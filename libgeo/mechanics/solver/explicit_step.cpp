@@ -9,15 +9,15 @@ namespace geo {
 
 namespace {
 
-// What contact does from now on for h seconds, the given shares of the step; returns how much energy that can have
-// brought.
+// What contact does from now on for h seconds, the given shares of the step; returns how much
+// energy that can have brought.
 double touch(const Environment& env, State& s, double h, double from, double to,
              const std::vector<double>& inverse_mass) {
   if (env.contact.empty()) return 0;
   const std::vector<Vec3> before = s.velocity;
   for (Potential* p : env.contact) {
-    p->begin(s.displacement, from, to);
-    p->impulse(s.displacement, h, inverse_mass, s.velocity);
+    p->begin_substep(s.displacement, from, to);
+    p->apply_impulse(s.displacement, h, inverse_mass, s.velocity);
   }
   double brought = 0;
   for (std::size_t i = 0; i < before.size(); ++i)
@@ -45,16 +45,16 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
   for (std::size_t i = 0; i < size(); ++i)
     if (!is_fixed(env, i)) inverse_mass[i] = 1 / mass_[i];
   for (Potential* p : env.contact) {
-    p->begin(state.displacement, 0, 1);
-    if (const double firmest = p->stiffest(inverse_mass); firmest > 0)
+    p->begin_substep(state.displacement, 0, 1);
+    if (const double firmest = p->eigenvalue_bound(inverse_mass); firmest > 0)
       limit = std::min(limit, 0.3 / std::sqrt(firmest));
   }
   StepReport report;
   report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
   const auto rest = relaxed(state);
   std::vector<Vec3> force;
-  // Energy may only come from outside: where it rises beyond what loads and ground can have brought, the step was too
-  // long.
+  // Energy may only come from outside: where it rises beyond what loads and ground can have
+  // brought, the step was too long.
   for (int attempt = 0;; ++attempt, report.substeps *= 2) {
     State s = state;
     const double h = dt / report.substeps;

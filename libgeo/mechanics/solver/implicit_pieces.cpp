@@ -1,5 +1,5 @@
-// Pieces of a solid that move as a whole in an implicit step: what is stiff turns without a strain, and what nothing
-// touches keeps its momenta.
+// Pieces of a solid that move as a whole in an implicit step: what is stiff turns without a strain,
+// and what nothing touches keeps its momenta.
 #include <algorithm>
 
 #include "mechanics/solver/ground.h"
@@ -17,8 +17,8 @@ bool goes_round(const RigidMotion& motion, double spacing) {
 
 }  // namespace
 
-// Where a node of the nodal discretisation sees too little to know a rotation from a strain, its piece turns as the
-// potential has it, and is not told to.
+// Where a node of the nodal discretisation sees too little to know a rotation from a strain, its
+// piece turns as the potential has it, and is not told to.
 void ImplicitStep::find_pieces() {
   pieces_.resize(parts_.pieces()), freedom_.assign(parts_.pieces(), Freedom::way_and_turn);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -32,8 +32,8 @@ void ImplicitStep::find_pieces() {
   }
 }
 
-// Where pieces that nothing holds would be, had they gone where u_ is as rigid bodies do. Marks the parts of those that
-// turn by enough to matter; nothing where there are none.
+// Where pieces that nothing holds would be, had they gone where u_ is as rigid bodies do. Marks the
+// parts of those that turn by enough to matter; nothing where there are none.
 std::vector<Vec3> ImplicitStep::gone_round(std::vector<char>& turns) const {
   const auto at = [&](std::size_t i) -> Vec3 { return s_.position_[i] + state_.displacement[i]; };
   const auto motion = rigid_motions(parts_.piece_of_nodes(), freedom_, s_.mass_, at,
@@ -51,8 +51,8 @@ std::vector<Vec3> ImplicitStep::gone_round(std::vector<char>& turns) const {
   return displacement;
 }
 
-// How a direction from u_ on turns pieces that nothing holds, where that is enough to matter: these go round, and not
-// straight on.
+// How a direction from u_ on turns pieces that nothing holds, where that is enough to matter: these
+// go round, and not straight on.
 std::vector<RigidMotion> ImplicitStep::turning_by(const std::vector<Vec3>& direction) const {
   const auto at = [&](std::size_t i) -> Vec3 { return s_.position_[i] + u_[i]; };
   auto motion = rigid_motions(parts_.piece_of_nodes(), freedom_, s_.mass_, at,
@@ -62,14 +62,15 @@ std::vector<RigidMotion> ImplicitStep::turning_by(const std::vector<Vec3>& direc
   return motion;
 }
 
-// Internal forces do not change how a piece that nothing touches moves and turns as a whole: neither must rounding or
-// an unfinished solve. The direction takes such a piece to where inertia and loads alone bring it.
+// Internal forces do not change how a piece that nothing touches moves and turns as a whole:
+// neither must rounding or an unfinished solve. The direction takes such a piece to where inertia
+// and loads alone bring it.
 void ImplicitStep::keep_momentum(std::vector<Vec3>& direction) const {
   std::vector<Freedom> freedom = freedom_;
   for (std::size_t i = 0; i < n_; ++i)
     if (Freedom& f = freedom[piece_of(i)]; f != Freedom::none) {
       const bool on_ground = env_.ground && (drag_[i] > 0 || depth(env_, i, s_.position_[i] + u_[i]) > 0);
-      if (!parts_.chosen()[parts_.of(i)] || on_ground || rows_.acts_on(i)) f = Freedom::none;
+      if (!parts_.chosen()[parts_.of(i)] || on_ground || contact_.acts_on(i)) f = Freedom::none;
     }
   if (std::all_of(freedom.begin(), freedom.end(), [](Freedom f) { return f == Freedom::none; })) return;
   const auto at = [&](std::size_t i) -> Vec3 { return s_.position_[i] + u_[i]; };

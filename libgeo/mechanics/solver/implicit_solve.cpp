@@ -51,7 +51,7 @@ void ImplicitStep::precondition() {
   });
   if (coarse_ && env_.contact.empty()) return;  // not much has turned since
   std::vector<Mat3> blocks = local_;
-  rows_.add_blocks(blocks);
+  contact_.add_diagonal_blocks(blocks);
   const auto make_coarse = [&] {
     if (coarse_) return;
     std::vector<Vec3> at(n_);
@@ -107,8 +107,10 @@ void ImplicitStep::elastic_product(const std::vector<Vec3>& p) {
 // out = K p, and for each part at work p · K p.
 void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature) {
   elastic_product(p);
-  rows_.multiply(p);
-  const auto sum = [&](std::size_t i) -> Vec3 { return elastic_at(i) + local_[i] * p[i] + rows_.product_at(i); };
+  contact_.multiply_hessian(p);
+  const auto sum = [&](std::size_t i) -> Vec3 {
+    return elastic_at(i) + local_[i] * p[i] + contact_.hessian_product_at(i);
+  };
   if (s_.penalty_) {
     parts_.each_node([&](std::size_t i) { out[i] = sum(i); });
     s_.penalty_->add(s_.rows_, p, &out);
@@ -122,10 +124,11 @@ void ImplicitStep::multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, 
   });
 }
 
-// For each part at work, until what the preconditioner would still add is less than half the accuracy, after one
-// iteration at least, or, where Newton will go on anyhow, until less than a quarter (√0.05) is left in the norm that
-// counts, whose square is r · z. Of a step's first direction no more than 0.55 (√0.3) of that may be left, however
-// little is to add, or what comes to rest would never quite do so. `left`: that addition, over the nodes' spacing.
+// For each part at work, until what the preconditioner would still add is less than half the
+// accuracy, after one iteration at least, or, where Newton will go on anyhow, until less than a
+// quarter (√0.05) is left in the norm that counts, whose square is r · z. Of a step's first
+// direction no more than 0.55 (√0.3) of that may be left, however little is to add, or what comes
+// to rest would never quite do so. `left`: that addition, over the nodes' spacing.
 int ImplicitStep::solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x,
                         const std::vector<double>& moved, std::vector<double>& left) {
   const std::vector<char> all = parts_.chosen();

@@ -13,8 +13,8 @@ namespace geo {
 
 namespace {
 
-// Of what is nearly incompressible the pressure has what rounding makes of strain many times over, so that is done in
-// double precision as well.
+// Of what is nearly incompressible the pressure has what rounding makes of strain many times over,
+// so that is done in double precision as well.
 BlockStrain strain_of(const Materials& materials, const MaterialPoints& points, const std::vector<Vec3>& position,
                       const std::vector<std::uint32_t>& component, const std::vector<Vec3>& u, double accuracy) {
   constexpr double loose = 0.005, stiffer = 50;
@@ -27,7 +27,7 @@ BlockStrain strain_of(const Materials& materials, const MaterialPoints& points, 
 
 // Parts of the graph that contact, or the penalty of mueller04, makes depend on each other.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ImplicitStep::couples() const {
-  auto pairs = rows_.couples(s_.part_);
+  auto pairs = contact_.coupled_components(s_.part_);
   if (s_.penalty_)
     for (std::uint32_t p = 1; p < s_.parts_; ++p) pairs.emplace_back(p - 1, p);
   return pairs;
@@ -40,7 +40,7 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
       dt_(dt),
       accuracy_(accuracy),
       n_(solid.size()),
-      rows_(env.contact, state.displacement),
+      contact_(env.contact, state.displacement),
       parts_(solid.points_, solid.patches_, solid.part_, solid.parts_, couples()),
       u_(n_),
       target_(n_),
@@ -128,7 +128,7 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
     if (drag_[i] > 0) sum += 0.5 * drag_[i] * tangential(u[i] - state_.displacement[i]).squaredNorm();
     return sum;
   });
-  rows_.add_energy(u, parts_.of_nodes(), parts_.chosen(), contact);
+  contact_.add_energy(u, parts_.of_nodes(), parts_.chosen(), contact);
   for (std::size_t p = 0; p < parts_.count(); ++p) {
     if (!parts_.chosen()[p]) continue;
     value[p] += elastic[p] + contact[p];
@@ -136,13 +136,14 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   }
 }
 
-// Elastic forces at u_, where evaluate() was asked last, become all that acts on nodes; `elastic` keeps them.
+// Elastic forces at u_, where evaluate() was asked last, become all that acts on nodes; `elastic`
+// keeps them.
 void ImplicitStep::add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic) {
   parts_.each_node([&](std::size_t i) { elastic[i] = force[i]; });
-  rows_.push(parts_.of_nodes(), parts_.chosen());
+  contact_.update_derivatives(parts_.of_nodes(), parts_.chosen());
   parts_.each_node([&](std::size_t i) {
     Vec3& r = force[i];
-    r += rows_.force_at(i);
+    r += contact_.force_at(i);
     r += load_[i] - s_.mass_[i] / (dt_ * dt_) * (u_[i] - target_[i]);
     if (env_.ground) {
       const double d = depth(env_, i, s_.position_[i] + u_[i]);
@@ -174,7 +175,8 @@ bool ImplicitStep::run(StepReport& report) {
     ++report.newton;
     keep_momentum(direction);
     most(direction, longest);
-    // To second order, where a part is done: the stiffness times the direction is the force less inertia.
+    // To second order, where a part is done: the stiffness times the direction is the force less
+    // inertia.
     parts_.sums(more, 0.0, [&](std::size_t i) {
       return direction[i].dot(0.5 * force[i] - elastic[i] - 0.5 * s_.mass_[i] / (dt_ * dt_) * direction[i]);
     });
@@ -186,9 +188,10 @@ bool ImplicitStep::run(StepReport& report) {
     for (std::size_t p = 0; p < parts; ++p) {
       if (!active[p]) continue;
       if (!std::isfinite(longest[p])) return false;
-      // What is left of a direction grows with its square, or with what the stiffness is behind. Where that is less
-      // than the accuracy, and what the solve has left, too, the direction is taken as it is: it changes the potential
-      // by too little to tell. Not so one that turns a piece, of which rounding may strain what is stiff.
+      // What is left of a direction grows with its square, or with what the stiffness is behind.
+      // Where that is less than the accuracy, and what the solve has left, too, the direction is
+      // taken as it is: it changes the potential by too little to tell. Not so one that turns a
+      // piece, of which rounding may strain what is stiff.
       if (!turning[p] && longest[p] * (longest[p] + moved[p]) < trusted() && left[p] < accuracy_)
         active[p] = wanted[p] = 0, elastic_[p] += more[p];
     }
@@ -209,7 +212,8 @@ bool ImplicitStep::run(StepReport& report) {
           if (!(longest[p] * step[p] < accuracy_)) return false;
           active[p] = wanted[p] = 0;
         } else {
-          // Where a parabola through what is known of the way has its least; contact makes it steep.
+          // Where a parabola through what is known of the way has its least; contact makes it
+          // steep.
           const double rise = tried[p] - value[p] + step[p] * along[p], least = 0.5 * step[p] * along[p] / rise;
           step[p] *= std::isfinite(least) ? std::clamp(least, 0.2, 0.5) : 0.5;
         }
@@ -269,7 +273,7 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& env,
   StepReport report;
   // Time steps in a row, each divided in two where Newton does not converge, down to a thousandth.
   const auto advance = [&](const auto& self, double from, double h) -> void {
-    for (Potential* p : env.contact) p->begin(state.displacement, from / dt, (from + h) / dt);
+    for (Potential* p : env.contact) p->begin_substep(state.displacement, from / dt, (from + h) / dt);
     ImplicitStep step(*this, state, h, env, accuracy);
     const bool converged = step.run(report);
     if (!converged && h > dt / 1024) {

@@ -1,5 +1,6 @@
-// One time step by backward Euler as an incremental potential (Kane et al. 2000, Li et al. 2020): Newton's method with
-// each point's stiffness made positive, conjugate gradients preconditioned on two levels, line search on the potential.
+// One time step by backward Euler as an incremental potential (Kane et al. 2000, Li et al. 2020):
+// Newton's method with each point's stiffness made positive, conjugate gradients preconditioned on
+// two levels, line search on the potential.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,7 @@
 #include "mechanics/solver/patch_motion.h"
 #include "mechanics/solver/rigid_motion.h"
 #include "mechanics/solver/step_parts.h"
-#include "mechanics/terms/contact_rows.h"
+#include "mechanics/terms/potential_sum.h"
 
 namespace geo {
 
@@ -28,8 +29,8 @@ class ImplicitStep {
   std::vector<Vec3> product(const std::vector<Vec3>& u, const std::vector<Vec3>& p);
 
  private:
-  /// The potential of each part at work at u. `force`, where given: the elastic one; then their elastic energy and
-  /// gradients are kept, too.
+  /// The potential of each part at work at u. `force`, where given: the elastic one; then their
+  /// elastic energy and gradients are kept, too.
   void evaluate(const std::vector<Vec3>& u, std::vector<double>& value, std::vector<Vec3>* force);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples() const;
   void add_forces(std::vector<Vec3>& force, std::vector<Vec3>& elastic);
@@ -65,7 +66,7 @@ class ImplicitStep {
   const Environment& env_;
   double dt_, accuracy_;
   std::size_t n_;
-  ContactRows rows_;
+  PotentialSum contact_;
   StepParts parts_;
   struct Piece {
     std::uint32_t part = 0;

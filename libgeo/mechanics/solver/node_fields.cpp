@@ -7,15 +7,15 @@
 #include "mechanics/discretisation/elastic_lanes.h"
 #include "mechanics/material/plasticity.h"
 #include "mechanics/solver/node_sums.h"
-#include "mechanics/terms/row_sums.h"
+#include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph,
                                         const State& state) {
   const auto gradient = solid.gradient_columns(state.displacement);
-  const std::vector<FourNumbers> displacement = four_numbers(state.displacement);
-  std::vector<FourNumbers> place = four_numbers(nodes.position);
+  const std::vector<PaddedVec3> displacement = padded(state.displacement);
+  std::vector<PaddedVec3> place = padded(nodes.position);
   for (std::size_t i = 0; i < place.size(); ++i) place[i].at[3] = 1 / (nodes.radius[i] * nodes.radius[i]);
   const MovedNodes all{place.data(), displacement.data(), gradient.data()};
   std::vector<Vec3> moved(nodes.size());
@@ -24,7 +24,7 @@ std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes
     for (std::size_t i = begin; i < end; ++i) {
       to.clear();
       for (const auto& n : graph.neighbors(nodes, NodeId(i))) to.push_back(n.to.value);
-      const FourNumbers at = moved_by(to, all, static_cast<std::uint32_t>(i));
+      const PaddedVec3 at = moved_by(to, all, static_cast<std::uint32_t>(i));
       moved[i] = {at.at[0], at.at[1], at.at[2]};
     }
   });

@@ -5,17 +5,17 @@
 
 namespace geo {
 
-double Potential::stiffest(const std::vector<double>& inverse_mass) const {
-  std::vector<double> sum(inverse_mass.size(), 0);
-  for (std::size_t r = 0; r < size(); ++r) {
-    const double firm = stiffness(r);
-    if (!(firm > 0)) continue;
-    const double all = spread(row(r));
-    for (const auto& e : row(r)) sum[e.node] += firm * std::abs(e.weight) * all;
+double Potential::eigenvalue_bound(const std::vector<double>& inverse_mass) const {
+  std::vector<double> row_sum(inverse_mass.size(), 0);
+  for (std::size_t k = 0; k < size(); ++k) {
+    const double stiffness = stiffness_bound(k);
+    if (!(stiffness > 0)) continue;
+    const double norm = weight_norm(stencil(k));
+    for (const auto& e : stencil(k)) row_sum[e.node] += stiffness * std::abs(e.weight) * norm;
   }
-  double most = 0;
-  for (std::size_t i = 0; i < sum.size(); ++i) most = std::max(most, sum[i] * inverse_mass[i]);
-  return most;
+  double largest = 0;
+  for (std::size_t i = 0; i < row_sum.size(); ++i) largest = std::max(largest, row_sum[i] * inverse_mass[i]);
+  return largest;
 }
 
 }  // namespace geo

@@ -1,4 +1,7 @@
-// An energy of node displacements that acts besides elasticity: what contact brings into a time step.
+// Interface of an energy that acts on nodes besides elasticity: contact, friction, penalties. Each
+// energy term depends on one relative displacement d = Σ w_i u_i, as in incremental potential
+// contact (Li et al. 2020); the nodes i and weights w_i of a term are its contact stencil, one row
+// of the contact Jacobian.
 #pragma once
 
 #include <cmath>
@@ -10,59 +13,70 @@
 
 namespace geo {
 
-/// A node, and by how much it counts.
+/// A node of a stencil and its weight.
 struct NodeWeight {
   std::uint32_t node;
   double weight;
 };
-/// Σ |weight|: how far the sum below goes at most where each value goes as far as 1.
-inline double spread(std::span<const NodeWeight> entries) {
+
+/// One row of a sparse Jacobian over the nodes, no node twice: the relative displacement is Σ
+/// weight × u[node].
+using Stencil = std::span<const NodeWeight>;
+
+/// Σ |weight|: the largest norm of weighted_sum() if no value is longer than 1.
+inline double weight_norm(Stencil stencil) {
   double sum = 0;
-  for (const auto& e : entries) sum += std::abs(e.weight);
-  return sum;
-}
-/// Σ weight × value: what the nodes' values come to.
-inline Vec3 weighed(std::span<const NodeWeight> entries, const std::vector<Vec3>& values) {
-  Vec3 sum = Vec3::Zero();
-  for (const auto& e : entries) sum += e.weight * values[e.node];
+  for (const auto& e : stencil) sum += std::abs(e.weight);
   return sum;
 }
 
-/// A sum of energies, each of a row: of one weighed sum of displacements, its way, model units. One value per node in
-/// all vectors.
+/// Σ weight × values[node]. With displacements as values, it is the stencil's relative
+/// displacement.
+inline Vec3 weighted_sum(Stencil stencil, const std::vector<Vec3>& values) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& e : stencil) sum += e.weight * values[e.node];
+  return sum;
+}
+
+/// A sum of energy terms E_k(d_k), d_k the relative displacement of the k-th stencil, model units.
+/// All vectors have one value per node.
 class Potential {
  public:
   virtual ~Potential() = default;
-  /// A part of the time step begins at displacements u: from and to in shares of the whole step, 0 to 1. A part that
-  /// failed is begun again, shorter; one from 0 begins the step anew.
-  virtual void begin(const std::vector<Vec3>&, double /*from*/, double /*to*/) {}
-  /// Rows, as many and where they are until the next begin().
-  virtual std::size_t size() const = 0;
-  /// A row's nodes, none twice; of none: it does nothing. All can be made to depend on each other by it.
-  virtual std::span<const NodeWeight> row(std::size_t r) const = 0;
-  /// True where the nodes of each row hang together by the body's own graph, so that no row joins what nothing else
-  /// does.
-  virtual bool within_parts() const { return false; }
-  /// How far nodes may go from where they were at begin() before a row does anything, model units; 0: it may do so
-  /// there.
-  virtual double reach(std::size_t) const { return 0; }
-  /// The energy of a row that has gone so far, J.
-  virtual double energy(std::size_t r, const Vec3& way) const = 0;
-  struct Push {
-    Vec3 force = Vec3::Zero();      ///< −∂E/∂way, N; each node gets that times its weight
-    Mat3 curvature = Mat3::Zero();  ///< ∂²E/∂way², N/m, or more; never negative
-  };
-  /// What such a row does. Rows can be asked for by several threads, each by one.
-  virtual Push push(std::size_t r, const Vec3& way) = 0;
 
-  /// The most that a row's curvature may come to, N/m; 0: it does not act in the explicit step.
-  virtual double stiffness(std::size_t) const { return 0; }
-  /// Of these, where nodes that are held have no inverse mass: the largest sum of absolute values in a row of M⁻¹ Σ k w
-  /// wᵀ, no less than the largest eigenvalue of M⁻¹ ∂²E/∂u², 1/s²; 0: there are none.
-  double stiffest(const std::vector<double>& inverse_mass) const;
-  /// Changes velocities by what it does in h seconds from displacements u on.
-  virtual void impulse(const std::vector<Vec3>&, double /*h*/, const std::vector<double>& /*inverse_mass*/,
-                       std::vector<Vec3>& /*velocity*/) {}
+  /// Begins a substep at displacements u. `from` and `to` are fractions of the whole time step. A
+  /// substep that failed begins again with a smaller `to`; `from` = 0 restarts the time step.
+  virtual void begin_substep(const std::vector<Vec3>& /*u*/, double /*from*/, double /*to*/) {}
+  /// The number of stencils. Stencils stay the same, at the same addresses, until the next
+  /// begin_substep().
+  virtual std::size_t size() const = 0;
+  /// The k-th stencil. An empty one has no effect.
+  virtual Stencil stencil(std::size_t k) const = 0;
+  /// True if no stencil couples two components of the visibility graph.
+  virtual bool within_components() const { return false; }
+  /// The k-th term is zero while no node has moved farther than this, model units, from where it
+  /// was at begin_substep(). 0: the term may be active there already.
+  virtual double activation_distance(std::size_t /*k*/) const { return 0; }
+  /// E_k at relative displacement d, J.
+  virtual double energy(std::size_t k, const Vec3& d) const = 0;
+
+  /// First and second derivative of a term.
+  struct Derivatives {
+    Vec3 force = Vec3::Zero();    ///< −∂E/∂d, N; each node gets it times its weight
+    Mat3 hessian = Mat3::Zero();  ///< ∂²E/∂d², N/m, or an upper bound; positive semidefinite
+  };
+  /// The derivatives of E_k at relative displacement d. Several threads may call this, for
+  /// different k.
+  virtual Derivatives derivatives(std::size_t k, const Vec3& d) = 0;
+
+  /// An upper bound of the k-th Hessian's eigenvalues, N/m. 0: explicit steps ignore the term.
+  virtual double stiffness_bound(std::size_t /*k*/) const { return 0; }
+  /// An upper bound of the largest eigenvalue of M⁻¹ ∂²E/∂u², 1/s², from stiffness_bound(): the
+  /// largest absolute row sum of M⁻¹ Σ k w wᵀ. Fixed nodes have an inverse mass of 0.
+  double eigenvalue_bound(const std::vector<double>& inverse_mass) const;
+  /// Adds the velocity change of an explicit substep of h seconds, from displacements u.
+  virtual void apply_impulse(const std::vector<Vec3>& /*u*/, double /*h*/, const std::vector<double>& /*inverse_mass*/,
+                             std::vector<Vec3>& /*velocity*/) {}
 };
 
 }  // namespace geo

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "acting.h"
+#include "assembled_potential.h"
 #include "base/random.h"
 #include "cases.h"
 #include "contact/response/obstacle_penalty.h"
@@ -56,7 +56,8 @@ TEST_CASE("the field of a mesh: distance and side of random points, its derivati
         CHECK(std::abs(field.distance) == Approx(least).margin(1e-14));
         CHECK((field.distance < 0) == bvh.inside(x));
         CHECK(field.normal.norm() == Approx(1));
-        // Where the nearest feature does not change, half the squared distance is a quadratic function.
+        // Where the nearest feature does not change, half the squared distance is a quadratic
+        // function.
         const Vec3 step = 1e-7 * random.direction();
         const auto other = shape.at(x + step);
         const double change = 0.5 * (std::pow(other.distance, 2) - std::pow(field.distance, 2));
@@ -79,10 +80,10 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     ObstaclePenalty o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
     o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
-    o.begin(u, 0, 1);
+    o.begin_substep(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
     const std::vector<Vec3> begun = u;
-    Acting acting(o, begun);
+    AssembledPotential assembled(o, begun);
     for (int i = 0; i < 40; ++i) {
       std::vector<Vec3> way;
       for (std::size_t k = 0; k < n; ++k) u[k] = 0.01 * random.direction(), way.push_back(random.direction());
@@ -97,10 +98,11 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
         return sum;
       };
       const double h = 1e-7;
-      const std::vector<Vec3> behind = acting.force(moved(h)), before = acting.force(moved(-h)),
-                              force = acting.force(u), turned = acting.product(way);
-      // Central differences; where a vertex passes a ridge of the field between, the derivative jumps.
-      const double slope = (acting.energy(moved(h)) - acting.energy(moved(-h))) / (2 * h);
+      const std::vector<Vec3> behind = assembled.force(moved(h)), before = assembled.force(moved(-h)),
+                              force = assembled.force(u), turned = assembled.product(way);
+      // Central differences; where a vertex passes a ridge of the field between, the derivative
+      // jumps.
+      const double slope = (assembled.energy(moved(h)) - assembled.energy(moved(-h))) / (2 * h);
       CHECK(-along(force) == Approx(slope).epsilon(1e-4));
       if (plane)
         CHECK(along(turned) >=
@@ -119,8 +121,8 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
                     at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero());
   o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
-  o.begin(u, 0, 1);
-  const std::vector<Vec3> force = Acting(o, u).force(u);
+  o.begin_substep(u, 0, 1);
+  const std::vector<Vec3> force = AssembledPotential(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
   for (std::size_t i = 0; i < n; ++i)
     sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
@@ -163,31 +165,32 @@ TEST_CASE(
       std::vector<Vec3> begun = u;
       for (Vec3& x : begun) x += later ? Vec3(0.05 * random.direction()) : Vec3(Vec3::Zero());
       for (Potential* p : {static_cast<Potential*>(&o), static_cast<Potential*>(&touch)}) {
-        if (later) p->begin(u, 0, 0.5);
-        p->begin(begun, later ? 0.5 : 0, later ? 1 : random.uniform(0.3, 1));
+        if (later) p->begin_substep(u, 0, 0.5);
+        p->begin_substep(begun, later ? 0.5 : 0, later ? 1 : random.uniform(0.3, 1));
         for (const double far : {0.0, 0.003, 0.01, 0.03, 0.1, 0.3}) {
           std::vector<Vec3> x = begun;
           const Vec3 together = far * random.direction();
           const double alike = random.uniform();
           for (Vec3& y : x) y += alike * together + (1 - alike) * far * random.direction();
-          Acting acting(*p, begun);
+          AssembledPotential assembled(*p, begun);
           const double wanted = energy_of(*p, x);
-          CHECK(acting.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));
-          const auto force = acting.force(x), expected = force_of(*p, x);
+          CHECK(assembled.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));
+          const auto force = assembled.force(x), expected = force_of(*p, x);
           double size = 1e-12, wrong = 0;
           for (std::size_t i = 0; i < n; ++i)
             size = std::max(size, expected[i].norm()), wrong = std::max(wrong, (force[i] - expected[i]).norm());
           CHECK(wrong < 1e-11 * size);
           acted += wanted > 0;
-          for (std::size_t r = 0; r < p->size(); ++r) skipped += p->reach(r) > far;
+          for (std::size_t r = 0; r < p->size(); ++r) skipped += p->activation_distance(r) > far;
         }
         // Nor where all of a row's nodes go as far as it says, each the way that counts.
         for (std::size_t r = 0; r < p->size(); ++r) {
-          if (!(p->reach(r) > 0)) continue;
+          if (!(p->activation_distance(r) > 0)) continue;
           double most = 0;
           for (int k = 0; k < 20; ++k)
-            most = std::max(most, p->energy(r, weighed(p->row(r), begun) +
-                                                   0.999 * p->reach(r) * spread(p->row(r)) * random.direction()));
+            most = std::max(most, p->energy(r, weighted_sum(p->stencil(r), begun) + 0.999 * p->activation_distance(r) *
+                                                                                        weight_norm(p->stencil(r)) *
+                                                                                        random.direction()));
           CHECK(most == 0);
         }
       }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "acting.h"
+#include "assembled_potential.h"
 #include "base/random.h"
 #include "base/union_find.h"
 #include "body/agreement.h"
@@ -64,22 +64,22 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
       for (std::size_t i = 0; i < n; ++i) sum += f[i].dot(way[i]);
       return sum;
     };
-    penalty.begin(u, 0, 1);
-    Acting acting(penalty, u);
-    const std::vector<Vec3> force = acting.force(at), product = acting.product(way);
+    penalty.begin_substep(u, 0, 1);
+    AssembledPotential assembled(penalty, u);
+    const std::vector<Vec3> force = assembled.force(at), product = assembled.product(way);
     Vec3 sum = Vec3::Zero();
     for (const Vec3& f : force) sum += f;
     CHECK(sum.norm() < 1e-12);
     const double step = 1e-6;
-    CHECK((acting.energy(moved(step)) - acting.energy(moved(-step))) / (2 * step) ==
+    CHECK((assembled.energy(moved(step)) - assembled.energy(moved(-step))) / (2 * step) ==
           Approx(-along(force)).epsilon(1e-4).margin(1e-5));
     CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
     std::vector<Mat3> blocks(n, Mat3::Zero());
-    acting.rows().add_blocks(blocks);
+    assembled.sum().add_diagonal_blocks(blocks);
     for (std::size_t i = 0; i < n; ++i) {
       std::vector<Vec3> unit(n, Vec3::Zero());
       unit[i] = Vec3::UnitY();
-      const std::vector<Vec3> column = acting.product(unit);
+      const std::vector<Vec3> column = assembled.product(unit);
       CHECK(column[i].y() > 0);
       CHECK(blocks[i](1, 1) >= column[i].y() * (1 - 1e-6));  // no less than the matrix has there
       CHECK(blocks[i](1, 1) < 20 * column[i].y());
@@ -109,24 +109,24 @@ TEST_CASE(
       mutual.add(row.entries, random.uniform(-0.5, 0) * normal, normal, random.uniform(1, 5));
     }
     for (Potential* p : {static_cast<Potential*>(&touch), static_cast<Potential*>(&mutual)}) {
-      p->begin(u, 0, 1);
-      Acting acting(*p, u);
+      p->begin_substep(u, 0, 1);
+      AssembledPotential assembled(*p, u);
       UnionFind joined(n);
       std::vector<std::uint32_t> part(n);
       std::iota(part.begin(), part.end(), 0u);
-      for (const auto& [i, j] : acting.rows().couples(part)) joined.unite(i, j);
+      for (const auto& [i, j] : assembled.sum().coupled_components(part)) joined.unite(i, j);
       for (std::uint32_t i = 0; i < n; ++i) part[i] = joined.find(i);
-      const std::vector<Vec3> force = acting.force(at);
+      const std::vector<Vec3> force = assembled.force(at);
       const std::vector<char> all(n, 1);
       std::vector<double> energy(n, 0), moved(n, 0);
-      acting.rows().add_energy(at, part, all, energy);
-      CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(acting.energy(at)).epsilon(1e-12));
+      assembled.sum().add_energy(at, part, all, energy);
+      CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(assembled.energy(at)).epsilon(1e-12));
       for (std::uint32_t i = 0; i < n; ++i) {
         std::vector<Vec3> unit(n, Vec3::Zero()), x = at;
         unit[i] = random.direction(), x[i] += 0.2 * unit[i];
-        const std::vector<Vec3> column = acting.product(unit);
+        const std::vector<Vec3> column = assembled.product(unit);
         moved.assign(n, 0);
-        acting.rows().add_energy(x, part, all, moved);
+        assembled.sum().add_energy(x, part, all, moved);
         for (std::uint32_t j = 0; j < n; ++j)
           if (part[j] != part[i]) {
             CHECK(column[j].isZero(0));
@@ -139,15 +139,17 @@ TEST_CASE(
 
 namespace {
 
-// Springs towards way 0 that act once they are woken.
-struct Sleepers : Potential {
+// Springs to relative displacement 0, each active while it is switched on.
+struct SwitchedSprings : Potential {
   std::vector<std::vector<NodeWeight>> nodes;
-  std::vector<Mat3> firm;
-  std::vector<char> awake;
+  std::vector<Mat3> stiffness;
+  std::vector<char> on;
   std::size_t size() const override { return nodes.size(); }
-  std::span<const NodeWeight> row(std::size_t r) const override { return nodes[r]; }
-  double energy(std::size_t r, const Vec3& way) const override { return awake[r] ? 0.5 * way.dot(firm[r] * way) : 0; }
-  Push push(std::size_t r, const Vec3& way) override { return awake[r] ? Push{-firm[r] * way, firm[r]} : Push{}; }
+  Stencil stencil(std::size_t k) const override { return nodes[k]; }
+  double energy(std::size_t k, const Vec3& d) const override { return on[k] ? 0.5 * d.dot(stiffness[k] * d) : 0; }
+  Derivatives derivatives(std::size_t k, const Vec3& d) override {
+    return on[k] ? Derivatives{-stiffness[k] * d, stiffness[k]} : Derivatives{};
+  }
 };
 
 }  // namespace
@@ -160,34 +162,35 @@ TEST_CASE(
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     const std::size_t n = 40, total = 600;
-    Sleepers sleepers;
+    SwitchedSprings springs;
     for (std::size_t r = 0; r < total; ++r) {
       std::vector<NodeWeight> row;
       for (std::uint32_t i = static_cast<std::uint32_t>(random.below(8)); i < n && r % 17 != 3;
            i += 1 + static_cast<std::uint32_t>(random.below(9)))
         row.push_back({i, random.uniform(-1, 1)});
       const Vec3 d = random.direction();
-      sleepers.nodes.push_back(row), sleepers.firm.push_back(random.uniform(1, 3) * d * d.transpose()),
-          sleepers.awake.push_back(0);
+      springs.nodes.push_back(row), springs.stiffness.push_back(random.uniform(1, 3) * d * d.transpose()),
+          springs.on.push_back(0);
     }
     const std::vector<Vec3> begun(n, Vec3::Zero());
-    Acting acting(sleepers, begun);
+    AssembledPotential assembled(springs, begun);
     for (int round = 0; round < 12; ++round) {
       const double some = std::array{0.0, 0.3, 0.01, 0.002, 0.05, 0.5}[static_cast<std::size_t>(random.below(6))];
-      for (auto& awake : sleepers.awake)
-        if (random.uniform() < some) awake = !awake;
+      for (auto& on : springs.on)
+        if (random.uniform() < some) on = !on;
       std::vector<Vec3> u, p, force(n, Vec3::Zero()), product = force;
       for (std::size_t i = 0; i < n; ++i) u.push_back(random.direction()), p.push_back(random.direction());
       double energy = 0;
       for (std::size_t r = 0; r < total; ++r) {
-        if (!sleepers.awake[r]) continue;
-        const Vec3 way = weighed(sleepers.nodes[r], u), pull = sleepers.firm[r] * weighed(sleepers.nodes[r], p);
-        energy += sleepers.energy(r, way);
-        for (const auto& e : sleepers.nodes[r])
-          force[e.node] -= e.weight * sleepers.firm[r] * way, product[e.node] += e.weight * pull;
+        if (!springs.on[r]) continue;
+        const Vec3 way = weighted_sum(springs.nodes[r], u),
+                   pull = springs.stiffness[r] * weighted_sum(springs.nodes[r], p);
+        energy += springs.energy(r, way);
+        for (const auto& e : springs.nodes[r])
+          force[e.node] -= e.weight * springs.stiffness[r] * way, product[e.node] += e.weight * pull;
       }
-      CHECK(acting.energy(u) == Approx(energy).epsilon(1e-12).margin(1e-300));
-      const auto pushed = acting.force(u), multiplied = acting.product(p);
+      CHECK(assembled.energy(u) == Approx(energy).epsilon(1e-12).margin(1e-300));
+      const auto pushed = assembled.force(u), multiplied = assembled.product(p);
       for (std::size_t i = 0; i < n; ++i) {
         CHECK((pushed[i] - force[i]).norm() < 1e-11);
         CHECK((multiplied[i] - product[i]).norm() < 1e-3);  // in single precision

@@ -98,12 +98,10 @@ struct Bed : Potential {
       if (at[i].y() < 0.1) on.push_back({i, 1});
   }
   std::size_t size() const override { return on.size(); }
-  std::span<const NodeWeight> row(std::size_t r) const override { return {&on[r], 1}; }
-  double energy(std::size_t, const Vec3& way) const override {
-    return 0.5 * firm * std::pow(std::max(0.0, -way.y()), 2);
-  }
-  Push push(std::size_t, const Vec3& way) override {
-    if (way.y() < 0) return {-firm * way.y() * Vec3::UnitY(), firm * Vec3::UnitY() * Vec3::UnitY().transpose()};
+  Stencil stencil(std::size_t k) const override { return {&on[k], 1}; }
+  double energy(std::size_t, const Vec3& d) const override { return 0.5 * firm * std::pow(std::max(0.0, -d.y()), 2); }
+  Derivatives derivatives(std::size_t, const Vec3& d) override {
+    if (d.y() < 0) return {-firm * d.y() * Vec3::UnitY(), firm * Vec3::UnitY() * Vec3::UnitY().transpose()};
     return {};
   }
 };

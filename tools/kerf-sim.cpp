@@ -53,7 +53,7 @@ class Forecast {
 
 struct Plan {
   geo::Scene scene;
-  geo::Model model;
+  geo::PlacedModels models;
   std::uint64_t fingerprint = 0;  ///< of scene and models
 };
 
@@ -64,7 +64,7 @@ geo::Simulation take_up(const Plan& plan, const sim::RunFolder& folder, std::opt
     if (c.scene != plan.fingerprint)
       throw geo::InputError("was begun with another scene, model or setting; give the same ones, or another folder");
     if (!run) return geo::Simulation(plan.scene, std::move(c.body), std::move(c.state));
-    run->take_up(std::move(c.body), std::move(c.state));
+    run->restore(std::move(c.body), std::move(c.state));
     return std::move(*run);
   } catch (const geo::InputError& e) {
     throw geo::InputError(folder.path.string() + ": " + e.what());
@@ -75,7 +75,7 @@ geo::Simulation take_up(const Plan& plan, const sim::RunFolder& folder, std::opt
 geo::Simulation begin(const Plan& plan, std::string& bytes, const geo::Progress& progress) {
   std::ostringstream out;
   {
-    const geo::Beginning fresh = geo::begin_run(plan.scene, plan.model, progress);
+    const geo::RunStart fresh = geo::begin_run(plan.scene, plan.models, progress);
     geo::write_checkpoint(out, fresh.body, fresh.state, plan.fingerprint);
   }
   bytes = std::move(out).str();
@@ -94,10 +94,10 @@ Plan read_plan(const std::string& path, const geo::SceneOverrides& overrides) {
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   plan.fingerprint = geo::fingerprint(hashes);
-  plan.model = geo::place_models(plan.scene, std::move(meshes));
-  if (plan.model.parts.size() > 1) {
+  plan.models = geo::place_models(plan.scene, std::move(meshes));
+  if (plan.models.bodies.size() > 1) {
     try {
-      geo::require_solid(plan.model.mesh);
+      geo::require_solid(plan.models.all);
     } catch (const geo::InputError& e) {
       throw geo::InputError(path + ": the placed bodies, taken together: " + e.what());
     }
@@ -120,7 +120,7 @@ std::string way_of(const std::vector<geo::Blade>& blades) {
 
 // Models in millimetres are mountains in metres.
 void say_large(const Plan& plan, const tool::Tool& t) {
-  const double across = geo::bounding_box(plan.model.mesh).diagonal();
+  const double across = geo::bounding_box(plan.models.all).diagonal();
   const bool as_it_is = std::all_of(plan.scene.bodies.begin(), plan.scene.bodies.end(),
                                     [](const geo::SceneBody& b) { return b.scale == 1; });
   if (across >= 100 && as_it_is)
@@ -131,13 +131,13 @@ void say_large(const Plan& plan, const tool::Tool& t) {
 // Models from CAD have a few large triangles, which neither bend nor touch but at their corners.
 void say_coarse(const Plan& plan, const geo::Body& body, const tool::Tool& t) {
   const double coarsest = *std::max_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
-  for (std::size_t b = 0; b < plan.model.parts.size(); ++b) {
+  for (std::size_t b = 0; b < plan.models.bodies.size(); ++b) {
     double longest = 0;
-    for (const auto& [p, q, r] : geo::corners_of(plan.model.parts[b]))
+    for (const auto& [p, q, r] : geo::corners_of(plan.models.bodies[b]))
       longest = std::max({longest, (q - p).norm(), (r - q).norm(), (p - r).norm()});
     if (longest <= 4 * coarsest) continue;
     char share[16];
-    std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(plan.model.parts[b]).diagonal());
+    std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(plan.models.bodies[b]).diagonal());
     t.say("kerf-sim: " + fs::path(plan.scene.bodies[b].mesh).filename().string() + " has edges of up to " +
           tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
           " apart; a surface bends and touches at its vertices: kerf-repair --edge " + share + " gives it more");
@@ -190,7 +190,7 @@ int main(int argc, char** argv) {
     const int last = frames > 0 ? frames : plan.scene.frames;
     std::error_code error;
     const bool begun = resume && fs::exists(folder.checkpoint(), error);
-    const double frame_bytes = sim::bytes_of_frames(plan.model.mesh, last);
+    const double frame_bytes = sim::bytes_of_frames(plan.models.all, last);
     if (!begun) folder.require_space(frame_bytes);
     folder.make(!plan.scene.obstacles.empty());
     const auto progress = t.progress();
@@ -212,7 +212,7 @@ int main(int argc, char** argv) {
           }))
         t.say("kerf-sim: no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) +
               "), which is to hold some; bodies are where their scale, rotation and position put them");
-    const geo::TriangleMesh* carried = plan.model.parts.size() == 1 ? &plan.model.mesh : nullptr;
+    const geo::TriangleMesh* carried = plan.models.bodies.size() == 1 ? &plan.models.all : nullptr;
     sim::FrameWriter writer(folder, folder.read_log(run.state().frame), t.json);
     const auto checkpoint = [&](const std::function<void(std::ostream&)>& write) {
       folder.write_text(folder.log(), writer.log());
@@ -220,7 +220,7 @@ int main(int argc, char** argv) {
     };
     if (!begun) {
       writer.add(
-          {{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.model, run.state().time)});
+          {{}, run.surface(carried), nodes_of(run), geo::place_obstacles(plan.scene, plan.models, run.state().time)});
       checkpoint([bytes = std::exchange(first, {})](std::ostream& out) { out << bytes; });
       folder.require_space(frame_bytes + 28.0 * (last + 1) * double(run.body().nodes.size()) +
                            4 * double(fs::file_size(folder.checkpoint())));
@@ -242,7 +242,7 @@ int main(int argc, char** argv) {
           {frame, run.state().time, run.body().nodes.size(), run.body().surface.live_face_count(), std::move(work)},
           run.surface(carried),
           nodes_of(run),
-          geo::place_obstacles(plan.scene, plan.model, run.state().time)};
+          geo::place_obstacles(plan.scene, plan.models, run.state().time)};
       done.outcome.work.write_seconds = waited + writing.lap();
       total += done.outcome.work;
       writer.add(std::move(done));

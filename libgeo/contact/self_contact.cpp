@@ -39,8 +39,8 @@ constexpr std::size_t most_between =
 }  // namespace
 
 ContactStats& ContactStats::operator+=(const ContactStats& o) {
-  watched += o.watched, touching += o.touching, in_zones += o.in_zones, opened += o.opened, held += o.held;
-  lag = std::max(lag, o.lag), seconds += o.seconds;
+  planes += o.planes, touching += o.touching, in_zones += o.in_zones, opened += o.opened, held += o.held;
+  tracking_error = std::max(tracking_error, o.tracking_error), seconds += o.seconds;
   return *this;
 }
 
@@ -258,9 +258,9 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
       move_without_crossing({surface_.triangles, together, positions_, goal, gap, 2 * gap, begun_ ? &guess : nullptr},
                             true, &bounded, &near_, &fans());
   standing_.reset();
-  work.watched = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
+  work.planes = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (std::size_t v = 0; v < to.size(); ++v)
-    if (body.surface.alive(SurfaceVertexId(v))) work.lag = std::max(work.lag, (positions_[v] - to[v]).norm());
+    if (body.surface.alive(SurfaceVertexId(v))) work.tracking_error = std::max(work.tracking_error, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
   begun_ = false, near_.forget(), held_off_.clear();
   if (told) *told += work;

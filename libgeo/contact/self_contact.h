@@ -18,6 +18,7 @@
 #include "contact/response/self_contact_penalty.h"
 #include "contact/surface/contact_surface.h"
 #include "contact/surface/surface_weights.h"
+#include "kerf/run.h"
 #include "kerf/scene.h"
 
 namespace geo {

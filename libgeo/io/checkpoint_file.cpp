@@ -3,6 +3,7 @@
 #include "io/json_integer.h"
 #include "kerf/body_file.h"
 #include "kerf/surface_file.h"
+#include "simulation/fracture_front.h"
 
 namespace geo {
 namespace {
@@ -111,7 +112,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   const std::string text = about.dump();
   std::vector<KerfArray> more{kerf_array("run/displacement", flat(state.motion.displacement), 3),
                               kerf_array("run/velocity", flat(state.motion.velocity), 3),
-                              kerf_array("run/part", std::span(state.part)),
+                              kerf_array("run/part", std::span(state.body_index)),
                               kerf_array("run/surface", flat(state.surface), 3),
                               kerf_array("run/front_points", flat(places), 3),
                               kerf_array("run/front_at", std::span<const double>(at)),
@@ -144,11 +145,11 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
   }
   state.surface = points(file, "run/surface");
-  state.part = file.read<std::uint32_t>("run/part");
+  state.body_index = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");
   const std::size_t n = c.body.nodes.size();
   if (time.size() != 1 || !std::isfinite(time[0]) || state.motion.displacement.size() != n ||
-      state.motion.velocity.size() != n || state.part.size() != n)
+      state.motion.velocity.size() != n || state.body_index.size() != n)
     file.fail("the sections of the run have different lengths");
   state.time = time[0];
   Supply<Vec3> places(points(file, "run/front_points"), file), normals(points(file, "run/front_normals"), file),

@@ -101,9 +101,9 @@ void read_body_table(TomlTable& t, Scene& s) {
   if (const auto* node = t.find("fracture"); node && !s.fracture.on)
     t.fail(*node,
            "'body.fracture' says how strong one body is; give the scene a [fracture], too, by which bodies break");
-  s.fracture.own.push_back(s.fracture);
+  s.fracture.per_body.push_back(s.fracture);
   t.section("fracture", [&](TomlTable& own) {
-    read_strength(own, s.fracture.own.back());
+    read_strength(own, s.fracture.per_body.back());
     refuse_shared(own, "fracture", {"speed", "branching", "apart", "cracks", "cracks_per_step", "start", "off"});
   });
   for (const auto& v : t.rows("fixed", 6)) s.grips.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {}, false});
@@ -203,8 +203,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     read_strength(t, s.fracture);
     t.get("speed", s.fracture.speed, 0, 1);
     t.get("branching", s.fracture.branching, 0, 1e6);
-    t.get("apart", s.fracture.apart, 0.5, 1000);
-    t.get("cracks", s.fracture.cracks, 0, 1000000);
+    t.get("apart", s.fracture.separation, 0.5, 1000);
+    t.get("cracks", s.fracture.max_cracks, 0, 1000000);
     t.get("cracks_per_step", s.fracture.cracks_per_step, 0, 1000000);
     t.get("start", s.fracture.start, 0, 1e9);
     for (const auto& v : t.rows("off", 6)) s.fracture.off.push_back({Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])});
@@ -216,8 +216,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   else
     top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
   // Where all are as the scene says, there is nothing to look up.
-  if (std::all_of(s.fracture.own.begin(), s.fracture.own.end(), [&](const Strength& own) { return own == s.fracture; }))
-    s.fracture.own.clear();
+  if (std::all_of(s.fracture.per_body.begin(), s.fracture.per_body.end(), [&](const Strength& own) { return own == s.fracture; }))
+    s.fracture.per_body.clear();
   top.section("ground", [&](TomlTable& t) {
     s.ground = true;
     t.get("point", s.ground_point);

@@ -1,19 +1,13 @@
 // The part of a blade's edge that is about in the material, and the front that it leaves (§ 5.1).
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "kerf/crack.h"
+#include "kerf/run.h"
 
 namespace geo {
-
-struct EdgeFront {
-  FrontState front;
-  std::vector<double>
-      at;  ///< per front point, ascending: where on the edge; n + t is between the blade's points n and n + 1
-};
 
 /// A point of an edge that was mapped into the material.
 struct EdgePoint {

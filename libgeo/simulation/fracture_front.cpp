@@ -44,18 +44,15 @@ bool spans_material(const FrontState& front, std::size_t segment) {
 
 }  // namespace
 
-TipFrame GrowingFront::frame(std::size_t i) const {
-  const std::size_t n = size(),
-                    before = i > 0          ? i - 1
-                             : front.closed ? n - 1
-                                            : 0,
-                    after = i + 1 < n      ? i + 1
-                            : front.closed ? 0
-                                           : n - 1;
+TipFrame tip_frame(const GrowingFront& g, std::size_t i) {
+  const std::size_t n = g.size();
+  const std::size_t before = i > 0 ? i - 1 : g.front.closed ? n - 1 : 0;
+  const std::size_t after = i + 1 < n ? i + 1 : g.front.closed ? 0 : n - 1;
+  const Vec3& normal = g.normal[i];
   const Vec3 tangent =
-      unit_or(front.points[after].position - front.points[before].position, normal[i].unitOrthogonal());
-  const Vec3 across = unit_or(normal[i] - normal[i].dot(tangent) * tangent, tangent.unitOrthogonal());
-  return {front.points[i].position, tangent.cross(across), across};
+      unit_or(g.front.points[after].position - g.front.points[before].position, normal.unitOrthogonal());
+  const Vec3 across = unit_or(normal - normal.dot(tangent) * tangent, tangent.unitOrthogonal());
+  return {g.front.points[i].position, tangent.cross(across), across};
 }
 
 GrowingFront growing(FrontState front, std::vector<Vec3> normals) {
@@ -101,7 +98,7 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     if (beside_live > 0)
       carried[i] += way / beside_live;
     else if (spans)
-      carried[i] += wanted * g.frame(i).ahead;
+      carried[i] += wanted * tip_frame(g, i).ahead;
   }
   next = carried;
   FrontPlan plan;
@@ -128,7 +125,7 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     const Vec3 &from = g.front.points[end].position, to = beyond.empty() ? next[end] : beyond.back().first;
     if (g.live(end) || from == to || !is_blocked(complex, from, to)) return;
     if (beyond.empty()) beyond.push_back({to, ended[end]});
-    const Vec3 ahead = g.frame(end).ahead,
+    const Vec3 ahead = tip_frame(g, end).ahead,
                away = unit_or(from - g.front.points[end == 0 ? 1 : end - 1].position, ahead);
     Vec3 corner = from + wanted * away;
     bool seen = false;
@@ -211,7 +208,7 @@ std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& pl
     farthest = std::max(farthest, way.norm());
     g.front.points.push_back(p);
     // The crack behind the point holds its way and the front's tangent.
-    const TipFrame old = before.frame(i);
+    const TipFrame old = tip_frame(before, i);
     const Vec3 ahead = before.live(i) && way.squaredNorm() > 0 ? direction[i] : old.ahead,
                tangent = old.normal.cross(old.ahead);
     g.normal.push_back(unit_or(ahead.cross(tangent), old.normal));

@@ -2,23 +2,13 @@
 #pragma once
 
 #include "kerf/body.h"
+#include "kerf/run.h"
 #include "simulation/fracture_tip.h"
 
 namespace geo {
 
-/// A front with a frame at each of its points. Ahead of point i is tangent × normal, the tangent along the points.
-struct GrowingFront {
-  FrontState front;
-  std::vector<Vec3> normal;         ///< per point: of the crack there, unit, material coordinates
-  std::vector<double> owed;         ///< per point: how far it should have come but has not, model units
-  std::vector<std::uint8_t> ended;  ///< per point: 1 where it has come to a surface, the skin's or another crack's
-  double length = 0;                ///< how far the fastest point has come since the front began or divided
-
-  std::size_t size() const { return front.points.size(); }
-  /// Inside the material, and on its way.
-  bool live(std::size_t i) const { return !ended[i] && front.points[i].id.valid(); }
-  TipFrame frame(std::size_t i) const;
-};
+/// The frame at point i of a front: at, ahead and normal.
+TipFrame tip_frame(const GrowingFront& front, std::size_t i);
 
 /// A front as begin_front() or a blade leaves it, with its normals. Throws InputError unless there is one a point.
 GrowingFront growing(FrontState front, std::vector<Vec3> normals);

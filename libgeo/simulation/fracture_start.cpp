@@ -6,6 +6,7 @@
 
 #include "geometry/distance.h"
 #include "mechanics/solver/node_sums.h"
+#include "simulation/strength.h"
 
 namespace geo {
 namespace {
@@ -53,13 +54,13 @@ std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const St
   return mean;
 }
 
-std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture,
-                                    const std::vector<std::uint32_t>& part, std::size_t most) {
+std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const FractureOptions& fracture,
+                                    const std::vector<std::uint32_t>& body_index, std::size_t most) {
   const double diagonal = body.surface.extent().diagonal();
   std::vector<CrackStart> over;
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const Vec3& x = body.nodes.position[i];
-    const Strength& own = fracture.of(part, i);
+    const Strength& own = fracture.at_node(body_index, i);
     const double strength = own.strength * strength_factor(own, fracture.seed, diagonal, x);
     // No eigenvalue is larger than the norm: most nodes need no decomposition.
     if (stress[i].norm() <= strength || !may_break(fracture, x)) continue;
@@ -76,7 +77,7 @@ std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& s
   for (const CrackStart& s : over) {
     if (starts.size() == most) break;
     const Vec3& x = body.nodes.position[s.node.index()];
-    const double reach = fracture.apart * body.nodes.spacing[s.node.index()];
+    const double reach = fracture.separation * body.nodes.spacing[s.node.index()];
     if (cracks.within(x, reach)) continue;
     const bool alone = std::none_of(starts.begin(), starts.end(), [&](const CrackStart& o) {
       return (body.nodes.position[o.node.index()] - x).norm() < reach;

@@ -20,8 +20,9 @@ struct CrackStart {
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion);
 
 /// Nodes whose averaged stress has passed the strength of their body, where cracks may begin and none is within
-/// `fracture.apart` spacings; the most overstrained first, none within that distance of one before it; at most `most`.
-std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const Fracture& fracture,
-                                    const std::vector<std::uint32_t>& part, std::size_t most);
+/// `fracture.separation` spacings; the most overstrained first, none within that distance of one before it; at most
+/// `most`.
+std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const FractureOptions& fracture,
+                                    const std::vector<std::uint32_t>& body_index, std::size_t most);
 
 }  // namespace geo

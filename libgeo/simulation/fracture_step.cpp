@@ -9,6 +9,7 @@
 #include "simulation/fracture_rest.h"
 #include "simulation/fracture_start.h"
 #include "simulation/fracture_tip.h"
+#include "simulation/strength.h"
 
 namespace geo {
 namespace {
@@ -31,8 +32,8 @@ double needed_stress(const Strength& own, std::uint64_t seed, const Body& body, 
   return stress * strength_factor(own, seed, body.surface.extent().diagonal(), x);
 }
 
-Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body, const Solid& solid,
-            const State& motion, const GrowingFront& g) {
+Drive drive(const FractureOptions& fracture, const std::vector<std::uint32_t>& body_index, const Body& body,
+            const Solid& solid, const State& motion, const GrowingFront& g) {
   const std::size_t n = g.size();
   std::vector<Mat3> separation(n, Mat3::Zero());
   std::vector<TipFrame> frame(n);
@@ -40,7 +41,7 @@ Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, co
   std::vector<std::uint32_t> node(n, 0);
   parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      frame[i] = g.frame(i);
+      frame[i] = tip_frame(g, i);
       if (!g.live(i) || !may_break(fracture, frame[i].at)) continue;
       const TipField field = tip_field(body, motion.displacement, solid.materials(), frame[i]);
       told[i] = field.nodes >= 4, node[i] = field.node;
@@ -48,9 +49,10 @@ Drive drive(const Fracture& fracture, const std::vector<std::uint32_t>& part, co
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
       const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
-      separation[i] = stress /
-                      needed_stress(fracture.of(part, field.node), fracture.seed, body, frame[i].at, field.support) *
-                      across * across.transpose();
+      separation[i] =
+          stress /
+          needed_stress(fracture.at_node(body_index, field.node), fracture.seed, body, frame[i].at, field.support) *
+          across * across.transpose();
     }
   });
   // Twice with the weights 1, 2, 1 of neighbours on the same part of the front.
@@ -93,9 +95,10 @@ std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts
 }
 
 // A front whose stress is far more than it needs divides: the two parts leave at 30° to either side.
-bool divides(const Fracture& fracture, const GrowingFront& g, const Drive& d, double spacing,
+bool divides(const FractureOptions& fracture, const GrowingFront& g, const Drive& d, double spacing,
              const FractureState& state) {
-  if (fracture.branching <= 0 || state.cracks >= fracture.cracks || g.length < fracture.apart * spacing) return false;
+  if (fracture.branching <= 0 || state.cracks >= fracture.max_cracks || g.length < fracture.separation * spacing)
+    return false;
   double sum = 0;
   std::size_t live = 0;
   for (std::size_t i = 0; i < g.size(); ++i)
@@ -105,14 +108,14 @@ bool divides(const Fracture& fracture, const GrowingFront& g, const Drive& d, do
 
 void turn(Drive& d, const GrowingFront& g, double angle) {
   for (std::size_t i = 0; i < g.size(); ++i) {
-    const TipFrame f = g.frame(i);
+    const TipFrame f = tip_frame(g, i);
     d.direction[i] = Eigen::AngleAxisd(angle, f.along()) * d.direction[i];
   }
 }
 
 }  // namespace
 
-void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& part, const Body& body,
+void step_fracture(const FractureOptions& fracture, const std::vector<std::uint32_t>& body_index, const Body& body,
                    const Solid& solid, const State& motion, double dt, FractureState& state, const SplitStep& split,
                    FractureStats* work) {
   FractureStats done;
@@ -138,7 +141,7 @@ void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& p
   };
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     GrowingFront& g = fronts[f];
-    Drive d = drive(fracture, part, body, solid, motion, g);
+    Drive d = drive(fracture, body_index, body, solid, motion, g);
     const double fastest = fracture.speed * rayleigh_speed(solid.materials().of(d.node));
     std::vector<double> step(g.size(), 0);
     double spacing = std::numeric_limits<double>::infinity(), most = 0;
@@ -150,7 +153,8 @@ void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& p
       spacing = std::min(spacing, here);
       g.owed[i] =
           d.excess[i] > 1 ? std::min(here, g.owed[i] + dt * fastest * (1 - 1 / (d.excess[i] * d.excess[i]))) : 0;
-      if (!d.told[i] && may_break(fracture, g.front.points[i].position) && is_ligament(body.surface, g.frame(i), here))
+      if (!d.told[i] && may_break(fracture, g.front.points[i].position) &&
+          is_ligament(body.surface, tip_frame(g, i), here))
         g.owed[i] = std::max(g.owed[i], 0.25 * here);
       most = std::max(most, g.owed[i]);
     }
@@ -179,10 +183,10 @@ void step_fracture(const Fracture& fracture, const std::vector<std::uint32_t>& p
       if (const auto next = across_ligament(body.surface, rest, spacing_at(body, rest.points[0].position));
           !next.empty())
         ++(split(rest, next) ? done.advanced : done.refused);
-  const int most = std::min(fracture.cracks_per_step, fracture.cracks - state.cracks);
+  const int most = std::min(fracture.cracks_per_step, fracture.max_cracks - state.cracks);
   if (most > 0) {
     const auto stress = averaged_stress(body, solid, motion);
-    for (const CrackStart& s : find_starts(body, stress, fracture, part, static_cast<std::size_t>(most))) {
+    for (const CrackStart& s : find_starts(body, stress, fracture, body_index, static_cast<std::size_t>(most))) {
       const double spacing = body.nodes.spacing[s.node.index()];
       // Off the node, which would lie in the flaw else.
       auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal,

@@ -2,313 +2,375 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
+#include "contact/response/blade_penalty.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
 #include "mechanics/discretisation/deformation.h"
+#include "simulation/collisions.h"
 #include "simulation/edge_runs.h"
+#include "simulation/fracture_step.h"
+#include "simulation/grips.h"
+#include "simulation/obstacles.h"
+#include "simulation/scene_body.h"
 
 namespace geo {
-
 namespace {
 
-// A state to go on from, with a part for each node.
-RunState fitting(const Scene& scene, const Body& body, RunState state) {
+// Most cuts of one blade in a time step.
+constexpr double most_cuts = 64;
+
+// The state with a body index for each node. Throws InputError where it does not fit.
+RunState checked(const Scene& scene, const Body& body, RunState state) {
   const std::size_t n = body.nodes.size();
-  if (state.part.empty()) state.part.assign(n, 0);
-  const bool known = std::all_of(state.part.begin(), state.part.end(), [&](auto p) { return p < scene.bodies.size(); });
-  if (state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.part.size() != n || !known ||
-      state.fronts.size() != scene.blades.size())
+  if (state.body_index.empty()) state.body_index.assign(n, 0);
+  const bool known =
+      std::all_of(state.body_index.begin(), state.body_index.end(), [&](auto b) { return b < scene.bodies.size(); });
+  if (state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.body_index.size() != n ||
+      !known || state.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   return state;
 }
 
+// A key with this rotation, whose axis is arbitrary where there is none.
+Motion::Key key_at(double time, const Pose& pose) {
+  const Eigen::AngleAxisd turn(pose.rotation);
+  return {time, pose.position, turn.angle() == 0 ? Vec3(Vec3::UnitZ()) : turn.axis(),
+          turn.angle() * 180 / std::numbers::pi};
+}
+
+// From the present pose at time `from` to `pose` at time `to`.
+Motion towards(const Motion& present, double from, double to, const Pose& pose) {
+  return {{key_at(from, present.at(from)), key_at(to, pose)}};
+}
+
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
-    : Simulation(scene, Model{solid, {solid}}, progress) {}
+// All that a run consists of, and the phases of a time step.
+struct Simulation::Impl {
+  Impl(const Scene& scene_in, Body body_in, RunState state_in);
+  void restore(Body new_body, RunState new_state);
+  void reset_contact();
+  void reset_environment();
 
-Simulation::Simulation(const Scene& scene, const Model& model, const Progress& progress)
-    : Simulation(scene, begin_run(scene, model, progress)) {}
+  void step(double dt, FrameStats& stats);
+  void cut(double dt, FrameStats& stats);
+  void cut_at(std::size_t blade, double time, FrameStats& stats);
+  bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
+  void apply_delta(const BodyDelta& delta, FrameStats& stats);
+  std::int32_t unused_crack() const;
+  void add_wedges(double dt);
+  void add_contact(double dt, FrameStats& stats);
+  void integrate(double dt, FrameStats& stats);
+  void move_surface(const std::vector<Vec3>& before, double dt, FrameStats& stats);
+  void fracture(double dt, FrameStats& stats);
+  void require_finite() const;
+  double time_of(int frame) const { return frame * (1 / scene.frame_rate); }
 
-Simulation::Simulation(const Scene& scene, Beginning begun)
-    : Simulation(scene, std::move(begun.body), std::move(begun.state)) {}
+  Scene scene;
+  RunState state;
+  Body body;
+  Solid solid;
+  Environment environment;
+  GrippedNodes gripped;
+  BladePenalty wedge;
+  Obstacles obstacles;
+  std::optional<Collisions> collisions;
+  bool cut_since_build = false;  // of the solid
+};
 
-Simulation::Simulation(const Scene& scene, Body body, RunState state)
-    : scene_(scene),
-      state_(fitting(scene, body, std::move(state))),
-      body_(std::move(body)),
-      solid_(body_, materials_of(scene, state_.part)),
-      obstacles_(scene) {
-  begin();
+Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
+    : scene(scene_in),
+      state(checked(scene, body_in, std::move(state_in))),
+      body(std::move(body_in)),
+      solid(body, materials_of(scene, state.body_index)),
+      obstacles(scene) {
+  reset_contact();
 }
 
-void Simulation::take_up(Body body, RunState state) {
-  state_ = fitting(scene_, body, std::move(state)), body_ = std::move(body);
-  if (std::exchange(cut_, false)) solid_ = Solid(body_, materials_of(scene_, state_.part));
-  obstacles_ = Obstacles(scene_), environment_ = {}, wedge_ = {};
-  begin();
+void Simulation::Impl::restore(Body new_body, RunState new_state) {
+  state = checked(scene, new_body, std::move(new_state)), body = std::move(new_body);
+  if (std::exchange(cut_since_build, false)) solid = Solid(body, materials_of(scene, state.body_index));
+  obstacles = Obstacles(scene), environment = {}, wedge = {};
+  reset_contact();
 }
 
-// With body, state and solid as they are.
-void Simulation::begin() {
-  if (solid_.size() != body_.nodes.size()) throw InputError("the checkpoint does not belong to this scene");
-  prepare();
-  collisions_.emplace(scene_, body_, solid_, state_.surface);
+// From body, state and solid as they are.
+void Simulation::Impl::reset_contact() {
+  if (solid.size() != body.nodes.size()) throw InputError("the checkpoint does not belong to this scene");
+  reset_environment();
+  collisions.emplace(scene, body, solid, state.surface);
 }
 
-// What acts on nodes, as they are now.
-void Simulation::prepare() {
-  const std::size_t n = body_.nodes.size();
-  environment_.gravity = scene_.gravity;
-  environment_.ground = scene_.ground;
-  environment_.ground_point = scene_.ground_point;
-  environment_.ground_normal = scene_.ground_normal.normalized();
-  environment_.ground_stiffness = scene_.ground_stiffness;
-  environment_.friction = scene_.friction;
-  environment_.fixed.assign(n, 0);
-  environment_.clearance.assign(n, 0);
-  gripped_.clear();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3& x = body_.nodes.position[i];
-    for (std::size_t g = 0; g < scene_.grips.size(); ++g) {
-      const Grip& grip = scene_.grips[g];
-      if ((x.array() < grip.lo.array()).any() || (x.array() > grip.hi.array()).any()) continue;
-      gripped_.push_back({NodeId(i), g});
-      break;
-    }
-    if (const auto v = body_.binding.closest[i]; v.valid() && body_.surface.alive(v))
-      environment_.clearance[i] = (body_.surface.point(body_.surface.site(v)) - x).norm();
-  }
+// All that acts on the nodes as they are now, except contact.
+void Simulation::Impl::reset_environment() {
+  const std::size_t n = body.nodes.size();
+  environment.gravity = scene.gravity;
+  environment.ground = scene.ground;
+  environment.ground_point = scene.ground_point;
+  environment.ground_normal = scene.ground_normal.normalized();
+  environment.ground_stiffness = scene.ground_stiffness;
+  environment.friction = scene.friction;
+  environment.fixed.assign(n, 0);
+  environment.clearance.assign(n, 0);
+  gripped = GrippedNodes(scene.grips, body.nodes);
+  for (std::size_t i = 0; i < n; ++i)
+    if (const auto v = body.binding.closest[i]; v.valid() && body.surface.alive(v))
+      environment.clearance[i] = (body.surface.point(body.surface.site(v)) - body.nodes.position[i]).norm();
 }
 
-// What follows the body after a crack.
-void Simulation::adopt(const BodyDelta& delta, FrameStats& work) {
+// Updates mechanics and contact after a crack step.
+void Simulation::Impl::apply_delta(const BodyDelta& delta, FrameStats& stats) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
-  cut_ = true;
-  parallel_invoke([&] { prepare(); },
+  cut_since_build = true;
+  parallel_invoke([&] { reset_environment(); },
                   [&] {
-                    solid_.follow(body_, delta, state_.motion);
-                    if (scene_.fracture.on) solid_.settle(body_, state_.motion);
+                    solid.follow(body, delta, state.motion);
+                    if (scene.fracture.on) solid.settle(body, state.motion);
                   });
-  for (const NodeId d : delta.donors) state_.part.push_back(std::uint32_t(state_.part[d.index()]));
-  work.mechanics_seconds += watch.lap();
-  if (collisions_) collisions_->follow(body_, solid_, delta);
-  obstacles_.follow();
-  work.contact_seconds += watch.lap();
+  for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
+  stats.mechanics_seconds += watch.lap();
+  if (collisions) collisions->follow(body, solid, delta);
+  obstacles.follow();
+  stats.contact_seconds += watch.lap();
 }
 
-bool Simulation::split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& work) {
+// One step of a crack; false, and counted, where it cannot be made.
+bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats) {
   CrackOptions options;
-  options.seed = scene_.seed;
+  options.seed = scene.seed;
   try {
-    adopt(split(body_, front, next, options, &work.split,
-                collisions_ ? collisions_->agreement(body_, solid_, state_.motion, work.contact_seconds) : Agreement()),
-          work);
+    apply_delta(
+        split(body, front, next, options, &stats.split,
+              collisions ? collisions->agreement(body, solid, state.motion, stats.contact_seconds) : Agreement()),
+        stats);
     return true;
   } catch (const GeometryError&) {
-    ++work.refused;
+    ++stats.refused;
     return false;
   }
 }
 
-// From where the blades are to where they will be at the end of the step, in parts where an edge goes far.
-void Simulation::cut(double dt, FrameStats& work) {
-  for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
-    const Blade& blade = scene_.blades[b];
-    if (!blade.active(state_.time)) {
-      state_.fronts[b].clear();
+// Moves all blades through a time step, in several cuts where an edge point moves far (§ 5.1).
+void Simulation::Impl::cut(double dt, FrameStats& stats) {
+  for (std::size_t b = 0; b < scene.blades.size(); ++b) {
+    const Blade& blade = scene.blades[b];
+    if (!blade.active(state.time)) {
+      state.fronts[b].clear();
       continue;
     }
-    if (state_.fronts[b].empty()) cut_at(b, state_.time, work);
-    const std::vector<Vec3> from = blade.at(state_.time), to = blade.at(state_.time + dt);
-    double most = 0;
-    for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
-    const double finest = *std::min_element(body_.nodes.spacing.begin(), body_.nodes.spacing.end());
-    const int parts = static_cast<int>(std::clamp(std::ceil(most / (blade.limit * finest)), 1.0, 64.0));
-    for (int k = 1; k <= parts; ++k) cut_at(b, state_.time + dt * k / parts, work);
+    if (state.fronts[b].empty()) cut_at(b, state.time, stats);
+    const std::vector<Vec3> from = blade.at(state.time), to = blade.at(state.time + dt);
+    double farthest = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) farthest = std::max(farthest, (to[i] - from[i]).norm());
+    const double finest = *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
+    const int cuts = static_cast<int>(std::clamp(std::ceil(farthest / (blade.limit * finest)), 1.0, most_cuts));
+    for (int k = 1; k <= cuts; ++k) cut_at(b, state.time + dt * k / cuts, stats);
   }
 }
 
-void Simulation::cut_at(std::size_t b, double time, FrameStats& work) {
+// Maps a blade's edge into the material, and advances its fronts there.
+void Simulation::Impl::cut_at(std::size_t b, double time, FrameStats& stats) {
   Stopwatch watch;
-  const Blade& blade = scene_.blades[b];
-  std::vector<EdgeFront>& fronts = state_.fronts[b];
+  const Blade& blade = scene.blades[b];
+  std::vector<EdgeFront>& fronts = state.fronts[b];
   const Pose pose = blade.motion.at(time);
   Box3 about;
   for (const Vec3& p : blade.points) about.add(pose * p);
-  const NodeGradients gradient = solid_.gradients_when_asked(state_.motion.displacement);
-  const PointMap map(body_, state_.motion.displacement, gradient, about);
+  const NodeGradients gradient = solid.gradients_when_asked(state.motion.displacement);
+  const PointMap map(body, state.motion.displacement, gradient, about);
   std::vector<std::vector<EdgePoint>> runs;
   if (blade.closed) {
-    runs.push_back(closed_run(map, body_, blade, pose));
+    runs.push_back(closed_run(map, body, blade, pose));
     if (fronts.empty()) fronts.resize(1);
   } else {
-    runs = edge_runs(map, body_, blade, pose);
+    runs = edge_runs(map, body, blade, pose);
     fronts = fronts_of(runs, fronts);
   }
-  work.front_seconds += watch.lap();
+  stats.front_seconds += watch.lap();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     if (fronts[r].at.empty()) {
-      fronts[r] = begin_edge(runs[r], next_crack(), blade.name, blade.closed);
+      fronts[r] = begin_edge(runs[r], unused_crack(), blade.name, blade.closed);
       continue;
     }
     std::vector<Vec3> to;
     EdgeFront edge = refined(fronts[r], runs[r], to);
-    ++work.fronts;
-    if (!split_step(edge.front, to, work)) continue;
+    ++stats.fronts;
+    if (!split_step(edge.front, to, stats)) continue;
     collapse(edge, runs[r]);
     fronts[r] = std::move(edge);
   }
 }
 
-// A number that no crack has, nor any front that will leave one.
-std::int32_t Simulation::next_crack() const {
-  std::int32_t last = body_.surface.crack_count();
-  for (const auto& fronts : state_.fronts)
+// A crack number that neither the complex nor a front uses.
+std::int32_t Simulation::Impl::unused_crack() const {
+  std::int32_t last = body.surface.crack_count();
+  for (const auto& fronts : state.fronts)
     for (const EdgeFront& edge : fronts) last = std::max(last, edge.front.crack);
-  for (const GrowingFront& g : state_.fracture.fronts) last = std::max(last, g.front.crack);
+  for (const GrowingFront& g : state.fracture.fronts) last = std::max(last, g.front.crack);
   return last + 1;
 }
 
-// A pose for each grip; of one that does not move, none to be asked for.
-std::vector<Pose> Simulation::grip_poses(double time) const {
-  std::vector<Pose> poses(scene_.grips.size());
-  for (std::size_t g = 0; g < poses.size(); ++g)
-    if (!scene_.grips[g].motion.keys.empty()) poses[g] = scene_.grips[g].motion.at(time);
-  return poses;
-}
-
-// Held nodes are put where their grip will be at the end of the step; what they do to the others is the step's
-// business.
-void Simulation::move_grips(double dt) {
-  std::fill(environment_.fixed.begin(), environment_.fixed.end(), 0);
-  const double end = state_.time + dt;
-  const std::vector<Pose> poses = grip_poses(end);
-  for (const auto& [i, g] : gripped_) {
-    const Grip& grip = scene_.grips[g];
-    if (grip.release && !grip.motion.keys.empty() && end > grip.motion.keys.back().time) continue;
-    environment_.fixed[i.index()] = 1;
-    const Vec3 &x = body_.nodes.position[i.index()], middle = grip.middle();
-    if (!grip.motion.keys.empty()) state_.motion.displacement[i.index()] = middle + poses[g] * Vec3(x - middle) - x;
-  }
-}
-
-// Thick blades, where they will be at the end of the step.
-void Simulation::push(double dt) {
-  wedge_ = {};
+// Adds the wedges of thick blades, where they are at the end of the step.
+void Simulation::Impl::add_wedges(double dt) {
+  wedge = {};
   std::vector<double> mass;
-  for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
-    const Blade& blade = scene_.blades[b];
-    if (!(blade.thickness > 0) || !blade.active(state_.time)) continue;
-    for (std::size_t i = mass.size(); i < body_.nodes.size(); ++i) mass.push_back(solid_.mass(NodeId(i)));
-    wedge_.add(b, blade, blade.motion.at(state_.time + dt), body_.nodes.position, state_.motion.displacement,
-               environment_.clearance, mass, blade.stiffness);
+  for (std::size_t b = 0; b < scene.blades.size(); ++b) {
+    const Blade& blade = scene.blades[b];
+    if (!(blade.thickness > 0) || !blade.active(state.time)) continue;
+    for (std::size_t i = mass.size(); i < body.nodes.size(); ++i) mass.push_back(solid.mass(NodeId(i)));
+    wedge.add(b, blade, blade.motion.at(state.time + dt), body.nodes.position, state.motion.displacement,
+              environment.clearance, mass, blade.stiffness);
   }
-  if (!wedge_.empty()) environment_.contact.push_back(&wedge_);
+  if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
 
-void Simulation::meet_obstacles(double dt, FrameStats& work) {
+// Adds obstacles, contact between bodies, and self-contact.
+void Simulation::Impl::add_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
-  const std::span<const Vec3> at =
-      obstacles_.any() ? collisions_->wanted(body_, state_.motion) : std::span<const Vec3>();
-  obstacles_.begin(scene_, body_, solid_, collisions_->weights(), at, state_.part, state_.motion, state_.time, dt,
-                   environment_);
-  collisions_->begin(body_, solid_, state_.motion, dt, environment_);
-  work.contact_seconds += watch.lap();
+  const std::span<const Vec3> at = obstacles.any() ? collisions->wanted(body, state.motion) : std::span<const Vec3>();
+  obstacles.begin(scene, body, solid, collisions->weights(), at, state.body_index, state.motion, state.time, dt,
+                  environment);
+  collisions->begin(body, solid, state.motion, dt, environment);
+  stats.contact_seconds += watch.lap();
 }
 
-void Simulation::integrate(double dt, FrameStats& work) {
+void Simulation::Impl::integrate(double dt, FrameStats& stats) {
   Stopwatch watch;
-  solid_.settle(body_, state_.motion);
-  const StepReport report = scene_.implicit ? solid_.step_implicit(state_.motion, dt, environment_, scene_.accuracy)
-                                            : solid_.step_explicit(state_.motion, dt, environment_);
-  const std::vector<Pose> from = grip_poses(state_.time), to = grip_poses(state_.time + dt);
-  for (const auto& [i, g] : gripped_) {
-    const Grip& grip = scene_.grips[g];
-    if (!environment_.fixed[i.index()] || grip.motion.keys.empty()) continue;
-    const Vec3 arm = body_.nodes.position[i.index()] - grip.middle();
-    state_.motion.velocity[i.index()] = (to[g] * arm - from[g] * arm) / dt;
-  }
-  work.blade_force.resize(scene_.blades.size(), Vec3::Zero());
-  const auto reaction = wedge_.reaction(state_.motion.displacement, scene_.blades.size());
-  for (std::size_t b = 0; b < reaction.size(); ++b) work.blade_force[b] += dt * scene_.frame_rate * reaction[b];
-  obstacles_.reaction(state_.motion, dt * scene_.frame_rate, work);
-  work.newton += static_cast<std::size_t>(report.newton), work.cg += static_cast<std::size_t>(report.cg), ++work.steps;
-  work.energy = report.energy;
-  work.mechanics_seconds += watch.lap();
+  solid.settle(body, state.motion);
+  const StepReport report = scene.implicit ? solid.step_implicit(state.motion, dt, environment, scene.accuracy)
+                                           : solid.step_explicit(state.motion, dt, environment);
+  gripped.set_velocities(scene.grips, body.nodes, environment.fixed, state.time, dt, state.motion);
+  stats.blade_force.resize(scene.blades.size(), Vec3::Zero());
+  const auto reaction = wedge.reaction(state.motion.displacement, scene.blades.size());
+  for (std::size_t b = 0; b < reaction.size(); ++b) stats.blade_force[b] += dt * scene.frame_rate * reaction[b];
+  obstacles.reaction(state.motion, dt * scene.frame_rate, stats);
+  stats.newton += static_cast<std::size_t>(report.newton), stats.cg += static_cast<std::size_t>(report.cg);
+  ++stats.steps;
+  stats.energy = report.energy;
+  stats.mechanics_seconds += watch.lap();
 }
 
-void Simulation::collide(const std::vector<Vec3>& before, double dt, FrameStats& work) {
+// Moves the surface after the nodes, without crossings. `before`: displacements of the nodes at the
+// beginning of the step.
+void Simulation::Impl::move_surface(const std::vector<Vec3>& before, double dt, FrameStats& stats) {
   Stopwatch watch;
-  collisions_->resolve(body_, solid_, before, dt, environment_, state_.motion, work.contact);
-  work.contact_seconds += watch.lap();
+  collisions->resolve(body, solid, before, dt, environment, state.motion, stats.contact);
+  stats.contact_seconds += watch.lap();
 }
 
-void Simulation::fracture(double dt, FrameStats& work) {
-  if (!scene_.fracture.on || state_.time < scene_.fracture.start) return;
+// Starts and grows cracks by stress.
+void Simulation::Impl::fracture(double dt, FrameStats& stats) {
+  if (!scene.fracture.on || state.time < scene.fracture.start) return;
   Stopwatch watch;
-  const auto others = [&] { return work.split_seconds() + work.mechanics_seconds + work.contact_seconds; };
+  const auto others = [&] { return stats.split_seconds() + stats.mechanics_seconds + stats.contact_seconds; };
   const double splitting = others();
   step_fracture(
-      scene_.fracture, state_.part, body_, solid_, state_.motion, dt, state_.fracture,
-      [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, work); }, &work.fracture);
-  work.fracture_seconds += watch.lap() - (others() - splitting);
+      scene.fracture, state.body_index, body, solid, state.motion, dt, state.fracture,
+      [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, stats); },
+      &stats.fracture);
+  stats.fracture_seconds += watch.lap() - (others() - splitting);
 }
 
-// One time step, a phase a line.
-void Simulation::step(double dt, FrameStats& work) {
-  cut(dt, work);
-  const std::vector<Vec3> before = state_.motion.displacement;
-  move_grips(dt);
-  environment_.contact.clear();
-  push(dt);
-  meet_obstacles(dt, work);
-  integrate(dt, work);
-  collide(before, dt, work);
-  state_.time += dt;
-  fracture(dt, work);
+// One time step from state.time, phase by phase.
+void Simulation::Impl::step(double dt, FrameStats& stats) {
+  cut(dt, stats);
+  const std::vector<Vec3> before = state.motion.displacement;
+  gripped.place(scene.grips, body.nodes, state.time + dt, environment.fixed, state.motion);
+  environment.contact.clear();
+  add_wedges(dt);
+  add_contact(dt, stats);
+  integrate(dt, stats);
+  move_surface(before, dt, stats);
+  state.time += dt;
+  fracture(dt, stats);
+}
+
+void Simulation::Impl::require_finite() const {
+  for (std::size_t i = 0; i < state.motion.displacement.size(); ++i)
+    if (!state.motion.displacement[i].allFinite())
+      throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " + std::to_string(state.time) +
+                          "; reduce the time step");
+}
+
+Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
+    : Simulation(scene, PlacedModels{solid, {solid}}, progress) {}
+
+Simulation::Simulation(const Scene& scene, const PlacedModels& models, const Progress& progress) {
+  RunStart run = begin_run(scene, models, progress);
+  impl_ = std::make_unique<Impl>(scene, std::move(run.body), std::move(run.state));
+}
+
+Simulation::Simulation(const Scene& scene, Body body, RunState state)
+    : impl_(std::make_unique<Impl>(scene, std::move(body), std::move(state))) {}
+
+Simulation::Simulation(Simulation&& other) noexcept = default;
+Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
+Simulation::~Simulation() = default;
+
+const Body& Simulation::body() const { return impl_->body; }
+const RunState& Simulation::state() const { return impl_->state; }
+const Solid& Simulation::solid() const { return impl_->solid; }
+const Scene& Simulation::scene() const { return impl_->scene; }
+
+void Simulation::restore(Body body, RunState state) { impl_->restore(std::move(body), std::move(state)); }
+
+void Simulation::move_blade(std::size_t blade, const Pose& pose) {
+  Motion& motion = impl_->scene.blades.at(blade).motion;
+  motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
+}
+
+void Simulation::move_grip(std::size_t grip, const Pose& pose) {
+  Motion& motion = impl_->scene.grips.at(grip).motion;
+  motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
+}
+
+void Simulation::move_obstacle(std::size_t obstacle, const Pose& pose) {
+  Motion& motion = impl_->scene.obstacles.at(obstacle).motion;
+  motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
 }
 
 FrameStats Simulation::advance_frame(const Progress& progress) {
-  FrameStats work;
-  const double frame_time = 1 / scene_.frame_rate;
-  const int steps = std::max(1, static_cast<int>(std::ceil(frame_time / scene_.dt - 1e-9)));
+  Impl& run = *impl_;
+  FrameStats stats;
+  const double frame_time = 1 / run.scene.frame_rate;
+  const int steps = std::max(1, static_cast<int>(std::ceil(frame_time / run.scene.dt - 1e-9)));
   for (int s = 0; s < steps; ++s) {
     report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));
-    state_.time = (state_.frame + double(s) / steps) * frame_time;
-    step(frame_time / steps, work);
-    for (std::size_t i = 0; i < state_.motion.displacement.size(); ++i)
-      if (!state_.motion.displacement[i].allFinite())
-        throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " +
-                            std::to_string(state_.time) + "; reduce the time step");
+    run.state.time = (run.state.frame + double(s) / steps) * frame_time;
+    run.step(frame_time / steps, stats);
+    run.require_finite();
   }
-  ++state_.frame;
-  state_.surface = collisions_->rows(body_);
-  state_.total += work;
-  return work;
+  ++run.state.frame;
+  run.state.surface = run.collisions->rows(run.body);
+  run.state.total += stats;
+  return stats;
 }
 
 TriangleMesh Simulation::surface(const TriangleMesh* model) const {
-  std::vector<std::uint32_t> rows;
-  TriangleMesh mesh = body_.surface.two_sided(&rows);
+  const Impl& run = *impl_;
+  std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
+  TriangleMesh mesh = run.body.surface.two_sided(&rows);
   if (model) carry(*model, mesh);
   mesh.attributes.normal.clear();
-  if (collisions_->on()) {
-    mesh.vertices = collisions_->rows(body_);
+  if (run.collisions->on()) {
+    mesh.vertices = run.collisions->rows(run.body);
     return mesh;
   }
-  const auto gradient = solid_.gradients(state_.motion.displacement);
+  const std::vector<Vec3>& u = run.state.motion.displacement;
+  const auto gradient = run.solid.gradients(u);
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> nodes;
     for (std::size_t v = begin; v < end; ++v) {
       if (rows[v] == ~0u) continue;
-      bound_nodes(body_, SurfaceVertexId(v), nodes);
+      bound_nodes(run.body, SurfaceVertexId(v), nodes);
       Vec3& x = mesh.vertices[rows[v]];
-      if (!nodes.empty()) x += displacement_at(x, nodes, body_.nodes, state_.motion.displacement, gradient);
+      if (!nodes.empty()) x += displacement_at(x, nodes, run.body.nodes, u, gradient);
     }
   });
   return mesh;

@@ -82,12 +82,12 @@ int contact(const Options& options) {
            {"contact_ms_worst", 1e3 * worst},
            {"share", touching / (touching + moving)},
            {"follow_ms_a_cut_step", 1e3 * following / 24},
-           {"watched_a_step", double(work.watched) / steps},
+           {"watched_a_step", double(work.planes) / steps},
            {"touching_a_step", double(work.touching) / steps},
            {"in_zones_a_step", double(work.in_zones) / steps},
            {"opened", double(work.opened)},
            {"held", double(work.held)},
-           {"lag_in_spacings", work.lag / spacing},
+           {"lag_in_spacings", work.tracking_error / spacing},
            {"crossings", double(geo::count_crossings(end))}},
           options.json);
   }

@@ -19,7 +19,7 @@ struct Middle {
 Middle middle_of(const Simulation& sim, int part) {
   Middle m;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
-    if (part >= 0 && sim.state().part[i] != std::uint32_t(part)) continue;
+    if (part >= 0 && sim.state().body_index[i] != std::uint32_t(part)) continue;
     const double mass = sim.solid().mass(NodeId(i));
     const Vec3 x = sim.body().nodes.position[i] + sim.state().motion.displacement[i],
                v = sim.state().motion.velocity[i];
@@ -88,7 +88,7 @@ TEST_CASE(
                       "[[obstacle]]\nnormal = [0, 0, 1]\n[[blade]]\npoints = [[-0.2, 0, 0], [1.2, 0, 0]]\ndivide = 8\n"
                       "keys = [[0.0, 0.013, 0.507, 1.2, 0, 0, 1, 2], [0.3, 0.013, 0.511, 0.2, 0, 0, 1, 3]]\n",
                   "s.toml");
-  const Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25), make_block({0.8, 0.8, 0.5}, 0.2)});
+  const PlacedModels model = place_models(scene, {make_block({1, 1, 0.5}, 0.25), make_block({0.8, 0.8, 0.5}, 0.2)});
   set_threads(2);
   Simulation sim(scene, model);
   std::string half;

@@ -41,7 +41,7 @@ divide = 10
 keys = [[0.0, 0.013, 0.507, 1.3, 0, 0, 1, 2], [0.2, 0.013, 0.511, -0.7, 0, 0, 1, 3]]
 )";
 
-Model cubes(const Scene& scene) {
+PlacedModels cubes(const Scene& scene) {
   return place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
 }
 
@@ -103,18 +103,18 @@ TEST_CASE("cut bodies of two materials keep theirs, and a run taken up goes on w
   double mass[2] = {0, 0}, deepest[2] = {0, 0};
   const auto& state = sim.state();
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
-    CHECK(sim.solid().materials().of(i).density == (state.part[i] == 0 ? 1000 : 3000));
-    mass[state.part[i]] += sim.solid().mass(NodeId(i));
-    deepest[state.part[i]] = std::min(deepest[state.part[i]], state.motion.displacement[i].z());
+    CHECK(sim.solid().materials().of(i).density == (state.body_index[i] == 0 ? 1000 : 3000));
+    mass[state.body_index[i]] += sim.solid().mass(NodeId(i));
+    deepest[state.body_index[i]] = std::min(deepest[state.body_index[i]], state.motion.displacement[i].z());
   }
   CHECK(mass[0] == Approx(1000).epsilon(1e-12));
   CHECK(mass[1] == Approx(3000).epsilon(1e-12));
   CHECK(deepest[0] < 2 * deepest[1]);  // the soft one gives way
   // A checkpoint of more bodies than the scene has, and one that says too little about them.
   RunState wrong = sim.state();
-  wrong.part.back() = 2;
+  wrong.body_index.back() = 2;
   CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));
-  wrong.part.back() = 1, wrong.part.pop_back();
+  wrong.body_index.back() = 1, wrong.body_index.pop_back();
   CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));
 }
 
@@ -155,7 +155,7 @@ TEST_CASE(
     double low = 0, high = 0, middle = 0, count = 0;
     for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
       const Vec3& u = sim.state().motion.displacement[i];
-      if (sim.state().part[i] == 0) continue;
+      if (sim.state().body_index[i] == 0) continue;
       low = std::min(low, u.z()), high = std::max(high, u.z()), middle += u.z(), ++count;
     }
     INFO("self " << self << ": " << middle / count);
@@ -198,11 +198,11 @@ TEST_CASE("bodies pulled alike break where their own strength says", "[fracture]
 
 TEST_CASE("how strong a body is has the scene's fracture to go by") {
   const auto parse = [](const std::string& text) { return parse_scene("[body]\nmesh = 'a'\n" + text, "s.toml"); };
-  CHECK(parse("[fracture]\nstrength = 3\n").fracture.own.empty());
+  CHECK(parse("[fracture]\nstrength = 3\n").fracture.per_body.empty());
   const Scene s = parse("[body.fracture]\ntoughness = 5\n[fracture]\nstrength = 3\n");
-  REQUIRE(s.fracture.own.size() == 1);
-  CHECK(s.fracture.own[0].strength == 3);
-  CHECK(s.fracture.own[0].toughness == 5);
+  REQUIRE(s.fracture.per_body.size() == 1);
+  CHECK(s.fracture.per_body[0].strength == 3);
+  CHECK(s.fracture.per_body[0].toughness == 5);
   CHECK(s.fracture.toughness == 0);
   CHECK_THROWS_WITH(parse("fracture = { strength = 1 }\n"),
                     Catch::Contains("s.toml:3:") && Catch::Contains("give the scene a [fracture]"));

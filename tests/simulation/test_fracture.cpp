@@ -7,6 +7,7 @@
 #include "kerf/check.h"
 #include "kerf/pieces.h"
 #include "kerf/simulation.h"
+#include "simulation/strength.h"
 #include "simulation/notched_block.h"
 
 using namespace geo;
@@ -51,7 +52,7 @@ TEST_CASE("mode I: a notch in tension runs straight through and parts the plate"
   const auto seed = GENERATE(1, 2);
   Scene scene = brittle();
   scene.grips = {{Vec3(-1, -1, -1), Vec3(2, 0.08, 1), {}, false}, {Vec3(-1, 0.92, -1), Vec3(2, 2, 1), {}, false}};
-  scene.fracture.cracks = 0;
+  scene.fracture.max_cracks = 0;
   Simulation sim = gripped(scene, notched_block({1, 1, 0.16}, 0.06, 0.31, 0.507, static_cast<std::uint64_t>(seed)),
                            0.02 * Vec3::UnitY() * Vec3::UnitY().transpose());
   FrameStats work;
@@ -74,7 +75,7 @@ TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fract
   const double sense = GENERATE(1.0, -1.0), spacing = 0.06, rim = 1.5 * spacing, depth = 0.493, height = 0.507;
   Scene scene = brittle();
   scene.material.poisson = 0, scene.material.damping = 60;
-  scene.fracture.cracks = 0, scene.fracture.start = 0.1, scene.fracture.strength = 1e3;
+  scene.fracture.max_cracks = 0, scene.fracture.start = 0.1, scene.fracture.strength = 1e3;
   scene.grips = {{Vec3(-1, -1, -1), Vec3(2, rim, 1), {}, false},
                  {Vec3(-1, 1 - rim, -1), Vec3(2, 2, 1), {}, false},
                  {Vec3(-1, -1, -1), Vec3(rim, 2, 1), {}, false},
@@ -133,7 +134,7 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
   std::vector<std::vector<Vec3>> broken;
   for (const std::uint64_t seed : {1, 2, 7, 8, 1}) {
     Scene scene = bar_scene(seed);
-    scene.fracture.cracks = 1;
+    scene.fracture.max_cracks = 1;
     Simulation sim = stretched_bar(scene, 0.02);
     double energy = sim.solid().energy(sim.state().motion.displacement);
     while (sim.state().frame < 40 && (sim.state().frame == 0 || !sim.state().fracture.fronts.empty())) {
@@ -184,11 +185,11 @@ TEST_CASE("nothing breaks below the strength, before the start, or where it is o
   Scene scene = bar_scene(5);
   scene.fracture.variation = 0;
   CHECK(begun(scene, 1) == 1);
-  scene.fracture.cracks_per_step = 3, scene.fracture.apart = 3;
+  scene.fracture.cracks_per_step = 3, scene.fracture.separation = 3;
   CHECK(begun(scene, 1) == 3);
-  scene.fracture.cracks = 2;
+  scene.fracture.max_cracks = 2;
   CHECK(begun(scene, 3) == 2);
-  scene.fracture.apart = 40;
+  scene.fracture.separation = 40;
   CHECK(begun(scene, 1) == 1);
   scene.fracture.start = 0.011;
   CHECK(begun(scene, 2) == 0);

@@ -37,7 +37,7 @@ RandomCase random_case(std::uint64_t seed) {
   s.fracture.on = true;
   s.fracture.strength = random.uniform(3e3, 2e4), s.fracture.variation = random.uniform(0.0, 0.6);
   s.fracture.branching = random.below(3) ? 1.05 : 0;
-  s.fracture.cracks = 12, s.fracture.cracks_per_step = 2, s.fracture.apart = random.uniform(1.0, 2.0);
+  s.fracture.max_cracks = 12, s.fracture.cracks_per_step = 2, s.fracture.separation = random.uniform(1.0, 2.0);
   for (int i = 0; i < 9; ++i) c.gradient.data()[i] = random.uniform(-0.02, 0.04);
   return c;
 }

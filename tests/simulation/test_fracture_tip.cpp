@@ -48,7 +48,7 @@ TEST_CASE("stress intensities imposed on nodes are told exactly, and where the c
       const auto u = moved(n.body, material, k, none, depth, height, rotation);
       for (std::size_t i = 0; i < n.front.size(); ++i) {
         if (!n.front.live(i)) continue;
-        const TipField field = tip_field(n.body, u, material, n.front.frame(i));
+        const TipField field = tip_field(n.body, u, material, tip_frame(n.front, i));
         INFO("seed " << seed << " point " << i << " k " << k.transpose() << " told " << field.k.transpose() << " nodes "
                      << field.nodes);
         CHECK(field.nodes > 20);
@@ -65,7 +65,7 @@ TEST_CASE("a flaw that the nodes do not see is pulled apart across the largest p
   for (const double angle : {0.0, 25.0, -60.0}) {
     const Vec3 pull(-std::sin(angle * degree), std::cos(angle * degree), 0);
     const auto u = moved(n.body, material, Vec3::Zero(), 1e-4 * pull * pull.transpose(), 0.1, 0.507, Mat3::Identity());
-    const TipField field = tip_field(n.body, u, material, n.front.frame(3));
+    const TipField field = tip_field(n.body, u, material, tip_frame(n.front, 3));
     CHECK(field.strongest().angle / degree == Approx(angle).margin(0.1));
     CHECK(field.strongest().stress == Approx(100).epsilon(1e-3));
   }

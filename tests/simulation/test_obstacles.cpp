@@ -52,7 +52,7 @@ TEST_CASE("a block on an inclined obstacle stays below the angle of friction, an
                                  "\nstiffness = 1e4\nfriction = 0.4\n",
                              {make_block({20, 20, 1}, 5)});
       for (Vec3& p : scene.obstacles[0].mesh.vertices) p -= Vec3(10, 10, 1);
-      Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
+      PlacedModels model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
       Simulation sim(scene, model);
       const double angle = degrees * std::numbers::pi / 180, g = 9.81;
       const Vec3 down(std::cos(angle), 0, -std::sin(angle));
@@ -108,7 +108,7 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
                      "0], [0.9, 0, 0]]\ndivide = 6\n"
                      "keys = [[0.0, 0.013, 0.007, 2.3, 0, 0, 1, 2], [0.3, 0.013, 0.011, 1.3, 0, 0, 1, 3]]\n",
                  {make_sphere(6)});
-    const Model model = place_models(scene, {make_block({1, 1, 1}, 0.2)});
+    const PlacedModels model = place_models(scene, {make_block({1, 1, 1}, 0.2)});
     set_threads(2);
     Simulation sim(scene, model);
     FrameStats work;
@@ -139,7 +139,7 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     for (int i = 0; i < 8; ++i) {
       Simulation other = read_back(scene, bytes(kept));
       Checkpoint c = read_checkpoint(KerfFile(Input(bytes(kept), "checkpoint")));
-      kept.take_up(std::move(c.body), std::move(c.state));
+      kept.restore(std::move(c.body), std::move(c.state));
       other.advance_frame(), kept.advance_frame();
       CHECK(bytes(kept) == bytes(other));
     }
@@ -175,8 +175,8 @@ TEST_CASE("a plane is shown as a square that moves with it, beside the bodies an
       "position = [3, 1, 2]\n[[obstacle]]\nnormal = [0.5, 0.2, 1]\nposition = [0, 0, -0.5]\nrotation = [1, 0, 0, "
       "20]\nscale = 2\n"
       "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [1, 0, 0, 0.7, 0, 0, 1, 30]]\n");
-  const Model model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
-  const Box3 bodies = bounding_box(model.mesh);
+  const PlacedModels model = place_models(scene, {make_block({1, 1, 0.5}, 0.25)});
+  const Box3 bodies = bounding_box(model.all);
   for (const double time : {0.0, 0.4, 2.0}) {
     const TriangleMesh shown = place_obstacles(scene, model, time);
     const Pose pose = scene.obstacles[0].pose(time);

@@ -154,7 +154,7 @@ TEST_CASE("bodies with velocities and prescored fronts begin as the scene says")
   Front front{"score", false, {{{-0.3, 0.507, 1.3}, {1.3, 0.503, 1.3}}, {{-0.3, 0.511, -0.3}, {1.3, 0.509, -0.3}}}};
   Front sheet{"sheet", false, {{{2, 0.213, -1}, {4, 0.213, -1}, {3, 0.219, 2}}}, {{0, 1, 2}}};
   scene.scores = {front, sheet};
-  const Model model = place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
+  const PlacedModels model = place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
   const Simulation sim(scene, model);
   const Pieces pieces = find_pieces(sim.body().surface);
   CHECK(pieces.count == 4);
@@ -165,7 +165,7 @@ TEST_CASE("bodies with velocities and prescored fronts begin as the scene says")
   Vec3 turning = Vec3::Zero();
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
     const Vec3& v = sim.state().motion.velocity[i];
-    if (sim.state().part[i] == 0)
+    if (sim.state().body_index[i] == 0)
       CHECK(v == Vec3(0, 0, 1));
     else
       turning += (sim.body().nodes.position[i] - Vec3(2.75, 0.25, 0.25)).cross(v);

@@ -1,75 +1,96 @@
-// The loop of § 3.3 and § 4: blades move, fronts follow into the material, the body is split, nodes move, surface
-// follows.
+// The simulation loop (§ 3.3, § 4): blades move, cracks grow, the body is split, nodes and surface
+// move.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
-#include "contact/response/blade_penalty.h"
 #include "kerf/body.h"
+#include "kerf/mesh.h"
+#include "kerf/progress.h"
 #include "kerf/run.h"
 #include "kerf/scene.h"
 #include "kerf/solid.h"
-#include "simulation/collisions.h"
-#include "simulation/fracture_step.h"
-#include "simulation/obstacles.h"
-#include "simulation/run_state.h"
 
 namespace geo {
 
+/// The models of a scene's bodies in the world. The bodies never see each other's nodes, so one Body
+/// holds them all.
+struct PlacedModels {
+  TriangleMesh all;                  ///< all bodies, in their order; attributes only where there is one body
+  std::vector<TriangleMesh> bodies;  ///< one for each body of the scene
+};
+
+/// Places one mesh for each of scene.bodies. Throws InputError where their numbers differ.
+PlacedModels place_models(const Scene& scene, std::vector<TriangleMesh> meshes);
+
+/// The scene's obstacles at a time in seconds, as one mesh, for pictures. A plane is shown as a
+/// square near the bodies' initial places, 1.5 times as wide. Empty where the scene has none.
+TriangleMesh place_obstacles(const Scene& scene, const PlacedModels& models, double time);
+
+/// A run before its first step.
+struct RunStart {
+  Body body;
+  RunState state;
+};
+
+/// Samples the models, builds the body, and inserts the scene's prescored cracks. Throws InputError
+/// where the models do not fit the scene, GeometryError where a prescored crack cannot be inserted.
+RunStart begin_run(const Scene& scene, const PlacedModels& models, const Progress& progress = {});
+
+/// A run: a scene, its body, and the state of motion, fronts and contact. The result is the same
+/// for any number of threads.
 class Simulation {
  public:
-  /// A fresh run; throws as begin_run() does.
-  Simulation(const Scene& scene, const Model& model, const Progress& progress = {});
-  /// The same for a scene of one body that stands where it was modelled.
+  /// A new run; throws as begin_run().
+  Simulation(const Scene& scene, const PlacedModels& models, const Progress& progress = {});
+  /// A new run of a scene with one body, which stands where it was modelled.
   Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress = {});
-  /// A run taken up again; without parts all nodes are of the first body. Throws InputError when the state is not of
-  /// this scene.
+  /// Continues a run from a checkpoint's body and state. Without body indices, all nodes belong to
+  /// the first body. Throws InputError where the state does not fit the scene.
   Simulation(const Scene& scene, Body body, RunState state);
-  /// This run from its own body and state as a file gave them back: from there on the same as a run taken up from that
-  /// file. What no cut has changed since the run began, or was taken up last, is kept.
-  void take_up(Body body, RunState state);
+  Simulation(Simulation&& other) noexcept;
+  Simulation& operator=(Simulation&& other) noexcept;
+  ~Simulation();
 
-  /// Time steps up to the next frame. Throws GeometryError when the motion is no longer finite, Interrupted when
-  /// `progress` says so. A crack step that is refused is counted, and its front tried again in the next step.
+  /// Continues this run from its own checkpoint, as read back from a file. The result is that of a
+  /// new Simulation, but shape functions are kept where no cut has changed them. Throws InputError
+  /// as the constructor.
+  void restore(Body body, RunState state);
+
+  /// Makes time steps up to the next frame. A crack step that cannot be made is counted, and tried
+  /// again in the next time step. Throws GeometryError where a position is no longer finite,
+  /// Interrupted where `progress` requests it.
   FrameStats advance_frame(const Progress& progress = {});
 
-  /// The deformed two-sided surface (Eq. 1, but for what contact holds back), patch, site and source included. With the
-  /// model of the run it also has the model's attributes, except normals: these change with the shape.
+  /// Moves a blade, grip or obstacle (by its index in the scene) from its present pose to `pose` by
+  /// the end of the next frame, in place of its keyframes. A blade cuts on its way; without further
+  /// calls it is removed after that frame, while grips and obstacles stay at `pose`. Poses are
+  /// relative as in the scene's motions. Throws std::out_of_range for an unknown index. Checkpoints
+  /// do not hold such motions: set them again after restore().
+  void move_blade(std::size_t blade, const Pose& pose);
+  /// See move_blade().
+  void move_grip(std::size_t grip, const Pose& pose);
+  /// See move_blade().
+  void move_obstacle(std::size_t obstacle, const Pose& pose);
+
+  /// The deformed two-sided surface with patch, site and source: by Eq. 1, or as far as contact lets
+  /// it follow Eq. 1. With `model`, the surface that the run began with, it also carries the
+  /// model's attributes except normals, which deformation changes.
   TriangleMesh surface(const TriangleMesh* model = nullptr) const;
-  const Body& body() const { return body_; }
-  const RunState& state() const { return state_; }
-  const Solid& solid() const { return solid_; }
+  /// The body in material coordinates.
+  const Body& body() const;
+  /// Motion, fronts and time.
+  const RunState& state() const;
+  /// The mechanics of the nodes: energy, stress, fields.
+  const Solid& solid() const;
+  /// The scene, with motions as set by move_blade(), move_grip() and move_obstacle().
+  const Scene& scene() const;
 
  private:
-  Simulation(const Scene& scene, Beginning begun);
-  void step(double dt, FrameStats& work);
-  void cut(double dt, FrameStats& work);
-  void cut_at(std::size_t blade, double time, FrameStats& work);
-  std::int32_t next_crack() const;
-  std::vector<Pose> grip_poses(double time) const;
-  void move_grips(double dt);
-  void integrate(double dt, FrameStats& work);
-  void push(double dt);
-  void meet_obstacles(double dt, FrameStats& work);
-  void collide(const std::vector<Vec3>& before, double dt, FrameStats& work);
-  void fracture(double dt, FrameStats& work);
-  void adopt(const BodyDelta& delta, FrameStats& work);
-  /// One step of a crack, which the mechanics follows; false, and counted, when it is refused.
-  bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& work);
-  void begin();
-  void prepare();
-
-  Scene scene_;
-  RunState state_;
-  Body body_;
-  Solid solid_;
-  Environment environment_;
-  BladePenalty wedge_;
-  Obstacles obstacles_;
-  std::optional<Collisions> collisions_;
-  std::vector<std::pair<NodeId, std::size_t>> gripped_;  // ascending: node, grip
-  bool cut_ = false;                                     // since the solid was made
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace geo

@@ -266,5 +266,5 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
     CHECK(count_crossings(surface) == 0);
   }
   CHECK(last.touching > 10);
-  CHECK(last.lag < 0.2 * contact.surface().edge);
+  CHECK(last.tracking_error < 0.2 * contact.surface().edge);
 }

@@ -1,4 +1,4 @@
-#include "kerf/scene.h"
+#include "simulation/strength.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ double strength_factor(const Strength& s, std::uint64_t seed, double diagonal, c
   return std::max(0.05, 1 + s.variation * noise(x / (s.grain > 0 ? s.grain : 0.1 * diagonal), seed));
 }
 
-bool may_break(const Fracture& f, const Vec3& x) {
+bool may_break(const FractureOptions& f, const Vec3& x) {
   return std::none_of(f.off.begin(), f.off.end(), [&](const auto& b) {
     return (x.array() >= b[0].array()).all() && (x.array() <= b[1].array()).all();
   });

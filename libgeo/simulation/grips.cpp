@@ -1,0 +1,52 @@
+#include "simulation/grips.h"
+
+#include <algorithm>
+
+namespace geo {
+namespace {
+
+// One for each grip; identity for grips that do not move, which is not used.
+std::vector<Pose> poses_at(const std::vector<Grip>& grips, double time) {
+  std::vector<Pose> poses(grips.size());
+  for (std::size_t g = 0; g < poses.size(); ++g)
+    if (!grips[g].motion.keys.empty()) poses[g] = grips[g].motion.at(time);
+  return poses;
+}
+
+}  // namespace
+
+GrippedNodes::GrippedNodes(const std::vector<Grip>& grips, const NodeSet& nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vec3& x = nodes.position[i];
+    for (std::size_t g = 0; g < grips.size(); ++g) {
+      if ((x.array() < grips[g].lo.array()).any() || (x.array() > grips[g].hi.array()).any()) continue;
+      held_.push_back({NodeId(i), g});
+      break;
+    }
+  }
+}
+
+void GrippedNodes::place(const std::vector<Grip>& grips, const NodeSet& nodes, double time,
+                         std::vector<std::uint8_t>& fixed, State& motion) const {
+  std::fill(fixed.begin(), fixed.end(), 0);
+  const std::vector<Pose> poses = poses_at(grips, time);
+  for (const auto& [i, g] : held_) {
+    const Grip& grip = grips[g];
+    if (grip.release && !grip.motion.keys.empty() && time > grip.motion.keys.back().time) continue;
+    fixed[i.index()] = 1;
+    const Vec3 &x = nodes.position[i.index()], middle = grip.middle();
+    if (!grip.motion.keys.empty()) motion.displacement[i.index()] = middle + poses[g] * Vec3(x - middle) - x;
+  }
+}
+
+void GrippedNodes::set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes,
+                                  const std::vector<std::uint8_t>& fixed, double time, double dt, State& motion) const {
+  const std::vector<Pose> from = poses_at(grips, time), to = poses_at(grips, time + dt);
+  for (const auto& [i, g] : held_) {
+    if (!fixed[i.index()] || grips[g].motion.keys.empty()) continue;
+    const Vec3 arm = nodes.position[i.index()] - grips[g].middle();
+    motion.velocity[i.index()] = (to[g] * arm - from[g] * arm) / dt;
+  }
+}
+
+}  // namespace geo

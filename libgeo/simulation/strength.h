@@ -1,0 +1,27 @@
+// Strength and crack speed of a material at a point, from the scene's fracture options.
+#pragma once
+
+#include <cstdint>
+
+#include "kerf/material.h"
+#include "kerf/scene.h"
+#include "kerf/vec.h"
+
+namespace geo {
+
+/// Factor on strength and toughness at material point x: 1 + variation · noise, at least 0.05.
+/// `diagonal`: of all bodies, the default length scale of the noise.
+double strength_factor(const Strength& strength, std::uint64_t seed, double diagonal, const Vec3& x);
+
+/// False where material point x is in a box without fracture.
+bool may_break(const FractureOptions& fracture, const Vec3& x);
+
+/// Speed of the Rayleigh wave at rest, model units per second: c_s (0.862 + 1.14 ν) / (1 + ν), with
+/// c_s the speed of shear waves (Freund 1990, § 2.1).
+double rayleigh_speed(const Material& material);
+
+/// Mean stress over a length h ahead of a crack tip at which the stress intensity K reaches
+/// `toughness`: the mean of K / √(2 π r) over 0 < r < h, K √(2 / (π h)) (Taylor 2007, line method).
+double stress_of_toughness(double toughness, double h);
+
+}  // namespace geo

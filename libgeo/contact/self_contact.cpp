@@ -260,7 +260,8 @@ void SelfContact::resolve(const Body& body, const Solid& solid, const std::vecto
   standing_.reset();
   work.planes = bounded.planes, work.in_zones = bounded.in_zones, work.held = bounded.held;
   for (std::size_t v = 0; v < to.size(); ++v)
-    if (body.surface.alive(SurfaceVertexId(v))) work.tracking_error = std::max(work.tracking_error, (positions_[v] - to[v]).norm());
+    if (body.surface.alive(SurfaceVertexId(v)))
+      work.tracking_error = std::max(work.tracking_error, (positions_[v] - to[v]).norm());
   work.seconds = clock.lap();
   begun_ = false, near_.forget(), held_off_.clear();
   if (told) *told += work;

@@ -1,13 +1,14 @@
-// Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and does not come to cross
-// itself.
+// Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and does
+// not come to cross itself.
 //
-// The surface has positions of its own. At each step the nodes move as if nothing touched; places that would pass
-// through each other are found, and impulses on the nodes take away their approach; then the surface goes where Eq. 1
-// wants it, but for what would still cross (bounded_motion.h). How far it stays behind is reported, and made good as
-// soon as there is room.
+// The surface has positions of its own. At each step the nodes move as if nothing touched; places
+// that would pass through each other are found, and impulses on the nodes take away their approach;
+// then the surface goes where Eq. 1 wants it, but for what would still cross (bounded_motion.h).
+// How far it stays behind is reported, and made good as soon as there is room.
 //
-// Sheets are born together: copies of a site at the same coordinates, to the bit, that move as one (their average) and
-// part along their own normals once Eq. 1 pulls them apart or along each other by more than its own noise.
+// Sheets are born together: copies of a site at the same coordinates, to the bit, that move as one
+// (their average) and part along their own normals once Eq. 1 pulls them apart or along each other
+// by more than its own noise.
 #pragma once
 
 #include <optional>
@@ -25,23 +26,25 @@ namespace geo {
 
 class SelfContact {
  public:
-  /// The surface of a body at rest (no displacement), or at the positions of an earlier one (per surface vertex).
+  /// The surface of a body at rest (no displacement), or at the positions of an earlier one (per
+  /// surface vertex).
   SelfContact(const Body& body, const Solid& solid, const ContactOptions& options = {},
               std::vector<Vec3> positions = {});
 
-  /// Before a crack step is made that will turn the surface into `grown`: where what is new will be (birth.h). Throws
-  /// GeometryError when it would cross itself or what is there; the step must not be made then.
+  /// Before a crack step is made that will turn the surface into `grown`: where what is new will be
+  /// (birth.h). Throws GeometryError when it would cross itself or what is there; the step must not
+  /// be made then.
   void expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack);
   /// After it was made; nothing happens where it changed nothing.
   void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
-  /// Before an implicit step of dt, at whose beginning state is: what parts of the surface that may come together in it
-  /// do to each other (touch_penalty.h); null: nothing. It is valid until the next call. resolve() then leaves the
-  /// nodes as they are.
+  /// Before an implicit step of dt, at whose beginning state is: what parts of the surface that may
+  /// come together in it do to each other (touch_penalty.h); null: nothing. It is valid until the
+  /// next call. resolve() then leaves the nodes as they are.
   Potential* begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
                    const std::vector<std::uint8_t>& fixed);
-  /// After a step of nodes that began at displacements `before` and took dt: moves the surface; displacements and
-  /// velocities are corrected by impulses before, unless begin() was called. `fixed` (per node, or empty) as in
-  /// Environment.
+  /// After a step of nodes that began at displacements `before` and took dt: moves the surface;
+  /// displacements and velocities are corrected by impulses before, unless begin() was called.
+  /// `fixed` (per node, or empty) as in Environment.
   void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
                const std::vector<std::uint8_t>& fixed, State& state, ContactStats* work = nullptr);
 
@@ -74,7 +77,8 @@ class SelfContact {
   NearPairs near_;                    // of the step that is worked on
   VertexFans fans_;                   // of the surface; empty: not asked for yet
   std::optional<Standing> standing_;  // empty: not asked for since positions_ changed
-  // What targets_at() said last, of which displacements, and the vertices whose weights have changed since.
+  // What targets_at() said last, of which displacements, and the vertices whose weights have
+  // changed since.
   struct {
     std::vector<Vec3> targets, of;
     std::vector<std::uint32_t> stale;

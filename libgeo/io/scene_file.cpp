@@ -216,7 +216,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   else
     top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
   // Where all are as the scene says, there is nothing to look up.
-  if (std::all_of(s.fracture.per_body.begin(), s.fracture.per_body.end(), [&](const Strength& own) { return own == s.fracture; }))
+  if (std::all_of(s.fracture.per_body.begin(), s.fracture.per_body.end(),
+                  [&](const Strength& own) { return own == s.fracture; }))
     s.fracture.per_body.clear();
   top.section("ground", [&](TomlTable& t) {
     s.ground = true;

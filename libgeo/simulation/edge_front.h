@@ -20,8 +20,9 @@ struct EdgePoint {
 EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name,
                      bool closed = false);
 
-/// The same front, with the points that `next` has and it lacks (upsampling: each begins where its neighbour on the
-/// edge is), and where every point goes; those that `next` lacks go where their nearest neighbour does (downsampling).
+/// The same front, with the points that `next` has and it lacks (upsampling: each begins where its
+/// neighbour on the edge is), and where every point goes; those that `next` lacks go where their
+/// nearest neighbour does (downsampling).
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to);
 /// After that step: takes out the points that `next` lacks, unless the step kept them apart.
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next);

@@ -15,8 +15,8 @@ constexpr double apart = 0.7;     // points of a front, in spacings
 constexpr double ligament = 0.5;  // what nodes cannot carry
 constexpr double overhang = 1.0 / 7;
 
-// How far along the unit direction d from p a face is met first, beyond what p itself touches; beyond `reach`:
-// infinity.
+// How far along the unit direction d from p a face is met first, beyond what p itself touches;
+// beyond `reach`: infinity.
 double distance_to_face(const Complex& complex, const Vec3& p, const Vec3& d, double reach) {
   const Vec3 from = p + 1e-3 * reach * d, to = p + reach * d;
   Box3 box{from, from};
@@ -80,7 +80,8 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     ended[i] = surface <= reach;
     next[i] += (ended[i] ? surface + out : step[i]) * direction[i];
   }
-  // Points in air beside what is still inside follow their live neighbour, or go on where they were going.
+  // Points in air beside what is still inside follow their live neighbour, or go on where they were
+  // going.
   std::vector<Vec3> carried = next;
   for (std::size_t i = 0; i < n; ++i) {
     if (g.front.points[i].id.valid()) continue;
@@ -105,7 +106,8 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
   const auto add = [&](std::size_t from, const Vec3& to, bool end) {
     plan.from.push_back(static_cast<std::uint32_t>(from)), plan.next.push_back(to), plan.ended.push_back(end);
   };
-  // Beyond a live end of the front: from next[i] along it to the surface, with new points on the way.
+  // Beyond a live end of the front: from next[i] along it to the surface, with new points on the
+  // way.
   const auto widen = [&](std::size_t end, std::size_t neighbor, std::vector<std::pair<Vec3, bool>>& beyond) {
     const bool lives = g.live(end);
     const std::size_t base = lives ? end : neighbor;
@@ -119,8 +121,9 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     for (int k = 1; k * wanted < to - 0.4 * wanted; ++k) beyond.push_back({next[base] + k * wanted * along, false});
     beyond.push_back({next[base] + to * along, surface <= reach});
   };
-  // The way of an end in air is a border of the crack that no front follows: it must stay in air. Where it would not
-  // (round an edge of the body), the end goes ahead to where it sees its new place, and both belong to the front.
+  // The way of an end in air is a border of the crack that no front follows: it must stay in air.
+  // Where it would not (round an edge of the body), the end goes ahead to where it sees its new
+  // place, and both belong to the front.
   const auto round_edge = [&](std::size_t end, std::vector<std::pair<Vec3, bool>>& beyond) {
     const Vec3 &from = g.front.points[end].position, to = beyond.empty() ? next[end] : beyond.back().first;
     if (g.live(end) || from == to || !is_blocked(complex, from, to)) return;
@@ -152,7 +155,8 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<co
     const std::size_t j = (i + 1) % n;
     const double gap = (next[i] - next[j]).norm();
     if ((i == 0 && replaced) || (j + 1 == n && !tail.empty() && !g.live(j))) continue;
-    // Two that have come out on different sides of an edge of the body: a third goes out between them.
+    // Two that have come out on different sides of an edge of the body: a third goes out between
+    // them.
     if (ended[i] && ended[j] && (goes(i) || goes(j)) && is_blocked(complex, next[i], next[j])) {
       const Vec3 ahead = unit_or(direction[i] + direction[j], direction[i]);
       for (int k = 1; k <= 4; ++k) {

@@ -11,7 +11,8 @@
 namespace geo {
 namespace {
 
-// The triangles of all cracks by themselves: reaches are wide, and the skin within them is many times as much.
+// The triangles of all cracks by themselves: reaches are wide, and the skin within them is many
+// times as much.
 class Cracks {
  public:
   explicit Cracks(const Complex& complex) {

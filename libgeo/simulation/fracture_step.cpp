@@ -94,7 +94,8 @@ std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts
   return last + 1;
 }
 
-// A front whose stress is far more than it needs divides: the two parts leave at 30° to either side.
+// A front whose stress is far more than it needs divides: the two parts leave at 30° to either
+// side.
 bool divides(const FractureOptions& fracture, const GrowingFront& g, const Drive& d, double spacing,
              const FractureState& state) {
   if (fracture.branching <= 0 || state.cracks >= fracture.max_cracks || g.length < fracture.separation * spacing)

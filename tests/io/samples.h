@@ -218,7 +218,7 @@ inline std::string sample_checkpoint(const geo::Body& body) {
   geo::RunState state;
   state.motion.displacement.assign(body.nodes.size(), {0.1, 0, 0});
   state.motion.velocity.assign(body.nodes.size(), {0, 0, 1});
-  state.part.assign(body.nodes.size(), 0);
+  state.body_index.assign(body.nodes.size(), 0);
   const geo::FrontState front = cut_block().fronts[1];
   state.fronts = {{}, {{front, std::vector<double>(front.points.size(), 0.5)}}};
   state.time = 0.5, state.frame = 12;

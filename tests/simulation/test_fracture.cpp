@@ -7,8 +7,8 @@
 #include "kerf/check.h"
 #include "kerf/pieces.h"
 #include "kerf/simulation.h"
-#include "simulation/strength.h"
 #include "simulation/notched_block.h"
+#include "simulation/strength.h"
 
 using namespace geo;
 
@@ -36,7 +36,8 @@ std::vector<Vec3> crack_vertices(const Complex& k) {
   return points;
 }
 
-// A notched block that is held at y = 0 and y = height in the shape that a uniform gradient gives it.
+// A notched block that is held at y = 0 and y = height in the shape that a uniform gradient gives
+// it.
 Simulation gripped(const Scene& scene, Notched n, const Mat3& gradient) {
   RunState state;
   for (const Vec3& x : n.body.nodes.position) state.motion.displacement.push_back(gradient * x);
@@ -69,8 +70,8 @@ TEST_CASE("mode I: a notch in tension runs straight through and parts the plate"
 }
 
 TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fracture]") {
-  // Displacements of pure mode II around the notch are held on the plate's rim; what is inside finds its own balance.
-  // Without lateral contraction plane strain and plane stress are one.
+  // Displacements of pure mode II around the notch are held on the plate's rim; what is inside
+  // finds its own balance. Without lateral contraction plane strain and plane stress are one.
   const auto seed = GENERATE(1, 2);
   const double sense = GENERATE(1.0, -1.0), spacing = 0.06, rim = 1.5 * spacing, depth = 0.493, height = 0.507;
   Scene scene = brittle();
@@ -105,7 +106,8 @@ TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fract
 
 namespace {
 
-// A bar along x, stretched and as much thinner as it then is, held at both ends; what breaks it has the scene's seed.
+// A bar along x, stretched and as much thinner as it then is, held at both ends; what breaks it has
+// the scene's seed.
 Simulation stretched_bar(const Scene& scene, double stretch) {
   SampleOptions sampling;
   sampling.spacing = 0.1, sampling.seed = scene.seed;

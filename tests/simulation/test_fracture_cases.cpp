@@ -1,5 +1,5 @@
-// Random bodies that break: every invariant after every frame, and the same bytes with other threads and after a
-// checkpoint.
+// Random bodies that break: every invariant after every frame, and the same bytes with other
+// threads and after a checkpoint.
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
@@ -19,7 +19,8 @@ struct RandomCase {
   Mat3 gradient;
 };
 
-// A model, a stretch that varies through it, and settings under which several cracks begin, divide and meet.
+// A model, a stretch that varies through it, and settings under which several cracks begin, divide
+// and meet.
 RandomCase random_case(std::uint64_t seed) {
   Random random(seed);
   RandomCase c;
@@ -75,7 +76,8 @@ TEST_CASE("random bodies break and keep every invariant, the same with any threa
       for (const double v : sim.body().nodes.volume) volume += v;
       REQUIRE(volume == Approx(signed_volume(c.mesh)).epsilon(1e-9));
       if (i + 1 == frames / 2) half = bytes(sim);
-      // A body that is read back has its ids in another order: from here on both go on from the file.
+      // A body that is read back has its ids in another order: from here on both go on from the
+      // file.
       if (i + 1 == frames / 2) sim = read_back(c.scene, half);
     }
     begun += work.fracture.begun, divided += work.fracture.divided, advanced += work.fracture.advanced;

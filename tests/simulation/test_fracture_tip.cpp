@@ -13,7 +13,8 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-// Every node moved by a uniform gradient, the modes with intensities k about the line (depth, height), and a rotation.
+// Every node moved by a uniform gradient, the modes with intensities k about the line (depth,
+// height), and a rotation.
 std::vector<Vec3> moved(const Body& body, const Material& material, const Vec3& k, const Mat3& gradient, double depth,
                         double height, const Mat3& rotation) {
   std::vector<Vec3> u;

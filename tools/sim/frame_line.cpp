@@ -60,8 +60,8 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
   std::string line = "{\"frame\":" + std::to_string(o.frame) + ",\"time\":" + tool::number(o.time) +
                      ",\"nodes\":" + std::to_string(o.nodes) + ",\"faces\":" + std::to_string(o.faces) + "," +
                      counts(o.work) + ",\"crossings\":" + std::to_string(crossings) +
-                     ",\"lag\":" + tool::number(o.work.contact.tracking_error) + ",\"energy\":" + tool::number(o.work.energy) +
-                     ",\"blade_force\":[";
+                     ",\"lag\":" + tool::number(o.work.contact.tracking_error) +
+                     ",\"energy\":" + tool::number(o.work.energy) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.work.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.work.blade_force[b]);
   line += "],\"obstacles\":[";
   for (std::size_t k = 0; k < o.work.obstacle_force.size(); ++k)

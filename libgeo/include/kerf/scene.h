@@ -1,4 +1,5 @@
-// A scene: bodies and their materials, blades, grips, obstacles, fracture, contact, and time stepping.
+// A scene: bodies and their materials, blades, grips, obstacles, fracture, contact, and time
+// stepping.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -80,7 +81,7 @@ struct ContactOptions {
   double friction = 0.3;  ///< Coulomb's coefficient
   double gap = 1e-4;      ///< distance that opened sheets of a crack keep
   double opening = 1e-2;  ///< two sheets of a crack separate where Eq. 1 has them this far apart along
-                          ///< the normal, or three times as far tangentially
+                          // /< the normal, or three times as far tangentially
   double recovery = 0.3;  ///< share of an interpenetration of node positions that a step removes
   int rounds = 2;         ///< iterations of contact detection and impulses, explicit steps only
 };
@@ -136,7 +137,8 @@ struct SceneObstacle {
   double stiffness = 1e5;       ///< penalty: acceleration per depth, 1/s²
   double friction = 0.5;        ///< Coulomb's coefficient
 
-  /// Pose of the scaled mesh at a time in seconds; constant before the first and after the last key.
+  /// Pose of the scaled mesh at a time in seconds; constant before the first and after the last
+  /// key.
   Pose pose(double time) const;
 };
 

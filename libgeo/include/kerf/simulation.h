@@ -15,8 +15,8 @@
 
 namespace geo {
 
-/// The models of a scene's bodies in the world. The bodies never see each other's nodes, so one Body
-/// holds them all.
+/// The models of a scene's bodies in the world. The bodies never see each other's nodes, so one
+/// Body holds them all.
 struct PlacedModels {
   TriangleMesh all;                  ///< all bodies, in their order; attributes only where there is one body
   std::vector<TriangleMesh> bodies;  ///< one for each body of the scene
@@ -75,8 +75,8 @@ class Simulation {
   /// See move_blade().
   void move_obstacle(std::size_t obstacle, const Pose& pose);
 
-  /// The deformed two-sided surface with patch, site and source: by Eq. 1, or as far as contact lets
-  /// it follow Eq. 1. With `model`, the surface that the run began with, it also carries the
+  /// The deformed two-sided surface with patch, site and source: by Eq. 1, or as far as contact
+  /// lets it follow Eq. 1. With `model`, the surface that the run began with, it also carries the
   /// model's attributes except normals, which deformation changes.
   TriangleMesh surface(const TriangleMesh* model = nullptr) const;
   /// The body in material coordinates.

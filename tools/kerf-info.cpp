@@ -88,7 +88,7 @@ void write(const Command& c, const tool::Tool& t) {
   if (c.compact && path != "-" && (t.output_path.empty() || geo::same_file(path, t.output_path)))
     return geo::KerfUpdate(path).compact();
   const std::string target = c.compact ? t.target(true) : c.exported;
-  geo::require_place(target);
+  geo::require_writable(target);
   geo::Input input(path);
   if (!geo::looks_like_kerf(input.text(0, 16)))
     throw geo::InputError(path + ": is not a .kerf file, which alone can be compacted or exported");

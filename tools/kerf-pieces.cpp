@@ -43,7 +43,7 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
   if (folder.filename().empty()) folder = folder.parent_path();
   std::error_code error;
   const fs::path aside = folder.string() + "." + std::to_string(::getpid()) + ".tmp";
-  geo::Unfinished unfinished(aside.string());
+  geo::TemporaryOutput unfinished(aside.string());
   if (!fs::create_directories(aside, error))
     throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
   const char* end = w.obj ? ".obj" : ".ply";

@@ -51,7 +51,7 @@ void watch_signals(const std::string& name, double patience) {
     wait.tv_sec = static_cast<time_t>(std::min(patience, 1e9));
     wait.tv_nsec = static_cast<long>((std::min(patience, 1e9) - double(wait.tv_sec)) * 1e9);
     sigtimedwait(&signals, nullptr, &wait);
-    geo::discard_unfinished();
+    geo::discard_temporary_outputs();
     clear_bar();
     const std::string line = name + ": interrupted\n";
     [[maybe_unused]] const auto written = ::write(2, line.data(), line.size());
@@ -253,7 +253,7 @@ std::string Tool::target(bool binary) const {
   if (path == "-" && binary && ::isatty(1))
     throw UsageError("binary output does not go to a terminal: give -o FILE or a pipe");
   require_ending();
-  geo::require_place(path);
+  geo::require_writable(path);
   return path;
 }
 

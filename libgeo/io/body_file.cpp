@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "body/nodes.h"
+#include "io/body_sections.h"
 #include "io/json_integer.h"
 
 namespace geo {
@@ -333,7 +334,9 @@ void read_about(const KerfFile& in, Body& body) {
 
 }  // namespace
 
-void write_body(std::ostream& out, const Body& body, const std::vector<KerfArray>& more) {
+void write_body(std::ostream& out, const Body& body) { write_body_with(out, body, {}); }
+
+void write_body_with(std::ostream& out, const Body& body, const std::vector<KerfArray>& more) {
   Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   add_all(a);
   a.all.insert(a.all.end(), more.begin(), more.end());

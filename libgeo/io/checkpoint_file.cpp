@@ -1,5 +1,6 @@
 #include "kerf/run_files.h"
 
+#include "io/body_sections.h"
 #include "io/json_integer.h"
 #include "kerf/body_file.h"
 #include "kerf/surface_file.h"
@@ -127,7 +128,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", flat(plastic), 3));
   more.push_back(
       {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
-  write_body(out, body, more);
+  write_body_with(out, body, more);
 }
 
 Checkpoint read_checkpoint(const KerfFile& file) {

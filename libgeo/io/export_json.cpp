@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/kerf_layout.h"
+#include "io/kerf_writer.h"
 #include "io/line_reader.h"
 #include "kerf/export.h"
 

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "io/kerf_layout.h"
+#include "io/kerf_writer.h"
 #include "kerf/export.h"
 
 namespace geo {

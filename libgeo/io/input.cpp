@@ -1,4 +1,4 @@
-#include "io/input.h"
+#include "kerf/stream.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "kerf/error.h"
-#include "kerf/stream.h"
 
 namespace geo {
 

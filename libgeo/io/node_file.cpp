@@ -3,9 +3,9 @@
 #include <array>
 #include <cstring>
 
-#include "io/kerf_reader.h"
 #include "io/line_reader.h"
 #include "io/ply.h"
+#include "kerf/body_file.h"
 #include "kerf/stream.h"
 
 namespace geo {

@@ -33,7 +33,7 @@ class DescriptorBuffer : public std::streambuf {
     if (c != traits_type::eof()) sputc(static_cast<char>(c));
     return 0;
   }
-  // What fills the buffer goes past it.
+  // What fills the buffer is written directly.
   std::streamsize xsputn(const char* text, std::streamsize size) override {
     if (size < static_cast<std::streamsize>(sizeof buffer_)) return std::streambuf::xsputn(text, size);
     return sync() == 0 && pass_on(text, text + size) ? size : 0;
@@ -63,44 +63,44 @@ class DescriptorBuffer : public std::streambuf {
 
 std::string reason(int error) { return std::string(std::strerror(error)); }
 
-// What is being written aside in this process. Never destroyed: a thread may end the program at any moment.
-struct Unfinishes {
+// Temporary outputs of this process. Never destroyed: a thread may end the program at any moment.
+struct Temporaries {
   std::recursive_mutex mutex;
   std::set<std::string> paths;
 };
-Unfinishes& unfinished() {
-  static auto* all = new Unfinishes;
+Temporaries& temporaries() {
+  static auto* all = new Temporaries;
   return *all;
 }
 
-void remove_aside(const std::string& path) {
+void remove_quietly(const std::string& path) {
   std::error_code ignored;
   std::filesystem::remove_all(path, ignored);
 }
 
 }  // namespace
 
-Unfinished::Unfinished(std::string aside) : aside_(std::move(aside)) {
-  const std::lock_guard lock(unfinished().mutex);
-  unfinished().paths.insert(aside_);
+TemporaryOutput::TemporaryOutput(std::string path) : path_(std::move(path)) {
+  const std::lock_guard lock(temporaries().mutex);
+  temporaries().paths.insert(path_);
 }
 
-Unfinished::~Unfinished() {
-  const std::lock_guard lock(unfinished().mutex);
-  unfinished().paths.erase(aside_);
-  if (!committed_) remove_aside(aside_);
+TemporaryOutput::~TemporaryOutput() {
+  const std::lock_guard lock(temporaries().mutex);
+  temporaries().paths.erase(path_);
+  if (!committed_) remove_quietly(path_);
 }
 
-void Unfinished::commit(const std::string& path) {
-  const std::lock_guard lock(unfinished().mutex);
-  if (::rename(aside_.c_str(), path.c_str()) != 0)
+void TemporaryOutput::commit(const std::string& path) {
+  const std::lock_guard lock(temporaries().mutex);
+  if (::rename(path_.c_str(), path.c_str()) != 0)
     throw OutputError(path + ": cannot be written (" + reason(errno) + ")");
   committed_ = true;
 }
 
-void discard_unfinished() {
-  unfinished().mutex.lock();  // for good
-  for (const auto& path : unfinished().paths) remove_aside(path);
+void discard_temporary_outputs() {
+  temporaries().mutex.lock();  // never unlocked: nothing is committed from here on
+  for (const auto& path : temporaries().paths) remove_quietly(path);
 }
 
 std::uint64_t fingerprint(std::string_view bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
@@ -138,7 +138,7 @@ std::string read_all(const std::string& path) {
   return bytes;
 }
 
-void require_place(const std::string& path) {
+void require_writable(const std::string& path) {
   if (path == "-") return;
   struct stat info {};
   const bool there = ::stat(path.c_str(), &info) == 0;
@@ -151,7 +151,7 @@ void require_place(const std::string& path) {
     throw OutputError(path + ": cannot be made (" + reason(errno) + "); check the folder and its permissions");
 }
 
-void write_all(const std::string& path, const std::function<void(std::ostream&)>& write, Kept kept) {
+void write_all(const std::string& path, const std::function<void(std::ostream&)>& write, Sync to) {
   if (path == "-") {
     DescriptorBuffer buffer(1);
     std::ostream out(&buffer);
@@ -164,7 +164,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
   const bool special = ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
   if (special && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");
   std::string aside = path;
-  std::unique_ptr<Unfinished> unfinished;
+  std::unique_ptr<TemporaryOutput> unfinished;
   int fd = -1;
   if (special) {
     fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a device or a pipe cannot be renamed over
@@ -172,7 +172,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
     thread_local std::random_device random;
     for (int tries = 0; tries < 16 && fd < 0; ++tries) {
       aside = path + "." + std::to_string(random()) + ".tmp";
-      unfinished = std::make_unique<Unfinished>(aside);
+      unfinished = std::make_unique<TemporaryOutput>(aside);
       fd = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (fd < 0 && errno != EEXIST) break;
     }
@@ -190,7 +190,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
     ::close(fd);
     throw;
   }
-  if (error == 0 && !special && kept == Kept::on_disk && ::fsync(fd) != 0) error = errno;
+  if (error == 0 && !special && to == Sync::on_disk && ::fsync(fd) != 0) error = errno;
   if (::close(fd) != 0 && error == 0) error = errno;
   if (error != 0) throw OutputError(path + ": cannot be written (" + reason(error) + ")");
   if (unfinished) unfinished->commit(path);

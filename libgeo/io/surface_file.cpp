@@ -1,8 +1,8 @@
 #include "kerf/surface_file.h"
 
-#include "io/kerf_reader.h"
 #include "io/line_reader.h"
 #include "io/surface_formats.h"
+#include "kerf/body_file.h"
 #include "kerf/stream.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"

@@ -8,7 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "io/kerf_append.h"
+#include "io/kerf_writer.h"
+#include "kerf/body_file.h"
 #include "io/kerf_layout.h"
 
 /// The last segment of a file's bytes: where it begins, and its table.

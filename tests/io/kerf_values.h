@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "base/random.h"
-#include "io/kerf_append.h"
+#include "io/kerf_writer.h"
+#include "kerf/body_file.h"
 #include "kerf/stream.h"
 
 /// Some of fixed rows, some of rows of any length.

@@ -11,6 +11,7 @@
 #include "cases.h"
 #include "io/kerf_layout.h"
 #include "kerf/body.h"
+#include "io/kerf_sections.h"
 #include "kerf/body_file.h"
 #include "kerf/error.h"
 #include "kerf/front_file.h"
@@ -345,7 +346,7 @@ TEST_CASE("an output appears whole or not at all") {
   CHECK(read_all(path) == "first");
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
   write_all(
-      path, [](std::ostream& out) { out << "third"; }, Kept::by_system);
+      path, [](std::ostream& out) { out << "third"; }, Sync::by_system);
   CHECK(read_all(path) == "third");
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
   CHECK_NOTHROW(flush_to_disk(std::vector<std::string>{path, (folder / "taken away").string()}));

@@ -6,6 +6,7 @@
 
 #include "io/kerf_bytes.h"
 #include "io/samples.h"
+#include "io/kerf_sections.h"
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "io/samples.h"
+#include "io/kerf_sections.h"
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/error.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/kerf_reader.h"
+#include "kerf/body_file.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/scene_file.h"

@@ -5,7 +5,7 @@
 #include <kerf/crack.h>
 #include <kerf/surface_file.h>
 #include "info/report.h"
-#include "io/kerf_reader.h"
+#include <kerf/body_file.h>
 
 namespace info {
 

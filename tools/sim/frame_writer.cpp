@@ -80,7 +80,7 @@ void FrameWriter::run() {
 }
 
 void FrameWriter::write(const std::string& path, const std::function<void(std::ostream&)>& how) {
-  geo::write_all(path, how, geo::Kept::by_system);
+  geo::write_all(path, how, geo::Sync::by_system);
   written_.push_back(path);
 }
 

@@ -109,7 +109,7 @@ void write_webp(std::ostream& out, int count, double frame_rate, const Sequence&
 
 void write_mp4(const std::string& path, int count, double frame_rate, const Sequence& picture) {
   const std::string aside = path + "." + std::to_string(::getpid()) + ".tmp";
-  geo::Unfinished unfinished(aside);
+  geo::TemporaryOutput unfinished(aside);
   std::unique_ptr<Fed> ffmpeg;
   for (int i = 0; i < count; ++i) {
     const Picture shown = picture(i);

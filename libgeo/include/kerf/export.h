@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/kerf_reader.h"
 #include "kerf/body.h"
+#include "kerf/body_file.h"
 #include "kerf/pieces.h"
 
 namespace geo {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "io/kerf_reader.h"
+#include "kerf/body_file.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/simulation.h"
+#include "kerf/run.h"
 
 namespace geo {
 

@@ -1,5 +1,3 @@
-#include "io/kerf_append.h"
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -8,9 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 #include "io/kerf_delta.h"
 #include "io/kerf_segment.h"
+#include "io/kerf_writer.h"
+#include "kerf/body_file.h"
 #include "kerf/error.h"
 #include "kerf/stream.h"
 
@@ -65,108 +66,127 @@ kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::u
 
 }  // namespace
 
-KerfUpdate::KerfUpdate(const std::string& path) : path_(path) {
-  Input input(path);  // says what is wrong when it is missing, empty or a folder
+struct KerfUpdate::Impl {
+  explicit Impl(const std::string& path_in);
+  ~Impl() { ::close(descriptor); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void require_same_file() const;
+  void write(std::uint64_t offset, std::span<const std::byte> bytes) const;
+  void sync() const;
+  std::vector<kerf::Stored> changes(const std::vector<KerfArray>& arrays) const;
+  void append(const std::vector<kerf::Stored>& changed);
+
+  std::string path;
+  int descriptor = -1;
+  std::optional<KerfFile> file;
+};
+
+KerfUpdate::Impl::Impl(const std::string& path_in) : path(path_in) {
+  Input input(path);  // throws where the file is missing, empty or a folder
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode))
     throw OutputError(path + ": is no regular file and cannot be updated in place; write to another one");
-  fd_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (fd_ < 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
+  descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
   try {
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0)
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
       throw OutputError(path + ": is being updated by another program; wait for it, or write to another file");
-    file_ = std::make_unique<KerfFile>(Input(path));  // once it is locked: nobody adds to it any more
+    file.emplace(Input(path));  // read under the lock: no other program appends from here on
     require_same_file();
   } catch (...) {
-    ::close(fd_);
+    ::close(descriptor);
     throw;
   }
 }
 
-KerfUpdate::~KerfUpdate() { ::close(fd_); }
-
-// Somebody may have put another file in its place, which a lock does not prevent.
-void KerfUpdate::require_same_file() const {
+// Another program may have replaced the file, which a lock does not prevent.
+void KerfUpdate::Impl::require_same_file() const {
   struct stat ours {
   }, there{};
-  if (::fstat(fd_, &ours) != 0 || ::stat(path_.c_str(), &there) != 0 || ours.st_dev != there.st_dev ||
+  if (::fstat(descriptor, &ours) != 0 || ::stat(path.c_str(), &there) != 0 || ours.st_dev != there.st_dev ||
       ours.st_ino != there.st_ino)
-    throw OutputError(path_ + ": was replaced by another program; start again");
+    throw OutputError(path + ": was replaced by another program; start again");
 }
 
-void KerfUpdate::write(std::uint64_t offset, std::span<const std::byte> bytes) const {
+void KerfUpdate::Impl::write(std::uint64_t offset, std::span<const std::byte> bytes) const {
   while (!bytes.empty()) {
-    const auto n = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    const auto n = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
+    if (n <= 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
     bytes = bytes.subspan(static_cast<std::size_t>(n)), offset += static_cast<std::uint64_t>(n);
   }
 }
 
-void KerfUpdate::sync() const {
-  if (::fsync(fd_) != 0) throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
+void KerfUpdate::Impl::sync() const {
+  if (::fsync(descriptor) != 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
 }
 
-std::uint64_t KerfUpdate::commit(const std::vector<KerfArray>& arrays) {
-  std::vector<kerf::Stored> whole;
-  for (const auto& array : arrays) whole.push_back({array, {}, 0, 0});
-  const std::uint64_t size = kerf::segment_size(0, whole);
-  const bool kept = std::all_of(file_->sections().begin(), file_->sections().end(), [&](const auto& s) {
-    return std::any_of(arrays.begin(), arrays.end(), [&](const KerfArray& a) { return a.name == s.first; });
-  });
-  if (kept && file_->version() == kerf_format_version) {
-    const auto changed = changes(arrays);
-    const std::uint64_t added = kerf::segment_size(file_->committed(), changed);
-    if (file_->committed() + added <= 2 * size) {
-      append(changed);
-      return added;
-    }
-  }
-  require_same_file();
-  write_all(path_, [&](std::ostream& out) { write_kerf(out, arrays); });
-  return size;
-}
-
-void KerfUpdate::compact() {
-  require_same_file();
-  write_all(path_, [&](std::ostream& out) { write_compacted(out, *file_); });
-}
-
-std::vector<kerf::Stored> KerfUpdate::changes(const std::vector<KerfArray>& arrays) const {
+std::vector<kerf::Stored> KerfUpdate::Impl::changes(const std::vector<KerfArray>& arrays) const {
   std::vector<kerf::Stored> changed;
   for (const auto& array : arrays) {
-    const auto old = file_->sections().find(array.name);
-    if (old == file_->sections().end()) {
+    const auto old = file->sections().find(array.name);
+    if (old == file->sections().end()) {
       changed.push_back({array, {}, 0, 0});
       continue;
     }
     auto bytes = all_of(array);
     const std::uint64_t hash = hash_in_blocks(bytes);
     if (old->second.hash != hash || old->second.dtype != array.dtype || old->second.shape != array.shape)
-      changed.push_back(stored(array, std::move(bytes), hash, *file_));
+      changed.push_back(stored(array, std::move(bytes), hash, *file));
   }
   return changed;
 }
 
-void KerfUpdate::append(const std::vector<kerf::Stored>& changed) {
-  const std::uint64_t start = file_->committed();
+void KerfUpdate::Impl::append(const std::vector<kerf::Stored>& changed) {
+  const std::uint64_t start = file->committed();
   require_same_file();
   try {
-    if (::ftruncate(fd_, static_cast<off_t>(start)) != 0)
-      throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
+    if (::ftruncate(descriptor, static_cast<off_t>(start)) != 0)
+      throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
     std::uint64_t at = start;
     const auto put = [&](std::span<const std::byte> bytes) {
       write(at, bytes);
       at += bytes.size();
     };
-    const auto segment = kerf::write_segment(put, start, file_->updates() + 1, file_->fingerprint(), changed);
-    sync();  // all that it speaks of is there before the record is
+    const auto segment = kerf::write_segment(put, start, file->updates() + 1, file->fingerprint(), changed);
+    sync();  // the sections are on the disk before the commit record is
     put(kerf::bytes_of_one(segment));
     sync();
   } catch (...) {
-    [[maybe_unused]] const int ignored = ::ftruncate(fd_, static_cast<off_t>(start));
+    [[maybe_unused]] const int ignored = ::ftruncate(descriptor, static_cast<off_t>(start));
     throw;
   }
+}
+
+KerfUpdate::KerfUpdate(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+KerfUpdate::~KerfUpdate() = default;
+const KerfFile& KerfUpdate::file() const { return *impl_->file; }
+
+std::uint64_t KerfUpdate::commit(const std::vector<KerfArray>& arrays) {
+  std::vector<kerf::Stored> whole;
+  for (const auto& array : arrays) whole.push_back({array, {}, 0, 0});
+  const std::uint64_t size = kerf::segment_size(0, whole);
+  const bool kept = std::all_of(file().sections().begin(), file().sections().end(), [&](const auto& s) {
+    return std::any_of(arrays.begin(), arrays.end(), [&](const KerfArray& a) { return a.name == s.first; });
+  });
+  if (kept && file().version() == kerf_format_version) {
+    const auto changed = impl_->changes(arrays);
+    const std::uint64_t added = kerf::segment_size(file().committed(), changed);
+    if (file().committed() + added <= 2 * size) {
+      impl_->append(changed);
+      return added;
+    }
+  }
+  impl_->require_same_file();
+  write_all(impl_->path, [&](std::ostream& out) { write_kerf(out, arrays); });
+  return size;
+}
+
+void KerfUpdate::compact() {
+  impl_->require_same_file();
+  write_all(impl_->path, [&](std::ostream& out) { write_compacted(out, file()); });
 }
 
 bool same_file(const std::string& a, const std::string& b) {

@@ -1,8 +1,25 @@
+// Small `.kerf` files in memory: sections by name, as strings of bytes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "io/kerf_writer.h"
 #include "kerf/body_file.h"
 
 namespace geo {
 
-void write_kerf(std::ostream& out, const KerfSections& sections) {
+struct KerfSection {
+  std::string dtype;
+  std::vector<std::uint64_t> shape;
+  std::string bytes;  ///< raw, little-endian
+};
+using KerfSections = std::map<std::string, KerfSection>;
+
+inline void write_kerf(std::ostream& out, const KerfSections& sections) {
   std::vector<KerfArray> arrays;
   for (const auto& [name, s] : sections)
     arrays.push_back(
@@ -10,7 +27,7 @@ void write_kerf(std::ostream& out, const KerfSections& sections) {
   write_kerf(out, arrays);
 }
 
-KerfSections parse_kerf(std::string bytes, const std::string& name) {
+inline KerfSections parse_kerf(std::string bytes, const std::string& name) {
   const KerfFile file(Input(std::move(bytes), name));
   KerfSections sections;
   for (const auto& [key, s] : file.sections()) {

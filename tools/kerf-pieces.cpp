@@ -1,4 +1,5 @@
-// kerf-pieces: a closed mesh for each piece, and the bonds between them; as a folder, or all in one .glb.
+// kerf-pieces: a closed mesh for each piece, and the bonds between them; as a folder, or all in one
+// .glb.
 #include <unistd.h>
 
 #include <cstdio>

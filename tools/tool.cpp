@@ -35,8 +35,8 @@ void clear_bar() {
   if (bar_shown.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-// A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a second Ctrl-C
-// comes, it removes what is half written and ends the program.
+// A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a
+// second Ctrl-C comes, it removes what is half written and ends the program.
 void watch_signals(const std::string& name, double patience) {
   sigset_t signals;
   sigemptyset(&signals);
@@ -81,7 +81,8 @@ std::string lower(std::string text) {
   return text;
 }
 
-// What the words of the command line mean: behind "--" all are files, whatever they begin with; long options are known.
+// What the words of the command line mean: behind "--" all are files, whatever they begin with;
+// long options are known.
 std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words(argv + 1, argv + argc), known;
   for (const CLI::Option* option : app.get_options())
@@ -97,8 +98,8 @@ std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   return words;
 }
 
-// The same words where the last one behind an option that takes several ("--front halve.front bear.off") is the file
-// that the tool is about, put first; none where that could be more than one.
+// The same words where the last one behind an option that takes several ("--front halve.front
+// bear.off") is the file that the tool is about, put first; none where that could be more than one.
 std::vector<std::string> file_first(const std::vector<std::string>& words, const CLI::App& app) {
   std::vector<std::size_t> last;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -12,7 +12,8 @@
 namespace geo {
 namespace {
 
-// ---- Writing: each part of a body as arrays, which refer to the body and to what is kept beside them.
+// ---- Writing: each part of a body as arrays, which refer to the body and to what is kept beside
+// them.
 
 std::span<const double> flat(const std::vector<Vec3>& points) {
   return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
@@ -199,7 +200,8 @@ void read_nodes(const KerfFile& in, Body& body) {
               " has a radius, spacing or volume that is not positive or of no sensible size");
 }
 
-// Version 1, and early files of version 2, had the edges i < j and the neighbours apart, with all distances.
+// Version 1, and early files of version 2, had the edges i < j and the neighbours apart, with all
+// distances.
 void read_old_rows(const KerfFile& in, Body& body, double unit) {
   const NodeSet& nodes = body.nodes;
   const std::size_t n = nodes.size();

@@ -114,9 +114,9 @@ void KerfFile::Impl::open_version_1() {
   committed = input.size(), fingerprint = record.hash, segments = 1;
 }
 
-// False at the end of the last complete commit. Only the beginning of a segment may follow there, or
-// zeros where the system allocated one: anything else is damage. So no changed bit restores an older
-// state.
+// False at the end of the last complete commit. Only the beginning of a segment may follow there,
+// or zeros where the system allocated one: anything else is damage. So no changed bit restores an
+// older state.
 bool KerfFile::Impl::open_segment(std::uint64_t start) {
   const std::uint64_t room = input.size() - start;
   if (room == 0) return false;
@@ -216,8 +216,7 @@ void KerfFile::Impl::open_table(const std::string& text, std::uint64_t start, st
             [](const Extent& a, const Extent& b) { return std::pair(a.from, a.size) < std::pair(b.from, b.size); });
   for (std::size_t i = 1; i < taken.size(); ++i)
     if (taken[i].from - taken[i - 1].from < taken[i - 1].size) fail("two of its sections overlap");
-  for (auto& [name, entry] : found)
-    sections[name] = std::move(entry.section), extents[name] = std::move(entry.extents);
+  for (auto& [name, entry] : found) sections[name] = std::move(entry.section), extents[name] = std::move(entry.extents);
 }
 
 // The content of a section from runs of rows: of the section before, in ascending order and each at

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "io/kerf_layout.h"
 #include "io/kerf_writer.h"
 #include "kerf/body_file.h"
-#include "io/kerf_layout.h"
 
 /// The last segment of a file's bytes: where it begins, and its table.
 struct LastSegment {
@@ -44,7 +44,8 @@ inline std::string with_table(const std::string& bytes, const std::string& table
   return out.append(reinterpret_cast<const char*>(&commit), sizeof commit);
 }
 
-/// The bytes with every hash, number and commit record made to fit what else they say, as far as that makes sense.
+/// The bytes with every hash, number and commit record made to fit what else they say, as far as
+/// that makes sense.
 inline std::string resealed(std::string bytes) {
   using namespace geo::kerf;
   std::map<std::string, std::string> state;

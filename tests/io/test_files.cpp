@@ -10,8 +10,8 @@
 #include "base/random.h"
 #include "cases.h"
 #include "io/kerf_layout.h"
-#include "kerf/body.h"
 #include "io/kerf_sections.h"
+#include "kerf/body.h"
 #include "kerf/body_file.h"
 #include "kerf/error.h"
 #include "kerf/front_file.h"
@@ -386,8 +386,8 @@ TEST_CASE("a run as USD has each frame's triangles where they are others than be
       }
       frames[i].vertices.assign(3, Vec3(double(i), 0.5, -1e-3));
     }
-    // What each list says at the frames where the triangles have changed; a sample like the last one is left out, which
-    // then is repeated before the next.
+    // What each list says at the frames where the triangles have changed; a sample like the last
+    // one is left out, which then is repeated before the next.
     std::string indices, patches, last[2];
     std::size_t written[2] = {0, 0};
     const auto add = [&](int which, std::string& text, std::size_t i, const std::string& list) {

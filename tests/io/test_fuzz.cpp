@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "io/kerf_bytes.h"
-#include "io/samples.h"
 #include "io/kerf_sections.h"
+#include "io/samples.h"
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"

@@ -1,8 +1,8 @@
 // Files that were once read wrongly, each refused now in one line.
 #include <catch2/catch.hpp>
 
-#include "io/samples.h"
 #include "io/kerf_sections.h"
+#include "io/samples.h"
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/error.h"

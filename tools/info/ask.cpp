@@ -4,7 +4,6 @@
 #include <set>
 
 #include <kerf/error.h>
-#include "geometry/predicates.h"
 #include "tool.h"
 
 namespace info {
@@ -62,17 +61,10 @@ void ask_edge(const geo::Body& body, std::size_t i, std::size_t j, Report& repor
   require("node", j, body.nodes.size());
   if (i == j) throw geo::InputError("an edge has two different nodes");
   const geo::Vec3 &p = body.nodes.position[i], &q = body.nodes.position[j];
-  std::vector<geo::FaceId> near;
-  geo::Box3 box;
-  box.add(p), box.add(q);
-  body.surface.near(box, near);
   std::vector<std::string> faces;
-  for (const geo::FaceId f : near) {
-    const auto c = body.surface.corners(f);
-    if (geo::segment_meets_triangle(p, q, c[0], c[1], c[2]))
-      faces.push_back("{\"face\":" + std::to_string(f.value) +
-                      ",\"crack\":" + std::to_string(body.surface.face(f).crack) + "}");
-  }
+  for (const geo::FaceId f : geo::faces_on_segment(body.surface, p, q))
+    faces.push_back("{\"face\":" + std::to_string(f.value) +
+                    ",\"crack\":" + std::to_string(body.surface.face(f).crack) + "}");
   const bool edge = body.graph.has(geo::NodeId(i), geo::NodeId(j));
   const double straight = (p - q).norm();
   std::string distance = "null";

@@ -1,11 +1,12 @@
-// A report for each kind of file. Each returns what `check` finds wrong first, empty when all is well.
+// A report for each kind of file. Each returns what `check` finds wrong first, empty when all is
+// well.
 #pragma once
 
 #include <kerf/body.h>
+#include <kerf/body_file.h>
 #include <kerf/crack.h>
 #include <kerf/surface_file.h>
 #include "info/report.h"
-#include <kerf/body_file.h>
 
 namespace info {
 
@@ -22,7 +23,8 @@ std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report
 void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, Report& report);
 /// A scene; `check` reads and checks its models too.
 std::string report_scene(const std::string& path, const Wishes& wishes, Report& report);
-/// The folder of a run, or one of numbered surfaces; `check` looks at every frame and the checkpoint.
+/// The folder of a run, or one of numbered surfaces; `check` looks at every frame and the
+/// checkpoint.
 std::string report_run(const std::string& folder, const Wishes& wishes, Report& report);
 
 }  // namespace info

@@ -14,7 +14,8 @@
 namespace sim {
 namespace {
 
-// What goes on in this thread gives way to all else, so that frames to come do not wait for those that are done.
+// What goes on in this thread gives way to all else, so that frames to come do not wait for those
+// that are done.
 void give_way() {
 #ifdef __linux__
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // without it, it is only slower

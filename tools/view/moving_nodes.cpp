@@ -3,35 +3,40 @@
 #include <algorithm>
 #include <map>
 
+#include <kerf/mesh.h>
 #include <kerf/run_files.h>
 #include <kerf/stream.h>
-#include "geometry/bvh.h"
 #include "view/pieces.h"
 
 namespace view {
 namespace {
 
-// Pieces only ever come apart, so a piece of the checkpoint is within one of each frame: the one whose surface is
-// nearest to most of its nodes. `own`: per node, its piece in the checkpoint.
-std::vector<std::uint32_t> whole_of(const geo::TriangleMesh& surface, const std::vector<std::uint32_t>& own,
-                                    const MovingNodes::Frame& frame) {
-  constexpr std::size_t asked = 64;  // nodes of each piece
+// Pieces only ever separate, so a piece of the checkpoint is part of one piece of each frame: the
+// one whose surface is nearest to most of its nodes. `own`: per node, its piece in the checkpoint.
+std::vector<std::uint32_t> containing_pieces(const geo::TriangleMesh& surface, const std::vector<std::uint32_t>& own,
+                                             const MovingNodes::Frame& frame) {
+  constexpr std::size_t sampled = 64;  // nodes of each piece
   const PieceMap pieces = pieces_of(surface);
   const std::uint32_t count = own.empty() ? 0 : *std::max_element(own.begin(), own.end()) + 1;
-  std::vector<std::uint32_t> whole(count, 0);
-  if (pieces.center.size() < 2) return whole;
-  const geo::TriangleBvh tree(geo::corners_of(surface));
+  std::vector<std::uint32_t> containing(count, 0);
+  if (pieces.center.size() < 2) return containing;
   std::vector<std::vector<std::uint32_t>> nodes(count);
   for (std::uint32_t i = 0; i < frame.count; ++i) nodes[own[i]].push_back(i);
+  std::vector<geo::Vec3> points;
+  std::vector<std::uint32_t> piece_of_point;
+  for (std::uint32_t p = 0; p < count; ++p)
+    for (std::size_t k = 0; k < nodes[p].size(); k += nodes[p].size() / sampled + 1)
+      points.push_back(frame.position[nodes[p][k]]), piece_of_point.push_back(p);
+  const auto nearest = geo::nearest_triangles(surface, points);
+  std::vector<std::map<std::uint32_t, std::size_t>> votes(count);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    ++votes[piece_of_point[k]][pieces.of_row[surface.triangles[nearest[k]][0]]];
   for (std::uint32_t p = 0; p < count; ++p) {
-    std::map<std::uint32_t, std::size_t> votes;
-    for (std::size_t k = 0; k < nodes[p].size(); k += nodes[p].size() / asked + 1)
-      ++votes[pieces.of_row[surface.triangles[tree.closest(frame.position[nodes[p][k]]).row][0]]];
     std::size_t most = 0;
-    for (const auto& [piece, times] : votes)
-      if (times > most) most = times, whole[p] = piece;
+    for (const auto& [piece, times] : votes[p])
+      if (times > most) most = times, containing[p] = piece;
   }
-  return whole;
+  return containing;
 }
 
 }  // namespace
@@ -52,7 +57,7 @@ MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const s
     frame.position.insert(frame.position.end(), rest.begin() + static_cast<std::ptrdiff_t>(frame.count), rest.end());
     stresses.insert(stresses.end(), frame.stress.begin(), frame.stress.end());
     frame.stress.resize(rest.size(), 0);
-    frame.piece_of = whole_of(surfaces[f], own, frame);
+    frame.piece_of = containing_pieces(surfaces[f], own, frame);
     moving.frames.push_back(std::move(frame));
   }
   if (stresses.empty()) return moving;

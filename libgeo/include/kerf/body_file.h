@@ -37,9 +37,9 @@ class KerfFile {
     std::uint64_t bytes = 0, hash = 0;  ///< size and XXH3 hash of the content
   };
 
-  /// Opens a file. A commit that was interrupted is ignored. Throws InputError, with the file's name
-  /// first, where the input is no .kerf file, of a newer version or another byte order, damaged, or
-  /// without a complete commit.
+  /// Opens a file. A commit that was interrupted is ignored. Throws InputError, with the file's
+  /// name first, where the input is no .kerf file, of a newer version or another byte order,
+  /// damaged, or without a complete commit.
   explicit KerfFile(Input input);
   KerfFile(KerfFile&& other) noexcept;
   ~KerfFile();
@@ -57,18 +57,18 @@ class KerfFile {
   /// Version of the format.
   std::uint32_t version() const;
 
-  /// Reads the bytes of a section, with all threads; `out` has exactly their size. Throws InputError
-  /// where they do not match their hash, std::out_of_range for an unknown section.
+  /// Reads the bytes of a section, with all threads; `out` has exactly their size. Throws
+  /// InputError where they do not match their hash, std::out_of_range for an unknown section.
   void read(const std::string& section, std::span<std::byte> out) const;
-  /// Reads a section of numbers of type T (double, float, std::uint64_t, uint32_t, int32_t, uint16_t
-  /// or uint8_t) with that many columns, row by row. Throws InputError where it is missing, of
-  /// another type or shape, or damaged.
+  /// Reads a section of numbers of type T (double, float, std::uint64_t, uint32_t, int32_t,
+  /// uint16_t or uint8_t) with that many columns, row by row. Throws InputError where it is
+  /// missing, of another type or shape, or damaged.
   template <class T>
   std::vector<T> read(const std::string& section, std::uint64_t columns = 1) const;
   /// The text of a json section. Throws as read().
   std::string text(const std::string& section) const;
-  /// Passes the bytes of a section on in blocks, in order. Throws InputError at the end where they do
-  /// not match their hash.
+  /// Passes the bytes of a section on in blocks, in order. Throws InputError at the end where they
+  /// do not match their hash.
   void stream(const std::string& section, KerfSink& sink) const;
 
   /// Throws InputError: name, `what`, and that the file is damaged.
@@ -85,8 +85,8 @@ void write_compacted(std::ostream& out, const KerfFile& file);
 /// A .kerf file opened for an update in place, and locked against other programs that update it.
 class KerfUpdate {
  public:
-  /// Opens and locks a file. Throws MissingInputError or InputError as KerfFile, OutputError where it
-  /// is no regular file, cannot be written, or is locked.
+  /// Opens and locks a file. Throws MissingInputError or InputError as KerfFile, OutputError where
+  /// it is no regular file, cannot be written, or is locked.
   explicit KerfUpdate(const std::string& path);
   ~KerfUpdate();
   KerfUpdate(const KerfUpdate&) = delete;
@@ -95,10 +95,10 @@ class KerfUpdate {
   /// The file before the update.
   const KerfFile& file() const;
 
-  /// Makes `arrays` the state of the file. Changes are appended: an interrupted write leaves the state
-  /// before. The file is written as a whole where it would become more than twice as long as a whole
-  /// one, loses a section, or has an older version. Call at most once. Returns the number of bytes
-  /// written. Memory: twice the largest array. Throws OutputError; the state before stays.
+  /// Makes `arrays` the state of the file. Changes are appended: an interrupted write leaves the
+  /// state before. The file is written as a whole where it would become more than twice as long as
+  /// a whole one, loses a section, or has an older version. Call at most once. Returns the number
+  /// of bytes written. Memory: twice the largest array. Throws OutputError; the state before stays.
   std::uint64_t commit(const std::vector<KerfArray>& arrays);
 
   /// Rewrites the file in a single segment, with the same state. Throws OutputError.
@@ -125,8 +125,8 @@ Body parse_body(const std::string& bytes, const std::string& name);
 /// Writes a body as a new file. The same body gives the same bytes.
 void write_body(std::ostream& out, const Body& body);
 
-/// Updates a file to a body that was derived from the file's, by appending what changed. Returns the
-/// number of bytes written. Throws as KerfUpdate::commit().
+/// Updates a file to a body that was derived from the file's, by appending what changed. Returns
+/// the number of bytes written. Throws as KerfUpdate::commit().
 std::uint64_t write_body(KerfUpdate& file, const Body& body);
 
 }  // namespace geo

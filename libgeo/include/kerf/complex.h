@@ -1,8 +1,10 @@
-// The crack complex K: skin and crack triangles kept once, and the two-sided surface derived from them.
+// The crack complex K: skin and crack triangles kept once, and the two-sided surface derived from
+// them.
 //
-// Around each edge of K its faces are kept in radial order. That order is decided once, by exact predicates, and from
-// then on it is authoritative: rounding a coordinate never re-sorts it. (The structure is Weiler's radial edge; see
-// also B. Levy, "Exact predicates, exact constructions and combinatorics for mesh CSG", 2024.)
+// Around each edge of K its faces are kept in radial order. That order is decided once, by exact
+// predicates, and from then on it is authoritative: rounding a coordinate never re-sorts it. (The
+// structure is Weiler's radial edge; see also B. Levy, "Exact predicates, exact constructions and
+// combinatorics for mesh CSG", 2024.)
 #pragma once
 
 #include <array>
@@ -16,8 +18,9 @@
 
 namespace geo {
 
-/// A face of K seen from one of its material sides. Side 0 is the material behind the face (opposite to its normal),
-/// side 1 the material before it. A skin face has side 0 only; a crack face has both.
+/// A face of K seen from one of its material sides. Side 0 is the material behind the face
+/// (opposite to its normal), side 1 the material before it. A skin face has side 0 only; a crack
+/// face has both.
 struct Side {
   FaceId face;
   int which = 0;
@@ -56,7 +59,8 @@ struct ComplexEdit {
     std::int32_t crack = 0;     ///< 0 skin, c > 0 crack c
     FaceId parent;              ///< the removed face that it is a part of, or invalid
   };
-  /// The faces around one edge of three or more faces, counter-clockwise about a→b (seen with b towards the eye).
+  /// The faces around one edge of three or more faces, counter-clockwise about a→b (seen with b
+  /// towards the eye).
   struct Ring {
     VertexId a, b;
     std::vector<FaceId> faces;  ///< kept faces by id, new_faces[i] as face_count() + i
@@ -75,7 +79,8 @@ struct CrackDelta {
   std::vector<FaceId> new_crack_faces;           ///< crack faces that are part of no earlier face
   std::vector<SurfaceVertexId> removed_surface_vertices, new_surface_vertices;
   std::vector<SurfaceVertexId> touched_surface_vertices;  ///< kept ones whose triangles changed
-  /// new_surface_vertices[i] appeared at the site of copied_from[i], or of no earlier one (invalid).
+  /// new_surface_vertices[i] appeared at the site of copied_from[i], or of no earlier one
+  /// (invalid).
   std::vector<SurfaceVertexId> copied_from;
   bool empty() const { return removed_faces.empty() && new_faces.empty(); }
 };
@@ -86,21 +91,23 @@ class Complex {
     std::array<VertexId, 3> v;
     std::int32_t crack = 0;  ///< 0 skin, c > 0 crack c
     bool alive = false;
-    /// Row of the triangle that this face is a part of, in the surface that the complex was made from (of a crack that
-    /// was there already: on its positive side); ~0u: of a crack made since.
+    /// Row of the triangle that this face is a part of, in the surface that the complex was made
+    /// from (of a crack that was there already: on its positive side); ~0u: of a crack made since.
     std::uint32_t source = ~0u;
   };
 
   Complex() = default;
-  /// K of a closed, consistently oriented, outward skin (several components allowed). Two skin faces share each edge.
-  /// Throws InputError (with vertex rows) when the mesh is open, non-manifold at an edge, inconsistently oriented,
-  /// inside-out, or has degenerate or duplicate triangles. Self-intersection is check.h's business.
+  /// K of a closed, consistently oriented, outward skin (several components allowed). Two skin
+  /// faces share each edge. Throws InputError (with vertex rows) when the mesh is open,
+  /// non-manifold at an edge, inconsistently oriented, inside-out, or has degenerate or duplicate
+  /// triangles. Self-intersection is check.h's business.
   static Complex from_skin(const TriangleMesh& skin);
-  /// Reads K back from a two-sided surface as `two_sided()` writes it, with the same vertex and radial orders, or from
-  /// a plain skin. Throws InputError when the sides do not pair up.
+  /// Reads K back from a two-sided surface as `two_sided()` writes it, with the same vertex and
+  /// radial orders, or from a plain skin. Throws InputError when the sides do not pair up.
   static Complex from_two_sided(const TriangleMesh& surface);
 
-  // ---- K. Ids are stable: faces and vertices are appended and never renumbered; removed faces stay as dead rows.
+  // ---- K. Ids are stable: faces and vertices are appended and never renumbered; removed faces
+  // stay as dead rows.
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(points_.size()); }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(faces_.size()); }  ///< dead rows included
   std::uint32_t live_face_count() const { return live_faces_; }
@@ -112,26 +119,29 @@ class Complex {
     return {point(v[0]), point(v[1]), point(v[2])};
   }
   const Box3& box(FaceId f) const { return index_.box(f.value); }  ///< of a living face
-  /// Bounding box of the skin as first given; never changes. Its diagonal is the length that tolerances scale with.
+  /// Bounding box of the skin as first given; never changes. Its diagonal is the length that
+  /// tolerances scale with.
   const Box3& extent() const { return extent_; }
   std::int32_t crack_count() const { return crack_count_; }  ///< the largest crack number in use
 
-  /// The faces around edge ab, counter-clockwise about a→b when a < b (and in that same order when a > b). Empty when
-  /// there is no such edge.
+  /// The faces around edge ab, counter-clockwise about a→b when a < b (and in that same order when
+  /// a > b). Empty when there is no such edge.
   FaceRing around(VertexId a, VertexId b) const;
   /// The live faces at a vertex, ascending: a range.
   class FacesAt;
   FacesAt faces_at(VertexId v) const;
   /// Appends to `out`, ascending, the live faces whose boxes meet `box`.
   void near(const Box3& box, std::vector<FaceId>& out) const;
-  /// The same for the box of triangle abc, grown by `reach`, without faces that its plane is clear of.
+  /// The same for the box of triangle abc, grown by `reach`, without faces that its plane is clear
+  /// of.
   void near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<FaceId>& out) const;
 
   // ---- The derived surface S_A: closed, oriented, manifold by construction.
   bool has(Side s) const { return alive(s.face) && (s.which == 0 || face(s.face).crack > 0); }
   /// The surface vertex at corner k (0, 1, 2: the face's k-th vertex) of a side.
   SurfaceVertexId surface_vertex(Side s, int k) const { return corner_vertex_[s.face.index() * 6 + s.which * 3 + k]; }
-  /// The side across the edge from the face's k-th vertex to its (k+1)-th one: the one that bounds the same wedge.
+  /// The side across the edge from the face's k-th vertex to its (k+1)-th one: the one that bounds
+  /// the same wedge.
   Side neighbor(Side s, int k) const;
   std::uint32_t surface_vertex_count() const {
     return static_cast<std::uint32_t>(site_.size());
@@ -140,28 +150,30 @@ class Complex {
   bool alive(SurfaceVertexId v) const { return site_[v.index()].valid(); }
   /// One corner (side and k) of a live surface vertex, from which its fan can be walked.
   std::pair<Side, int> corner_of(SurfaceVertexId v) const { return {fan_side_[v.index()], fan_corner_[v.index()]}; }
-  /// The surface vertices one edge away along the derived surface, ascending. No crack connects them.
+  /// The surface vertices one edge away along the derived surface, ascending. No crack connects
+  /// them.
   void surface_neighbors(SurfaceVertexId v, std::vector<SurfaceVertexId>& out) const;
 
-  /// The derived surface as a mesh, rows in ascending surface vertex and side order; `rows`, where given, receives the
-  /// row of each surface vertex id (~0u: dead). Triangles face outwards; patch, site and source
-  /// (Face::source) are filled.
+  /// The derived surface as a mesh, rows in ascending surface vertex and side order; `rows`, where
+  /// given, receives the row of each surface vertex id (~0u: dead). Triangles face outwards; patch,
+  /// site and source (Face::source) are filled.
   TriangleMesh two_sided(std::vector<std::uint32_t>* rows = nullptr) const;
 
-  /// Replaces each face's source s by rows[s]: for a complex that was read back, where rows tell what it was made from
-  /// at first. Throws InputError unless there is a row for each.
+  /// Replaces each face's source s by rows[s]: for a complex that was read back, where rows tell
+  /// what it was made from at first. Throws InputError unless there is a row for each.
   void trace_sources(const std::vector<std::uint32_t>& rows);
 
-  /// Applies an edit: all or nothing. Re-sorts the rings given, re-fans the vertices touched, updates the index.
-  /// Cost follows the edit. Throws GeometryError (nothing changed) when the edit would break a structural rule: an
-  /// edge with a single skin face, a ring that does not list its edge's faces, skin and material sides that disagree.
+  /// Applies an edit: all or nothing. Re-sorts the rings given, re-fans the vertices touched,
+  /// updates the index. Cost follows the edit. Throws GeometryError (nothing changed) when the edit
+  /// would break a structural rule: an edge with a single skin face, a ring that does not list its
+  /// edge's faces, skin and material sides that disagree.
   CrackDelta apply(const ComplexEdit& edit);
-  /// Takes the last edit back: everything is as before it, to the ids that the next one gives. Cost follows the edit.
-  /// Throws GeometryError when there is none that is not taken back yet.
+  /// Takes the last edit back: everything is as before it, to the ids that the next one gives. Cost
+  /// follows the edit. Throws GeometryError when there is none that is not taken back yet.
   void take_back();
 
-  /// The edit that turns this complex into `other`, which must have grown from it (same ids for the same vertices).
-  /// Throws InputError when it has not.
+  /// The edit that turns this complex into `other`, which must have grown from it (same ids for the
+  /// same vertices). Throws InputError when it has not.
   ComplexEdit difference(const Complex& other) const;
 
  private:
@@ -268,5 +280,8 @@ class Complex::FacesAt {
 };
 
 inline Complex::FacesAt Complex::faces_at(VertexId v) const { return {next_corner_.data(), first_corner_[v.index()]}; }
+
+/// The faces that the closed segment pq touches, by exact predicates.
+std::vector<FaceId> faces_on_segment(const Complex& complex, const Vec3& p, const Vec3& q);
 
 }  // namespace geo

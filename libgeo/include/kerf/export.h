@@ -1,4 +1,5 @@
-// Bodies for other programs: VTK's and PLY for pictures, NumPy's and JSON for figures. See docs/formats.md.
+// Bodies for other programs: VTK's and PLY for pictures, NumPy's and JSON for figures. See
+// docs/formats.md.
 #pragma once
 
 #include <ostream>
@@ -11,20 +12,23 @@
 
 namespace geo {
 
-/// The visibility graph as a binary PLY: nodes as vertices with all that they have and the number of their component,
-/// edges i < j as elements `edge`.
+/// The visibility graph as a binary PLY: nodes as vertices with all that they have and the number
+/// of their component, edges i < j as elements `edge`.
 void write_graph_ply(std::ostream& out, const Body& body);
 
-/// The visibility graph as VTK's unstructured grid of lines, binary: nodes as points with the same fields.
+/// The visibility graph as VTK's unstructured grid of lines, binary: nodes as points with the same
+/// fields.
 void write_vtu(std::ostream& out, const Body& body);
 
 /// The same as VTKHDF 1.0. Memory: twice the file. Throws OutputError when there is not enough.
 void write_vtkhdf(std::ostream& out, const Body& body);
 
-/// All sections under their names, as NumPy's zip archive of arrays, not compressed; the json ones as they are.
+/// All sections under their names, as NumPy's zip archive of arrays, not compressed; the json ones
+/// as they are.
 void write_npz(std::ostream& out, const KerfFile& file);
 
-/// All sections under their names, as JSON: numbers in the shortest form that reads back the same, rows as lists.
+/// All sections under their names, as JSON: numbers in the shortest form that reads back the same,
+/// rows as lists.
 void write_json(std::ostream& out, const KerfFile& file);
 
 // ---- Pieces and bonds in files: glTF 2.0 (binary) with everything in one, and JSON.
@@ -36,8 +40,8 @@ struct ChunkNotes {
   double strength = 1;             ///< force an area of 1 withstands; a bond's strength is this times its area
 };
 
-/// `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal", "centroid",
-/// "strength"}]}`.
+/// `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal",
+/// "centroid", "strength"}]}`.
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                  const ChunkNotes& notes);
 
@@ -48,10 +52,11 @@ struct GlbOptions {
   bool z_up = false;           ///< the model's z is up; glTF's is y
 };
 
-/// A .glb: a root node with one node for each piece, whose origin is the piece's centroid, and one material for each
-/// group, that of cracks with a face on the inside. Normals are those given, on cracks and where there are none those
-/// of the triangles around each corner that are bent less than 45 degrees. Colours become linear, as glTF wants them.
-/// What write_bonds() says is in the scene's `extras`. Coordinates are single precision about each centroid.
+/// A .glb: a root node with one node for each piece, whose origin is the piece's centroid, and one
+/// material for each group, that of cracks with a face on the inside. Normals are those given, on
+/// cracks and where there are none those of the triangles around each corner that are bent less
+/// than 45 degrees. Colours become linear, as glTF wants them. What write_bonds() says is in the
+/// scene's `extras`. Coordinates are single precision about each centroid.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                const ChunkNotes& notes, const GlbOptions& options = {});
 

@@ -13,7 +13,8 @@
 
 namespace geo {
 
-/// Nodes where they are in a frame of a run: a node file (PLY, floats) with one more field, the stress.
+/// Nodes where they are in a frame of a run: a node file (PLY, floats) with one more field, the
+/// stress.
 struct FrameNodes {
   NodeSet nodes;               ///< positions moved, all else in material coordinates
   std::vector<double> stress;  ///< per node, von Mises, Pa
@@ -22,12 +23,12 @@ void write_frame_nodes(std::ostream& out, const FrameNodes& frame);
 /// Throws InputError for what is no such file.
 FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name);
 
-/// A series of ParaView's (`.ply.series`, JSON): paths of numbered frames, relative to it, with their times. (A
-/// collection, `.pvd`, is of VTK's own formats only.)
+/// A series of ParaView's (`.ply.series`, JSON): paths of numbered frames, relative to it, with
+/// their times. (A collection, `.pvd`, is of VTK's own formats only.)
 void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate);
 
-// ---- The checkpoint of a run: its body and all else that it needs to go on, in one `.kerf` file, so that one rename
-// makes it.
+// ---- The checkpoint of a run: its body and all else that it needs to go on, in one `.kerf` file,
+// so that one rename makes it.
 
 struct Checkpoint {
   Body body;
@@ -37,13 +38,15 @@ struct Checkpoint {
 
 /// A body as write_body writes it, with sections `run/…` behind it. Deterministic.
 void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene);
-/// Throws InputError (name first) as read_body does, and for sections of the run that are missing or impossible.
+/// Throws InputError (name first) as read_body does, and for sections of the run that are missing
+/// or impossible.
 Checkpoint read_checkpoint(const KerfFile& file);
 
 // ---- A run as USD (Universal Scene Description, text form): what film and game pipelines read.
 
-/// Frames of one rate. Each is asked for once, those with new triangles several times where they are many, from any
-/// threads; one a thread is in memory, and one more, and the triangles of the first few with new ones.
+/// Frames of one rate. Each is asked for once, those with new triangles several times where they
+/// are many, from any threads; one a thread is in memory, and one more, and the triangles of the
+/// first few with new ones.
 struct UsdRun {
   std::size_t frames = 0;
   double frame_rate = 24;                            ///< frames a second
@@ -52,9 +55,10 @@ struct UsdRun {
   std::function<TriangleMesh(std::size_t)> obstacles;  ///< triangles alike in all frames; none: there are no obstacles
 };
 
-/// Mesh /run/body with a time sample of points a frame, and of what its triangles are where they change; texture
-/// coordinates, where the surface has them; triangles of the skin and those of cracks as subsets bound to materials of
-/// their own, and each triangle's crack as primvars:patch. Mesh /run/obstacles.
+/// Mesh /run/body with a time sample of points a frame, and of what its triangles are where they
+/// change; texture coordinates, where the surface has them; triangles of the skin and those of
+/// cracks as subsets bound to materials of their own, and each triangle's crack as primvars:patch.
+/// Mesh /run/obstacles.
 void write_usda(std::ostream& out, const UsdRun& run);
 
 }  // namespace geo

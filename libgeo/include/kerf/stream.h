@@ -13,8 +13,8 @@ namespace geo {
 
 // ---- Input.
 
-/// The bytes of a file, or of standard input where `path` is "-". Throws MissingInputError where the
-/// file does not exist, InputError where it is empty, a folder or unreadable.
+/// The bytes of a file, or of standard input where `path` is "-". Throws MissingInputError where
+/// the file does not exist, InputError where it is empty, a folder or unreadable.
 std::string read_all(const std::string& path);
 
 /// An input that is read by position. A regular file stays open and is not mapped: another program
@@ -56,16 +56,16 @@ std::uint64_t fingerprint(std::string_view bytes);
 enum class Sync { on_disk, by_system };
 
 /// Writes a file through `write`: to a temporary file in the same folder, which then replaces the
-/// file by a rename. On failure the file stays as it was and nothing is left behind. "-" is standard
-/// output; devices and pipes are written directly. Throws OutputError.
+/// file by a rename. On failure the file stays as it was and nothing is left behind. "-" is
+/// standard output; devices and pipes are written directly. Throws OutputError.
 void write_all(const std::string& path, const std::function<void(std::ostream&)>& write, Sync sync = Sync::on_disk);
 
 /// Waits until files written with Sync::by_system are on the disk. Many files at once cost little
 /// more than one. Files that no longer exist are skipped. Throws OutputError.
 void flush_to_disk(std::span<const std::string> paths);
 
-/// Throws OutputError, as write_all() would, where no file of this name can be written. To be called
-/// before long work.
+/// Throws OutputError, as write_all() would, where no file of this name can be written. To be
+/// called before long work.
 void require_writable(const std::string& path);
 
 /// A temporary file or folder that becomes an output. The destructor removes it with its content

@@ -62,7 +62,7 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   for (const FaceId f : crack.new_faces) {
     if (!body.surface.alive(f)) continue;
     const auto t = body.surface.corners(f);
-    const Ball ball = ball_around(t);
+    const Ball ball = bounding_ball(t);
     const bool fresh = std::binary_search(crack.new_crack_faces.begin(), crack.new_crack_faces.end(), f);
     near.clear();
     guides.within(ball.center, ball.radius + guides.largest_radius(), near);

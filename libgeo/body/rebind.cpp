@@ -86,7 +86,7 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
   std::vector<std::uint32_t> stale;
   body_.grid.walk(
       [&](int, const Vec3& middle, double half) {
-        return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).row != none;
+        return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).triangle != none;
       },
       [&](int, std::uint32_t i) { stale.push_back(i); });
   parallel_for(stale.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -95,7 +95,7 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
       const auto closest = b_.closest[i];
       const double far =
           closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
-      if (changed.closest(x[i], 1.06 * far).row == none) stale[s] = none;
+      if (changed.closest(x[i], 1.06 * far).triangle == none) stale[s] = none;
     }
   });
   std::erase(stale, none);

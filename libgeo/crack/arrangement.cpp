@@ -13,7 +13,7 @@ std::uint64_t edge_key(Local a, Local b) { return std::uint64_t(std::min(a, b)) 
 
 // The side of plane abc that p is on; 0 without asking where p is one of the three.
 int side_of(const Vec3 (&t)[3], const Vec3& p) {
-  if (const int side = orient3d_quick(t[0], t[1], t[2], p); side != 2) return side;
+  if (const int side = orient3d_filtered(t[0], t[1], t[2], p); side != 2) return side;
   if (p == t[0] || p == t[1] || p == t[2]) return 0;
   return orient3d(t[0], t[1], t[2], p);
 }

@@ -110,7 +110,7 @@ class Inspection {
   // A face that is turned over against its triangle, or has no area.
   Fault turned() const {
     for (const Family& family : families_) {
-      const auto [axis, was] = view_axis(family.plane[0], family.plane[1], family.plane[2]);
+      const auto [axis, was] = projection_axis(family.plane[0], family.plane[1], family.plane[2]);
       for (auto i = family.first; i < family.end; ++i) {
         const auto& c = faces_[i].corners;
         const int is = orient2d(c[0], c[1], c[2], axis);

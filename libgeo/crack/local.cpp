@@ -125,7 +125,7 @@ std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
   if (c == d || !k.around(c, d).empty()) return {};
   for (const FaceId old : {f, g}) {  // the new ones are oriented like both
     const auto t = k.corners(old);
-    const auto [axis, turn] = view_axis(t[0], t[1], t[2]);
+    const auto [axis, turn] = projection_axis(t[0], t[1], t[2]);
     if (orient2d(k.point(a), k.point(d), k.point(c), axis) != turn ||
         orient2d(k.point(d), k.point(b), k.point(c), axis) != turn)
       return {};

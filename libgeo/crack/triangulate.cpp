@@ -9,7 +9,7 @@
 namespace geo::crack {
 
 std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner) {
-  return view_axis(points[corner[0]], points[corner[1]], points[corner[2]]);
+  return projection_axis(points[corner[0]], points[corner[1]], points[corner[2]]);
 }
 
 int Triangulator::add_vertex(Local l, std::uint8_t edges) {

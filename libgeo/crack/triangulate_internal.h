@@ -71,7 +71,7 @@ class Triangulator {
   std::vector<Tri> tri_;
 };
 
-/// As view_axis(), for three points that are doubles, as corners of elements are.
+/// As projection_axis(), for three points that are doubles, as corners of elements are.
 std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner);
 
 }  // namespace geo::crack

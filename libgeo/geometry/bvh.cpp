@@ -52,7 +52,7 @@ struct TriangleBvh::Builder {
       // Whole blocks of lanes stay together, and whole blocks of these.
       const auto count = job.end - job.begin;
       std::uint32_t unit = 1;
-      while (unit < (count + TriangleLanes::width - 1) / TriangleLanes::width) unit *= TriangleLanes::width;
+      while (unit < (count + WideBvh::width - 1) / WideBvh::width) unit *= WideBvh::width;
       const auto middle = job.begin + ((count + unit - 1) / unit + 1) / 2 * unit;
       std::nth_element(order.begin() + job.begin, order.begin() + middle, order.begin() + job.end, [&](auto a, auto b) {
         return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
@@ -96,7 +96,7 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles)
     nodes_[later[k].node] = below[k][0];
     nodes_.insert(nodes_.end(), below[k].begin() + 1, below[k].end());
   }
-  lanes_ = TriangleLanes(corners_, order_);
+  lanes_ = WideBvh(corners_, order_);
 }
 
 bool TriangleBvh::blocks(const Vec3& p, const Vec3& q) const {
@@ -147,7 +147,7 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
       const auto& t = corners_[order_[i]];
       const Vec3 c = closest_point_on_triangle(p, t[0], t[1], t[2]);
       const double d = (c - p).squaredNorm();
-      if (d < reach || (d == reach && (best.row == ~0u || order_[i] < best.row)))
+      if (d < reach || (d == reach && (best.triangle == ~0u || order_[i] < best.triangle)))
         reach = d, best = {order_[i], c, std::sqrt(d)};
     }
   }
@@ -209,7 +209,7 @@ bool TriangleBvh::inside(const Vec3& p) const {
   }
   // Every fixed ray was degenerate (a model built against them): fall back on the side of the closest triangle.
   const Closest c = closest(p);
-  const auto& t = corners_[c.row];
+  const auto& t = corners_[c.triangle];
   return orient3d(t[0], t[1], t[2], p) < 0;
 }
 

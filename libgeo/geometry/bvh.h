@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/triangle_lanes.h"
+#include "geometry/wide_bvh.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -31,7 +31,7 @@ class TriangleBvh {
   void near(const Box3& box, std::vector<std::uint32_t>& rows) const;
 
   struct Closest {
-    std::uint32_t row = ~0u;  ///< ~0u: nothing within the cut-off
+    std::uint32_t triangle = ~0u;  ///< ~0u: none within the cutoff
     Vec3 point = Vec3::Zero();
     double distance = 0;
   };
@@ -51,7 +51,7 @@ class TriangleBvh {
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
   std::vector<std::array<Vec3, 3>> corners_;
-  TriangleLanes lanes_;  // over the same order
+  WideBvh lanes_;  // over the same order
   Box3 box_;
 };
 

@@ -1,4 +1,4 @@
-// Convex hulls, whole or of few corners.
+// Convex hulls of points, complete or limited to a number of corners.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,10 @@
 
 namespace geo {
 
-/// Triangles of the convex hull of some points, by rows of the points, counter-clockwise from outside. Decided exactly.
-/// With `most` ≥ 4 corners the hull of a part of the points is returned, chosen one by one, each the farthest from what
-/// there is (quickhull's order: Barber, Dobkin, Huhdanpaa 1996). Empty when all points lie in one plane.
-std::vector<Triangle> convex_hull(std::span<const Vec3> points, std::size_t most = ~std::size_t(0));
+/// Triangles of the convex hull of `points`, as indices of points, counter-clockwise from outside.
+/// Exact. With max_corners ≥ 4, stops at this number of corners: corners are added in quickhull's
+/// order, each the farthest from the hull so far (Barber, Dobkin, Huhdanpaa 1996). Empty if all
+/// points are coplanar.
+std::vector<Triangle> convex_hull(std::span<const Vec3> points, std::size_t max_corners = ~std::size_t(0));
 
 }  // namespace geo

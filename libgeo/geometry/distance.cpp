@@ -6,8 +6,8 @@
 
 namespace geo {
 
-OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Which of the seven regions around the triangle p projects into: three corners, three edges, the inside.
+ClosestOnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  // Seven Voronoi regions: three corners, three edges, the interior. Their names follow Ericson.
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return {a, 0};
@@ -29,20 +29,21 @@ OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   return {a + ab * (vb / sum) + ac * (vc / sum), -1};
 }
 
-Ball ball_around(const std::array<Vec3, 3>& t) {
-  const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
-  return {middle, std::sqrt(std::max(
-                      {(t[0] - middle).squaredNorm(), (t[1] - middle).squaredNorm(), (t[2] - middle).squaredNorm()}))};
+Ball bounding_ball(const std::array<Vec3, 3>& t) {
+  const Vec3 centroid = (t[0] + t[1] + t[2]) / 3;
+  return {centroid, std::sqrt(std::max({(t[0] - centroid).squaredNorm(), (t[1] - centroid).squaredNorm(),
+                                        (t[2] - centroid).squaredNorm()}))};
 }
 
 double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Vec3 u = q - p, v = s - r, w = p - r;
   const double uu = u.dot(u), vv = v.dot(v), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
-  const auto part = [](double up, double down) { return down > 0 ? std::clamp(up / down, 0.0, 1.0) : 0.0; };
-  // The best place on the first line, then the best for it on the second, then for that on the first again.
-  const double first = part(uv * vw - uw * vv, uu * vv - uv * uv);
-  const double second = part(vw + first * uv, vv);
-  const double again = part(second * uv - uw, uu);
+  const auto ratio = [](double up, double down) { return down > 0 ? std::clamp(up / down, 0.0, 1.0) : 0.0; };
+  // Alternating projections: the closest point of the first line, of the second segment to it, of the
+  // first segment to that one.
+  const double first = ratio(uv * vw - uw * vv, uu * vv - uv * uv);
+  const double second = ratio(vw + first * uv, vv);
+  const double again = ratio(second * uv - uw, uu);
   return (w + again * u - second * v).norm();
 }
 

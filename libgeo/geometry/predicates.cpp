@@ -16,7 +16,7 @@ Point pt(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 bool same(const Vec3& a, const Vec3& b) { return a == b; }
 
-// The extreme points of collinear a, b, c: the segment that a degenerate triangle is.
+// The segment that a degenerate triangle is: the extreme ones of collinear points a, b, c.
 std::pair<Vec3, Vec3> as_segment(const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto less = [](const Vec3& p, const Vec3& q) {
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
@@ -38,13 +38,13 @@ int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
-  const int sign = orient2d_quick(a, b, c, axis), i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const int sign = orient2d_filtered(a, b, c, axis), i = (axis + 1) % 3, j = (axis + 2) % 3;
   if (sign != 2) return sign;
   return static_cast<int>(
       CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
 }
 
-std::pair<int, int> view_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
+std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
   int axis = 0;
   (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis);
   int turn = orient2d(a, b, c, axis);
@@ -53,12 +53,12 @@ std::pair<int, int> view_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
-  // A clearly non-zero component of the cross product settles it; each has an error of at most 4 ε times its terms.
+  // Filter: each component of the cross product has a rounding error of at most 4 ε times its permanent.
   const Vec3 u = b - a, v = c - a;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double x = u[j] * v[k], y = u[k] * v[j], terms = std::abs(x) + std::abs(y);
-    if (terms > filter_smallest && terms < filter_largest && std::abs(x - y) > 5e-16 * terms) return false;
+    const double x = u[j] * v[k], y = u[k] * v[j], permanent = std::abs(x) + std::abs(y);
+    if (permanent > filter_smallest && permanent < filter_largest && std::abs(x - y) > 5e-16 * permanent) return false;
   }
   return CGAL::collinear(pt(a), pt(b), pt(c));
 }
@@ -70,28 +70,30 @@ int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
   int axis = 0;
   (s[1] - s[0]).cross(s[2] - s[0]).cwiseAbs().maxCoeff(&axis);
-  // An edge of one that has the other strictly on its far side, but for corners that the two share on it.
-  const auto divides = [axis](const Vec3(&x)[3], const Vec3(&y)[3]) {
-    const int turn = orient2d_quick(x[0], x[1], x[2], axis);
+  // Whether the line through an edge of x has y strictly on its far side, except for shared corners.
+  const auto edge_separates = [axis](const Vec3(&x)[3], const Vec3(&y)[3]) {
+    const int turn = orient2d_filtered(x[0], x[1], x[2], axis);
     if (turn == 2) return false;
     for (int k = 0; k < 3; ++k) {
       const Vec3 &a = x[k], &b = x[(k + 1) % 3];
       bool beyond = true;
       for (int j = 0; j < 3 && beyond; ++j)
-        beyond = y[j] == a || y[j] == b || orient2d_quick(a, b, y[j], axis) == -turn;
+        beyond = y[j] == a || y[j] == b || orient2d_filtered(a, b, y[j], axis) == -turn;
       if (beyond) return true;
     }
     return false;
   };
-  return divides(s, t) || divides(t, s);
+  return edge_separates(s, t) || edge_separates(t, s);
 }
 
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const int sp = orient3d_quick(a, b, c, p), sq = orient3d_quick(a, b, c, q);
+  const int sp = orient3d_filtered(a, b, c, p), sq = orient3d_filtered(a, b, c, q);
   if (sp != 2 && sq != 2) {
     if (sp == sq) return false;
-    // p and q are strictly on opposite sides (hence abc has an area): the line's side of each edge decides.
-    const int s0 = orient3d_quick(p, q, a, b), s1 = orient3d_quick(p, q, b, c), s2 = orient3d_quick(p, q, c, a);
+    // The end points are strictly on opposite sides, hence abc has an area: the orientations of the
+    // line and each edge decide.
+    const int s0 = orient3d_filtered(p, q, a, b), s1 = orient3d_filtered(p, q, b, c),
+              s2 = orient3d_filtered(p, q, c, a);
     if ((s0 != 2 && s1 != 2 && s0 != s1) || (s1 != 2 && s2 != 2 && s1 != s2) || (s0 != 2 && s2 != 2 && s0 != s2))
       return false;
     if (s0 != 2 && s1 != 2 && s2 != 2) return true;
@@ -108,18 +110,18 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const V
 }
 
 bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
-  // All of one strictly on one side of the other's plane: apart.
+  // Disjoint if all corners of one lie strictly on one side of the plane of the other.
   int sign[2][3];
-  for (int k = 0; k < 3; ++k) sign[0][k] = orient3d_quick(s[0], s[1], s[2], t[k]);
+  for (int k = 0; k < 3; ++k) sign[0][k] = orient3d_filtered(s[0], s[1], s[2], t[k]);
   if (sign[0][0] != 2 && sign[0][0] == sign[0][1] && sign[0][0] == sign[0][2]) return false;
-  for (int k = 0; k < 3; ++k) sign[1][k] = orient3d_quick(t[0], t[1], t[2], s[k]);
+  for (int k = 0; k < 3; ++k) sign[1][k] = orient3d_filtered(t[0], t[1], t[2], s[k]);
   if (sign[1][0] != 2 && sign[1][0] == sign[1][1] && sign[1][0] == sign[1][2]) return false;
-  bool clear = true;
+  bool decided = true;
   for (const auto& row : sign)
-    for (const int x : row) clear = clear && x != 2;
-  if (clear) {
-    // Each goes through the other's plane along one line: do the two stretches overlap? With the lone corner of each
-    // first and on the positive side, two orientations say (Guigue and Devillers 2003).
+    for (const int x : row) decided = decided && x != 2;
+  if (decided) {
+    // Both meet the line common to their planes: do the two intervals overlap? With the lone corner of
+    // each first and on the positive side, two orientations decide (Guigue, Devillers 2003).
     const auto arrange = [](const Vec3(&x)[3], const int(&of)[3], const Vec3*(&corner)[3]) {
       int lone = of[0] == of[1] ? 2 : of[0] == of[2] ? 1 : 0;
       for (int k = 0; k < 3; ++k) corner[k] = &x[(lone + k) % 3];
@@ -129,7 +131,8 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
     const bool up_s = arrange(s, sign[1], p), up_t = arrange(t, sign[0], q);
     if (!up_s) std::swap(q[1], q[2]);
     if (!up_t) std::swap(p[1], p[2]);
-    const int first = orient3d_quick(*p[0], *p[1], *q[0], *q[1]), second = orient3d_quick(*p[0], *p[2], *q[2], *q[0]);
+    const int first = orient3d_filtered(*p[0], *p[1], *q[0], *q[1]),
+              second = orient3d_filtered(*p[0], *p[2], *q[2], *q[0]);
     if (first == 1 || second == 1) return false;
     if (first == -1 && second == -1) return true;
   }
@@ -147,13 +150,13 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
 }
 
 int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a, const Vec3& b) {
-  // Which quarter of the turn: 0 on the zero half-plane, 1 before half a turn, 2 at half a turn, 3 beyond it.
-  const auto quarter = [&](const Vec3& w) {
+  // 0: angle 0; 1: in (0, π); 2: π; 3: in (π, 2π).
+  const auto sector = [&](const Vec3& w) {
     const int side = orient3d(u, v, zero, w);
     if (side != 0) return side > 0 ? 1 : 3;
     return coplanar_side(u, v, zero, w) > 0 ? 0 : 2;
   };
-  const int qa = quarter(a), qb = quarter(b);
+  const int qa = sector(a), qb = sector(b);
   if (qa != qb) return qa < qb ? -1 : 1;
   if (qa == 0 || qa == 2) return 0;
   return -orient3d(u, v, a, b);

@@ -1,4 +1,5 @@
-// Exact geometric predicates on doubles: a static filter first, CGAL's exact arithmetic where it cannot say.
+// Exact geometric predicates on doubles. A floating-point filter decides most cases; CGAL's exact
+// arithmetic decides the rest.
 #pragma once
 
 #include <cmath>
@@ -8,12 +9,16 @@
 
 namespace geo {
 
-/// Outside of these a product of three differences may underflow or overflow, and error bounds no longer hold.
+/// The range of permanents in which the error bounds of filters hold. Beyond it, a product of three
+/// differences may underflow or overflow.
 constexpr double filter_smallest = 1e-270, filter_largest = 1e300;
 
-/// orient3d(), or 2 where only exact arithmetic could say. The bound is Shewchuk's (1997) A-stage, (7 + 56 ε) ε with
-/// ε = 2⁻⁵³, times the permanent.
-[[gnu::always_inline]] inline int orient3d_quick(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+/// Error bounds of filters, relative to the permanent: Shewchuk's (1997) A-stage bounds with
+/// ε = 2⁻⁵³, (7 + 56 ε) ε for orient3d and (3 + 16 ε) ε for orient2d.
+constexpr double orient3d_error = 7.771561172376103e-16, orient2d_error = 3.3306690738754716e-16;
+
+/// orient3d() if the filter decides it, else 2.
+[[gnu::always_inline]] inline int orient3d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const double adx = a.x() - d.x(), ady = a.y() - d.y(), adz = a.z() - d.z();
   const double bdx = b.x() - d.x(), bdy = b.y() - d.y(), bdz = b.z() - d.z();
   const double cdx = c.x() - d.x(), cdy = c.y() - d.y(), cdz = c.z() - d.z();
@@ -22,57 +27,61 @@ constexpr double filter_smallest = 1e-270, filter_largest = 1e300;
   const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(adz) +
                            (std::abs(ca) + std::abs(ac)) * std::abs(bdz) +
                            (std::abs(ab) + std::abs(ba)) * std::abs(cdz);
-  const double bound = 7.771561172376103e-16 * permanent;
+  const double bound = orient3d_error * permanent;
   if (!(permanent > filter_smallest && permanent < filter_largest)) return 2;
-  // Shewchuk's determinant is positive when d is below abc; ours the other way round.
+  // Shewchuk's determinant is positive if d is below abc; orient3d() has the opposite sign.
   return det > bound ? -1 : det < -bound ? 1 : 2;
 }
 
-/// orient2d(), or 2 where only exact arithmetic could say. Shewchuk's A-stage: (3 + 16 ε) ε.
-inline int orient2d_quick(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
+/// orient2d() if the filter decides it, else 2.
+inline int orient2d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const int i = axis == 2 ? 0 : axis + 1, j = axis == 0 ? 2 : axis - 1;
   const double left = (a[i] - c[i]) * (b[j] - c[j]), right = (a[j] - c[j]) * (b[i] - c[i]);
-  const double value = left - right, terms = std::abs(left) + std::abs(right), bound = 3.3306690738754716e-16 * terms;
-  if (!(terms > filter_smallest && terms < filter_largest)) return 2;
-  return value > bound ? 1 : value < -bound ? -1 : 2;
+  const double det = left - right, permanent = std::abs(left) + std::abs(right), bound = orient2d_error * permanent;
+  if (!(permanent > filter_smallest && permanent < filter_largest)) return 2;
+  return det > bound ? 1 : det < -bound ? -1 : 2;
 }
 
-/// orient3d() by exact arithmetic.
+/// orient3d() without a filter of its own.
 int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// Sign of det(b−a, c−a, d−a): +1 when d lies on the side of abc that its counter-clockwise normal points to,
-/// −1 on the other side, 0 when the four points are exactly coplanar.
+/// The sign of det(b − a, c − a, d − a): +1 if d lies on the side of plane abc that the
+/// counter-clockwise normal points to, −1 on the other side, 0 if the points are coplanar.
 inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const int sign = orient3d_quick(a, b, c, d);
+  const int sign = orient3d_filtered(a, b, c, d);
   return sign != 2 ? sign : orient3d_exact(a, b, c, d);
 }
 
-/// Sign of the turn abc in the two axes that follow `axis` (0, 1, 2): counter-clockwise positive.
+/// The orientation of triangle abc in its projection along coordinate axis `axis` (0, 1 or 2):
+/// +1 counter-clockwise, −1 clockwise, 0 collinear.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis);
 
-/// The axis against which a triangle is best seen, and its turn then (±1; 0 when it has no area).
-std::pair<int, int> view_axis(const Vec3& a, const Vec3& b, const Vec3& c);
+/// The coordinate axis along which triangle abc has the largest projection, and orient2d() along it
+/// (0 if the triangle has no area).
+std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// True when a, b, c lie exactly on one line (coincident points included).
+/// Whether a, b and c lie on one line; coincident points do.
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// For coplanar a, b, c, d with a, b, c not collinear: +1 when c and d are on the same side of line ab, −1 when on
-/// opposite sides, 0 when d is on the line.
+/// For coplanar points, a, b, c not collinear: +1 if c and d lie on the same side of line ab, −1 if
+/// on opposite sides, 0 if d lies on the line.
 int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// True when the triangles, seen along the axis that s faces most, are clearly apart but for corners at one place: then
-/// they have nothing else in common. False says nothing.
+/// A filter for pairs of triangles with coincident corners. True only if the triangles have nothing
+/// in common but these corners: a line through an edge separates them in the projection along the
+/// axis that s faces most. False is inconclusive.
 bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]);
 
-/// Closed segment against closed triangle, exactly: touching counts. Degenerate segments and triangles are allowed.
+/// Whether the closed segment pq meets the closed triangle abc; touching counts. Both may be
+/// degenerate.
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Closed triangle against closed triangle, exactly: touching counts.
+/// Whether two closed triangles meet; touching counts. Both may be degenerate.
 bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]);
 
-/// Compares the angles of half-planes around the directed line u→v. All half-planes are bounded by the line and pass
-/// through the given points, which must not be on it. Returns the sign of angle(a) − angle(b), both measured
-/// counter-clockwise (seen with v towards the eye) from the half-plane of `zero`, in [0, 2π).
+/// Compares the angles of two half-planes about the directed line u → v. Half-planes are given by
+/// points that are not on the line. Angles are in [0, 2π), counter-clockwise with v towards the
+/// viewer, from the half-plane of `zero`. Returns the sign of angle(a) − angle(b).
 int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a, const Vec3& b);
 
 }  // namespace geo

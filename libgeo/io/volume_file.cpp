@@ -97,7 +97,7 @@ TriangleMesh wrapped(const TriangleMesh& solid, double voxel) {
   const TriangleBvh tree(corners_of(solid));
   for (Vec3& p : mesh.vertices) p = middle + voxel * p;
   for (const auto& [a, b, c] : mesh.triangles)
-    mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).row);
+    mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).triangle);
   carry(solid, mesh);
   return mesh;
 }

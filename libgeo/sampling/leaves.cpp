@@ -21,9 +21,9 @@ Vec3 random_shift(const Cell& cell, std::uint64_t seed) {
 bool settle(const RegionTree& tree, const Region& region, const Box3& box, double away, Vec3& p) {
   if (!tree.inside(region, p)) return false;
   const auto close = tree.tree().closest(p, away);
-  if (close.row == ~0u || !(close.distance > 0)) return true;
+  if (close.triangle == ~0u || !(close.distance > 0)) return true;
   const Vec3 pushed = close.point + away / close.distance * (p - close.point);
-  if (tree.tree().closest(pushed, 0.5 * away).row != ~0u) return true;
+  if (tree.tree().closest(pushed, 0.5 * away).triangle != ~0u) return true;
   if (box.meets({pushed, pushed}) ? tree.inside(region, pushed) : tree.tree().inside(pushed)) p = pushed;
   return true;
 }
@@ -65,7 +65,7 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
   for (int i = 0; i < points; ++i) {
     if (!in[i]) continue;
     const auto close = tree.tree().closest(at[i], edge);
-    const double depth = close.row == ~0u ? edge : close.distance;
+    const double depth = close.triangle == ~0u ? edge : close.distance;
     if (depth > most) most = depth, leaf.position = at[i];
   }
   leaf.node = most > 0;

@@ -56,7 +56,7 @@ std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& 
       if (region.cut()) return true;
       // Deep inside nothing asks to be divided: the parts' middles are that far from the cell's.
       const double reach = 0.5 * std::sqrt(3.0) * edge + 0.5 * edge * std::max(1.0, 0.5 * (across - 1));
-      return tree.tree().closest(region.probe, reach).row != ~0u;
+      return tree.tree().closest(region.probe, reach).triangle != ~0u;
     }
     bool divide = false;
     Wall wall;

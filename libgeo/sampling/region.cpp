@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "geometry/predicates.h"
-#include "geometry/side_lanes.h"
+#include "geometry/orientation_lanes.h"
 
 namespace geo {
 namespace {
@@ -25,14 +25,14 @@ int crossings(const Vec3& p, const Vec3& q, int sp, int sq, const std::array<Vec
 bool covers(const std::array<Vec3, 3>& t, const Box3& box) {
   int axis = 0;
   (t[1] - t[0]).cross(t[2] - t[0]).cwiseAbs().maxCoeff(&axis);
-  const int turn = orient2d_quick(t[0], t[1], t[2], axis);
+  const int turn = orient2d_filtered(t[0], t[1], t[2], axis);
   if (turn == 2) return false;
   for (int k = 0; k < 4; ++k) {
     Vec3 corner = box.lo;
     for (int side = 0; side < 2; ++side)
       if (const int a = (axis + 1 + side) % 3; k >> side & 1) corner[a] = box.hi[a];
     for (int e = 0; e < 3; ++e)
-      if (orient2d_quick(t[static_cast<std::size_t>(e)], t[static_cast<std::size_t>((e + 1) % 3)], corner, axis) !=
+      if (orient2d_filtered(t[static_cast<std::size_t>(e)], t[static_cast<std::size_t>((e + 1) % 3)], corner, axis) !=
           turn)
         return false;
   }
@@ -47,20 +47,20 @@ bool may_meet(const Box3& box, const Vec3& a, const Vec3& b, const Vec3& c) {
     return Vec3(k & 1 ? box.hi.x() : box.lo.x(), k & 2 ? box.hi.y() : box.lo.y(), k & 4 ? box.hi.z() : box.lo.z());
   };
   // All corners strictly on one side of its plane.
-  const int side = orient3d_quick(a, b, c, corner(0));
+  const int side = orient3d_filtered(a, b, c, corner(0));
   if (side != 2) {
     int k = 1;
-    while (k < 8 && orient3d_quick(a, b, c, corner(k)) == side) ++k;
+    while (k < 8 && orient3d_filtered(a, b, c, corner(k)) == side) ++k;
     if (k == 8) return false;
   }
   // Seen along an axis: all corners strictly on the far side of an edge.
   for (int axis = 0; axis < 3; ++axis) {
-    const int turn = orient2d_quick(a, b, c, axis);
+    const int turn = orient2d_filtered(a, b, c, axis);
     if (turn == 2) continue;
     const int i = 1 << (axis + 1) % 3, j = 1 << (axis + 2) % 3;
     const auto beyond = [&](const Vec3& p, const Vec3& q) {
       for (const int k : {0, i, j, i | j})
-        if (orient2d_quick(p, q, corner(k), axis) != -turn) return false;
+        if (orient2d_filtered(p, q, corner(k), axis) != -turn) return false;
       return true;
     };
     if (beyond(a, b) || beyond(b, c) || beyond(c, a)) return false;
@@ -140,7 +140,7 @@ void RegionTree::inside(const Region& region, std::span<const Vec3> points, std:
   for (const auto row : region.rows) {
     const auto& t = corners_[row];
     const int first = orient3d(t[0], t[1], t[2], region.probe);
-    clear_sides(t, at, words, above, below);
+    filtered_orientations(t, at, words, above, below);
     bool clear = first != 0;
     for (std::size_t w = 0; w < words; ++w)
       for (std::uint64_t left = ~(above[w] | below[w]); left != 0; left &= left - 1) {

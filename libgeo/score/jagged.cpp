@@ -28,7 +28,7 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
       const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
       double radius = margin;
       for (const Vec3& p : c) radius = std::max(radius, margin + (p - middle).norm());
-      keep[t] = skin.closest(middle, radius).row != ~0u || skin.inside(middle);
+      keep[t] = skin.closest(middle, radius).triangle != ~0u || skin.inside(middle);
     }
   });
   std::vector<std::uint32_t> row(walls.vertices.size(), ~0u);

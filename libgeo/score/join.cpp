@@ -25,7 +25,7 @@ class Joining {
       if (a == b) continue;
       const auto c = cut.corners(FaceId(f));
       const Pair pair{std::min(a, b), std::max(a, b)};
-      const auto row = tree.closest((c[0] + c[1] + c[2]) / 3).row;
+      const auto row = tree.closest((c[0] + c[1] + c[2]) / 3).triangle;
       auto& pairs = between_[row];
       if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) {
         pairs.push_back(pair);

@@ -76,8 +76,8 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
       }
   if (shared == 3) return true;
   const auto clear = [](const std::array<Vec3, 3>& plane, const Vec3& a, const Vec3& b) {
-    const int side = orient3d_quick(plane[0], plane[1], plane[2], a);
-    return side != 2 && orient3d_quick(plane[0], plane[1], plane[2], b) == side;
+    const int side = orient3d_filtered(plane[0], plane[1], plane[2], a);
+    return side != 2 && orient3d_filtered(plane[0], plane[1], plane[2], b) == side;
   };
   const auto apart = [](const std::array<Vec3, 3>& x, const std::array<Vec3, 3>& y) {
     const Vec3 s[3] = {x[0], x[1], x[2]}, t[3] = {y[0], y[1], y[2]};
@@ -86,7 +86,7 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
   if (shared == 2) {
     const int i = 3 - shared_f[0] - shared_f[1], j = 3 - shared_g[0] - shared_g[1];
     const Vec3 &u = p[shared_f[0]], &v = p[shared_f[1]];
-    if (orient3d_quick(u, v, p[i], q[j]) != 2 || apart(p, q) || orient3d(u, v, p[i], q[j]) != 0) return false;
+    if (orient3d_filtered(u, v, p[i], q[j]) != 2 || apart(p, q) || orient3d(u, v, p[i], q[j]) != 0) return false;
     if (collinear(u, v, p[i])) return segment_meets_triangle(p[i], p[i], q[0], q[1], q[2]);
     return coplanar_side(u, v, p[i], q[j]) >= 0;
   }

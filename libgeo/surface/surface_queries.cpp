@@ -9,7 +9,7 @@ std::vector<std::uint32_t> nearest_triangles(const TriangleMesh& mesh, std::span
   const TriangleBvh tree(corners_of(mesh));
   std::vector<std::uint32_t> nearest;
   nearest.reserve(points.size());
-  for (const Vec3& p : points) nearest.push_back(static_cast<std::uint32_t>(tree.closest(p).row));
+  for (const Vec3& p : points) nearest.push_back(static_cast<std::uint32_t>(tree.closest(p).triangle));
   return nearest;
 }
 

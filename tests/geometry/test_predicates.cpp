@@ -6,7 +6,7 @@
 #include "cases.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
-#include "geometry/side_lanes.h"
+#include "geometry/orientation_lanes.h"
 #include "geometry/triangle_index.h"
 
 using namespace geo;
@@ -70,7 +70,7 @@ TEST_CASE("sides of many points at once are those of each, or not told") {
     }
     const double* const at[3] = {x.data(), y.data(), z.data()};
     std::uint64_t above[2], below[2];
-    clear_sides(t, at, 2, above, below);
+    filtered_orientations(t, at, 2, above, below);
     for (std::size_t k = 0; k < 128; ++k) {
       const int side = oracle(t[0], t[1], t[2], {x[k], y[k], z[k]}), over = above[k / 64] >> k % 64 & 1,
                 under = below[k / 64] >> k % 64 & 1;

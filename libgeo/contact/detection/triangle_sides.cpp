@@ -72,7 +72,7 @@ HWY_INLINE Normal normal(const Corners& c) {
 }
 
 // Whether all corners of o that p does not have are strictly on one side of p's plane: the determinant of
-// orient3d_quick() with its bound, but taken relative to p's first corner.
+// orient3d_filtered() with its bound, but taken relative to p's first corner.
 HWY_INLINE M on_one_side(const Corners& p, const Corners& o) {
   const D d;
   const Normal n = normal(p);
@@ -107,7 +107,7 @@ HWY_INLINE Seen seen(const Corners& c, M along_x, M along_y) {
   return s;
 }
 
-// The turn abc where its sign is sure, as orient2d_quick() has it; else zero.
+// The turn abc where its sign is sure, as orient2d_filtered() has it; else zero.
 HWY_INLINE V turn(const V (&a)[2], const V (&b)[2], const V (&c)[2]) {
   const D d;
   const V left = hn::Mul(hn::Sub(a[0], c[0]), hn::Sub(b[1], c[1])),

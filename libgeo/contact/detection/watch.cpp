@@ -5,7 +5,7 @@
 
 #include "contact/detection/parting_lanes.h"
 #include "contact/detection/triangle_planes.h"
-#include "geometry/affine_motion.h"
+#include "geometry/affine_fit.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -103,7 +103,7 @@ std::vector<Watched> watch(const SurfaceMotion& m, NearPairs& known, std::span<c
   const StandingRows surface(m);
   const auto& corners = surface.triangles;
   std::vector<Vec3> carried = m.from;
-  if (!surface.rows.empty()) move_affinely(surface.rows, m.from, m.to, carried);
+  if (!surface.rows.empty()) apply_affine_fit(surface.rows, m.from, m.to, carried);
   // What is held stays, though the motion does not know of it.
   Vec3 middle = Vec3::Zero();
   for (const auto v : surface.rows) middle += m.from[v] / double(surface.rows.size());

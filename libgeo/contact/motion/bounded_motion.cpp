@@ -8,7 +8,7 @@
 #include "contact/motion/fallback_motion.h"
 #include "contact/motion/separation_projection.h"
 #include "contact/motion/vertex_advance.h"
-#include "geometry/affine_motion.h"
+#include "geometry/affine_fit.h"
 #include "kerf/crossing.h"
 #include "kerf/parallel.h"
 
@@ -63,7 +63,7 @@ class Mover {
   enum class Way { free, carried, behind };
   Way advance(int round) {
     std::vector<Vec3> start = at_;
-    if (round == 0) move_affinely(surface_.rows, at_, m_.to, start);
+    if (round == 0) apply_affine_fit(surface_.rows, at_, m_.to, start);
     std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
     cover(start, next);
     if (give_way(start, next)) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "contact/motion/smooth_field.h"
-#include "geometry/affine_motion.h"
+#include "geometry/affine_fit.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -63,7 +63,7 @@ bool FallbackMotion::add_all() {
 void FallbackMotion::place(std::vector<Vec3>& next) const {
   for (const auto v : rows_)
     if (carried_[v]) next[v] = field_[v];
-  for (const auto& rows : zones_.members()) move_rigidly(rows, start_, field_, next);
+  for (const auto& rows : zones_.members()) apply_rigid_fit(rows, start_, field_, next);
 }
 
 bool FallbackMotion::keep_apart(std::uint32_t s, std::uint32_t t, double distance) const {

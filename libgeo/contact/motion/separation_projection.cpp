@@ -5,7 +5,7 @@
 
 #include "contact/detection/dividers.h"
 #include "contact/detection/tilted.h"
-#include "geometry/affine_motion.h"
+#include "geometry/affine_fit.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -93,7 +93,7 @@ void SeparationProjection::push(std::vector<Vec3>& at) const {
     for (const auto& zone : zones) {
       const auto went = [&](std::uint32_t v) { return sweep == 0 || has_moved[v]; };
       if (std::none_of(zone.begin(), zone.end(), went)) continue;
-      move_rigidly(zone, start_, at, at);
+      apply_rigid_fit(zone, start_, at, at);
       for (const auto v : zone)
         if (!has_moved[v]) has_moved[v] = 1, moved.push_back(v);
     }

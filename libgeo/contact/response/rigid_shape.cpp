@@ -44,9 +44,9 @@ bool RigidShape::near(const Vec3& x, double reach) const {
 
 RigidShape::Field RigidShape::at(const Vec3& x) const {
   if (corners_.empty()) return {plane_.dot(x), plane_, plane_ * plane_.transpose()};
-  const std::size_t row = bvh_.closest(x).row;
+  const std::size_t row = bvh_.closest(x).triangle;
   const auto& t = corners_[row];
-  const OnTriangle on = closest_on_triangle(x, t[0], t[1], t[2]);
+  const ClosestOnTriangle on = closest_on_triangle(x, t[0], t[1], t[2]);
   const Vec3 away = x - on.point;
   const Vec3& outwards = normals_[row][static_cast<std::size_t>(on.feature + 1)];
   const double side = away.dot(outwards) < 0 ? -1 : 1, distance = away.norm();

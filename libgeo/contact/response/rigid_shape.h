@@ -40,7 +40,7 @@ class RigidShape {
   Vec3 plane_ = Vec3::Zero();  // its normal; zero: a mesh
   TriangleBvh bvh_;
   std::vector<std::array<Vec3, 3>> corners_;
-  std::vector<std::array<Vec3, 7>> normals_;  // of each triangle: by OnTriangle::feature + 1
+  std::vector<std::array<Vec3, 7>> normals_;  // of each triangle: by ClosestOnTriangle::feature + 1
   double extent_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "geometry/triangle_lanes.cpp"
+#define HWY_TARGET_INCLUDE "geometry/wide_bvh.cpp"
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
@@ -9,10 +9,10 @@
 #include <cmath>
 
 #include "geometry/predicates.h"
-#include "geometry/triangle_lanes.h"
+#include "geometry/wide_bvh.h"
 
-#ifndef KERF_TRIANGLE_LANES_ONCE
-#define KERF_TRIANGLE_LANES_ONCE
+#ifndef KERF_WIDE_BVH_ONCE
+#define KERF_WIDE_BVH_ONCE
 namespace geo {
 namespace {
 
@@ -54,7 +54,7 @@ HWY_BEFORE_NAMESPACE();
 namespace geo {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using Floats = hn::CappedTag<float, TriangleLanes::width>;
+using Floats = hn::CappedTag<float, WideBvh::width>;
 
 template <class Mask>
 std::uint32_t bits_of(const Mask& mask) {
@@ -64,10 +64,10 @@ std::uint32_t bits_of(const Mask& mask) {
 }
 
 // Which of a block's boxes meet a box.
-std::uint32_t meeting(const TriangleLanes::Boxes& boxes, const float* lo, const float* hi) {
+std::uint32_t meeting(const WideBvh::Boxes& boxes, const float* lo, const float* hi) {
   const Floats d;
   std::uint32_t bits = 0;
-  for (std::size_t at = 0; at < TriangleLanes::width; at += hn::Lanes(d)) {
+  for (std::size_t at = 0; at < WideBvh::width; at += hn::Lanes(d)) {
     auto mask = hn::Le(hn::Load(d, boxes.lo[0] + at), hn::Set(d, hi[0]));
     mask = hn::And(mask, hn::Ge(hn::Load(d, boxes.hi[0] + at), hn::Set(d, lo[0])));
     for (int axis = 1; axis < 3; ++axis) {
@@ -80,7 +80,7 @@ std::uint32_t meeting(const TriangleLanes::Boxes& boxes, const float* lo, const 
 }
 
 // Which of a packet's segments have boxes that meet one box of a block.
-std::uint32_t meeting(const Packet& packet, const TriangleLanes::Boxes& boxes, std::uint32_t lane) {
+std::uint32_t meeting(const Packet& packet, const WideBvh::Boxes& boxes, std::uint32_t lane) {
   const Floats d;
   std::uint32_t bits = 0;
   for (std::size_t at = 0; at < packet.count; at += hn::Lanes(d)) {
@@ -97,7 +97,7 @@ std::uint32_t meeting(const Packet& packet, const TriangleLanes::Boxes& boxes, s
 
 // Which of a packet's segments may touch a triangle, of those that `boxes` (its own) meet: its slab does not tell them
 // apart.
-std::uint32_t within_slab(const Packet& packet, const TriangleLanes::Slabs& slabs, std::uint32_t lane) {
+std::uint32_t within_slab(const Packet& packet, const WideBvh::Slabs& slabs, std::uint32_t lane) {
   const Floats d;
   const auto x = hn::Set(d, slabs.normal[0][lane]), y = hn::Set(d, slabs.normal[1][lane]),
              z = hn::Set(d, slabs.normal[2][lane]);
@@ -116,11 +116,11 @@ std::uint32_t within_slab(const Packet& packet, const TriangleLanes::Slabs& slab
 }
 
 // The segments from p to some points, in the frame; lanes behind them are p itself.
-void fill(const TriangleLanes& tree, const Vec3& p, const Vec3* ends, Packet& packet) {
-  const hn::CappedTag<double, TriangleLanes::width> dd;
+void fill(const WideBvh& tree, const Vec3& p, const Vec3* ends, Packet& packet) {
+  const hn::CappedTag<double, WideBvh::width> dd;
   const hn::Rebind<float, decltype(dd)> df;
   const std::size_t lanes = hn::Lanes(dd),
-                    whole = (packet.count + TriangleLanes::width - 1) / TriangleLanes::width * TriangleLanes::width;
+                    whole = (packet.count + WideBvh::width - 1) / WideBvh::width * WideBvh::width;
   auto& at = packet.exact_end;
   for (std::size_t s = 0; s < whole; ++s) {
     const double* const end = s < packet.count ? ends[s].data() : p.data();
@@ -176,7 +176,7 @@ struct Crossing {
   std::uint32_t through, apart;
 };
 Crossing crossing(const Packet& packet, const Vec3& p, const std::array<Vec3, 3>& t, std::uint32_t segments) {
-  const int side = orient3d_quick(t[0], t[1], t[2], p);
+  const int side = orient3d_filtered(t[0], t[1], t[2], p);
   if (side == 2) return {0, 0};
   const Plane own(t[0], t[1], t[2]), edges[3] = {{p, t[0], t[1]}, {p, t[1], t[2]}, {p, t[2], t[0]}};
   const Doubles d;
@@ -198,7 +198,7 @@ Crossing crossing(const Packet& packet, const Vec3& p, const std::array<Vec3, 3>
   return {result.through & segments, result.apart & segments};
 }
 
-void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
+void blocked_packet(const WideBvh& tree, Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
                     std::uint8_t* result) {
   Packet packet;
   packet.count = ends.size();
@@ -207,7 +207,7 @@ void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, con
   struct Place {
     std::uint32_t level, block;
   };
-  Place stack[8 * TriangleLanes::width];  // 2³² triangles have eight levels
+  Place stack[8 * WideBvh::width];  // 2³² triangles have eight levels
   int top = 0;
   stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
   std::uint32_t open = packet.count == 32 ? ~0u : (1u << packet.count) - 1;
@@ -215,8 +215,7 @@ void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, con
     const auto [level, block] = stack[--top];
     const auto& boxes = levels[level][block];
     for (auto lanes = meeting(boxes, packet.all_lo, packet.all_hi); lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)),
-                 child = block * TriangleLanes::width + lane;
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), child = block * WideBvh::width + lane;
       if (level > 1) {
         stack[top++] = {level - 1, child};
         continue;
@@ -227,7 +226,7 @@ void blocked_packet(const TriangleLanes& tree, Corners corners, Order order, con
         auto asked = meeting(packet, levels[0][child], k) & open;
         if (asked != 0 && packet.near) asked &= within_slab(packet, tree.slabs()[child], k);
         if (asked == 0) continue;
-        const auto& t = corners[order[child * TriangleLanes::width + k]];
+        const auto& t = corners[order[child * WideBvh::width + k]];
         const Crossing clear = crossing(packet, p, t, asked);
         auto blocked = clear.through;
         for (auto doubt = asked & ~(clear.through | clear.apart); doubt != 0; doubt &= doubt - 1) {
@@ -249,7 +248,7 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(blocked_packet);
 
-TriangleLanes::TriangleLanes(Corners corners, Order order) {
+WideBvh::WideBvh(Corners corners, Order order) {
   if (order.empty()) return;
   Box3 box;
   for (const auto& t : corners) box.add(box_of(t[0], t[1], t[2]));
@@ -300,13 +299,12 @@ TriangleLanes::TriangleLanes(Corners corners, Order order) {
   }
 }
 
-void TriangleLanes::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
-                            std::uint8_t* result) const {
+void WideBvh::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
+                      std::uint8_t* result) const {
   std::fill_n(result, ends.size(), std::uint8_t(0));
   if (levels_.empty()) return;
-  for (std::size_t first = 0; first < ends.size(); first += most_segments)
-    HWY_DYNAMIC_DISPATCH(blocked_packet)
-    (*this, corners, order, p, ends.subspan(first, std::min(most_segments, ends.size() - first)), result + first);
+  for (std::size_t first = 0; first < ends.size(); first += most_segments) HWY_DYNAMIC_DISPATCH(blocked_packet)
+  (*this, corners, order, p, ends.subspan(first, std::min(most_segments, ends.size() - first)), result + first);
 }
 
 }  // namespace geo

@@ -12,7 +12,7 @@ namespace geo {
 /// A tree of boxes, sixteen to a block, over triangles in an order that keeps neighbours together. All is in floats, in
 /// a frame in which the triangles' coordinates are at most 1 in magnitude. Going to that frame is monotone, rounding
 /// and all, so boxes that meet still meet there; nothing is lost, and what may touch is left to exact predicates.
-class TriangleLanes {
+class WideBvh {
  public:
   static constexpr std::uint32_t width = 16;
 
@@ -25,10 +25,10 @@ class TriangleLanes {
     alignas(64) float normal[3][width], from[width], to[width];
   };
 
-  TriangleLanes() = default;
+  WideBvh() = default;
   /// `order`: all rows of `corners`. Sixteen consecutive ones make a block, sixteen consecutive blocks the next, and so
   /// on.
-  TriangleLanes(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order);
+  WideBvh(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order);
 
   /// For each closed segment from p to a point of `ends`: 1 where it touches a triangle, else 0. Exact. `corners` and
   /// `order` are those that the tree was made of.

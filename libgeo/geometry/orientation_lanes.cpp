@@ -1,15 +1,15 @@
 // Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
 // No sum is fused with a product, so that error bounds hold.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "geometry/side_lanes.cpp"
+#define HWY_TARGET_INCLUDE "geometry/orientation_lanes.cpp"
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
 
 #include <cmath>
 
+#include "geometry/orientation_lanes.h"
 #include "geometry/predicates.h"
-#include "geometry/side_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo {
@@ -27,7 +27,7 @@ HWY_INLINE std::uint64_t bits_of(const Mask& mask) {
 
 }  // namespace
 
-// The determinant of orient3d_quick() with its bound, but taken relative to the triangle's first corner.
+// The determinant of orient3d_filtered() with its bound, but taken relative to the triangle's first corner.
 void Sides(const double* corner, const double* normal, const double* terms, const double* const* at, std::size_t words,
            std::uint64_t* above, std::uint64_t* below) {
   constexpr double bound_of_permanent = 7.771561172376103e-16;  // Shewchuk's A-stage, as there
@@ -59,8 +59,8 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Sides);
 
-void clear_sides(const std::array<Vec3, 3>& triangle, const double* const* at, std::size_t words, std::uint64_t* above,
-                 std::uint64_t* below) {
+void filtered_orientations(const std::array<Vec3, 3>& triangle, const double* const* at, std::size_t words,
+                           std::uint64_t* above, std::uint64_t* below) {
   const Vec3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
   double normal[3], terms[3];
   for (int i = 0; i < 3; ++i) {

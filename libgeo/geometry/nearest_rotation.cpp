@@ -1,0 +1,14 @@
+#include "geometry/nearest_rotation.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace geo {
+
+NearestRotation nearest_rotation(const Mat3& a) {
+  const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Mat3 flip = Vec3(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1).asDiagonal();
+  return {svd.matrixU() * flip * svd.matrixV().transpose(), svd.singularValues()};
+}
+
+}  // namespace geo

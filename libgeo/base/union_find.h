@@ -1,4 +1,5 @@
-// Disjoint sets of the integers 0, …, n − 1: union–find with path halving (Tarjan, van Leeuwen 1984).
+// Disjoint sets of the integers 0, …, n − 1: union–find with path halving (Tarjan, van Leeuwen
+// 1984).
 #pragma once
 
 #include <algorithm>

@@ -19,7 +19,7 @@ double squared_distance(const Box3& box, const Vec3& p) {
 
 }  // namespace
 
-// Halves ranges of triangles along the longest side of their middles' box.
+// Splits ranges of triangles at the median along the longest side of their centres' box.
 struct TriangleBvh::Builder {
   struct Job {
     std::uint32_t node, begin, end;
@@ -28,15 +28,16 @@ struct TriangleBvh::Builder {
   std::vector<Vec3> centers;
   std::vector<std::uint32_t>& order;
 
-  // Grows `nodes` from the job's; ranges below `least` are left for later where there is a list for them.
-  void grow(const Job& root, std::vector<Node>& nodes, std::uint32_t least = 0,
-            std::vector<Job>* later = nullptr) const {
+  // Builds the subtree of `root` in `nodes`. Ranges with fewer than `least` triangles are
+  // deferred: their jobs are appended to `deferred`, if given.
+  void build(const Job& root, std::vector<Node>& nodes, std::uint32_t least = 0,
+             std::vector<Job>* deferred = nullptr) const {
     std::vector<Job> jobs{root};
     while (!jobs.empty()) {
       const Job job = jobs.back();
       jobs.pop_back();
-      if (later && job.end - job.begin < least) {
-        later->push_back(job);
+      if (deferred && job.end - job.begin < least) {
+        deferred->push_back(job);
         continue;
       }
       Box3 box, spread;
@@ -49,7 +50,8 @@ struct TriangleBvh::Builder {
       }
       int axis = 0;
       (spread.hi - spread.lo).maxCoeff(&axis);
-      // Whole blocks of lanes stay together, and whole blocks of these.
+      // The left range is a multiple of the wide tree's blocks, and of blocks of these, so that
+      // the two trees agree on what is near.
       const auto count = job.end - job.begin;
       std::uint32_t unit = 1;
       while (unit < (count + WideBvh::width - 1) / WideBvh::width) unit *= WideBvh::width;
@@ -82,21 +84,21 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles)
   nodes_.reserve(n);
   nodes_.emplace_back();
   constexpr std::uint32_t many = 1024, shares = 16;
-  std::vector<Builder::Job> later;
-  builder.grow({0, 0, n}, nodes_, std::max(many, n) / shares, n < many ? nullptr : &later);
-  std::vector<std::vector<Node>> below(later.size());
-  parallel_for(later.size(), 1, [&](std::size_t begin, std::size_t end) {
+  std::vector<Builder::Job> deferred;
+  builder.build({0, 0, n}, nodes_, std::max(many, n) / shares, n < many ? nullptr : &deferred);
+  std::vector<std::vector<Node>> below(deferred.size());
+  parallel_for(deferred.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      below[k].emplace_back(), builder.grow({0, later[k].begin, later[k].end}, below[k]);
+      below[k].emplace_back(), builder.build({0, deferred[k].begin, deferred[k].end}, below[k]);
   });
-  for (std::size_t k = 0; k < later.size(); ++k) {
+  for (std::size_t k = 0; k < deferred.size(); ++k) {
     const auto offset = static_cast<std::uint32_t>(nodes_.size() - 1);
     for (Node& node : below[k])
       if (node.count == 0) node.first += offset;
-    nodes_[later[k].node] = below[k][0];
+    nodes_[deferred[k].node] = below[k][0];
     nodes_.insert(nodes_.end(), below[k].begin() + 1, below[k].end());
   }
-  lanes_ = WideBvh(corners_, order_);
+  wide_ = WideBvh(corners_, order_);
 }
 
 bool TriangleBvh::blocks(const Vec3& p, const Vec3& q) const {
@@ -105,7 +107,7 @@ bool TriangleBvh::blocks(const Vec3& p, const Vec3& q) const {
   return result != 0;
 }
 
-void TriangleBvh::near(const Box3& box, std::vector<std::uint32_t>& rows) const {
+void TriangleBvh::near(const Box3& box, std::vector<std::uint32_t>& triangles) const {
   if (nodes_.empty()) return;
   std::uint32_t stack[64];
   int top = 0;
@@ -120,7 +122,7 @@ void TriangleBvh::near(const Box3& box, std::vector<std::uint32_t>& rows) const 
     }
     for (auto i = node.first; i < node.first + node.count; ++i) {
       const auto& t = corners_[order_[i]];
-      if (box_of(t[0], t[1], t[2]).meets(box)) rows.push_back(order_[i]);
+      if (box_of(t[0], t[1], t[2]).meets(box)) triangles.push_back(order_[i]);
     }
   }
 }
@@ -138,7 +140,7 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
     const Node& node = nodes_[at];
     if (node.count == 0) {
       const double l = squared_distance(nodes_[node.first].box, p), r = squared_distance(nodes_[node.first + 1].box, p);
-      // The nearer child is looked at first.
+      // The nearer child is visited first.
       stack[top++] = l < r ? std::pair{r, node.first + 1} : std::pair{l, node.first};
       stack[top++] = l < r ? std::pair{l, node.first} : std::pair{r, node.first + 1};
       continue;
@@ -154,60 +156,65 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
   return best;
 }
 
+TriangleBvh::RayCrossings TriangleBvh::count_crossings(const Vec3& p, const Vec3& q, double margin) const {
+  RayCrossings result;
+  std::uint32_t stack[64];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0 && !result.degenerate) {
+    const Node& node = nodes_[stack[--top]];
+    // Slab test against the box, with a margin for rounding.
+    double from = 0, to = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double step = q[k] - p[k], a = (node.box.lo[k] - margin - p[k]) / step,
+                   b = (node.box.hi[k] + margin - p[k]) / step;
+      from = std::max(from, std::min(a, b));
+      to = std::min(to, std::max(a, b));
+    }
+    if (from > to) continue;
+    if (node.count == 0) {
+      stack[top++] = node.first;
+      stack[top++] = node.first + 1;
+      continue;
+    }
+    for (auto i = node.first; i < node.first + node.count && !result.degenerate; ++i) {
+      const auto& t = corners_[order_[i]];
+      const int sp = orient3d(t[0], t[1], t[2], p), sq = orient3d(t[0], t[1], t[2], q);
+      if (sp == 0 && segment_meets_triangle(p, p, t[0], t[1], t[2])) {
+        result.on_surface = true;
+        return result;
+      }
+      if (sp == 0 && sq == 0) {
+        result.degenerate = segment_meets_triangle(p, q, t[0], t[1], t[2]);
+        continue;
+      }
+      if (sp == sq || sp == 0) continue;
+      const int e0 = orient3d(p, q, t[0], t[1]), e1 = orient3d(p, q, t[1], t[2]), e2 = orient3d(p, q, t[2], t[0]);
+      const bool plus = e0 >= 0 && e1 >= 0 && e2 >= 0, minus = e0 <= 0 && e1 <= 0 && e2 <= 0;
+      if (!plus && !minus) continue;
+      if (e0 == 0 || e1 == 0 || e2 == 0 || sq == 0)
+        result.degenerate = true;
+      else
+        ++result.count;
+    }
+  }
+  return result;
+}
+
 bool TriangleBvh::inside(const Vec3& p) const {
   if (nodes_.empty() || !Box3{p, p}.meets(box_)) return false;
-  // Rays to points far outside in fixed generic directions; one that touches an edge, a vertex or a plane is dropped.
+  // Fixed directions without simple ratios: degenerate rays are rare on real models.
   static constexpr double directions[][3] = {
       {0.5377, 0.2713, 0.7981},  {-0.3319, 0.8511, 0.4069},  {0.7129, -0.6133, 0.3403},  {-0.2731, -0.4817, -0.8329},
       {0.9137, 0.1871, -0.3607}, {-0.6469, 0.3539, -0.6757}, {0.1213, -0.9187, -0.3761}, {0.3967, 0.5669, -0.7219}};
-  const double reach = 2 * box_.diagonal() + 1e-300;
-  std::vector<std::uint32_t> rows;
+  const double reach = 2 * box_.diagonal() + 1e-300;  // beyond the box, whatever the direction
   for (const auto& d : directions) {
-    const Vec3 q = p + reach * Vec3(d);
-    // Only triangles whose boxes the ray's box meets; the tree is walked with the thin ray in slabs of its length.
-    bool clean = true;
-    int crossings = 0;
-    std::uint32_t stack[64];
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0 && clean) {
-      const Node& node = nodes_[stack[--top]];
-      // Slab test against the box, with a margin for rounding.
-      double from = 0, to = 1;
-      const double margin = 1e-12 * reach;
-      for (int k = 0; k < 3; ++k) {
-        const double step = q[k] - p[k], a = (node.box.lo[k] - margin - p[k]) / step,
-                     b = (node.box.hi[k] + margin - p[k]) / step;
-        from = std::max(from, std::min(a, b));
-        to = std::min(to, std::max(a, b));
-      }
-      if (from > to) continue;
-      if (node.count == 0) {
-        stack[top++] = node.first;
-        stack[top++] = node.first + 1;
-        continue;
-      }
-      for (auto i = node.first; i < node.first + node.count && clean; ++i) {
-        const auto& t = corners_[order_[i]];
-        const int sp = orient3d(t[0], t[1], t[2], p), sq = orient3d(t[0], t[1], t[2], q);
-        if (sp == 0 && segment_meets_triangle(p, p, t[0], t[1], t[2])) return false;  // on the surface
-        if (sp == 0 && sq == 0) {
-          clean = !segment_meets_triangle(p, q, t[0], t[1], t[2]);
-          continue;
-        }
-        if (sp == sq || sp == 0) continue;
-        const int e0 = orient3d(p, q, t[0], t[1]), e1 = orient3d(p, q, t[1], t[2]), e2 = orient3d(p, q, t[2], t[0]);
-        const bool plus = e0 >= 0 && e1 >= 0 && e2 >= 0, minus = e0 <= 0 && e1 <= 0 && e2 <= 0;
-        if (!plus && !minus) continue;
-        if (e0 == 0 || e1 == 0 || e2 == 0 || sq == 0)
-          clean = false;
-        else
-          ++crossings;
-      }
-    }
-    if (clean) return crossings % 2 == 1;
+    const RayCrossings ray = count_crossings(p, p + reach * Vec3(d), 1e-12 * reach);
+    if (ray.on_surface) return false;
+    if (!ray.degenerate) return ray.count % 2 == 1;
   }
-  // Every fixed ray was degenerate (a model built against them): fall back on the side of the closest triangle.
+  // All fixed rays are degenerate, which only a contrived model achieves: the side of the closest
+  // triangle decides.
   const Closest c = closest(p);
   const auto& t = corners_[c.triangle];
   return orient3d(t[0], t[1], t[2], p) < 0;

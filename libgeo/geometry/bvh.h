@@ -1,4 +1,5 @@
-// A static bounding volume hierarchy over triangles: blocked segments, inside or outside, closest point.
+// A static bounding volume hierarchy (BVH) over triangles: blocked segments, closest points, and
+// whether a point is inside a closed surface.
 #pragma once
 
 #include <span>
@@ -9,49 +10,64 @@
 
 namespace geo {
 
-/// Median-split tree of closed boxes. Built once in O(n log n); queries are exact (predicates.h) and thread-safe.
+/// A binary tree of closed boxes, split at medians. Built once in O(n log n). Queries are exact
+/// (predicates.h) and thread-safe.
 class TriangleBvh {
  public:
+  /// A tree over no triangles.
   TriangleBvh() = default;
-  /// Copies the triangles' corners; an empty soup is allowed.
+  /// Builds the tree and copies the corners. The triangles may be any soup, also an empty one.
   explicit TriangleBvh(std::span<const std::array<Vec3, 3>> triangles);
 
+  /// Number of triangles.
   std::size_t size() const { return corners_.size(); }
+  /// Whether there are no triangles.
   bool empty() const { return corners_.empty(); }
+  /// The bounding box of all triangles.
   const Box3& box() const { return box_; }
 
-  /// True when the closed segment pq touches any triangle: exact.
+  /// Whether the closed segment pq touches any triangle. Exact.
   bool blocks(const Vec3& p, const Vec3& q) const;
-  /// The same for many segments from p, all at once: 1 in `result` where the one to `ends[i]` is blocked. Fast where
-  /// the ends are near p and each other.
+  /// blocks() for the segments from p to each of `ends`: writes 1 or 0 to result[i]. Fast if the
+  /// ends are near p and near each other.
   void blocks(const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const {
-    lanes_.blocked(corners_, order_, p, ends, result);
+    wide_.blocked(corners_, order_, p, ends, result);
   }
-  /// Appends the rows of all triangles whose boxes meet `box`, in no particular order.
-  void near(const Box3& box, std::vector<std::uint32_t>& rows) const;
+  /// Appends the indices of all triangles whose boxes meet `box`, in no particular order.
+  void near(const Box3& box, std::vector<std::uint32_t>& triangles) const;
 
+  /// The result of closest().
   struct Closest {
     std::uint32_t triangle = ~0u;  ///< ~0u: none within the cutoff
-    Vec3 point = Vec3::Zero();
-    double distance = 0;
+    Vec3 point = Vec3::Zero();     ///< closest point of the triangle
+    double distance = 0;           ///< of that point, model units
   };
-  /// The closest triangle within `cutoff` of p.
+  /// The closest triangle within distance `cutoff` of p; of several, the one with the lowest index.
   Closest closest(const Vec3& p, double cutoff = std::numeric_limits<double>::infinity()) const;
 
-  /// True when p is strictly inside the closed oriented surface that the triangles form: exact crossing parity of a
-  /// ray; rays that touch an edge or vertex are replaced by others. A point on the surface is not inside.
+  /// Whether p is strictly inside the closed oriented surface that the triangles form: the parity
+  /// of a ray's crossings, counted exactly. A ray that touches an edge or vertex is replaced by
+  /// another. A point on the surface is not inside.
   bool inside(const Vec3& p) const;
 
  private:
   struct Node {
     Box3 box;
-    std::uint32_t first = 0, count = 0;  // count 0: children are first and first + 1
+    std::uint32_t first = 0, count = 0;  // count 0: the children are nodes first and first + 1
   };
   struct Builder;
+  // Crossings of the segment pq with the surface, or why there is no such number.
+  struct RayCrossings {
+    bool on_surface = false;  // p lies on a triangle
+    bool degenerate = false;  // the segment touches an edge, a vertex or a plane
+    int count = 0;
+  };
+  RayCrossings count_crossings(const Vec3& p, const Vec3& q, double margin) const;
+
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> order_;  // indices of triangles, in the order of leaves
   std::vector<std::array<Vec3, 3>> corners_;
-  WideBvh lanes_;  // over the same order
+  WideBvh wide_;  // over the same order
   Box3 box_;
 };
 

@@ -98,9 +98,9 @@ class Hull {
 template <class Measure>
 std::optional<std::uint32_t> farthest(std::span<const Vec3> points, const Measure& measure) {
   std::optional<std::uint32_t> best;
-  double most = 0;
+  double largest = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (const double m = measure(points[i]); m > most) most = m, best = i;
+    if (const double m = measure(points[i]); m > largest) largest = m, best = i;
   return best;
 }
 

@@ -1,4 +1,5 @@
-// Closest points and distances, in floating point: they filter and weigh, and never decide topology.
+// Closest points and distances, in floating point: they filter and weigh, and never decide
+// topology.
 #pragma once
 
 #include "kerf/vec.h"

@@ -1,7 +1,9 @@
-// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
-// No sum is fused with a product, so that error bounds hold.
+// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
+// that the filter's error bound holds.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/orientation_lanes.cpp"
+#include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
@@ -27,21 +29,21 @@ HWY_INLINE std::uint64_t bits_of(const Mask& mask) {
 
 }  // namespace
 
-// The determinant of orient3d_filtered() with its bound, but taken relative to the triangle's first corner.
-void Sides(const double* corner, const double* normal, const double* terms, const double* const* at, std::size_t words,
-           std::uint64_t* above, std::uint64_t* below) {
-  constexpr double bound_of_permanent = 7.771561172376103e-16;  // Shewchuk's A-stage, as there
+// The determinant and bound of orient3d_filtered(), with the first corner of the triangle as
+// origin.
+void orient_points(const double* corner, const double* normal, const double* permanents,
+                   const double* const* coordinates, std::size_t words, std::uint64_t* above, std::uint64_t* below) {
   const Doubles d;
   for (std::size_t word = 0; word < words; ++word) {
     std::uint64_t over = 0, under = 0;
     for (std::size_t k = 0; k < 64; k += hn::Lanes(d)) {
       auto det = hn::Zero(d), permanent = det;
       for (int axis = 0; axis < 3; ++axis) {
-        const auto x = hn::Sub(hn::LoadU(d, at[axis] + 64 * word + k), hn::Set(d, corner[axis]));
+        const auto x = hn::Sub(hn::LoadU(d, coordinates[axis] + 64 * word + k), hn::Set(d, corner[axis]));
         det = hn::Add(det, hn::Mul(x, hn::Set(d, normal[axis]))),
-        permanent = hn::Add(permanent, hn::Mul(hn::Abs(x), hn::Set(d, terms[axis])));
+        permanent = hn::Add(permanent, hn::Mul(hn::Abs(x), hn::Set(d, permanents[axis])));
       }
-      const auto bound = hn::Mul(hn::Set(d, bound_of_permanent), permanent);
+      const auto bound = hn::Mul(hn::Set(d, orient3d_error), permanent);
       const auto sure =
           hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
       over |= bits_of(hn::And(sure, hn::Gt(det, bound))) << k,
@@ -57,18 +59,18 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace geo {
-HWY_EXPORT(Sides);
+HWY_EXPORT(orient_points);
 
-void filtered_orientations(const std::array<Vec3, 3>& triangle, const double* const* at, std::size_t words,
+void filtered_orientations(const std::array<Vec3, 3>& triangle, const double* const* coordinates, std::size_t words,
                            std::uint64_t* above, std::uint64_t* below) {
   const Vec3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
-  double normal[3], terms[3];
+  double normal[3], permanents[3];  // of the components of the cross product
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const double plus = u[j] * v[k], minus = u[k] * v[j];
-    normal[i] = plus - minus, terms[i] = std::abs(plus) + std::abs(minus);
+    normal[i] = plus - minus, permanents[i] = std::abs(plus) + std::abs(minus);
   }
-  HWY_DYNAMIC_DISPATCH(Sides)(triangle[0].data(), normal, terms, at, words, above, below);
+  HWY_DYNAMIC_DISPATCH(orient_points)(triangle[0].data(), normal, permanents, coordinates, words, above, below);
 }
 
 }  // namespace geo

@@ -53,7 +53,8 @@ std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c)
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Filter: each component of the cross product has a rounding error of at most 4 ε times its permanent.
+  // Filter: each component of the cross product has a rounding error of at most 4 ε times its
+  // permanent.
   const Vec3 u = b - a, v = c - a;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -70,7 +71,8 @@ int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
   int axis = 0;
   (s[1] - s[0]).cross(s[2] - s[0]).cwiseAbs().maxCoeff(&axis);
-  // Whether the line through an edge of x has y strictly on its far side, except for shared corners.
+  // Whether the line through an edge of x has y strictly on its far side, except for shared
+  // corners.
   const auto edge_separates = [axis](const Vec3(&x)[3], const Vec3(&y)[3]) {
     const int turn = orient2d_filtered(x[0], x[1], x[2], axis);
     if (turn == 2) return false;
@@ -120,8 +122,9 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
   for (const auto& row : sign)
     for (const int x : row) decided = decided && x != 2;
   if (decided) {
-    // Both meet the line common to their planes: do the two intervals overlap? With the lone corner of
-    // each first and on the positive side, two orientations decide (Guigue, Devillers 2003).
+    // Both meet the line common to their planes: do the two intervals overlap? With the lone
+    // corner of each first and on the positive side, two orientations decide (Guigue, Devillers
+    // 2003).
     const auto arrange = [](const Vec3(&x)[3], const int(&of)[3], const Vec3*(&corner)[3]) {
       int lone = of[0] == of[1] ? 2 : of[0] == of[2] ? 1 : 0;
       for (int k = 0; k < 3; ++k) corner[k] = &x[(lone + k) % 3];

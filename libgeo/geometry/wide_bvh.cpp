@@ -1,6 +1,8 @@
-// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
+// Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/wide_bvh.cpp"
+#include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
@@ -16,30 +18,29 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t most_segments = 32;
+constexpr std::size_t packet_size = 32;  // one bit a segment in a 32-bit mask
 
-// Segments from one point, in the frame of the boxes.
+// Segments with a common end, in the frame of the boxes.
 struct Packet {
   float p[3];
-  alignas(64) double exact_end[3][most_segments];  // not in that frame
-  alignas(64) float end[3][most_segments], lo[3][most_segments], hi[3][most_segments];
+  alignas(64) double exact_end[3][packet_size];  // in model coordinates
+  alignas(64) float end[3][packet_size], lo[3][packet_size], hi[3][packet_size];
   float all_lo[3], all_hi[3];
   std::size_t count = 0;
-  bool near = true;  // within twice the frame, where slabs are valid
+  bool slabs_valid = true;  // all segments are within twice the frame
 };
 
-// The plane through a point and two others: the sign of an orientation of all three and a fourth, by Shewchuk's
-// A-stage.
+// The plane through three points, for filtered orientations (Shewchuk's A-stage) of a fourth point.
 struct Plane {
   Plane(const Vec3& origin, const Vec3& a, const Vec3& b) : origin(origin) {
     const Vec3 u = a - origin, v = b - origin;
     for (int i = 0; i < 3; ++i) {
       const double x = u[(i + 1) % 3] * v[(i + 2) % 3], y = u[(i + 2) % 3] * v[(i + 1) % 3];
-      normal[i] = x - y, terms[i] = std::abs(x) + std::abs(y);
+      normal[i] = x - y, permanent[i] = std::abs(x) + std::abs(y);
     }
   }
   Vec3 origin;
-  double normal[3], terms[3];
+  double normal[3], permanent[3];
 };
 constexpr double orientation_error = 0x1p-50;  // more than (7 + 56 ε) ε
 
@@ -63,7 +64,7 @@ std::uint32_t bits_of(const Mask& mask) {
   return bytes[0] | std::uint32_t(bytes[1]) << 8;
 }
 
-// Which of a block's boxes meet a box.
+// The lanes of the boxes of a block that meet the box [lo, hi].
 std::uint32_t meeting(const WideBvh::Boxes& boxes, const float* lo, const float* hi) {
   const Floats d;
   std::uint32_t bits = 0;
@@ -79,7 +80,7 @@ std::uint32_t meeting(const WideBvh::Boxes& boxes, const float* lo, const float*
   return bits;
 }
 
-// Which of a packet's segments have boxes that meet one box of a block.
+// The segments of a packet whose boxes meet one box of a block.
 std::uint32_t meeting(const Packet& packet, const WideBvh::Boxes& boxes, std::uint32_t lane) {
   const Floats d;
   std::uint32_t bits = 0;
@@ -95,8 +96,7 @@ std::uint32_t meeting(const Packet& packet, const WideBvh::Boxes& boxes, std::ui
   return bits;
 }
 
-// Which of a packet's segments may touch a triangle, of those that `boxes` (its own) meet: its slab does not tell them
-// apart.
+// The segments of a packet that the slab of a triangle does not separate from it.
 std::uint32_t within_slab(const Packet& packet, const WideBvh::Slabs& slabs, std::uint32_t lane) {
   const Floats d;
   const auto x = hn::Set(d, slabs.normal[0][lane]), y = hn::Set(d, slabs.normal[1][lane]),
@@ -115,7 +115,7 @@ std::uint32_t within_slab(const Packet& packet, const WideBvh::Slabs& slabs, std
   return ~apart;
 }
 
-// The segments from p to some points, in the frame; lanes behind them are p itself.
+// Transforms the segments from p to `ends` to the frame. Unused lanes hold p itself.
 void fill(const WideBvh& tree, const Vec3& p, const Vec3* ends, Packet& packet) {
   const hn::CappedTag<double, WideBvh::width> dd;
   const hn::Rebind<float, decltype(dd)> df;
@@ -126,7 +126,7 @@ void fill(const WideBvh& tree, const Vec3& p, const Vec3* ends, Packet& packet) 
     const double* const end = s < packet.count ? ends[s].data() : p.data();
     for (int axis = 0; axis < 3; ++axis) at[axis][s] = end[axis];
   }
-  packet.near = true;
+  packet.slabs_valid = true;
   for (int axis = 0; axis < 3; ++axis) {
     packet.p[axis] = tree.local(p[axis], axis);
     const auto from = hn::Set(df, packet.p[axis]);
@@ -142,11 +142,11 @@ void fill(const WideBvh& tree, const Vec3& p, const Vec3* ends, Packet& packet) 
     }
     packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo)),
     packet.all_hi[axis] = hn::GetLane(hn::MaxOfLanes(df, all_hi));
-    packet.near = packet.near && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
+    packet.slabs_valid = packet.slabs_valid && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
   }
 }
 
-// Of a packet's ends: those clearly on the positive side of a plane, and those clearly on the negative.
+// The points that are certainly on the positive and on the negative side of a plane.
 struct Sides {
   std::uint32_t positive, negative;
 };
@@ -159,7 +159,7 @@ Sides sides(const Plane& plane, const V& x, const V& y, const V& z) {
   const auto sum = [&](const double* n, const auto& a, const auto& b, const auto& c) {
     return hn::Add(hn::Add(hn::Mul(hn::Set(d, n[0]), a), hn::Mul(hn::Set(d, n[1]), b)), hn::Mul(hn::Set(d, n[2]), c));
   };
-  const auto value = sum(plane.normal, u, v, w), permanent = sum(plane.terms, hn::Abs(u), hn::Abs(v), hn::Abs(w));
+  const auto value = sum(plane.normal, u, v, w), permanent = sum(plane.permanent, hn::Abs(u), hn::Abs(v), hn::Abs(w));
   const auto bound = hn::Mul(permanent, hn::Set(d, orientation_error));
   const auto valid =
       hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
@@ -171,7 +171,7 @@ Sides sides(const Plane& plane, const V& x, const V& y, const V& z) {
   return {bits(hn::Gt(value, bound)), bits(hn::Lt(value, hn::Neg(bound)))};
 }
 
-// Of some segments of a packet: those that clearly go through a triangle, and those that clearly do not touch it.
+// The segments that certainly pass through a triangle, and those that certainly do not touch it.
 struct Crossing {
   std::uint32_t through, apart;
 };
@@ -187,13 +187,13 @@ Crossing crossing(const Packet& packet, const Vec3& p, const std::array<Vec3, 3>
                z = hn::Load(d, packet.exact_end[2] + at);
     const Sides end = sides(own, x, y, z);
     const Sides around[3] = {sides(edges[0], x, y, z), sides(edges[1], x, y, z), sides(edges[2], x, y, z)};
-    const auto across = side > 0 ? end.negative : end.positive, beside = side > 0 ? end.positive : end.negative;
+    const auto opposite = side > 0 ? end.negative : end.positive, same_side = side > 0 ? end.positive : end.negative;
     const auto all_positive = around[0].positive & around[1].positive & around[2].positive,
                all_negative = around[0].negative & around[1].negative & around[2].negative;
     const auto any_positive = around[0].positive | around[1].positive | around[2].positive,
                any_negative = around[0].negative | around[1].negative | around[2].negative;
-    result.through |= (across & (all_positive | all_negative)) << at;
-    result.apart |= (beside | (across & any_positive & any_negative)) << at;
+    result.through |= (opposite & (all_positive | all_negative)) << at;
+    result.apart |= (same_side | (opposite & any_positive & any_negative)) << at;
   }
   return {result.through & segments, result.apart & segments};
 }
@@ -204,14 +204,14 @@ void blocked_packet(const WideBvh& tree, Corners corners, Order order, const Vec
   packet.count = ends.size();
   fill(tree, p, ends.data(), packet);
   const auto& levels = tree.levels();
-  struct Place {
+  struct Entry {
     std::uint32_t level, block;
   };
-  Place stack[8 * WideBvh::width];  // 2³² triangles have eight levels
+  Entry stack[8 * WideBvh::width];  // 2³² triangles have eight levels
   int top = 0;
   stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
-  std::uint32_t open = packet.count == 32 ? ~0u : (1u << packet.count) - 1;
-  while (top > 0 && open != 0) {
+  std::uint32_t undecided = packet.count == 32 ? ~0u : (1u << packet.count) - 1;
+  while (top > 0 && undecided != 0) {
     const auto [level, block] = stack[--top];
     const auto& boxes = levels[level][block];
     for (auto lanes = meeting(boxes, packet.all_lo, packet.all_hi); lanes != 0; lanes &= lanes - 1) {
@@ -220,20 +220,20 @@ void blocked_packet(const WideBvh& tree, Corners corners, Order order, const Vec
         stack[top++] = {level - 1, child};
         continue;
       }
-      for (auto triangles = meeting(levels[0][child], packet.all_lo, packet.all_hi); triangles != 0 && open != 0;
+      for (auto triangles = meeting(levels[0][child], packet.all_lo, packet.all_hi); triangles != 0 && undecided != 0;
            triangles &= triangles - 1) {
         const auto k = static_cast<std::uint32_t>(std::countr_zero(triangles));
-        auto asked = meeting(packet, levels[0][child], k) & open;
-        if (asked != 0 && packet.near) asked &= within_slab(packet, tree.slabs()[child], k);
-        if (asked == 0) continue;
+        auto candidates = meeting(packet, levels[0][child], k) & undecided;
+        if (candidates != 0 && packet.slabs_valid) candidates &= within_slab(packet, tree.slabs()[child], k);
+        if (candidates == 0) continue;
         const auto& t = corners[order[child * WideBvh::width + k]];
-        const Crossing clear = crossing(packet, p, t, asked);
-        auto blocked = clear.through;
-        for (auto doubt = asked & ~(clear.through | clear.apart); doubt != 0; doubt &= doubt - 1) {
+        const Crossing certain = crossing(packet, p, t, candidates);
+        auto blocked = certain.through;
+        for (auto doubt = candidates & ~(certain.through | certain.apart); doubt != 0; doubt &= doubt - 1) {
           const auto s = static_cast<std::uint32_t>(std::countr_zero(doubt));
           if (segment_meets_triangle(p, ends[s], t[0], t[1], t[2])) blocked |= 1u << s;
         }
-        open &= ~blocked;
+        undecided &= ~blocked;
         for (; blocked != 0; blocked &= blocked - 1) result[std::countr_zero(blocked)] = 1;
       }
     }
@@ -255,18 +255,18 @@ WideBvh::WideBvh(Corners corners, Order order) {
   middle_ = 0.5 * box.lo + 0.5 * box.hi;
   const double extent = (box.hi - middle_).cwiseMax(middle_ - box.lo).maxCoeff();
   if (extent > 1e-150) scale_ = 1 / extent;
-  const auto start = [](std::size_t count) {
+  const auto empty_level = [](std::size_t count) {
     Boxes none;
     for (int axis = 0; axis < 3; ++axis)
       for (std::uint32_t lane = 0; lane < width; ++lane)
         none.lo[axis][lane] = INFINITY, none.hi[axis][lane] = -INFINITY;
     return std::vector<Boxes>((count + width - 1) / width, none);
   };
-  // Coordinates in the frame, at most 2, are off by 2⁻²³ (1 + 2⁻²⁸); the product of one with a direction of length 1 by
-  // that times √3, and by 3 · 2⁻²⁴ · 2 √3 from its own rounding: together below 15 · 2⁻²⁴. Rounding `from` and `to`
-  // adds 2⁻²³ at most.
+  // Error bound of slabs. Coordinates in the frame, at most 2, have an error of 2⁻²³ (1 + 2⁻²⁸).
+  // A dot product with a unit vector adds √3 times that, and 3 · 2⁻²⁴ · 2 √3 of its own rounding:
+  // together less than 15 · 2⁻²⁴. Rounding of `from` and `to` adds 2⁻²³ at most.
   constexpr double margin = 0x1p-19;
-  levels_.push_back(start(order.size()));
+  levels_.push_back(empty_level(order.size()));
   slabs_.resize(levels_[0].size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     Boxes& boxes = levels_[0][i / width];
@@ -289,7 +289,7 @@ WideBvh::WideBvh(Corners corners, Order order) {
   }
   while (levels_.size() < 2 || levels_.back().size() > 1) {
     const auto& below = levels_.back();
-    auto level = start(below.size());
+    auto level = empty_level(below.size());
     for (std::size_t i = 0; i < below.size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
         level[i / width].lo[axis][i % width] = *std::min_element(below[i].lo[axis], below[i].lo[axis] + width);
@@ -303,8 +303,8 @@ void WideBvh::blocked(Corners corners, Order order, const Vec3& p, std::span<con
                       std::uint8_t* result) const {
   std::fill_n(result, ends.size(), std::uint8_t(0));
   if (levels_.empty()) return;
-  for (std::size_t first = 0; first < ends.size(); first += most_segments) HWY_DYNAMIC_DISPATCH(blocked_packet)
-  (*this, corners, order, p, ends.subspan(first, std::min(most_segments, ends.size() - first)), result + first);
+  for (std::size_t first = 0; first < ends.size(); first += packet_size) HWY_DYNAMIC_DISPATCH(blocked_packet)
+  (*this, corners, order, p, ends.subspan(first, std::min(packet_size, ends.size() - first)), result + first);
 }
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// Many short segments against triangles, sixteen boxes at a time.
+// A 16-wide bounding volume hierarchy for packets of short segments, in SIMD lanes.
 #pragma once
 
 #include <cstdint>
@@ -9,38 +9,47 @@
 
 namespace geo {
 
-/// A tree of boxes, sixteen to a block, over triangles in an order that keeps neighbours together. All is in floats, in
-/// a frame in which the triangles' coordinates are at most 1 in magnitude. Going to that frame is monotone, rounding
-/// and all, so boxes that meet still meet there; nothing is lost, and what may touch is left to exact predicates.
+/// A tree of boxes over triangles, sixteen boxes to a block. Boxes are floats in a frame in which
+/// the triangles' coordinates are at most 1 in magnitude. The transformation to the frame is
+/// monotone, rounding included: boxes that meet still meet there. Exact predicates decide what
+/// the boxes and slabs leave open.
 class WideBvh {
  public:
+  /// Boxes to a block.
   static constexpr std::uint32_t width = 16;
 
+  /// The boxes of a block; unused ones are empty.
   struct Boxes {
     alignas(64) float lo[3][width], hi[3][width];
   };
-  /// For each triangle the stretch [from, to] that it covers along a direction close to its normal, widened by what the
-  /// same product may be off for points within twice the frame: a segment beyond it does not touch.
+  /// For each triangle of a block: a direction close to its normal, and the interval [from, to]
+  /// that the triangle covers along it. The interval is widened by the rounding error of such
+  /// products for points within twice the frame: a segment beyond it does not touch the triangle.
   struct Slabs {
     alignas(64) float normal[3][width], from[width], to[width];
   };
 
+  /// A tree over no triangles.
   WideBvh() = default;
-  /// `order`: all rows of `corners`. Sixteen consecutive ones make a block, sixteen consecutive blocks the next, and so
-  /// on.
+  /// `order`: a permutation of the indices of `corners` that keeps neighbours together. Sixteen
+  /// consecutive triangles form a block, sixteen consecutive blocks the next one, and so on.
   WideBvh(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order);
 
-  /// For each closed segment from p to a point of `ends`: 1 where it touches a triangle, else 0. Exact. `corners` and
-  /// `order` are those that the tree was made of.
+  /// For each closed segment from p to a point of `ends`, writes 1 to `result` if it touches a
+  /// triangle, else 0. Exact. `corners` and `order`: those of the construction.
   void blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p,
                std::span<const Vec3> ends, std::uint8_t* result) const;
 
-  /// The frame: a coordinate's place in it is its difference from middle(), times scale(), as a float.
+  /// The origin of the frame, in model coordinates.
   const Vec3& middle() const { return middle_; }
+  /// The scale of the frame: 1 / largest distance of a coordinate from the origin.
   double scale() const { return scale_; }
+  /// A coordinate in the frame.
   float local(double x, int axis) const { return static_cast<float>((x - middle_[axis]) * scale_); }
-  /// levels()[0] holds boxes of triangles, levels()[l] those of blocks of levels()[l − 1]; two levels at least.
+  /// levels()[0] holds boxes of triangles, levels()[l] those of blocks of levels()[l − 1]. There
+  /// are two levels or more.
   const std::vector<std::vector<Boxes>>& levels() const { return levels_; }
+  /// The slabs of the triangles, by block of levels()[0].
   const std::vector<Slabs>& slabs() const { return slabs_; }
 
  private:

@@ -10,8 +10,8 @@ using namespace geo;
 
 namespace {
 
-// Closed, of one shell (Euler), and nothing before any triangle among those of its own corners or, where `all`, of the
-// points.
+// Closed, of one shell (Euler), and nothing before any triangle among those of its own corners
+// or, where `all`, of the points.
 void check_hull(const std::vector<Vec3>& points, const std::vector<Triangle>& hull, bool all) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   std::vector<char> used(points.size());

@@ -5,8 +5,8 @@
 #include "base/random.h"
 #include "cases.h"
 #include "geometry/bvh.h"
-#include "geometry/predicates.h"
 #include "geometry/orientation_lanes.h"
+#include "geometry/predicates.h"
 #include "geometry/triangle_index.h"
 
 using namespace geo;

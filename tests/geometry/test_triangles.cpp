@@ -1,5 +1,5 @@
-// Triangle against triangle, against CGAL's exact kernel on random and on grid triangles, where every degeneracy
-// occurs.
+// Triangle against triangle, against CGAL's exact kernel on random and on grid triangles, where
+// every degeneracy occurs.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 

@@ -9,7 +9,8 @@
 namespace geo {
 namespace {
 
-// The edge from the k-th vertex of a side to the next, and the side across it, as seen from the air.
+// The edge from the k-th vertex of a side to the next, and the side across it, as seen from the
+// air.
 SurfaceEdge edge_of(const Complex& complex, Side side, int k, Side across) {
   const auto& v = complex.face(side.face).v;
   auto a = v[static_cast<std::size_t>(k)], b = v[static_cast<std::size_t>((k + 1) % 3)];
@@ -57,7 +58,8 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideChange change;
   if (body.guides == 0) return change;
   const GuideSet& guides = body.graph.guides();
-  // Guides stand closer to their edges than a 64th of their radius; what a face comes that near to has lost its edge.
+  // Guides stand closer to their edges than a 64th of their radius; what a face comes that near to
+  // has lost its edge.
   std::vector<std::uint32_t> near, others;
   for (const FaceId f : crack.new_faces) {
     if (!body.surface.alive(f)) continue;

@@ -1,4 +1,5 @@
-// § 6.5 after a step: closest vertices of nodes near the change, then the trees that lost or found a root.
+// § 6.5 after a step: closest vertices of nodes near the change, then the trees that lost or found
+// a root.
 #include <algorithm>
 #include <numbers>
 #include <queue>
@@ -75,8 +76,8 @@ class Rebinding {
   std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
 };
 
-// A node's closest vertex depends on faces no farther than it, and a twentieth more; where there is none, on all within
-// the support radius.
+// A node's closest vertex depends on faces no farther than it, and a twentieth more; where there is
+// none, on all within the support radius.
 void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
   const auto& x = body_.nodes.position;
   const double reach = longest_reach(body_);
@@ -165,7 +166,8 @@ void Rebinding::renew_masters() {
   }
 }
 
-// The whole subtree loses its master. Vertices that are no longer beside their parents are found one by one.
+// The whole subtree loses its master. Vertices that are no longer beside their parents are found
+// one by one.
 void Rebinding::orphan(SurfaceVertexId root) {
   std::vector<SurfaceVertexId> tree{root};
   while (!tree.empty()) {

@@ -103,7 +103,8 @@ void Arrangement::meet(CrackWork& work) {
   meets_itself_ = meets_itself_ || shared_.size() != before;
 }
 
-// Where a point of the element's plane lies: 1 inside, edges by bit; 0 outside. `on`: the edges it is on.
+// Where a point of the element's plane lies: 1 inside, edges by bit; 0 outside. `on`: the edges it
+// is on.
 int Arrangement::locate_flat(std::uint32_t e, Local p, std::uint8_t& on) const {
   const auto& c = elements[e].corner;
   on = 0;
@@ -124,7 +125,8 @@ Arrangement::Key Arrangement::edge_edge(Local a, Local b, Local c, Local d) {
   return {low, high | 1ull << 63};  // no element has that number
 }
 
-// Where edge `edge` of an element crosses the other one: inside of it, or on its edge `other_edge` (−1: inside).
+// Where edge `edge` of an element crosses the other one: inside of it, or on its edge `other_edge`
+// (−1: inside).
 Local Arrangement::crossing(std::uint32_t edge_of, int edge, std::uint32_t other, int other_edge) {
   const auto &c = elements[edge_of].corner, &o = elements[other].corner;
   const Local a = c[edge], b = c[(edge + 1) % 3];
@@ -168,7 +170,8 @@ void Arrangement::divide(std::uint32_t e, int which) {
     if (f.point != c[0] && f.point != c[1] && f.point != c[2]) shared_.push_back({e, f.point, no_local, f.on[which]});
 }
 
-// The corners of s against the plane of t, and the other way round; false when one is clear of the other's plane.
+// The corners of s against the plane of t, and the other way round; false when one is clear of the
+// other's plane.
 bool Arrangement::signs_of(const Vec3 (&s)[3], const Vec3 (&t)[3], Signs& sign) const {
   for (int k = 0; k < 3; ++k) sign[0][k] = side_of(t, s[k]);
   if (sign[0][0] != 0 && sign[0][0] == sign[0][1] && sign[0][0] == sign[0][2]) return false;

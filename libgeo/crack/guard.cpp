@@ -13,7 +13,8 @@
 namespace geo {
 namespace {
 
-// A triangle's plane against points, quickly: by how much the normal's and the products' rounding can be off.
+// A triangle's plane against points, quickly: by how much the normal's and the products' rounding
+// can be off.
 struct Plane {
   Vec3 normal, at;
   double size;    // the longest side of the triangle's box
@@ -25,9 +26,10 @@ struct Plane {
         size((box.hi - box.lo).maxCoeff()),
         margin(clearance > 0 ? clearance * normal.norm() : 0) {}
 
-  // True when those corners of the other that the two do not share are all on one side, for certain, and farther than
-  // the clearance: the two then have nothing else in common. Each entry of the normal is off by 8 roundings of size² at
-  // most, an offset by one; boxes meet, so that no offset is longer than both sizes.
+  // True when those corners of the other that the two do not share are all on one side, for
+  // certain, and farther than the clearance: the two then have nothing else in common. Each entry
+  // of the normal is off by 8 roundings of size² at most, an offset by one; boxes meet, so that no
+  // offset is longer than both sizes.
   bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& rows,
               const std::array<Vec3, 3>& corners, double other_size) const {
     const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume + margin;
@@ -52,7 +54,8 @@ double height(const std::array<Vec3, 3>& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() / std::sqrt(longest);
 }
 
-// True when corners or edges of two triangles that do not touch by id are nearer to each other than `clearance`.
+// True when corners or edges of two triangles that do not touch by id are nearer to each other than
+// `clearance`.
 bool too_near(const Plane& of_f, const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p, const Plane& of_g,
               const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q, double clearance) {
   const auto in = [](std::uint32_t v, const std::array<std::uint32_t, 3>& t) {
@@ -123,7 +126,8 @@ class Inspection {
     return {};
   }
 
-  // Two vertices that rounding has left a few places from each other: slivers that no later step could round.
+  // Two vertices that rounding has left a few places from each other: slivers that no later step
+  // could round.
   Fault coincident() const {
     // Sorted along a direction that no model is likely to be flat across.
     const Vec3 along(0.5412, 0.6173, 0.5710);
@@ -284,7 +288,8 @@ Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> 
   for (Family& family : rest) family.whole = family.whole && edit.new_faces[family.first].parent.valid();
   Random random(edit.new_faces.size() * 0x9e3779b97f4a7c15ull + edit.new_vertices.size());
   for (int tries = 0; tries < 32; ++tries) {
-    // The points that the fault's faces have and that rounding has moved anyway, a little farther each time.
+    // The points that the fault's faces have and that rounding has moved anyway, a little farther
+    // each time.
     const double distance = last_place * std::pow(2.0, tries / 2);
     std::vector<std::pair<std::uint32_t, Vec3>> before;
     for (const auto f : fault.faces)

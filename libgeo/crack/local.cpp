@@ -102,7 +102,8 @@ std::optional<LocalEdit> collapse(const Complex& k, VertexId b, VertexId a) {
       maker.order(a, x, maker.inherited(its));
       continue;
     }
-    // Seen along the edges, the face between a and b shrinks to nothing: what follows it at a, then what follows at b.
+    // Seen along the edges, the face between a and b shrinks to nothing: what follows it at a, then
+    // what follows at b.
     auto merged = maker.inherited(rest_after(mine, gone->second));
     const auto more = maker.inherited(rest_after(its, gone->second));
     merged.insert(merged.end(), more.begin(), more.end());

@@ -134,8 +134,8 @@ bool Triangulator::may_flip(int t, int edge, int& other, int& apex) {
   return turn(a, apex, c) > 0 && turn(apex, b, c) > 0;
 }
 
-// Calls with each triangle at a and a's corner there, one way around until a side of the face is met, then the other
-// way; ends when `visit` says true.
+// Calls with each triangle at a and a's corner there, one way around until a side of the face is
+// met, then the other way; ends when `visit` says true.
 template <class Visit>
 void Triangulator::around(int a, const Visit& visit) const {
   const int start = at_[static_cast<std::size_t>(a)];
@@ -352,7 +352,8 @@ void Triangulator::triangulate(const std::array<Local, 3>& corner, std::span<con
   for (int k = 0; k < 3; ++k) add_vertex(corner[k], corner_bits(k));
   tri_.push_back({{0, 1, 2}, {-1, -1, -1}, {0, 1, 2}});
   at_[0] = at_[1] = at_[2] = 0;
-  // Points on the face's edges, in order along them: they divide the triangle behind the edge, no question asked.
+  // Points on the face's edges, in order along them: they divide the triangle behind the edge, no
+  // question asked.
   std::vector<Local> chain;
   for (int k = 0; k < 3; ++k) {
     chain.clear();

@@ -9,7 +9,8 @@
 
 namespace geo::crack {
 
-/// What an edge of a child is: part of the face's own edge 0, 1 or 2, of a constraint, or nothing but a diagonal.
+/// What an edge of a child is: part of the face's own edge 0, 1 or 2, of a constraint, or nothing
+/// but a diagonal.
 enum EdgeKind : std::uint8_t { edge_constraint = 3, edge_diagonal = 4 };
 
 struct Child {
@@ -26,17 +27,19 @@ struct Mark {
 /// The bits of corner k: it lies on the edges k and k − 1.
 inline std::uint8_t corner_bits(int k) { return static_cast<std::uint8_t>(1 << k | 1 << (k + 2) % 3); }
 
-/// Constrained Delaunay as far as rounding allows it: exact where it decides what is where, approximate in which of two
-/// diagonals is the better one. Keeps its memory between calls.
+/// Constrained Delaunay as far as rounding allows it: exact where it decides what is where,
+/// approximate in which of two diagonals is the better one. Keeps its memory between calls.
 class Triangulator {
  public:
   explicit Triangulator(Points& points) : points_(points) {}
 
-  /// Called with a new point where two constraints cross; returns the row under which that place is known.
+  /// Called with a new point where two constraints cross; returns the row under which that place is
+  /// known.
   using Known = std::function<Local(Local)>;
 
-  /// `marks`: points other than the corners, each once. Appends the children to `out`. Throws GeometryError when the
-  /// face has no area, when two rows are at one place, or when constraints cross and `known` is empty.
+  /// `marks`: points other than the corners, each once. Appends the children to `out`. Throws
+  /// GeometryError when the face has no area, when two rows are at one place, or when constraints
+  /// cross and `known` is empty.
   void triangulate(const std::array<Local, 3>& corner, std::span<const Mark> marks,
                    std::span<const std::pair<Local, Local>> constraints, const Known& known, std::vector<Child>& out);
 

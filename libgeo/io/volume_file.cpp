@@ -45,7 +45,8 @@ openvdb::FloatGrid::Ptr level_set_of(const TriangleMesh& solid, double voxel) {
 template <class Grid>
 TriangleMesh surface_of(const Grid& grid, const VolumeOptions& options, const std::string& path) {
   const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-  // A file without a class is one of distances where its background, the value far outside, is not 0.
+  // A file without a class is one of distances where its background, the value far outside, is not
+  // 0.
   const bool low_inside = level_set || (grid.getGridClass() != openvdb::GRID_FOG_VOLUME && grid.background() > 0);
   const double iso = options.iso.value_or(low_inside ? 0.0 : 0.5);
   if (grid.activeVoxelCount() == 0) throw InputError(path + ": the grid is empty");

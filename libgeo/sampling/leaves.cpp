@@ -17,7 +17,8 @@ Vec3 random_shift(const Cell& cell, std::uint64_t seed) {
   return {x, y, random.uniform(-1, 1)};
 }
 
-/// Moves p off the surface where it is nearer than `away`; false where p is not inside or cannot be made so.
+/// Moves p off the surface where it is nearer than `away`; false where p is not inside or cannot be
+/// made so.
 bool settle(const RegionTree& tree, const Region& region, const Box3& box, double away, Vec3& p) {
   if (!tree.inside(region, p)) return false;
   const auto close = tree.tree().closest(p, away);
@@ -48,7 +49,8 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
     if (in[i]) sum += at[i], ++count;
   leaf.share = float(count) / points;
   if (count == 0) {
-    // A wall between the sample points: it has a node in its middle where it fills most of the cell's cross-section.
+    // A wall between the sample points: it has a node in its middle where it fills most of the
+    // cell's cross-section.
     const Wall wall = thinnest_wall(tree, lattice, region, edge);
     if (wall.area < edge * edge || !box.meets({wall.at, wall.at})) return leaf;
     leaf.position = wall.at, leaf.node = tree.inside(region, wall.at);

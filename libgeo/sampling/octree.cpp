@@ -26,7 +26,8 @@ void balance(Divisions& divided) {
     std::sort(codes.begin(), codes.end());
     codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
     if (level + 1 == divided.size()) break;
-    // The parts of a divided cell want neighbours of its own level: their parents, eight at most, are divided.
+    // The parts of a divided cell want neighbours of its own level: their parents, eight at most,
+    // are divided.
     auto& above = divided[level + 1];
     const std::int32_t edge = 1 << level;
     for (const auto code : codes) {

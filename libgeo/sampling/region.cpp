@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <bit>
 
-#include "geometry/predicates.h"
 #include "geometry/orientation_lanes.h"
+#include "geometry/predicates.h"
 
 namespace geo {
 namespace {
 
-/// Crossings of segment pq with a triangle of whose plane the ends are on sides sp and sq: 0 or 1, or −1 where it
-/// touches the plane, an edge or a corner.
+/// Crossings of segment pq with a triangle of whose plane the ends are on sides sp and sq: 0 or 1,
+/// or −1 where it touches the plane, an edge or a corner.
 int crossings(const Vec3& p, const Vec3& q, int sp, int sq, const std::array<Vec3, 3>& t) {
   if (sp == 0 || sq == 0) return segment_meets_triangle(p, q, t[0], t[1], t[2]) ? -1 : 0;
   if (sp == sq) return 0;
@@ -20,8 +20,8 @@ int crossings(const Vec3& p, const Vec3& q, int sp, int sq, const std::array<Vec
   return e0 == 0 || e1 == 0 || e2 == 0 ? -1 : 1;
 }
 
-// Whether the triangle has all of its plane that is in the box: seen along the axis that it faces most, the box is
-// strictly within it.
+// Whether the triangle has all of its plane that is in the box: seen along the axis that it faces
+// most, the box is strictly within it.
 bool covers(const std::array<Vec3, 3>& t, const Box3& box) {
   int axis = 0;
   (t[1] - t[0]).cross(t[2] - t[0]).cwiseAbs().maxCoeff(&axis);
@@ -120,8 +120,8 @@ bool RegionTree::inside(const Region& region, const Vec3& p) const {
 }
 
 void RegionTree::inside(const Region& region, std::span<const Vec3> points, std::span<char> answers) const {
-  // From each point to the next, the first from the probe; a triangle with both on one side of its plane is not between
-  // them. A bit a point.
+  // From each point to the next, the first from the probe; a triangle with both on one side of its
+  // plane is not between them. A bit a point.
   const std::size_t count = points.size(), words = (count + 63) / 64;
   const auto padded = 64 * words;
   std::vector<double> coordinates(3 * padded);

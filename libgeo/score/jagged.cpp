@@ -19,7 +19,8 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t t) {
   return {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
 }
 
-// Drops the triangles that have nothing to do with the material, and the vertices that nothing uses then.
+// Drops the triangles that have nothing to do with the material, and the vertices that nothing uses
+// then.
 void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
   std::vector<char> keep(walls.triangles.size());
   parallel_for(keep.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -46,7 +47,8 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
   walls = std::move(kept);
 }
 
-// Longest edges first: each is then the longest of all its triangles, which stay about as round as they were.
+// Longest edges first: each is then the longest of all its triangles, which stay about as round as
+// they were.
 void divide(TriangleMesh& walls, double longest) {
   struct Edge {
     double length2;
@@ -103,7 +105,8 @@ class Crossings {
     }
   }
 
-  // The vertices, ascending, of those that cross others, among all or, after moved(), those with moved vertices.
+  // The vertices, ascending, of those that cross others, among all or, after moved(), those with
+  // moved vertices.
   std::vector<std::uint32_t> vertices() const {
     std::vector<std::vector<std::uint32_t>> bad(asked_.size());
     parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {

@@ -1,11 +1,11 @@
 #include "simulation/fracture_tip.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <numbers>
 
 #include "body/locate.h"
+#include "geometry/nearest_rotation.h"
 #include "mechanics/discretisation/kernel.h"
 
 namespace geo {
@@ -39,7 +39,8 @@ double TipField::hoop(double angle) const {
 }
 
 TipField::Strongest TipField::strongest() const {
-  // The hoop stress has one maximum between the flanks or two; a scan by degrees finds the larger, bisection its place.
+  // The hoop stress has one maximum between the flanks or two; a scan by degrees finds the larger,
+  // bisection its place.
   constexpr double degree = std::numbers::pi / 180;
   double best = 0;
   for (int a = -85; a <= 85; ++a)
@@ -82,7 +83,8 @@ Nearby nodes_about(const Body& body, const TipFrame& tip) {
   return found;
 }
 
-// How much of the way straight back from the tip, between one support radius and three, there is crack.
+// How much of the way straight back from the tip, between one support radius and three, there is
+// crack.
 double share_behind(const Complex& complex, const TipFrame& tip, double h) {
   int crack = 0;
   for (int k = 0; k < 4; ++k) {
@@ -92,8 +94,8 @@ double share_behind(const Complex& complex, const TipFrame& tip, double h) {
   return 0.25 * crack;
 }
 
-// Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of them, in units of
-// `scale`), by weighted least squares with as small a norm as there is.
+// Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of
+// them, in units of `scale`), by weighted least squares with as small a norm as there is.
 Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material& material, const TipFrame& tip,
                     const Nearby& near, int modes, double scale) {
   const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
@@ -131,11 +133,10 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   std::vector<Vec3> v;
   for (const auto i : near.nodes) v.push_back(u[i]);
   const auto gradient = [&](const Eigen::VectorXd& c) { return Mat3(Eigen::Map<const Mat3>(c.data()) / near.support); };
-  // First as one affine map, whose rotation is taken out; then with the modes, where there are nodes enough for them.
+  // First as one affine map, whose rotation is taken out; then with the modes, where there are
+  // nodes enough for them.
   const Mat3 f = Mat3::Identity() + frame * gradient(fit(body, v, material, tip, near, 0, 1)) * frame.transpose();
-  const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-  if (rotation.determinant() < 0) rotation = svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
+  const Mat3 rotation = nearest_rotation(f).rotation;
   for (std::size_t j = 0; j < v.size(); ++j) {
     const Vec3 x = body.nodes.position[near.nodes[j]] - tip.at;
     v[j] = rotation.transpose() * (x + v[j]) - x;
@@ -148,8 +149,8 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   field.uniform = stress(material, stretch) * stretch / stretch.determinant();
   if (modes == 0) return field;
   field.k = scale * c.tail<3>();
-  // What the nodes' field has of tractions on the crack itself is an error of theirs, as far as there is a crack
-  // behind.
+  // What the nodes' field has of tractions on the crack itself is an error of theirs, as far as
+  // there is a crack behind.
   const double open = 1 - share_behind(body.surface, tip, near.support);
   const Vec3 traction = open * field.uniform.col(1);
   field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();

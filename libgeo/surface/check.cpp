@@ -222,7 +222,8 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
     for (int which = 0; which < 2; ++which) {
       const Side s{FaceId(f), which};
       if (!k.has(s)) continue;
-      // The neighbour's neighbour is the side itself, and both see the same surface vertices at the edge.
+      // The neighbour's neighbour is the side itself, and both see the same surface vertices at the
+      // edge.
       const Side n = k.neighbor(s, e);
       const auto& g = k.face(n.face);
       const int na = corner_at(g, a), nb = corner_at(g, b);

@@ -1,5 +1,5 @@
-// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is taken at run time.
-// No sum is fused with a product, so that error bounds hold.
+// Compiled once for each kind of vectors (see Highway's foreach_target.h); the processor's best is
+// taken at run time. No sum is fused with a product, so that error bounds hold.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/triangle_sides.cpp"
 #define HWY_DISABLED_TARGETS \
@@ -71,8 +71,8 @@ HWY_INLINE Normal normal(const Corners& c) {
   return n;
 }
 
-// Whether all corners of o that p does not have are strictly on one side of p's plane: the determinant of
-// orient3d_filtered() with its bound, but taken relative to p's first corner.
+// Whether all corners of o that p does not have are strictly on one side of p's plane: the
+// determinant of orient3d_filtered() with its bound, but taken relative to p's first corner.
 HWY_INLINE M on_one_side(const Corners& p, const Corners& o) {
   const D d;
   const Normal n = normal(p);
@@ -183,7 +183,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-// Those not in `clear`, which is asked about some at a time. The last ones are in the lanes that are left, too.
+// Those not in `clear`, which is asked about some at a time. The last ones are in the lanes that
+// are left, too.
 template <class Clear>
 void leave_out(std::span<const Triangle> triangles, const std::vector<Vec3>& positions, Pairs& pairs,
                const Clear& clear) {

@@ -58,8 +58,8 @@ class Mover {
     return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
-  // Straight to where all want to be; what would cross or pass something is carried along instead, and left behind
-  // where the field would be too steep.
+  // Straight to where all want to be; what would cross or pass something is carried along instead,
+  // and left behind where the field would be too steep.
   enum class Way { free, carried, behind };
   Way advance(int round) {
     std::vector<Vec3> start = at_;
@@ -104,7 +104,8 @@ class Mover {
     return next;
   }
 
-  // Mends where all want to go until nothing would cross or pass anything; false: something would all the same.
+  // Mends where all want to go until nothing would cross or pass anything; false: something would
+  // all the same.
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     SeparationProjection couples(surface_.triangles, start, m_.gap);
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
@@ -161,8 +162,8 @@ class Mover {
     if (report_.held) next = at_;
   }
 
-  // Sees to it that all pairs are there that may come together from `start` to `next`; only these triangles have
-  // another `next`.
+  // Sees to it that all pairs are there that may come together from `start` to `next`; only these
+  // triangles have another `next`.
   void cover(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
              const std::vector<std::uint8_t>* changed = nullptr) {
     near_.cover(

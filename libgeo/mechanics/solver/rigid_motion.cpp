@@ -1,11 +1,11 @@
 #include "mechanics/solver/rigid_motion.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "geometry/nearest_rotation.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -29,11 +29,8 @@ RigidMotion motion_of(const Sums& sums, const Vec3& base, Freedom freedom) {
   motion.reach = std::sqrt(std::max(0.0, spread.trace()));
   if (freedom == Freedom::way || !(motion.reach > 0) || !moved.allFinite()) return motion;
   constexpr double thin = 1e-9;  // of the spread: what is rounding
-  const Eigen::JacobiSVD<Mat3> svd(spread + moved, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (svd.singularValues()[1] > thin * spread.trace()) {
-    const Mat3 flip = Vec3(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1).asDiagonal();
-    motion.turn = svd.matrixU() * flip * svd.matrixV().transpose();
-  }
+  const NearestRotation nearest = nearest_rotation(spread + moved);
+  if (nearest.singular_values[1] > thin * spread.trace()) motion.turn = nearest.rotation;
   // Of arm × way, and the inertia that it is against.
   const Vec3 momentum(moved(2, 1) - moved(1, 2), moved(0, 2) - moved(2, 0), moved(1, 0) - moved(0, 1));
   const Eigen::SelfAdjointEigenSolver<Mat3> inertia(Mat3(spread.trace() * Mat3::Identity() - spread));

@@ -11,9 +11,10 @@
 namespace geo {
 namespace {
 
-constexpr double apart = 0.7;     // points of a front, in spacings
-constexpr double ligament = 0.5;  // what nodes cannot carry
-constexpr double overhang = 1.0 / 7;
+// In node spacings. Nodes resolve neither a finer front nor the stress in a thinner ligament.
+constexpr double point_interval = 0.7;  // between the points of a front
+constexpr double ligament = 0.5;        // thickness below which a front cuts through to the surface
+constexpr double overhang = 1.0 / 7;    // of a front beyond the surface
 
 // How far along the unit direction d from p a face is met first, beyond what p itself touches;
 // beyond `reach`: infinity.
@@ -36,7 +37,7 @@ double distance_to_face(const Complex& complex, const Vec3& p, const Vec3& d, do
 
 Vec3 unit_or(const Vec3& v, const Vec3& otherwise) { return v.squaredNorm() > 0 ? v.normalized() : otherwise; }
 
-// A part of the front is inside between two points in air.
+// True where a part of the segment is inside the material.
 bool spans_material(const FrontState& front, std::size_t segment) {
   const auto& s = front.segments[segment];
   return std::any_of(s.begin(), s.end(), [](const auto& p) { return p.id.valid(); });
@@ -65,124 +66,187 @@ GrowingFront growing(FrontState front, std::vector<Vec3> normals) {
   return g;
 }
 
-FrontPlan plan_front(const Complex& complex, const GrowingFront& g, std::span<const double> step,
-                     std::span<const Vec3> direction, double spacing) {
-  const std::size_t n = g.size();
-  const double out = overhang * spacing, wanted = apart * spacing;
-  std::vector<Vec3> next(n);
-  std::vector<std::uint8_t> ended(g.ended);
-  const auto goes = [&](std::size_t i) { return next[i] != g.front.points[i].position; };
-  for (std::size_t i = 0; i < n; ++i) {
-    next[i] = g.front.points[i].position;
-    if (!g.live(i) || !(step[i] > 0)) continue;
-    const double reach = step[i] + ligament * spacing,
-                 surface = distance_to_face(complex, next[i], direction[i], reach);
-    ended[i] = surface <= reach;
-    next[i] += (ended[i] ? surface + out : step[i]) * direction[i];
-  }
-  // Points in air beside what is still inside follow their live neighbour, or go on where they were
-  // going.
-  std::vector<Vec3> carried = next;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (g.front.points[i].id.valid()) continue;
-    int beside_live = 0;
-    bool spans = false;
-    Vec3 way = Vec3::Zero();
-    for (const bool after : {false, true}) {
-      if (!g.front.closed && (after ? i + 1 == n : i == 0)) continue;
-      const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
-      spans = spans || spans_material(g.front, after ? i : j);
-      if (!g.live(j)) continue;
-      ++beside_live;
-      way += next[j] - g.front.points[j].position;
+namespace {
+
+// A point that a plan adds beyond an end of the front, and whether it lies at or beyond a surface.
+struct ExtraPoint {
+  Vec3 position;
+  bool ended;
+};
+
+// Works out plan_front(), phase by phase.
+class FrontPlanner {
+ public:
+  FrontPlanner(const Complex& complex, const GrowingFront& front, std::span<const double> step,
+               std::span<const Vec3> direction, double spacing)
+      : complex_(complex),
+        g_(front),
+        step_(step),
+        direction_(direction),
+        spacing_(spacing),
+        overhang_(overhang * spacing),
+        interval_(point_interval * spacing),
+        next_(front.size()),
+        ended_(front.ended) {}
+
+  FrontPlan plan() {
+    advance_live_points();
+    carry_points_in_air();
+    if (!g_.front.closed) {
+      const std::size_t last = g_.size() - 1;
+      extend_end(0, 1, head_), extend_end(last, last - 1, tail_);
+      detour_around_edge(0, head_), detour_around_edge(last, tail_);
     }
-    if (beside_live > 0)
-      carried[i] += way / beside_live;
-    else if (spans)
-      carried[i] += wanted * tip_frame(g, i).ahead;
-  }
-  next = carried;
-  FrontPlan plan;
-  const auto add = [&](std::size_t from, const Vec3& to, bool end) {
-    plan.from.push_back(static_cast<std::uint32_t>(from)), plan.next.push_back(to), plan.ended.push_back(end);
-  };
-  // Beyond a live end of the front: from next[i] along it to the surface, with new points on the
-  // way.
-  const auto widen = [&](std::size_t end, std::size_t neighbor, std::vector<std::pair<Vec3, bool>>& beyond) {
-    const bool lives = g.live(end);
-    const std::size_t base = lives ? end : neighbor;
-    if (!g.live(base) || !goes(base) || ended[base]) return;
-    Vec3 along = g.front.points[end].position - g.front.points[neighbor].position;
-    along -= along.dot(direction[base]) * direction[base];
-    if (!(along.norm() > 0)) return;
-    along.normalize();
-    const double reach = 3 * wanted, surface = distance_to_face(complex, next[base], along, reach),
-                 to = surface <= reach ? surface + out : wanted;
-    for (int k = 1; k * wanted < to - 0.4 * wanted; ++k) beyond.push_back({next[base] + k * wanted * along, false});
-    beyond.push_back({next[base] + to * along, surface <= reach});
-  };
-  // The way of an end in air is a border of the crack that no front follows: it must stay in air.
-  // Where it would not (round an edge of the body), the end goes ahead to where it sees its new
-  // place, and both belong to the front.
-  const auto round_edge = [&](std::size_t end, std::vector<std::pair<Vec3, bool>>& beyond) {
-    const Vec3 &from = g.front.points[end].position, to = beyond.empty() ? next[end] : beyond.back().first;
-    if (g.live(end) || from == to || !is_blocked(complex, from, to)) return;
-    if (beyond.empty()) beyond.push_back({to, ended[end]});
-    const Vec3 ahead = tip_frame(g, end).ahead,
-               away = unit_or(from - g.front.points[end == 0 ? 1 : end - 1].position, ahead);
-    Vec3 corner = from + wanted * away;
-    bool seen = false;
-    for (int k = 1; k <= 3 && !seen; ++k)
-      for (int turn = 0; turn < 4 && !seen; ++turn) {
-        const double angle = turn * std::numbers::pi / 8;
-        const Vec3 trial = from + k * wanted * (std::cos(angle) * ahead + std::sin(angle) * away);
-        seen = !is_blocked(complex, from, trial) && !is_blocked(complex, trial, to);
-        if (seen) corner = trial;
-      }
-    beyond.push_back({corner, true});
-  };
-  std::vector<std::pair<Vec3, bool>> head, tail;
-  if (!g.front.closed) {
-    widen(0, 1, head), widen(n - 1, n - 2, tail);
-    round_edge(0, head), round_edge(n - 1, tail);
-  }
-  for (std::size_t k = head.size(); k-- > 0;) add(0, head[k].first, head[k].second);
-  for (std::size_t i = 0; i < n; ++i) {
-    // A dead end whose place was taken by what widening found is only where new points start.
-    const bool replaced = (i == 0 && !head.empty() && !g.live(i)) || (i + 1 == n && !tail.empty() && !g.live(i));
-    if (!replaced) add(i, next[i], ended[i]);
-    if (!g.front.closed && i + 1 == n) break;
-    const std::size_t j = (i + 1) % n;
-    const double gap = (next[i] - next[j]).norm();
-    if ((i == 0 && replaced) || (j + 1 == n && !tail.empty() && !g.live(j))) continue;
-    // Two that have come out on different sides of an edge of the body: a third goes out between
-    // them.
-    if (ended[i] && ended[j] && (goes(i) || goes(j)) && is_blocked(complex, next[i], next[j])) {
-      const Vec3 ahead = unit_or(direction[i] + direction[j], direction[i]);
-      for (int k = 1; k <= 4; ++k) {
-        const Vec3 trial = 0.5 * (next[i] + next[j]) + k * 0.5 * wanted * ahead;
-        if (is_blocked(complex, next[i], trial) || is_blocked(complex, trial, next[j])) continue;
-        add(goes(i) ? i : j, trial, true);
-        break;
-      }
-      continue;
+    for (std::size_t k = head_.size(); k-- > 0;) add(0, head_[k].position, head_[k].ended);
+    for (std::size_t i = 0; i < g_.size(); ++i) {
+      if (!replaced(i)) add(i, next_[i], ended_[i]);
+      if (!g_.front.closed && i + 1 == g_.size()) break;
+      resample_between(i, (i + 1) % g_.size());
     }
-    if (!goes(i) || !goes(j)) continue;
-    if (gap > 1.6 * wanted) {
-      const int parts = static_cast<int>(std::ceil(gap / (1.6 * wanted)));
-      const std::size_t from =
-          (next[i] - g.front.points[i].position).norm() >= (next[j] - g.front.points[j].position).norm() ? i : j;
-      for (int k = 1; k < parts; ++k)
-        add(from, next[i] + double(k) / parts * (next[j] - next[i]), ended[i] && ended[j]);
-    } else if (gap < 0.4 * wanted && j > i && !ended[i] && !ended[j] && g.live(i) && g.live(j)) {
-      next[j] = next[i];
-    }
+    for (const ExtraPoint& p : tail_) add(g_.size() - 1, p.position, p.ended);
+    return std::move(plan_);
   }
-  for (std::size_t k = 0; k < tail.size(); ++k) add(n - 1, tail[k].first, tail[k].second);
-  return plan;
+
+ private:
+  bool moves(std::size_t i) const { return next_[i] != g_.front.points[i].position; }
+  void add(std::size_t from, const Vec3& to, bool end) {
+    plan_.from.push_back(static_cast<std::uint32_t>(from)), plan_.next.push_back(to), plan_.ended.push_back(end);
+  }
+  // An end in air whose place an extension has taken: it only is where new points start.
+  bool replaced(std::size_t i) const {
+    return !g_.live(i) && ((i == 0 && !head_.empty()) || (i + 1 == g_.size() && !tail_.empty()));
+  }
+  void advance_live_points();
+  void carry_points_in_air();
+  void extend_end(std::size_t end, std::size_t neighbor, std::vector<ExtraPoint>& beyond) const;
+  void detour_around_edge(std::size_t end, std::vector<ExtraPoint>& beyond) const;
+  void resample_between(std::size_t i, std::size_t j);
+  void bridge_edge(std::size_t i, std::size_t j);
+
+  const Complex& complex_;
+  const GrowingFront& g_;
+  std::span<const double> step_;
+  std::span<const Vec3> direction_;
+  double spacing_, overhang_, interval_;  // model units
+  std::vector<Vec3> next_;                // per point of the front
+  std::vector<std::uint8_t> ended_;       // per point of the front
+  std::vector<ExtraPoint> head_, tail_;   // beyond the first and the last point, outwards
+  FrontPlan plan_;
+};
+
+// Live points grow by their step, or through a surface where one is near.
+void FrontPlanner::advance_live_points() {
+  for (std::size_t i = 0; i < g_.size(); ++i) {
+    next_[i] = g_.front.points[i].position;
+    if (!g_.live(i) || !(step_[i] > 0)) continue;
+    const double reach = step_[i] + ligament * spacing_,
+                 surface = distance_to_face(complex_, next_[i], direction_[i], reach);
+    ended_[i] = surface <= reach;
+    next_[i] += (ended_[i] ? surface + overhang_ : step_[i]) * direction_[i];
+  }
 }
 
-FrontState depart(const GrowingFront& g, const FrontPlan& plan) {
+// Points in air follow the mean motion of their live neighbours. Those without one, between which the
+// front passes through material, move straight ahead.
+void FrontPlanner::carry_points_in_air() {
+  const std::size_t n = g_.size();
+  std::vector<Vec3> carried = next_;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (g_.front.points[i].id.valid()) continue;
+    int live_neighbors = 0;
+    bool spans = false;
+    Vec3 motion = Vec3::Zero();
+    for (const bool after : {false, true}) {
+      if (!g_.front.closed && (after ? i + 1 == n : i == 0)) continue;
+      const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
+      spans = spans || spans_material(g_.front, after ? i : j);
+      if (!g_.live(j)) continue;
+      ++live_neighbors;
+      motion += next_[j] - g_.front.points[j].position;
+    }
+    if (live_neighbors > 0)
+      carried[i] += motion / live_neighbors;
+    else if (spans)
+      carried[i] += interval_ * tip_frame(g_, i).ahead;
+  }
+  next_ = carried;
+}
+
+// Widens an open front at a live end: from the end's next position along the front to the surface,
+// with new points on the way.
+void FrontPlanner::extend_end(std::size_t end, std::size_t neighbor, std::vector<ExtraPoint>& beyond) const {
+  const std::size_t base = g_.live(end) ? end : neighbor;
+  if (!g_.live(base) || !moves(base) || ended_[base]) return;
+  Vec3 along = g_.front.points[end].position - g_.front.points[neighbor].position;
+  along -= along.dot(direction_[base]) * direction_[base];
+  if (!(along.norm() > 0)) return;
+  along.normalize();
+  const double reach = 3 * interval_, surface = distance_to_face(complex_, next_[base], along, reach),
+               to = surface <= reach ? surface + overhang_ : interval_;
+  for (int k = 1; k * interval_ < to - 0.4 * interval_; ++k)
+    beyond.push_back({next_[base] + k * interval_ * along, false});
+  beyond.push_back({next_[base] + to * along, surface <= reach});
+}
+
+// An end in air leaves a border of the crack that no front follows, so its path must stay in air.
+// Where the path would not, at an edge of the body, the end moves to a position that sees its new
+// place, and both belong to the front.
+void FrontPlanner::detour_around_edge(std::size_t end, std::vector<ExtraPoint>& beyond) const {
+  const Vec3 &from = g_.front.points[end].position, to = beyond.empty() ? next_[end] : beyond.back().position;
+  if (g_.live(end) || from == to || !is_blocked(complex_, from, to)) return;
+  if (beyond.empty()) beyond.push_back({to, ended_[end] != 0});
+  const Vec3 ahead = tip_frame(g_, end).ahead,
+             away = unit_or(from - g_.front.points[end == 0 ? 1 : end - 1].position, ahead);
+  Vec3 corner = from + interval_ * away;
+  bool seen = false;
+  for (int k = 1; k <= 3 && !seen; ++k)
+    for (int turn = 0; turn < 4 && !seen; ++turn) {
+      const double angle = turn * std::numbers::pi / 8;
+      const Vec3 trial = from + k * interval_ * (std::cos(angle) * ahead + std::sin(angle) * away);
+      seen = !is_blocked(complex_, from, trial) && !is_blocked(complex_, trial, to);
+      if (seen) corner = trial;
+    }
+  beyond.push_back({corner, true});
+}
+
+// Points i and j, neighbours on the front, have left the body on different sides of one of its edges:
+// a third point outside joins them.
+void FrontPlanner::bridge_edge(std::size_t i, std::size_t j) {
+  const Vec3 ahead = unit_or(direction_[i] + direction_[j], direction_[i]);
+  for (int k = 1; k <= 4; ++k) {
+    const Vec3 trial = 0.5 * (next_[i] + next_[j]) + k * 0.5 * interval_ * ahead;
+    if (is_blocked(complex_, next_[i], trial) || is_blocked(complex_, trial, next_[j])) continue;
+    add(moves(i) ? i : j, trial, true);
+    return;
+  }
+}
+
+// Inserts points between neighbours that have moved apart, and merges those that have come close.
+void FrontPlanner::resample_between(std::size_t i, std::size_t j) {
+  const double gap = (next_[i] - next_[j]).norm();
+  if ((i == 0 && replaced(i)) || (j + 1 == g_.size() && !tail_.empty() && !g_.live(j))) return;
+  if (ended_[i] && ended_[j] && (moves(i) || moves(j)) && is_blocked(complex_, next_[i], next_[j]))
+    return bridge_edge(i, j);
+  if (!moves(i) || !moves(j)) return;
+  if (gap > 1.6 * interval_) {
+    const int parts = static_cast<int>(std::ceil(gap / (1.6 * interval_)));
+    const auto moved = [&](std::size_t p) { return (next_[p] - g_.front.points[p].position).norm(); };
+    const std::size_t from = moved(i) >= moved(j) ? i : j;
+    for (int k = 1; k < parts; ++k)
+      add(from, next_[i] + double(k) / parts * (next_[j] - next_[i]), ended_[i] && ended_[j]);
+  } else if (gap < 0.4 * interval_ && j > i && !ended_[i] && !ended_[j] && g_.live(i) && g_.live(j)) {
+    next_[j] = next_[i];
+  }
+}
+
+}  // namespace
+
+FrontPlan plan_front(const Complex& complex, const GrowingFront& front, std::span<const double> step,
+                     std::span<const Vec3> direction, double spacing) {
+  return FrontPlanner(complex, front, step, direction, spacing).plan();
+}
+
+FrontState with_planned_points(const GrowingFront& g, const FrontPlan& plan) {
   FrontState front = g.front;
   front.points.clear(), front.segments.clear();
   const std::size_t n = plan.from.size();
@@ -198,70 +262,84 @@ FrontState depart(const GrowingFront& g, const FrontPlan& plan) {
   return front;
 }
 
-std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& plan, FrontState moved,
-                                 std::span<const Vec3> direction) {
+namespace {
+
+// The front after a step, with equal neighbours merged; without segments where nothing is left.
+GrowingFront merged(const GrowingFront& before, const FrontPlan& plan, const FrontState& moved,
+                    std::span<const Vec3> direction) {
   GrowingFront g;
   g.front = moved;
   g.front.points.clear(), g.front.segments.clear();
   g.length = before.length;
-  const std::size_t n = moved.points.size();
   double farthest = 0;
-  const auto take = [&](std::size_t k, const FrontState::Point& p) {
+  const auto add = [&](std::size_t k, const FrontState::Point& p) {
     const auto i = plan.from[k];
-    const Vec3 way = p.position - before.front.points[i].position;
-    farthest = std::max(farthest, way.norm());
+    const Vec3 growth = p.position - before.front.points[i].position;
+    farthest = std::max(farthest, growth.norm());
     g.front.points.push_back(p);
-    // The crack behind the point holds its way and the front's tangent.
+    // The new crack surface behind the point contains its growth and the front's tangent.
     const TipFrame old = tip_frame(before, i);
-    const Vec3 ahead = before.live(i) && way.squaredNorm() > 0 ? direction[i] : old.ahead,
+    const Vec3 ahead = before.live(i) && growth.squaredNorm() > 0 ? direction[i] : old.ahead,
                tangent = old.normal.cross(old.ahead);
     g.normal.push_back(unit_or(ahead.cross(tangent), old.normal));
-    g.owed.push_back(way.squaredNorm() > 0 ? 0 : before.owed[i]);
+    g.owed.push_back(growth.squaredNorm() > 0 ? 0 : before.owed[i]);
     g.ended.push_back(plan.ended[k] || !p.id.valid());
   };
+  const std::size_t n = moved.points.size();
   for (std::size_t k = 0; k < moved.segments.size(); ++k) {
     if (moved.points[k].position == moved.points[(k + 1) % n].position) continue;
-    take(k, moved.segments[k].front());
+    add(k, moved.segments[k].front());
     g.front.segments.push_back(moved.segments[k]);
   }
-  if (g.front.segments.empty()) return {};
-  if (!moved.closed) take(n - 1, g.front.segments.back().back());
+  if (g.front.segments.empty()) return g;
+  if (!moved.closed) add(n - 1, g.front.segments.back().back());
   g.length += farthest;
-  // Runs of segments that have a live end, or are inside between two points in air.
+  return g;
+}
+
+// True where a segment has a live end, or passes through material between two points in air.
+bool may_grow(const GrowingFront& g, std::size_t segment) {
+  const std::size_t a = segment, b = (segment + 1) % g.size();
+  return g.live(a) || g.live(b) ||
+         (!g.front.points[a].id.valid() && !g.front.points[b].id.valid() && spans_material(g.front, segment));
+}
+
+void append_point(GrowingFront& to, const GrowingFront& from, std::size_t i) {
+  to.front.points.push_back(from.front.points[i]);
+  to.normal.push_back(from.normal[i]), to.owed.push_back(from.owed[i]), to.ended.push_back(from.ended[i]);
+}
+
+}  // namespace
+
+std::vector<GrowingFront> fronts_after(const GrowingFront& before, const FrontPlan& plan, const FrontState& moved,
+                                       std::span<const Vec3> direction) {
+  const GrowingFront g = merged(before, plan, moved, direction);
   const std::size_t count = g.front.segments.size(), points = g.size();
-  const auto alive = [&](std::size_t s) {
-    const std::size_t a = s, b = (s + 1) % points;
-    return g.live(a) || g.live(b) ||
-           (!g.front.points[a].id.valid() && !g.front.points[b].id.valid() && spans_material(g.front, s));
-  };
+  if (count == 0) return {};
   std::size_t begin = 0;
-  while (begin < count && alive(begin)) ++begin;
+  while (begin < count && may_grow(g, begin)) ++begin;
   if (begin == count) return {g};
-  std::vector<GrowingFront> parts;
+  // One open front for each run of segments that may grow.
+  std::vector<GrowingFront> runs;
   if (!g.front.closed) begin = 0;
   bool open = false;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t s = (begin + k) % count;
-    if (!alive(s)) {
+    if (!may_grow(g, s)) {
       open = false;
       continue;
     }
-    const auto put = [&](GrowingFront& part, std::size_t i) {
-      part.front.points.push_back(g.front.points[i]);
-      part.normal.push_back(g.normal[i]), part.owed.push_back(g.owed[i]), part.ended.push_back(g.ended[i]);
-    };
     if (!open) {
-      parts.emplace_back();
-      auto& f = parts.back().front;
-      f.closed = false, f.crack = g.front.crack, f.step = g.front.step, f.name = g.front.name;
-      parts.back().length = g.length;
-      put(parts.back(), s);
+      FrontState& front = runs.emplace_back().front;
+      front.closed = false, front.crack = g.front.crack, front.step = g.front.step, front.name = g.front.name;
+      runs.back().length = g.length;
+      append_point(runs.back(), g, s);
       open = true;
     }
-    put(parts.back(), (s + 1) % points);
-    parts.back().front.segments.push_back(g.front.segments[s]);
+    append_point(runs.back(), g, (s + 1) % points);
+    runs.back().front.segments.push_back(g.front.segments[s]);
   }
-  return parts;
+  return runs;
 }
 
 std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal,

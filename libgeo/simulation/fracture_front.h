@@ -1,5 +1,10 @@
-// The front of a crack that grows by itself: what is kept at its points, and how it goes on.
+// Fronts of cracks that grow by stress: plan of a step, and the fronts after it.
 #pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "kerf/body.h"
 #include "kerf/run.h"
@@ -7,39 +12,40 @@
 
 namespace geo {
 
-/// The frame at point i of a front: at, ahead and normal.
+/// The frame at point i of a front.
 TipFrame tip_frame(const GrowingFront& front, std::size_t i);
 
-/// A front as begin_front() or a blade leaves it, with its normals. Throws InputError unless there
-/// is one a point.
+/// A front as begin_front() or a blade leaves it, with a crack normal for each point. Throws
+/// InputError where their numbers differ.
 GrowingFront growing(FrontState front, std::vector<Vec3> normals);
 
-/// Where the points of a front go: entry k starts from point from[k] (a point may be there several
-/// times: then new ones begin at it) and goes to next[k]; equal neighbours become one.
+/// Next positions of a front. Entry k starts at point from[k] of the front and moves to next[k].
+/// Several entries may start at one point: points are inserted there. Equal neighbours are merged
+/// after the step.
 struct FrontPlan {
   std::vector<std::uint32_t> from;
   std::vector<Vec3> next;
-  std::vector<std::uint8_t> ended;
+  std::vector<std::uint8_t> ended;  ///< 1 where the entry reaches a surface
 };
 
-/// Live points go by `step[i]` (≥ 0) along `direction[i]` (unit), to a surface where one is near:
-/// what is thinner than half of `spacing` beyond parts with it, and the front sticks out by a
-/// seventh of it. Where the front ends at a surface it slides along it. Points are put in and taken
-/// out so that they stay about as far apart as 0.7 `spacing`.
+/// Plans the growth of a front. Live points move by `step[i]` (≥ 0) along the unit vector
+/// `direction[i]`. Where a surface is within half of `spacing` beyond, the front cuts through to it and
+/// sticks out by a seventh of `spacing`. The ends of the front slide along the surface. Points are
+/// inserted and merged so that their distances stay about 0.7 `spacing`.
 FrontPlan plan_front(const Complex& complex, const GrowingFront& front, std::span<const double> step,
                      std::span<const Vec3> direction, double spacing);
 
-/// The front with the points that a plan starts from: what split() is to be called with, and
-/// `plan.next`.
-FrontState depart(const GrowingFront& front, const FrontPlan& plan);
+/// The front with the points that a plan starts from: the front to be passed to split(), with
+/// `plan.next` as its next positions.
+FrontState with_planned_points(const GrowingFront& front, const FrontPlan& plan);
 
-/// What becomes of a front that `moved` from `before` as planned: parts of it that are inside, one
-/// front each; none when all of it has come to surfaces.
-std::vector<GrowingFront> arrive(const GrowingFront& before, const FrontPlan& plan, FrontState moved,
-                                 std::span<const Vec3> direction);
+/// The fronts after a step that moved `before` to `moved` by a plan: one for each part inside the
+/// material, none where all of it has reached surfaces.
+std::vector<GrowingFront> fronts_after(const GrowingFront& before, const FrontPlan& plan, const FrontState& moved,
+                                       std::span<const Vec3> direction);
 
-/// A closed front about `center` in the plane of `normal`, of no size, and the plan that opens it
-/// to `radius`, through the skin where that is near.
+/// A new penny-shaped crack: a closed front of size zero at `center`, and the plan that opens it to
+/// `radius` in the plane of `normal`, through the surface where that is near.
 std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal,
                                              double radius, std::int32_t crack);
 

@@ -128,13 +128,13 @@ void step_fracture(const FractureOptions& fracture, const std::vector<std::uint3
   std::vector<std::pair<std::int32_t, Box3>> moves;  // cracks, and where they grew
   const auto make = [&](GrowingFront& g, const Drive& d, std::vector<double>& step, double spacing) {
     const FrontPlan plan = plan_front(body.surface, g, step, d.direction, spacing);
-    FrontState moved = depart(g, plan);
+    FrontState moved = with_planned_points(g, plan);
     if (split(moved, plan.next)) {
       ++done.advanced;
       moves.push_back({g.front.crack, {}});
       for (const auto& p : g.front.points) moves.back().second.add(p.position);
       for (const Vec3& p : plan.next) moves.back().second.add(p);
-      keep(arrive(g, plan, std::move(moved), d.direction));
+      keep(fronts_after(g, plan, moved, d.direction));
     } else {
       ++done.refused;
       keep({g});
@@ -192,13 +192,13 @@ void step_fracture(const FractureOptions& fracture, const std::vector<std::uint3
       // Off the node, which would lie in the flaw else.
       auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal,
                                  s.normal, spacing, unused_crack(body, state.fronts, {}));
-      FrontState moved = depart(g, plan);
+      FrontState moved = with_planned_points(g, plan);
       if (!split(moved, plan.next)) {
         ++done.refused;
         continue;
       }
       ++state.cracks, ++done.begun;
-      keep(arrive(g, plan, std::move(moved), {}));
+      keep(fronts_after(g, plan, moved, {}));
     }
   }
   if (work)

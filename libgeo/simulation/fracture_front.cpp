@@ -146,8 +146,8 @@ void FrontPlanner::advance_live_points() {
   }
 }
 
-// Points in air follow the mean motion of their live neighbours. Those without one, between which the
-// front passes through material, move straight ahead.
+// Points in air follow the mean motion of their live neighbours. Those without one, between which
+// the front passes through material, move straight ahead.
 void FrontPlanner::carry_points_in_air() {
   const std::size_t n = g_.size();
   std::vector<Vec3> carried = next_;
@@ -209,8 +209,8 @@ void FrontPlanner::detour_around_edge(std::size_t end, std::vector<ExtraPoint>& 
   beyond.push_back({corner, true});
 }
 
-// Points i and j, neighbours on the front, have left the body on different sides of one of its edges:
-// a third point outside joins them.
+// Points i and j, neighbours on the front, have left the body on different sides of one of its
+// edges: a third point outside joins them.
 void FrontPlanner::bridge_edge(std::size_t i, std::size_t j) {
   const Vec3 ahead = unit_or(direction_[i] + direction_[j], direction_[i]);
   for (int k = 1; k <= 4; ++k) {

@@ -29,9 +29,9 @@ struct FrontPlan {
 };
 
 /// Plans the growth of a front. Live points move by `step[i]` (≥ 0) along the unit vector
-/// `direction[i]`. Where a surface is within half of `spacing` beyond, the front cuts through to it and
-/// sticks out by a seventh of `spacing`. The ends of the front slide along the surface. Points are
-/// inserted and merged so that their distances stay about 0.7 `spacing`.
+/// `direction[i]`. Where a surface is within half of `spacing` beyond, the front cuts through to it
+/// and sticks out by a seventh of `spacing`. The ends of the front slide along the surface. Points
+/// are inserted and merged so that their distances stay about 0.7 `spacing`.
 FrontPlan plan_front(const Complex& complex, const GrowingFront& front, std::span<const double> step,
                      std::span<const Vec3> direction, double spacing);
 

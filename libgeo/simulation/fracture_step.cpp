@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "kerf/parallel.h"
-#include "simulation/fracture_rest.h"
+#include "simulation/fracture_ligaments.h"
 #include "simulation/fracture_start.h"
 #include "simulation/fracture_tip.h"
 #include "simulation/strength.h"
@@ -14,12 +14,18 @@
 namespace geo {
 namespace {
 
-// What drives each point of a front.
-struct Drive {
-  std::vector<Vec3> direction;     // unit, across the front
-  std::vector<double> excess;      // stress over what the toughness asks for; ≤ 1: none
-  std::vector<std::uint8_t> told;  // whether enough nodes see the point for that to be known
-  std::uint32_t node = 0;          // of the body that it is in, where any is told
+// Growth is made once a front owes this share of a spacing, and points that owe less than the
+// second share wait: shorter steps would add faces that nodes do not resolve.
+constexpr double least_growth = 0.25, least_point_growth = 0.05;
+// Least number of nodes for a stress field around a point.
+constexpr std::size_t least_nodes = 4;
+
+// The load on each point of a front.
+struct FrontLoad {
+  std::vector<Vec3> direction;         // of growth: unit, across the front
+  std::vector<double> ratio;           // of stress to resistance; ≤ 1: no growth
+  std::vector<std::uint8_t> resolved;  // 1 where enough nodes see the point for its stress
+  std::uint32_t node = 0;              // in the body of the front, where any point is resolved
 };
 
 double spacing_at(const Body& body, const Vec3& p) {
@@ -27,66 +33,72 @@ double spacing_at(const Body& body, const Vec3& p) {
   return body.nodes.spacing[nearest.at(0)];
 }
 
-double needed_stress(const Strength& own, std::uint64_t seed, const Body& body, const Vec3& x, double h) {
+// Stress at x, averaged over h ahead of a front, at which a crack grows.
+double resistance(const Strength& own, std::uint64_t seed, const Body& body, const Vec3& x, double h) {
   const double stress = own.toughness > 0 ? stress_of_toughness(own.toughness, h) : own.strength;
   return stress * strength_factor(own, seed, body.surface.extent().diagonal(), x);
 }
 
-Drive drive(const FractureOptions& fracture, const std::vector<std::uint32_t>& body_index, const Body& body,
-            const Solid& solid, const State& motion, const GrowingFront& g) {
+// Averages a tensor along the front twice, with the weights 1, 2, 1 of live neighbours.
+void smooth_along(const GrowingFront& g, std::vector<Mat3>& tensor) {
   const std::size_t n = g.size();
-  std::vector<Mat3> separation(n, Mat3::Zero());
+  for (int pass = 0; pass < 2; ++pass) {
+    const auto old = tensor;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!g.live(i)) continue;
+      double total = 2;
+      tensor[i] = 2 * old[i];
+      for (const bool after : {false, true}) {
+        if (!g.front.closed && (after ? i + 1 == n : i == 0)) continue;
+        const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
+        if (g.live(j)) tensor[i] += old[j], total += 1;
+      }
+      tensor[i] /= total;
+    }
+  }
+}
+
+FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
+  const std::size_t n = g.size();
+  std::vector<Mat3> separation(n, Mat3::Zero());  // ratio · n nᵀ, n the normal of the plane of largest hoop stress
   std::vector<TipFrame> frame(n);
-  std::vector<std::uint8_t> told(n, 0);
+  std::vector<std::uint8_t> resolved(n, 0);
   std::vector<std::uint32_t> node(n, 0);
   parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       frame[i] = tip_frame(g, i);
-      if (!g.live(i) || !may_break(fracture, frame[i].at)) continue;
-      const TipField field = tip_field(body, motion.displacement, solid.materials(), frame[i]);
-      told[i] = field.nodes >= 4, node[i] = field.node;
-      if (!told[i]) continue;
+      if (!g.live(i) || !may_break(in.options, frame[i].at)) continue;
+      const TipField field = tip_field(in.body, in.motion.displacement, in.solid.materials(), frame[i]);
+      resolved[i] = field.nodes >= least_nodes, node[i] = field.node;
+      if (!resolved[i]) continue;
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
       const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
-      separation[i] =
-          stress /
-          needed_stress(fracture.at_node(body_index, field.node), fracture.seed, body, frame[i].at, field.support) *
-          across * across.transpose();
+      separation[i] = stress /
+                      resistance(in.options.at_node(in.body_index, field.node), in.options.seed, in.body, frame[i].at,
+                                 field.support) *
+                      across * across.transpose();
     }
   });
-  // Twice with the weights 1, 2, 1 of neighbours on the same part of the front.
-  for (int pass = 0; pass < 2; ++pass) {
-    const auto old = separation;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!g.live(i)) continue;
-      double total = 2;
-      separation[i] = 2 * old[i];
-      for (const bool after : {false, true}) {
-        if (!g.front.closed && (after ? i + 1 == n : i == 0)) continue;
-        const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
-        if (g.live(j)) separation[i] += old[j], total += 1;
-      }
-      separation[i] /= total;
-    }
-  }
-  Drive d{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0), std::move(told)};
-  if (const auto any = std::find(d.told.begin(), d.told.end(), 1); any != d.told.end())
-    d.node = node[static_cast<std::size_t>(any - d.told.begin())];
+  smooth_along(g, separation);
+  FrontLoad load{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0), std::move(resolved)};
+  if (const auto any = std::find(load.resolved.begin(), load.resolved.end(), 1); any != load.resolved.end())
+    load.node = node[static_cast<std::size_t>(any - load.resolved.begin())];
   for (std::size_t i = 0; i < n; ++i) {
-    d.direction[i] = frame[i].ahead;
-    if (!g.live(i) || separation[i].isZero() || !may_break(fracture, frame[i].at)) continue;
+    load.direction[i] = frame[i].ahead;
+    if (!g.live(i) || separation[i].isZero() || !may_break(in.options, frame[i].at)) continue;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(separation[i]);
-    d.excess[i] = eigen.eigenvalues()[2];
+    load.ratio[i] = eigen.eigenvalues()[2];
     // In the new plane, across the front, away from the crack behind.
     const Vec3 tangent = frame[i].normal.cross(frame[i].ahead);
-    Vec3 way = tangent.cross(eigen.eigenvectors().col(2));
-    if (way.dot(frame[i].ahead) < 0) way = -way;
-    if (way.norm() > 0.1) d.direction[i] = way.normalized();
+    Vec3 ahead = tangent.cross(eigen.eigenvectors().col(2));
+    if (ahead.dot(frame[i].ahead) < 0) ahead = -ahead;
+    if (ahead.norm() > 0.1) load.direction[i] = ahead.normalized();
   }
-  return d;
+  return load;
 }
 
+// A crack number that neither the complex nor a front uses.
 std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts, std::span<const GrowingFront> more) {
   std::int32_t last = body.surface.crack_count();
   for (const auto& some : {fronts, more})
@@ -94,116 +106,155 @@ std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts
   return last + 1;
 }
 
-// A front whose stress is far more than it needs divides: the two parts leave at 30° to either
-// side.
-bool divides(const FractureOptions& fracture, const GrowingFront& g, const Drive& d, double spacing,
-             const FractureState& state) {
-  if (fracture.branching <= 0 || state.cracks >= fracture.max_cracks || g.length < fracture.separation * spacing)
+// A front branches where the mean ratio of its live points exceeds the scene's.
+bool branches(const FractureOptions& options, const GrowingFront& g, const FrontLoad& load, double spacing,
+              const FractureState& state) {
+  if (options.branching <= 0 || state.cracks >= options.max_cracks || g.length < options.separation * spacing)
     return false;
   double sum = 0;
   std::size_t live = 0;
   for (std::size_t i = 0; i < g.size(); ++i)
-    if (g.live(i)) sum += d.excess[i], ++live;
-  return live > 0 && sum > fracture.branching * double(live);
+    if (g.live(i)) sum += load.ratio[i], ++live;
+  return live > 0 && sum > options.branching * double(live);
 }
 
-void turn(Drive& d, const GrowingFront& g, double angle) {
+// Turns the directions of growth about the front by an angle in radians.
+void turn(FrontLoad& load, const GrowingFront& g, double angle) {
+  for (std::size_t i = 0; i < g.size(); ++i)
+    load.direction[i] = Eigen::AngleAxisd(angle, tip_frame(g, i).along()) * load.direction[i];
+}
+
+// The growth that each point of a front owes after this step, and the spacing of the nodes there.
+struct DueGrowth {
+  double spacing = std::numeric_limits<double>::infinity();
+  double largest = 0;
+  bool in_air = true;  // no point is live: only parts of the front between points in air are inside
+};
+
+DueGrowth add_growth(const FractureInput& in, const FrontLoad& load, GrowingFront& g) {
+  const double fastest = in.options.speed * rayleigh_speed(in.solid.materials().of(load.node));
+  DueGrowth due;
   for (std::size_t i = 0; i < g.size(); ++i) {
-    const TipFrame f = tip_frame(g, i);
-    d.direction[i] = Eigen::AngleAxisd(angle, f.along()) * d.direction[i];
+    if (!g.live(i)) continue;
+    due.in_air = false;
+    const Vec3& x = g.front.points[i].position;
+    const double here = spacing_at(in.body, x), ratio = load.ratio[i];
+    due.spacing = std::min(due.spacing, here);
+    g.owed[i] = ratio > 1 ? std::min(here, g.owed[i] + in.dt * fastest * (1 - 1 / (ratio * ratio))) : 0;
+    if (!load.resolved[i] && may_break(in.options, x) && is_ligament(in.body.surface, tip_frame(g, i), here))
+      g.owed[i] = std::max(g.owed[i], least_growth * here);
+    due.largest = std::max(due.largest, g.owed[i]);
+  }
+  if (due.in_air) due.spacing = spacing_at(in.body, g.front.points[0].position);
+  return due;
+}
+
+// The phases of step_fracture().
+class FractureStep {
+ public:
+  FractureStep(const FractureInput& in, FractureState& state, const SplitStep& split)
+      : in_(in), state_(state), split_(split) {}
+
+  void grow_fronts();
+  void cut_ligaments();
+  void start_cracks();
+  const FractureStats& stats() const { return stats_; }
+
+ private:
+  void grow(GrowingFront& g, std::span<const GrowingFront> all);
+  void advance(GrowingFront& g, const FrontLoad& load, const std::vector<double>& step, double spacing);
+  void keep(const std::vector<GrowingFront>& fronts) {
+    state_.fronts.insert(state_.fronts.end(), fronts.begin(), fronts.end());
+  }
+
+  const FractureInput& in_;
+  FractureState& state_;
+  const SplitStep& split_;
+  FractureStats stats_;
+  std::vector<std::pair<std::int32_t, Box3>> grown_;  // cracks, and the boxes of their growth
+};
+
+void FractureStep::grow_fronts() {
+  std::vector<GrowingFront> fronts;
+  fronts.swap(state_.fronts);
+  for (GrowingFront& g : fronts) grow(g, fronts);
+}
+
+// `all`: fronts at the beginning of the step.
+void FractureStep::grow(GrowingFront& g, std::span<const GrowingFront> all) {
+  FrontLoad load = load_on(in_, g);
+  const DueGrowth due = add_growth(in_, load, g);
+  if (!due.in_air && due.largest < least_growth * due.spacing) return keep({g});
+  std::vector<double> step(g.size(), 0);
+  for (std::size_t i = 0; i < g.size(); ++i)
+    if (g.live(i) && g.owed[i] > least_point_growth * due.spacing) step[i] = g.owed[i];
+  if (due.in_air || !branches(in_.options, g, load, due.spacing, state_)) return advance(g, load, step, due.spacing);
+  // The two branches leave at 30° to either side.
+  GrowingFront branch = g;
+  branch.front.crack = unused_crack(in_.body, state_.fronts, all);
+  branch.length = g.length = 0;
+  FrontLoad other = load;
+  turn(load, g, std::numbers::pi / 6), turn(other, g, -std::numbers::pi / 6);
+  ++state_.cracks, ++stats_.divided;
+  advance(g, load, step, due.spacing);
+  advance(branch, other, step, due.spacing);
+}
+
+void FractureStep::advance(GrowingFront& g, const FrontLoad& load, const std::vector<double>& step, double spacing) {
+  const FrontPlan plan = plan_front(in_.body.surface, g, step, load.direction, spacing);
+  FrontState moved = with_planned_points(g, plan);
+  if (!split_(moved, plan.next)) {
+    ++stats_.refused;
+    return keep({g});
+  }
+  ++stats_.advanced;
+  grown_.push_back({g.front.crack, {}});
+  for (const auto& p : g.front.points) grown_.back().second.add(p.position);
+  for (const Vec3& p : plan.next) grown_.back().second.add(p);
+  keep(fronts_after(g, plan, moved, load.direction));
+}
+
+// Cuts ligaments that fronts have left at edges of the body.
+void FractureStep::cut_ligaments() {
+  const Complex& complex = in_.body.surface;
+  for (const auto& [crack, where] : grown_)
+    for (FrontState& rest : unfollowed_borders(complex, crack, where, state_.fronts))
+      if (const auto next = across_ligament(complex, rest, spacing_at(in_.body, rest.points[0].position));
+          !next.empty())
+        ++(split_(rest, next) ? stats_.advanced : stats_.refused);
+}
+
+void FractureStep::start_cracks() {
+  const Body& body = in_.body;
+  const int limit = std::min(in_.options.cracks_per_step, in_.options.max_cracks - state_.cracks);
+  if (limit <= 0) return;
+  const auto stress = averaged_stress(body, in_.solid, in_.motion);
+  for (const CrackStart& s : find_starts(body, stress, in_.options, in_.body_index, static_cast<std::size_t>(limit))) {
+    const double spacing = body.nodes.spacing[s.node.index()];
+    // Beside the node, which must not lie in the crack.
+    auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal, s.normal,
+                               spacing, unused_crack(body, state_.fronts, {}));
+    FrontState moved = with_planned_points(g, plan);
+    if (!split_(moved, plan.next)) {
+      ++stats_.refused;
+      continue;
+    }
+    ++state_.cracks, ++stats_.begun;
+    keep(fronts_after(g, plan, moved, {}));
   }
 }
 
 }  // namespace
 
-void step_fracture(const FractureOptions& fracture, const std::vector<std::uint32_t>& body_index, const Body& body,
-                   const Solid& solid, const State& motion, double dt, FractureState& state, const SplitStep& split,
-                   FractureStats* work) {
-  FractureStats done;
-  std::vector<GrowingFront> fronts;
-  fronts.swap(state.fronts);
-  const auto keep = [&](std::vector<GrowingFront> parts) {
-    state.fronts.insert(state.fronts.end(), parts.begin(), parts.end());
-  };
-  std::vector<std::pair<std::int32_t, Box3>> moves;  // cracks, and where they grew
-  const auto make = [&](GrowingFront& g, const Drive& d, std::vector<double>& step, double spacing) {
-    const FrontPlan plan = plan_front(body.surface, g, step, d.direction, spacing);
-    FrontState moved = with_planned_points(g, plan);
-    if (split(moved, plan.next)) {
-      ++done.advanced;
-      moves.push_back({g.front.crack, {}});
-      for (const auto& p : g.front.points) moves.back().second.add(p.position);
-      for (const Vec3& p : plan.next) moves.back().second.add(p);
-      keep(fronts_after(g, plan, moved, d.direction));
-    } else {
-      ++done.refused;
-      keep({g});
-    }
-  };
-  for (std::size_t f = 0; f < fronts.size(); ++f) {
-    GrowingFront& g = fronts[f];
-    Drive d = drive(fracture, body_index, body, solid, motion, g);
-    const double fastest = fracture.speed * rayleigh_speed(solid.materials().of(d.node));
-    std::vector<double> step(g.size(), 0);
-    double spacing = std::numeric_limits<double>::infinity(), most = 0;
-    bool air = true;  // only parts between points in air are left
-    for (std::size_t i = 0; i < g.size(); ++i) {
-      if (!g.live(i)) continue;
-      air = false;
-      const double here = spacing_at(body, g.front.points[i].position);
-      spacing = std::min(spacing, here);
-      g.owed[i] =
-          d.excess[i] > 1 ? std::min(here, g.owed[i] + dt * fastest * (1 - 1 / (d.excess[i] * d.excess[i]))) : 0;
-      if (!d.told[i] && may_break(fracture, g.front.points[i].position) &&
-          is_ligament(body.surface, tip_frame(g, i), here))
-        g.owed[i] = std::max(g.owed[i], 0.25 * here);
-      most = std::max(most, g.owed[i]);
-    }
-    if (air) spacing = spacing_at(body, g.front.points[0].position);
-    if (!air && most < 0.25 * spacing) {
-      keep({g});
-      continue;
-    }
-    for (std::size_t i = 0; i < g.size(); ++i)
-      if (g.live(i) && g.owed[i] > 0.05 * spacing) step[i] = g.owed[i];
-    if (!air && divides(fracture, g, d, spacing, state)) {
-      GrowingFront branch = g;
-      branch.front.crack = unused_crack(body, state.fronts, fronts);
-      branch.length = g.length = 0;
-      Drive other = d;
-      turn(d, g, std::numbers::pi / 6), turn(other, g, -std::numbers::pi / 6);
-      ++state.cracks, ++done.divided;
-      make(g, d, step, spacing);
-      make(branch, other, step, spacing);
-    } else {
-      make(g, d, step, spacing);
-    }
-  }
-  for (const auto& [crack, where] : moves)
-    for (FrontState& rest : left_behind(body.surface, crack, where, state.fronts))
-      if (const auto next = across_ligament(body.surface, rest, spacing_at(body, rest.points[0].position));
-          !next.empty())
-        ++(split(rest, next) ? done.advanced : done.refused);
-  const int most = std::min(fracture.cracks_per_step, fracture.max_cracks - state.cracks);
-  if (most > 0) {
-    const auto stress = averaged_stress(body, solid, motion);
-    for (const CrackStart& s : find_starts(body, stress, fracture, body_index, static_cast<std::size_t>(most))) {
-      const double spacing = body.nodes.spacing[s.node.index()];
-      // Off the node, which would lie in the flaw else.
-      auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal,
-                                 s.normal, spacing, unused_crack(body, state.fronts, {}));
-      FrontState moved = with_planned_points(g, plan);
-      if (!split(moved, plan.next)) {
-        ++done.refused;
-        continue;
-      }
-      ++state.cracks, ++done.begun;
-      keep(fronts_after(g, plan, moved, {}));
-    }
-  }
-  if (work)
-    work->begun += done.begun, work->divided += done.divided, work->advanced += done.advanced,
-        work->refused += done.refused;
+void step_fracture(const FractureInput& in, FractureState& state, const SplitStep& split, FractureStats* stats) {
+  FractureStep step(in, state, split);
+  step.grow_fronts();
+  step.cut_ligaments();
+  step.start_cracks();
+  if (!stats) return;
+  const FractureStats& done = step.stats();
+  stats->begun += done.begun, stats->divided += done.divided;
+  stats->advanced += done.advanced, stats->refused += done.refused;
 }
 
 }  // namespace geo

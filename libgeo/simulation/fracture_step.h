@@ -1,7 +1,9 @@
-// One time step of fracture: cracks begin, go on, divide, and come to rest.
+// One time step of fracture by stress: cracks start, grow, branch and arrest.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "kerf/run.h"
 #include "kerf/scene.h"
@@ -10,22 +12,35 @@
 
 namespace geo {
 
-/// Makes one step of a crack in the body, and lets the mechanics follow; false when it cannot be
-/// made.
-using SplitStep = std::function<bool(FrontState&, const std::vector<Vec3>& next)>;
+/// Makes one step of a crack in the body and updates the mechanics; false where it cannot be made.
+using SplitStep = std::function<bool(FrontState& front, const std::vector<Vec3>& next)>;
 
-/// Each live front point works out the stress about it (tip_field) and the direction in which it is
-/// largest. Both are smoothed along the front, as a separation tensor. Where the stress passes what
-/// the toughness asks for, σ_c, the point goes on at c_max (1 − (σ_c / σ)²), c_max = fracture.speed
-/// · rayleigh_speed(), and by a spacing of the nodes at most: the stress must be told anew before
-/// it goes farther. Points rest while the stress is less and start again when it rises. A front is
-/// moved once it owes a quarter of a spacing. What is ahead of a point that too few nodes see to
-/// tell its stress, thinner than half a spacing, parts, and so does a ligament that fronts have
-/// left behind at an edge of the body, thinner than a spacing (across_ligament). Then cracks begin
-/// where find_starts() says. `body_index`: per node, its body of the scene. It, `body` and `motion`
-/// change through `split` only. The same for any number of threads.
-void step_fracture(const FractureOptions& fracture, const std::vector<std::uint32_t>& body_index, const Body& body,
-                   const Solid& solid, const State& motion, double dt, FractureState& state, const SplitStep& split,
-                   FractureStats* work = nullptr);
+/// What a step of fracture reads. `body`, `body_index` and `motion` change through SplitStep only.
+struct FractureInput {
+  const FractureOptions& options;
+  const std::vector<std::uint32_t>& body_index;  ///< per node: its body of the scene
+  const Body& body;
+  const Solid& solid;
+  const State& motion;
+  double dt;  ///< s
+};
+
+/// Grows all fronts, cuts ligaments that they leave, then starts new cracks.
+///
+/// Growth: each live point of a front takes the stress field around it (tip_field) and the
+/// direction of its largest hoop stress σ. Both are smoothed along the front as a tensor. Where σ
+/// exceeds the resistance σ_c, which the toughness gives, the point grows with speed c_max (1 −
+/// (σ_c / σ)²), where c_max = options.speed · rayleigh_speed(). It grows by at most one node
+/// spacing in a step, as the stress must be evaluated again before it grows farther. A front moves
+/// once it owes a quarter of a spacing. Points with less stress are arrested and may grow again
+/// later.
+///
+/// Ligaments: where too few nodes see a point for its stress, material ahead of it that is thinner
+/// than half a spacing is cut, as is a ligament thinner than a spacing at an edge of the body
+/// (across_ligament).
+///
+/// Starts: where find_starts() finds them. The result is the same for any number of threads.
+void step_fracture(const FractureInput& in, FractureState& state, const SplitStep& split,
+                   FractureStats* stats = nullptr);
 
 }  // namespace geo

@@ -271,7 +271,7 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
   const auto others = [&] { return stats.split_seconds() + stats.mechanics_seconds + stats.contact_seconds; };
   const double splitting = others();
   step_fracture(
-      scene.fracture, state.body_index, body, solid, state.motion, dt, state.fracture,
+      {scene.fracture, state.body_index, body, solid, state.motion, dt}, state.fracture,
       [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, stats); },
       &stats.fracture);
   stats.fracture_seconds += watch.lap() - (others() - splitting);

@@ -1,4 +1,4 @@
-#include "simulation/fracture_rest.h"
+#include "simulation/fracture_ligaments.h"
 
 #include <algorithm>
 #include <map>
@@ -25,7 +25,7 @@ FrontState front_along(const Complex& complex, std::int32_t crack, const std::ve
   return front;
 }
 
-// Away from the crack that ends at this edge, as long as the edge.
+// Direction of growth at an edge where a crack ends, as long as the edge; zero at any other edge.
 Vec3 ahead_of(const Complex& complex, VertexId a, VertexId b) {
   const auto ring = complex.around(a, b);
   if (ring.size() != 1) return Vec3::Zero();
@@ -38,56 +38,57 @@ Vec3 ahead_of(const Complex& complex, VertexId a, VertexId b) {
 
 }  // namespace
 
-std::vector<FrontState> left_behind(const Complex& complex, std::int32_t crack, const Box3& where,
-                                    std::span<const GrowingFront> fronts) {
+std::vector<FrontState> unfollowed_borders(const Complex& complex, std::int32_t crack, const Box3& where,
+                                           std::span<const GrowingFront> fronts) {
   std::set<Ends> followed;
   for (const GrowingFront& g : fronts)
     for (const auto& segment : g.front.segments)
       for (std::size_t k = 1; k < segment.size(); ++k) followed.insert(unordered(segment[k - 1].id, segment[k].id));
-  // Edges of the border as their faces have them: the crack is on their left, seen against its normal.
+  // Border edges in the direction of their faces: the crack is on their left, seen against its
+  // normal.
   std::vector<FaceId> faces;
   complex.near(where, faces);
   std::map<VertexId, std::vector<VertexId>> next;
-  std::map<VertexId, int> come;
+  std::map<VertexId, int> arriving;
   for (const FaceId f : faces) {
     const auto& face = complex.face(f);
     for (std::size_t k = 0; k < 3 && face.crack == crack; ++k) {
       const VertexId a = face.v[k], b = face.v[(k + 1) % 3];
-      if (complex.around(a, b).size() == 1 && !followed.contains(unordered(a, b))) next[a].push_back(b), ++come[b];
+      if (complex.around(a, b).size() == 1 && !followed.contains(unordered(a, b))) next[a].push_back(b), ++arriving[b];
     }
   }
   std::vector<FrontState> found;
-  const auto follow = [&](VertexId from) {
+  const auto trace = [&](VertexId from) {
     std::vector<VertexId> line{from};
     do {
-      auto& ways = next[line.back()];
-      line.push_back(ways.back()), ways.pop_back();
-    } while (line.back() != from && next[line.back()].size() == 1 && come[line.back()] == 1);
+      auto& onward = next[line.back()];
+      line.push_back(onward.back()), onward.pop_back();
+    } while (line.back() != from && next[line.back()].size() == 1 && arriving[line.back()] == 1);
     found.push_back(front_along(complex, crack, line));
   };
   std::vector<VertexId> starts;
-  for (const auto& [v, ways] : next) starts.push_back(v);
-  for (const bool ends : {true, false})  // lines first; what is left are loops
+  for (const auto& [v, onward] : next) starts.push_back(v);
+  for (const bool ends : {true, false})  // open lines first, then loops
     for (const VertexId v : starts)
-      while (!next[v].empty() && (!ends || next[v].size() != 1 || come[v] != 1)) follow(v);
+      while (!next[v].empty() && (!ends || next[v].size() != 1 || arriving[v] != 1)) trace(v);
   return found;
 }
 
-std::vector<Vec3> across_ligament(const Complex& complex, const FrontState& front, double most) {
+std::vector<Vec3> across_ligament(const Complex& complex, const FrontState& front, double thickness) {
   const std::size_t n = front.points.size();
   if (front.closed || n < 2) return {};
-  Vec3 way = Vec3::Zero();
-  for (std::size_t k = 1; k < n; ++k) way += ahead_of(complex, front.points[k - 1].id, front.points[k].id);
-  if (!(way.squaredNorm() > 0)) return {};
-  way.normalize();
+  Vec3 ahead = Vec3::Zero();
+  for (std::size_t k = 1; k < n; ++k) ahead += ahead_of(complex, front.points[k - 1].id, front.points[k].id);
+  if (!(ahead.squaredNorm() > 0)) return {};
+  ahead.normalize();
   std::vector<Vec3> next;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3& p = front.points[k].position;
-    Vec3 to = p + 1.2 * most * way;
+    Vec3 to = p + 1.2 * thickness * ahead;
     if (k == 0 || k + 1 == n)
-      to += 1.2 * most * (p - front.points[k == 0 ? 1 : n - 2].position).normalized();  // aside, into the air
+      to += 1.2 * thickness * (p - front.points[k == 0 ? 1 : n - 2].position).normalized();  // sideways, into the air
     const bool end = k == 0 || k + 1 == n;
-    if (is_inside(complex, end ? Vec3(p + 1e-3 * (to - p)) : Vec3(p + most * way))) return {};
+    if (is_inside(complex, end ? Vec3(p + 1e-3 * (to - p)) : Vec3(p + thickness * ahead))) return {};
     next.push_back(to);
   }
   return next;

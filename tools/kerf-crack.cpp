@@ -57,7 +57,7 @@ class Cutting {
     if (!(w_.decimate > 0)) return;
     geo::DecimateOptions options;
     options.deviation = w_.decimate;
-    geo::DecimateWork work;
+    geo::DecimateStats work;
     geo::decimate(complex_, held(), options, &work);
     note("\"decimate\":{\"collapses\":" + std::to_string(work.collapses) + ",\"faces\":" +
          std::to_string(complex_.live_face_count()) + ",\"seconds\":" + tool::number(work.seconds) + "}");
@@ -96,7 +96,7 @@ class Cutting {
               const std::vector<geo::Triangle>& triangles) {
     geo::TriangleMesh sheet;
     sheet.vertices = points, sheet.triangles = triangles;
-    geo::CrackWork work;
+    geo::CrackStats work;
     geo::CrackDelta delta;
     try {
       delta = geo::insert_sheet(complex_, sheet, next_crack(), options_, &work);
@@ -111,7 +111,7 @@ class Cutting {
     if (!(w_.jagged > 0)) return;
     geo::RoughenOptions options;
     options.amplitude = w_.jagged, options.frequency = w_.bumps, options.seed = t_.seed;
-    geo::RoughenWork work;
+    geo::RoughenStats work;
     geo::roughen(complex_, held(), options, &work);
     note("\"jagged\":{\"divisions\":" + std::to_string(work.divisions) + ",\"moves\":" + std::to_string(work.moves) +
          ",\"lowered\":" + std::to_string(work.lowered) + ",\"seconds\":" + tool::number(work.seconds) + "}");
@@ -138,7 +138,7 @@ class Cutting {
   }
   geo::TriangleMesh cut_surface() const {
     geo::TriangleMesh mesh = complex_.two_sided();
-    geo::carry(file_.mesh, mesh);
+    geo::transfer_attributes(file_.mesh, mesh);
     return mesh;
   }
   void note(const std::string& entry) { json_ += (json_.empty() ? "{" : ",{") + entry + "}"; }
@@ -171,9 +171,9 @@ class Cutting {
   std::size_t make_step(const geo::Front& front, geo::FrontState& state, std::size_t step) {
     std::vector<geo::Vec3> start;
     for (const auto& p : state.points) start.push_back(p.position);
-    const auto end = geo::correspond(start, front.steps[step + 1], front.closed);
-    const int parts = w_.max_move > 0 ? geo::substeps(start, end, w_.max_move) : 1;
-    geo::CrackWork work;
+    const auto end = geo::resample_front(start, front.steps[step + 1], front.closed);
+    const int parts = w_.max_move > 0 ? geo::substep_count(start, end, w_.max_move) : 1;
+    geo::CrackStats work;
     std::vector<geo::FaceId> made;
     for (int i = 1; i <= parts; ++i) {
       std::vector<geo::Vec3> next = end;
@@ -200,7 +200,7 @@ class Cutting {
     return work.new_crack_faces;
   }
 
-  static std::string figures(const geo::CrackWork& work) {
+  static std::string figures(const geo::CrackStats& work) {
     return "\"triangles_cut\":" + std::to_string(work.triangles_cut) +
            ",\"crack_faces\":" + std::to_string(work.new_crack_faces) +
            ",\"attempts\":" + std::to_string(work.attempts) + ",\"repairs\":" + std::to_string(work.repairs) +
@@ -214,7 +214,7 @@ class Cutting {
     if (!(w_.remesh > 0)) return {};
     geo::RemeshOptions options;
     options.angle = w_.remesh;
-    geo::RemeshWork work;
+    geo::RemeshStats work;
     geo::remesh(complex_, faces, held(), options, &work);
     return ",\"remesh\":{\"flips\":" + std::to_string(work.flips) + ",\"collapses\":" + std::to_string(work.collapses) +
            ",\"moves\":" + std::to_string(work.moves) + ",\"divisions\":" + std::to_string(work.divisions) +

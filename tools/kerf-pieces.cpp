@@ -56,8 +56,8 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
     notes.names.push_back(name_of(p, end));
     write(notes.names.back(), chunks[p].mesh);
     if (!w.hulls) continue;
-    const auto hulls = geo::convex_parts(chunks[p].mesh, static_cast<std::size_t>(w.hull_parts),
-                                         static_cast<std::size_t>(w.hull_corners));
+    const auto hulls = geo::convex_decomposition(chunks[p].mesh, static_cast<std::size_t>(w.hull_parts),
+                                                 static_cast<std::size_t>(w.hull_corners));
     for (std::size_t h = 0; h < hulls.size(); ++h)
       write("hull_" + name_of(p, "").substr(6) + geo::hull_suffix(h, hulls.size()) + end, hulls[h]);
   }

@@ -14,7 +14,7 @@ struct Wishes {
   bool smooth = false;
 };
 
-std::string in_words(const geo::Repairs& r) {
+std::string in_words(const geo::RepairStats& r) {
   std::string text;
   const auto counted = [](std::size_t n, const std::string& one, const std::string& many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
@@ -22,14 +22,14 @@ std::string in_words(const geo::Repairs& r) {
   const auto add = [&](std::size_t n, const std::string& one, const std::string& many, const std::string& done) {
     if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many) + " " + done;
   };
-  add(r.welded, "vertex", "vertices", "welded"), add(r.dropped, "triangle", "triangles", "dropped"),
-      add(r.turned, "triangle", "triangles", "turned");
-  add(r.holes, "hole", "holes",
-      (r.smooth == 0         ? ""
-       : r.smooth == r.holes ? "smoothly "
-                             : "(" + std::to_string(r.smooth) + " smoothly) ") +
-          "closed with " + counted(r.added, "triangle", "triangles")),
-      add(r.hidden, "hidden shell", "hidden shells", "left out");
+  add(r.welded_vertices, "vertex", "vertices", "welded"), add(r.dropped_triangles, "triangle", "triangles", "dropped"),
+      add(r.flipped_triangles, "triangle", "triangles", "turned");
+  add(r.filled_holes, "hole", "holes",
+      (r.smooth_fills == 0                ? ""
+       : r.smooth_fills == r.filled_holes ? "smoothly "
+                                          : "(" + std::to_string(r.smooth_fills) + " smoothly) ") +
+          "closed with " + counted(r.added_triangles, "triangle", "triangles")),
+      add(r.dropped_shells, "hidden shell", "hidden shells", "left out");
   return text.empty() ? "nothing to mend" : text;
 }
 
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     if (mesh.two_sided())
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     const double diagonal = geo::bounding_box(mesh).diagonal();
-    const geo::Repairs done = geo::repair(mesh, w.weld * diagonal, w.smooth);
+    const geo::RepairStats done = geo::repair(mesh, w.weld * diagonal, w.smooth);
     if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
     try {
       if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
@@ -69,20 +69,21 @@ int main(int argc, char** argv) {
       geo::require_solid(mesh);
     } catch (const geo::InputError& e) {
       const std::string what = e.what();
-      throw tool::Failure(w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) +
-                          (w.voxel > 0
-                               ? "; try another --voxel"
-                               : std::string(done.holes > 0 && !w.smooth ? "; try --smooth, or wrap" : "; wrap") +
-                                     " it in a new surface: --voxel 0.005"));
+      throw tool::Failure(
+          w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) +
+          (w.voxel > 0 ? "; try another --voxel"
+                       : std::string(done.filled_holes > 0 && !w.smooth ? "; try --smooth, or wrap" : "; wrap") +
+                             " it in a new surface: --voxel 0.005"));
     }
     geo::write_all(target, [&](std::ostream& out) {
       target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
     });
     if (t.json)
       (target == "-" ? std::cerr : std::cout)
-          << "{\"welded\":" << done.welded << ",\"dropped\":" << done.dropped << ",\"turned\":" << done.turned
-          << ",\"holes\":" << done.holes << ",\"smooth\":" << done.smooth << ",\"added\":" << done.added
-          << ",\"hidden\":" << done.hidden << ",\"vertices\":" << mesh.vertices.size()
+          << "{\"welded\":" << done.welded_vertices << ",\"dropped\":" << done.dropped_triangles
+          << ",\"turned\":" << done.flipped_triangles << ",\"holes\":" << done.filled_holes
+          << ",\"smooth\":" << done.smooth_fills << ",\"added\":" << done.added_triangles
+          << ",\"hidden\":" << done.dropped_shells << ",\"vertices\":" << mesh.vertices.size()
           << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh))
           << "}\n";
     else

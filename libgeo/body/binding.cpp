@@ -1,4 +1,5 @@
-// § 6.5: masters by visibility edges, slaves breadth-first along the derived surface, which no crack connects.
+// § 6.5: masters by visibility edges, slaves breadth-first along the derived surface, which no
+// crack connects.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +18,7 @@ bool sees_vertex(const Complex& k, const Vec3& p, VertexId v) {
   Box3 box{p, p};
   box.add(q);
   std::vector<FaceId> faces;
-  k.near(box, faces);
+  k.faces_near(box, faces);
   for (const FaceId f : faces) {
     const auto& c = k.face(f).v;
     const auto t = k.corners(f);
@@ -54,7 +55,8 @@ SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
     const int above = orient3d(t[0], t[1], t[2], p);
     const Side s{f, above > 0 ? 1 : 0};
     if (above == 0 || !k.has(s)) continue;
-    // A point of the face near its corner at v, so that little can stand between, and what does is not far.
+    // A point of the face near its corner at v, so that little can stand between, and what does is
+    // not far.
     const auto& c = k.face(f).v;
     const int corner = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
     const Vec3 inwards = (t[0] + t[1] + t[2]) / 3 - k.point(v);
@@ -75,7 +77,7 @@ SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
   for (const double part : {0.125, 0.25, 0.5, 1.0}) {
     const double r = part * reach;
     faces.clear(), near.clear();
-    k.near(Box3{p, p}.grown(r * (1 + 1e-9)), faces);  // not one is missed by rounding
+    k.faces_near(Box3{p, p}.grown(r * (1 + 1e-9)), faces);  // not one is missed by rounding
     for (const FaceId f : faces)
       for (const VertexId v : k.face(f).v)
         if (const double d = (k.point(v) - p).norm(); d <= r) near.push_back({d, v});
@@ -150,8 +152,8 @@ Binding build_binding(const Body& body) {
   for (std::uint32_t v = 0; v < n; ++v)
     if (b.master_node[v].valid()) b.master[v] = b.parent[v] = SurfaceVertexId(v), level.push_back(SurfaceVertexId(v));
   spread();
-  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece, else the nearest of
-  // all.
+  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece,
+  // else the nearest of all.
   Pieces pieces;
   const auto piece_before = [&](Side s) {
     return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];

@@ -9,7 +9,7 @@ namespace geo {
 
 void triangles_near(const Complex& complex, const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
   std::vector<FaceId> faces;
-  complex.near(box, faces);
+  complex.faces_near(box, faces);
   for (const FaceId f : faces) out.push_back(complex.corners(f));
 }
 
@@ -22,7 +22,7 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId exc
   Box3 box{p, p};
   box.add(q);
   std::vector<FaceId> faces;
-  complex.near(box, faces);
+  complex.faces_near(box, faces);
   return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return f != except && touches(complex, f, p, q); });
 }
 
@@ -59,7 +59,7 @@ std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::func
   const double beyond = std::max(shortest, 0.0) + extent.diagonal();
   (up ? line.hi : line.lo)[axis] += up ? beyond : -beyond;
   std::vector<FaceId> faces;
-  complex.near(line, faces);
+  complex.faces_near(line, faces);
   const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
   // The turn from edge ab to the line, which stands an infinitesimal ε off along u and ε² along v.
   const auto turn = [&](const Vec3& a, const Vec3& b) {
@@ -85,7 +85,8 @@ std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::func
     if (orient3d(t[0], t[1], t[2], p) != before) continue;
     count({f, before > 0 ? 1 : 0}, 1), count({f, before > 0 ? 0 : 1}, -1);
   }
-  // Where sheets have changed places several pieces may lie over each other: less a crumb, they are one.
+  // Where sheets have changed places several pieces may lie over each other: less a crumb, they are
+  // one.
   int sum = 0;
   std::pair<std::int32_t, int> most{-1, 0};
   for (const auto& w : windings) {

@@ -41,9 +41,9 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
   const auto all = [](std::uint32_t) { return true; };
   std::vector<std::array<Vec3, 3>> soup;
   for (const FaceId f : faces) soup.push_back(body.surface.corners(f));
-  // A crack is a boundary, and an octree's leaves halve at most from one to the next: half of what the nearest node to
-  // each cell of a lattice has, which is as fine as nodes usually are. Of the nodes that the body was built of: else
-  // each step would halve anew.
+  // A crack is a boundary, and an octree's leaves halve at most from one to the next: half of what
+  // the nearest node to each cell of a lattice has, which is as fine as nodes usually are. Of the
+  // nodes that the body was built of: else each step would halve anew.
   const double cell = body.grid.cell();
   std::map<std::array<double, 3>, double> found;
   const auto spacing_at = [&](const Vec3& x) {
@@ -92,8 +92,8 @@ std::size_t insert_near(Body& body, const std::vector<FaceId>& faces, double spa
 
 namespace {
 
-// The direction whose least part along all of `normals` is about the greatest: between two faces half way, in a corner
-// along its axis.
+// The direction whose least part along all of `normals` is about the greatest: between two faces
+// half way, in a corner along its axis.
 Vec3 away_from(const std::vector<Vec3>& normals) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& n : normals) sum += n;
@@ -104,18 +104,18 @@ Vec3 away_from(const std::vector<Vec3>& normals) {
   return length > 0 ? Vec3(sum / length) : normals[0];
 }
 
-// A better place for the node that rounding or a cut has put on or very near some of the faces around it: where it is,
-// if there is none.
+// A better place for the node that rounding or a cut has put on or very near some of the faces
+// around it: where it is, if there is none.
 Vec3 place_off(const Complex& surface, std::uint32_t node, const Vec3& x, double spacing) {
   const double close = 0.02 * spacing, most = 0.1 * spacing;
   std::vector<FaceId> around;
-  surface.near(Box3{x, x}.grown(most + close), around);
+  surface.faces_near(Box3{x, x}.grown(most + close), around);
   const auto distance = [&](FaceId f, const Vec3& p) {
     const auto t = surface.corners(f);
     return (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm();
   };
-  // Away from all that are close at once: what goes straight away from one may pass another. On a face either side will
-  // do.
+  // Away from all that are close at once: what goes straight away from one may pass another. On a
+  // face either side will do.
   std::array<std::vector<Vec3>, 2> normals;
   double clear = most;
   for (const FaceId f : around) {

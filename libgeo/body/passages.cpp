@@ -13,14 +13,15 @@
 namespace geo {
 namespace {
 
-// Nodes along the surface from where i looks at it to where j does: what the material joins is joined beside its
-// boundary, however narrow it is. False, and no nodes, when the two see different shells only or doubles are too
-// coarse.
+// Nodes along the surface from where i looks at it to where j does: what the material joins is
+// joined beside its boundary, however narrow it is. False, and no nodes, when the two see different
+// shells only or doubles are too coarse.
 bool insert_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
   const Complex& k = body.surface;
   const auto way = way_along(k, body.nodes.position[i.index()], body.nodes.position[j.index()], spacing);
   if (way.empty()) return false;
-  // As few of them as see each other, none farther apart than the nodes are anyway. All give volume in turn.
+  // As few of them as see each other, none farther apart than the nodes are anyway. All give volume
+  // in turn.
   std::deque<NodeId> donors{i};
   NodeId last = i;
   for (std::size_t s = 0; s + 1 < way.size();) {
@@ -54,7 +55,8 @@ NodeId insert_into(Body& body, SurfaceVertexId v) {
 class Neighborhood {
  public:
   explicit Neighborhood(const Body& body) : body_(body), count_(static_cast<std::uint32_t>(body.nodes.size())) {}
-  /// The nodes nearest to i in its piece, without those of `part` (ascending) and without nodes inserted since.
+  /// The nodes nearest to i in its piece, without those of `part` (ascending) and without nodes
+  /// inserted since.
   std::vector<std::uint32_t> nearest(NodeId i, std::size_t count, const std::vector<std::uint32_t>& part) {
     const auto piece = of(i.value);
     return body_.grid.nearest(body_.nodes.position, body_.nodes.position[i.index()], count, i.value,
@@ -73,8 +75,8 @@ class Neighborhood {
   std::unordered_map<std::uint32_t, std::int32_t> piece_;
 };
 
-// An edge between a part of G and another part of the same piece, not longer than edges are anyway: what is hidden
-// from its k nearest nodes may see others. At most 16 of the part's nodes are asked.
+// An edge between a part of G and another part of the same piece, not longer than edges are anyway:
+// what is hidden from its k nearest nodes may see others. At most 16 of the part's nodes are asked.
 bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std::uint32_t>& part,
                    std::vector<NodePair>& joins) {
   for (std::size_t n = 0; n < part.size(); n += 1 + part.size() / 16)
@@ -90,7 +92,8 @@ bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std
   return false;
 }
 
-// Needles have faces so narrow that their normals lead astray: of points between corners the clearest.
+// Needles have faces so narrow that their normals lead astray: of points between corners the
+// clearest.
 std::optional<Vec3> room_between(const Complex& k, const std::vector<std::pair<double, Side>>& sides,
                                  const std::function<std::int32_t(Side)>& piece, std::int32_t wanted) {
   constexpr std::size_t most_sides = 64;
@@ -161,8 +164,8 @@ std::optional<Vec3> room_in(const Complex& k, SurfaceVertexId v, double reach,
 
 void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
   double scale = 0.7;
-  // For a way, once, though later rounds look a little nearer: one that is not found takes longest, and few are found
-  // at a second try.
+  // For a way, once, though later rounds look a little nearer: one that is not found takes longest,
+  // and few are found at a second try.
   std::set<std::pair<NodeId, NodeId>> asked;
   for (int round = 0; round < 12 && !found.none(); ++round, scale *= 0.8) {
     const NodeId first_new(body.nodes.size());
@@ -188,8 +191,8 @@ void mend(Body& body, Disagreement& found, const GraphUpdater& after) {
       if (join_by_sight(body, pieces, part, joins)) continue;
       if (round == 0)
         for (const auto n : part)
-          body.surface.near(Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]),
-                            narrow);
+          body.surface.faces_near(
+              Box3{body.nodes.position[n], body.nodes.position[n]}.grown(1.5 * body.nodes.spacing[n]), narrow);
       else
         for (const NodeId from : {i, NodeId(part.front()), NodeId(part.back())}) {
           const auto near = pieces.nearest(from, 4, part);

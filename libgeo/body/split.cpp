@@ -91,7 +91,7 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
     try {
       agree(body.surface, crack);
     } catch (...) {
-      body.surface.take_back();
+      body.surface.undo();
       throw;
     }
   }

@@ -1,5 +1,6 @@
-// Over the sides from one point's sight to the other's, across edges at points pulled tight, low enough above both to
-// meet nothing. What is found is only what exact predicates let through; all the rest here is where to look.
+// Over the sides from one point's sight to the other's, across edges at points pulled tight, low
+// enough above both to meet nothing. What is found is only what exact predicates let through; all
+// the rest here is where to look.
 #include "body/way_along.h"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace {
 
 using Step = std::pair<Side, int>;  ///< out of a side over one of its edges
 
-// Sight along links of a way, as often as one search may ask: nearly all that are found take less than a thousand.
+// Sight along links of a way, as often as one search may ask: nearly all that are found take less
+// than a thousand.
 class Sight {
  public:
   explicit Sight(const Complex& k) : k_(k) {}
@@ -27,8 +29,8 @@ class Sight {
   int left_ = 100000;
 };
 
-// Where one looks at each of the sides that are seen along the axes and at the middles of near faces. One point may see
-// several shells.
+// Where one looks at each of the sides that are seen along the axes and at the middles of near
+// faces. One point may see several shells.
 std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) {
   std::map<Side, Vec3> sights;
   std::vector<FaceId> faces;
@@ -44,7 +46,7 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
     Box3 box{x, x};
     box.add(to);
     faces.clear();
-    k.near(box, faces);
+    k.faces_near(box, faces);
     double first = 2;
     Side side;
     for (const FaceId f : faces) {
@@ -62,7 +64,7 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
     look(to);
   }
   std::vector<FaceId> targets;
-  k.near(Box3{x, x}.grown(reach), targets);
+  k.faces_near(Box3{x, x}.grown(reach), targets);
   for (std::size_t i = 0; i < std::min<std::size_t>(targets.size(), 32); ++i) {
     const auto t = k.corners(targets[i]);
     add({targets[i], orient3d(t[0], t[1], t[2], x) > 0 ? 1 : 0}, (t[0] + t[1] + t[2]) / 3);
@@ -70,8 +72,8 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
   return sights;
 }
 
-// Over the fewest sides from one of `starts` to one of `ends`, not by `closed` steps; empty when there is no such way.
-// The last step's edge says nothing.
+// Over the fewest sides from one of `starts` to one of `ends`, not by `closed` steps; empty when
+// there is no such way. The last step's edge says nothing.
 std::vector<Step> sides_between(const Complex& k, const std::map<Side, Vec3>& starts, const std::map<Side, Vec3>& ends,
                                 const std::set<Step>& closed) {
   std::map<Side, Step> before;
@@ -115,18 +117,21 @@ std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, c
     return Vec3((w - w.dot(along) * along).normalized());
   };
   const Vec3 from = into(a), to = into(b);
-  // More than half a turn of material around the edge? A front's own face comes back on its other side.
+  // More than half a turn of material around the edge? A front's own face comes back on its other
+  // side.
   const auto t = k.corners(a.face);
   int behind = 0;
   for (const Vec3& c : k.corners(b.face))
     if (c != p && c != q) behind = orient3d(t[0], t[1], t[2], c) * (a.which ? -1 : 1);
   const bool reflex = a.face == b.face || behind > 0;
-  // The middle of the material's wedge, from whatever says it best: near half a turn the normals do.
+  // The middle of the material's wedge, from whatever says it best: near half a turn the normals
+  // do.
   const Vec3 turn = (from.dot(to) < 0 ? Vec3(rise + land) : reflex ? Vec3(-(from + to)) : Vec3(from + to)).normalized();
   return reflex ? std::vector<Vec3>{rise, turn, land} : std::vector<Vec3>{turn};
 }
 
-// Where a way pulled tight crosses the edges of a path over sides, at least the share `clear` of each from its ends.
+// Where a way pulled tight crosses the edges of a path over sides, at least the share `clear` of
+// each from its ends.
 std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end,
                             double clear) {
   const std::size_t n = path.size() - 1;
@@ -157,7 +162,8 @@ std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Ste
   std::vector<Hold> holds{{start, {(from - start).normalized()}, std::min(0.25 * reach, (from - start).norm())}};
   const auto at = crossings(k, path, start, end, clear);
   for (std::size_t s = 0; s < at.size();) {
-    // A needle is crossed where its edges all but touch, as if it were not there: its own plane says nothing.
+    // A needle is crossed where its edges all but touch, as if it were not there: its own plane
+    // says nothing.
     std::size_t last = s;
     while (last + 1 < at.size() && (at[last + 1] - at[s]).norm() < 1e-9 * reach) ++last;
     const auto t = k.corners(path[s].first.face);

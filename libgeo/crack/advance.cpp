@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/random.h"
-#include "crack/insert_internal.h"
+#include "crack/insert.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
@@ -13,21 +13,21 @@
 namespace geo {
 namespace {
 
-// Another crack may have divided the front's edges since: consecutive contacts that K joins no longer are joined again
-// through the vertices that now lie between them.
+// Another crack may have divided the front's edges since: consecutive contacts that K joins no
+// longer are joined again through the vertices that now lie between them.
 void renew_contacts(FrontState& front, const Complex& complex) {
   const double reach = 1e-12 * complex.extent().diagonal();
   for (auto& segment : front.segments) {
     std::vector<FrontState::Point> renewed{segment.front()};
     for (std::size_t i = 1; i < segment.size(); ++i) {
       const auto &a = segment[i - 1], &b = segment[i];
-      if (a.id.valid() && b.id.valid() && a.id != b.id && complex.around(a.id, b.id).empty()) {
+      if (a.id.valid() && b.id.valid() && a.id != b.id && complex.faces_around(a.id, b.id).empty()) {
         const Vec3 along = b.position - a.position;
         const double length = along.squaredNorm();
         std::vector<FaceId> near;
         Box3 box{a.position, a.position};
         box.add(b.position);
-        complex.near(box.grown(reach), near);
+        complex.faces_near(box.grown(reach), near);
         std::vector<std::pair<double, VertexId>> between;
         for (const FaceId f : near)
           for (const VertexId v : complex.face(f).v) {
@@ -39,8 +39,8 @@ void renew_contacts(FrontState& front, const Complex& complex) {
         between.erase(std::unique(between.begin(), between.end()), between.end());
         bool joined = true;
         VertexId last = a.id;
-        for (const auto& [t, v] : between) joined = joined && !complex.around(last, v).empty(), last = v;
-        if (joined && !between.empty() && !complex.around(last, b.id).empty())
+        for (const auto& [t, v] : between) joined = joined && !complex.faces_around(last, v).empty(), last = v;
+        if (joined && !between.empty() && !complex.faces_around(last, b.id).empty())
           for (const auto& [t, v] : between) renewed.push_back({complex.point(v), v});
       }
       renewed.push_back(b);
@@ -53,7 +53,8 @@ void renew_contacts(FrontState& front, const Complex& complex) {
 void follow_front(FrontState& front, const Complex& complex, const Strip& strip, const crack::Arrangement& arrangement,
                   const std::vector<VertexId>& vertex) {
   const std::size_t count = front.segments.size(), n = strip.next.size();
-  // The strip edges that make up each new segment: one, or several where it was snapped to vertices between its ends.
+  // The strip edges that make up each new segment: one, or several where it was snapped to vertices
+  // between its ends.
   std::vector<std::vector<std::vector<crack::Local>>> rows(count);
   for (std::uint32_t t = 0; t < arrangement.strip_size; ++t)
     for (int k = 0; k < 3; ++k)
@@ -96,13 +97,13 @@ void follow_front(FrontState& front, const Complex& complex, const Strip& strip,
   front.points = std::move(points);
 }
 
-// A point beside a face of K, neither on it nor clear of it, would make needles that cannot be rounded: it is moved
-// clear, to the side that it is on. Points that are exactly on K stay.
+// A point beside a face of K, neither on it nor clear of it, would make needles that cannot be
+// rounded: it is moved clear, to the side that it is on. Points that are exactly on K stay.
 Vec3 clear_of_faces(const Complex& complex, Vec3 p, double distance) {
   const double reach = 0.01 * distance;
   if (!Box3{p, p}.grown(reach).meets(complex.extent())) return p;
   std::vector<FaceId> near;
-  complex.near(Box3{p, p}.grown(reach), near);
+  complex.faces_near(Box3{p, p}.grown(reach), near);
   for (const FaceId f : near) {
     const auto t = complex.corners(f);
     if (segment_meets_triangle(p, p, t[0], t[1], t[2])) return p;
@@ -122,7 +123,7 @@ struct Step {
 };
 
 Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance,
-              CrackWork& work) {
+              CrackStats& work) {
   Stopwatch watch;
   Step result{{}, front};
   Strip strip = sweep(front, next);
@@ -139,7 +140,7 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
 
 }  // namespace
 
-CrackWork& CrackWork::operator+=(const CrackWork& o) {
+CrackStats& CrackStats::operator+=(const CrackStats& o) {
   faces_near += o.faces_near, triangles_cut += o.triangles_cut, new_crack_faces += o.new_crack_faces;
   attempts += o.attempts, snapped += o.snapped, repairs += o.repairs;
   near_seconds += o.near_seconds, meet_seconds += o.meet_seconds, split_seconds += o.split_seconds;
@@ -147,7 +148,7 @@ CrackWork& CrackWork::operator+=(const CrackWork& o) {
   return *this;
 }
 
-double CrackWork::seconds() const {
+double CrackStats::seconds() const {
   return near_seconds + meet_seconds + split_seconds + keep_seconds + stitch_seconds + guard_seconds;
 }
 
@@ -167,7 +168,7 @@ FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t c
 }
 
 CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options,
-                   CrackWork* work) {
+                   CrackStats* work) {
   if (next.size() != front.points.size())
     throw InputError("the front has " + std::to_string(front.points.size()) + " points and its next position " +
                      std::to_string(next.size()));
@@ -179,17 +180,17 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   if (front.step == 0)
     for (auto& segment : old.segments)
       for (auto& p : segment)
-        if (!p.id.valid()) p.position = clear_of_faces(complex, p.position, options.clear * size);
+        if (!p.id.valid()) p.position = clear_of_faces(complex, p.position, options.face_offset * size);
   for (std::size_t s = 0; s < old.segments.size(); ++s) {
     old.points[s].position = old.segments[s].front().position;
     old.points[(s + 1) % old.points.size()].position = old.segments[s].back().position;
   }
-  CrackWork done;
+  CrackStats done;
   std::string reason;
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
   std::vector<Vec3> wanted(next.begin(), next.end());
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i] != old.points[i].position) wanted[i] = clear_of_faces(complex, wanted[i], options.clear * size);
+    if (wanted[i] != old.points[i].position) wanted[i] = clear_of_faces(complex, wanted[i], options.face_offset * size);
   for (int attempt = 0; attempt <= options.attempts; ++attempt) {
     const crack::Attempt allowed = crack::attempt_at(attempt, options, size);
     std::vector<Vec3> target = wanted;

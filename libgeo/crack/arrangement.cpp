@@ -1,4 +1,4 @@
-#include "crack/arrangement_internal.h"
+#include "crack/arrangement.h"
 
 #include <algorithm>
 #include <numeric>
@@ -48,7 +48,7 @@ Local Arrangement::local_of(VertexId v) {
   return row;
 }
 
-void Arrangement::meet(CrackWork& work) {
+void Arrangement::meet(CrackStats& work) {
   shared_.reserve(8 * strip_size);
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles)

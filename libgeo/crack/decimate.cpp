@@ -6,7 +6,7 @@
 #include <queue>
 #include <unordered_map>
 
-#include "crack/place_internal.h"
+#include "crack/features.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 class Decimator {
  public:
-  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateWork& work)
+  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateStats& work)
       : k_(k), contacts_(fronts), options_(options), work_(work), allowed_(options.deviation * k.extent().diagonal()) {
     rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
     rules_.skin_keeps = false;
@@ -28,7 +28,7 @@ class Decimator {
     while (!todo_.empty() && k_.live_face_count() > options_.faces) {
       const auto [length, a, b] = todo_.top();
       todo_.pop();
-      if (k_.around(a, b).empty()) continue;
+      if (k_.faces_around(a, b).empty()) continue;
       if (!collapse(b, a)) collapse(a, b);
     }
     return delta_.sum();
@@ -61,7 +61,8 @@ class Decimator {
     if (!local) return false;
     const double off = std::max(*off_line, crack::distance_left(k_, *local, k_.point(b), rules_));
     if (crack::worst_new(k_, *local) > std::max(limit_, crack::worst_old(k_, *local))) return false;
-    // Distances add up: all that the corners of the new faces stand for may be this much farther off now.
+    // Distances add up: all that the corners of the new faces stand for may be this much farther
+    // off now.
     std::vector<std::pair<VertexId, double>> moved_now{{a, std::max(moved(a), moved(b)) + off}};
     for (const auto& f : local->edit.new_faces)
       for (const VertexId v : f.v)
@@ -79,7 +80,7 @@ class Decimator {
   Complex& k_;
   crack::Contacts contacts_;
   const DecimateOptions& options_;
-  DecimateWork& work_;
+  DecimateStats& work_;
   crack::PlaceRules rules_;
   double allowed_, limit_ = 0;
   std::priority_queue<Edge, std::vector<Edge>, std::greater<>> todo_;
@@ -90,12 +91,12 @@ class Decimator {
 }  // namespace
 
 CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options,
-                    DecimateWork* work) {
+                    DecimateStats* work) {
   if (!(options.deviation >= 0) || !(options.crease >= 0 && options.crease <= 180) ||
       !(options.angle > 0 && options.angle < 60))
     throw InputError(
         "decimation needs a deviation of 0 or more, a crease between 0 and 180 and an angle between 0 and 60 degrees");
-  DecimateWork done;
+  DecimateStats done;
   Stopwatch watch;
   CrackDelta delta = Decimator(complex, fronts, options, done).run();
   done.seconds = watch.lap();

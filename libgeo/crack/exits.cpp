@@ -73,7 +73,7 @@ class Surroundings {
     std::vector<std::uint32_t> near;
     index_->near(box, near);
     std::vector<FaceId> old;
-    complex_.near(box, old);
+    complex_.faces_near(box, old);
     return std::any_of(near.begin(), near.end(), [&](auto i) { return met(edit_.new_faces[skin_[i]].v); }) ||
            std::any_of(old.begin(), old.end(), [&](FaceId f) { return stays(f) && met(complex_.face(f).v); });
   }
@@ -100,7 +100,8 @@ class Surroundings {
 }  // namespace
 
 bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3, 3>> fan) {
-  // From the direction of q, in a plane, to that of a point w on a face: each other face in between changes sides.
+  // From the direction of q, in a plane, to that of a point w on a face: each other face in between
+  // changes sides.
   constexpr std::size_t most_faces = 4;
   std::vector<std::size_t> largest(fan.size());
   for (std::size_t i = 0; i < fan.size(); ++i) largest[i] = i;

@@ -7,7 +7,7 @@
 
 namespace geo {
 
-std::vector<Vec3> correspond(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed) {
+std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed) {
   if (previous.size() == next.size()) return next;
   // Same fraction of arc length on both polylines.
   const auto lengths = [&](const std::vector<Vec3>& line) {
@@ -31,7 +31,7 @@ std::vector<Vec3> correspond(const std::vector<Vec3>& previous, const std::vecto
   return points;
 }
 
-int substeps(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit) {
+int substep_count(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit) {
   if (!(limit > 0)) throw InputError("the largest motion of a front point must be positive");
   double most = 0;
   for (std::size_t i = 0; i < std::min(previous.size(), next.size()); ++i)

@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "crack/exits.h"
-#include "crack/ring_order.h"
+#include "crack/radial_order.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/check.h"
@@ -179,7 +179,7 @@ class Inspection {
         if (faces_[i].asked) box.add(faces_[i].box);
       if (box.empty()) continue;
       looked_up.clear();
-      if (family.near.empty()) complex_.near(box, looked_up);
+      if (family.near.empty()) complex_.faces_near(box, looked_up);
       for (const FaceId f : family.near.empty() ? std::span<const FaceId>(looked_up) : family.near) {
         const Box3& there = complex_.box(f);
         if (!there.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;

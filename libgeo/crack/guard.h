@@ -36,18 +36,19 @@ struct Fault {
   explicit operator bool() const { return !what.empty(); }
 };
 
-/// Checks an edit against K as it is: every new face has the orientation of its family's triangle and an area, no new
-/// vertex stands where another does, faces stand around edges as they are listed, no new face crosses a near one, and
-/// exits are outside. Exact. `moved` says per new vertex whether rounding moved it; faces that it has not touched are
-/// as exact decisions left them (empty: all are asked about). Families list every new face once, in order. With a
-/// `clearance`, features of cracks that do not touch must also be that far apart, exact faces' as well, since some may
-/// be near what an earlier step has rounded: what is a few last places thick no later step can round. Returns the first
-/// fault, none when all is well. Cost follows the edit.
+/// Checks an edit against K as it is: every new face has the orientation of its family's triangle
+/// and an area, no new vertex stands where another does, faces stand around edges as they are
+/// listed, no new face crosses a near one, and exits are outside. Exact. `moved` says per new
+/// vertex whether rounding moved it; faces that it has not touched are as exact decisions left them
+/// (empty: all are asked about). Families list every new face once, in order. With a `clearance`,
+/// features of cracks that do not touch must also be that far apart, exact faces' as well, since
+/// some may be near what an earlier step has rounded: what is a few last places thick no later step
+/// can round. Returns the first fault, none when all is well. Cost follows the edit.
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
                  std::span<const std::uint8_t> moved, double clearance = 0, std::span<const Exit> exits = {});
 
-/// Moves points that rounding has moved anyway by a few places more, where that takes a fault away. Returns the fault
-/// that remains, none when all is well; `repairs` is raised when one was mended.
+/// Moves points that rounding has moved anyway by a few places more, where that takes a fault away.
+/// Returns the fault that remains, none when all is well; `repairs` is raised when one was mended.
 Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
              std::span<const std::uint8_t> moved, double clearance, std::span<const Exit> exits, std::size_t& repairs);
 

@@ -1,10 +1,10 @@
-#include "crack/insert_internal.h"
+#include "crack/insert.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "crack/classify.h"
 #include "crack/guard.h"
-#include "crack/keep_internal.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
@@ -12,7 +12,8 @@
 namespace geo::crack {
 namespace {
 
-// The new faces of the edit by the triangle that each is a part of: cut faces of K first, then the strip's triangles.
+// The new faces of the edit by the triangle that each is a part of: cut faces of K first, then the
+// strip's triangles.
 std::vector<Family> families_of(const Complex& complex, const Arrangement& arrangement, std::span<const Part> parts) {
   std::vector<Family> families;
   std::uint32_t row = 0, last = ~0u;
@@ -39,8 +40,8 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
   return families;
 }
 
-// Where the new front's line runs outside, from a new vertex of K or to one: what is neither an edge of the strip's
-// kept parts nor on K.
+// Where the new front's line runs outside, from a new vertex of K or to one: what is neither an
+// edge of the strip's kept parts nor on K.
 std::vector<Exit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement,
                            const EdgeTable& edges, std::span<const Part> parts, std::span<const VertexId> vertex) {
   const auto fresh = [&](VertexId v) { return v.valid() && v.value >= complex.vertex_count(); };
@@ -80,7 +81,7 @@ Attempt attempt_at(int number, const CrackOptions& options, double size) {
 }
 
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
-                        std::vector<VertexId>& vertex, double clearance, CrackWork& work) {
+                        std::vector<VertexId>& vertex, double clearance, CrackStats& work) {
   vertex.clear();
   if (strip.triangles.empty()) {
     for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(arrangement.id(l));
@@ -101,7 +102,8 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   const auto parts = keep_inside(arrangement, complex, edges);
   work.keep_seconds += watch.lap();
   if (parts.empty()) {
-    // Nothing of the strip is in the material: contacts are those vertices of K that the front happens to stand on.
+    // Nothing of the strip is in the material: contacts are those vertices of K that the front
+    // happens to stand on.
     for (Local l = 0; l < arrangement.points().size(); ++l) vertex.push_back(arrangement.id(l));
     return {};
   }

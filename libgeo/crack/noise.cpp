@@ -1,6 +1,6 @@
-#include <cmath>
+#include "crack/noise.h"
 
-#include "kerf/crack_edits.h"
+#include <cmath>
 
 namespace geo {
 namespace {
@@ -11,8 +11,9 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ x >> 31;
 }
 
-// One of sixteen slopes towards the middles of a cube's edges, at a corner of the lattice.
-double slope(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed, const Vec3& d) {
+// The scalar product of d with one of sixteen gradients, towards the midpoints of a cube's edges,
+// at a lattice point.
+double gradient(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed, const Vec3& d) {
   const auto bits = mixed(seed ^ mixed(static_cast<std::uint64_t>(x) ^
                                        mixed(static_cast<std::uint64_t>(y) ^ mixed(static_cast<std::uint64_t>(z))))) &
                     15;
@@ -22,7 +23,7 @@ double slope(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed,
 
 }  // namespace
 
-double noise(const Vec3& p, std::uint64_t seed) {
+double gradient_noise(const Vec3& p, std::uint64_t seed) {
   const Vec3 base = p.array().floor();
   const Vec3 d = p - base;
   double weight[3];
@@ -33,7 +34,7 @@ double noise(const Vec3& p, std::uint64_t seed) {
     double w = 1;
     for (int i = 0; i < 3; ++i) w *= at[i] > 0 ? weight[i] : 1 - weight[i];
     const Vec3 lattice = base + at;
-    sum += w * slope(std::llround(lattice.x()), std::llround(lattice.y()), std::llround(lattice.z()), seed, d - at);
+    sum += w * gradient(std::llround(lattice.x()), std::llround(lattice.y()), std::llround(lattice.z()), seed, d - at);
   }
   return sum;
 }

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "crack/points_internal.h"
+#include "crack/points.h"
 #include "geometry/predicates.h"
 
 namespace geo::crack {
@@ -106,7 +106,8 @@ Local Points::append(Vec3 p, double error) {
 Local Points::add(Vec3 p) { return append(p, 0); }
 
 Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
-  // In extended precision the quotient is good to the last place of a double unless ab is nearly in the plane.
+  // In extended precision the quotient is good to the last place of a double unless ab is nearly in
+  // the plane.
   using Long = long double;
   Long u[3], v[3], wa[3], wb[3];
   for (int i = 0; i < 3; ++i)

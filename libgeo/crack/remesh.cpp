@@ -7,11 +7,11 @@
 #include <numbers>
 #include <unordered_set>
 
-#include "crack/place_internal.h"
+#include "crack/features.h"
 #include "geometry/distance.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
-#include "surface/complex_internal.h"
+#include "surface/radial_edge.h"
 
 namespace geo {
 namespace {
@@ -20,7 +20,7 @@ using crack::LocalEdit;
 
 class Remesher {
  public:
-  Remesher(Complex& k, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshWork& work)
+  Remesher(Complex& k, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshStats& work)
       : k_(k), contacts_(fronts), options_(options), work_(work), size_(k.extent().diagonal()) {
     limit_ = 1 / std::tan(options.angle * std::numbers::pi / 180);
     rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
@@ -57,13 +57,13 @@ class Remesher {
 
   // Carries an edit out if the guard lets it.
   bool apply(LocalEdit& local) {
-    const bool free = !options_.may_pass || std::all_of(local.swept.begin(), local.swept.end(), options_.may_pass);
+    const bool free = !options_.may_sweep || std::all_of(local.swept.begin(), local.swept.end(), options_.may_sweep);
     const auto delta = free ? crack::carry_out(k_, local, delta_) : std::nullopt;
     if (!delta) return ++work_.refused, false;
     for (const FaceId f : delta->new_faces) {
       queue(f);
       for (int e = 0; e < 3; ++e)
-        for (const FaceId g : k_.around(k_.face(f).v[e], k_.face(f).v[(e + 1) % 3])) queue(g);
+        for (const FaceId g : k_.faces_around(k_.face(f).v[e], k_.face(f).v[(e + 1) % 3])) queue(g);
     }
     return true;
   }
@@ -157,7 +157,8 @@ class Remesher {
     return false;
   }
 
-  // Divides the longest edge at the end of the way over ever longer ones (Rivara and Inostroza 1997).
+  // Divides the longest edge at the end of the way over ever longer ones (Rivara and Inostroza
+  // 1997).
   bool divide(FaceId f) {
     for (int way = 0; way < 64; ++way) {
       const auto c = k_.corners(f);
@@ -167,7 +168,7 @@ class Remesher {
       const VertexId a = k_.face(f).v[e], b = k_.face(f).v[(e + 1) % 3];
       const double length = (k_.point(b) - k_.point(a)).norm();
       FaceId next;
-      if (const auto ring = k_.around(a, b); ring.size() == 2 && !crack::is_feature(k_, a, b, rules_)) {
+      if (const auto ring = k_.faces_around(a, b); ring.size() == 2 && !crack::is_feature(k_, a, b, rules_)) {
         const FaceId g = ring[0] == f ? ring[1] : ring[0];
         const auto t = k_.corners(g);
         for (int i = 0; i < 3; ++i)
@@ -189,7 +190,7 @@ class Remesher {
   Complex& k_;
   crack::Contacts contacts_;
   const RemeshOptions& options_;
-  RemeshWork& work_;
+  RemeshStats& work_;
   crack::PlaceRules rules_;
   double size_, limit_;
   std::deque<FaceId> todo_;
@@ -204,13 +205,13 @@ double smallest_angle(const std::array<Vec3, 3>& t) {
 }
 
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
-                  const RemeshOptions& options, RemeshWork* work) {
+                  const RemeshOptions& options, RemeshStats* work) {
   if (!(options.angle > 0 && options.angle <= 30) || !(options.deviation >= 0) || !(options.shortest > 0) ||
       !(options.crease > 0 && options.crease <= 180))
     throw InputError(
         "remeshing needs an angle of 0 to 30 degrees, a deviation of 0 or more, a shortest edge above 0 and a crease "
         "of 0 to 180 degrees");
-  RemeshWork done;
+  RemeshStats done;
   Stopwatch watch;
   CrackDelta delta = Remesher(complex, fronts, options, done).run(region);
   done.seconds = watch.lap();

@@ -5,10 +5,11 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "crack/place_internal.h"
+#include "crack/features.h"
+#include "crack/noise.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
-#include "surface/complex_internal.h"
+#include "surface/radial_edge.h"
 
 namespace geo {
 namespace {
@@ -17,7 +18,7 @@ constexpr int rounds = 8;
 
 class Roughener {
  public:
-  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenWork& work)
+  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenStats& work)
       : k_(k), contacts_(fronts), options_(options), work_(work), size_(k.extent().diagonal()) {
     rules_.crease = -1;  // bends of a crack are not features here
   }
@@ -37,7 +38,7 @@ class Roughener {
   // Inside one crack, or at its tip where no front holds that.
   bool may_divide(VertexId a, VertexId b) const {
     if (contacts_.holds(a) && contacts_.holds(b)) return false;
-    const auto ring = k_.around(a, b);
+    const auto ring = k_.faces_around(a, b);
     return ring.size() <= 2 && is_chosen(ring[0]) && is_chosen(ring[ring.size() - 1]);
   }
   double length_of(FaceId f, int e) const {
@@ -56,8 +57,9 @@ class Roughener {
     return delta.has_value();
   }
 
-  // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so that faces stay about
-  // as round as they were. Where the way there ends at an edge that must stay, the faces before it stay as large.
+  // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so
+  // that faces stay about as round as they were. Where the way there ends at an edge that must
+  // stay, the faces before it stay as large.
   void divide(double longest) {
     std::vector<FaceId> todo;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
@@ -71,7 +73,7 @@ class Roughener {
         at = next;
         next = {};
         const int e = longest_edge(at);
-        for (const FaceId g : k_.around(k_.face(at).v[e], k_.face(at).v[(e + 1) % 3]))
+        for (const FaceId g : k_.faces_around(k_.face(at).v[e], k_.face(at).v[(e + 1) % 3]))
           if (length_of(g, longest_edge(g)) > length_of(at, e) * (1 + 1e-9)) next = g;
       }
       const int e = longest_edge(at);
@@ -147,9 +149,9 @@ class Roughener {
       if (!(length > 0)) continue;
       double sum = 0, high = 1, fine = options_.frequency / size_;
       for (int octave = 0; octave < options_.octaves; ++octave, high *= 0.6, fine *= 2)
-        sum += high * noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull +
-                                                                       static_cast<std::uint64_t>(crack) * 64 +
-                                                                       static_cast<std::uint64_t>(octave));
+        sum += high * gradient_noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull +
+                                                                                static_cast<std::uint64_t>(crack) * 64 +
+                                                                                static_cast<std::uint64_t>(octave));
       const auto d = distance.find(v);
       const double near = d == distance.end() ? 1 : std::min(1.0, d->second / fade);
       moves.push_back({v, k_.point(v) + height * near * sum / length * normal});
@@ -175,7 +177,7 @@ class Roughener {
   Complex& k_;
   crack::Contacts contacts_;
   const RoughenOptions& options_;
-  RoughenWork& work_;
+  RoughenStats& work_;
   crack::PlaceRules rules_;
   double size_;
   std::vector<FaceId> last_;
@@ -185,11 +187,11 @@ class Roughener {
 }  // namespace
 
 CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options,
-                   RoughenWork* work) {
+                   RoughenStats* work) {
   if (!(options.amplitude >= 0 && options.amplitude < 1) || !(options.frequency > 0 && options.frequency < 1e6) ||
       options.octaves < 1 || options.octaves > 16 || !(options.edge >= 0))
     throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive, its octaves 1 to 16");
-  RoughenWork done;
+  RoughenStats done;
   Stopwatch watch;
   CrackDelta delta = Roughener(complex, fronts, options, done).run();
   done.seconds = watch.lap();

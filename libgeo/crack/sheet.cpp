@@ -1,14 +1,14 @@
 #include "kerf/crack.h"
 
 #include "base/random.h"
-#include "crack/insert_internal.h"
+#include "crack/insert.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
 
 namespace geo {
 
 CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
-                        CrackWork* work) {
+                        CrackStats* work) {
   if (crack < 1) throw InputError("cracks are numbered from 1");
   for (const Vec3& p : sheet.vertices)
     if (!p.allFinite()) throw InputError("the sheet has a coordinate that is not a finite number");
@@ -18,7 +18,7 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
         throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
   const double size = complex.extent().diagonal();
   Random random(options.seed * 0x9e3779b97f4a7c15ull);
-  CrackWork done;
+  CrackStats done;
   std::string reason;
   for (int attempt = 0; attempt <= options.attempts; ++attempt) {
     const auto [jitter, clearance] = crack::attempt_at(attempt, options, size);

@@ -1,7 +1,8 @@
-// Turns an arrangement and the parts to keep into an edit of K (§ 5.2: joining crack and skin along the seam).
+// Turns an arrangement and the parts to keep into an edit of K (§ 5.2: joining crack and skin along
+// the seam).
 #include <algorithm>
 
-#include "crack/keep_internal.h"
+#include "crack/classify.h"
 #include "kerf/error.h"
 
 namespace geo::crack {
@@ -48,8 +49,8 @@ class Stitcher {
         if (fresh_[0].child != part.child || fresh_[0].k != k) continue;  // its ring is made at its first use
         order(u, v);
       }
-    // Edges of K that gain no crack face but lose faces to their children keep their order; it is given anew where the
-    // edge itself was divided.
+    // Edges of K that gain no crack face but lose faces to their children keep their order; it is
+    // given anew where the edge itself was divided.
     for (auto e = a_.strip_size; e < a_.elements.size(); ++e) {
       const Element& element = a_.elements[e];
       if (!element.cut) continue;
@@ -59,7 +60,7 @@ class Stitcher {
           if (child.edge[k] > 2) continue;
           const auto b = child.edge[k];
           const VertexId p = complex_.face(element.face).v[b], q = complex_.face(element.face).v[(b + 1) % 3];
-          if (complex_.around(p, q).size() < 3) continue;
+          if (complex_.faces_around(p, q).size() < 3) continue;
           const Local u = child.v[k], v = child.v[(k + 1) % 3];
           if (u == element.corner[b] && v == element.corner[(b + 1) % 3]) continue;  // whole: parts take places
           own.find(u, v, fresh_);
@@ -88,7 +89,8 @@ class Stitcher {
     Member member;
   };
 
-  // K's faces around u→v in K's own order, which is authoritative; crack faces (fresh_) put into it by exact angles.
+  // K's faces around u→v in K's own order, which is authoritative; crack faces (fresh_) put into it
+  // by exact angles.
   void order(Local u, Local v) {
     ring_.clear();
     edges_.find(u, v, at_);
@@ -111,9 +113,9 @@ class Stitcher {
         throw GeometryError("two faces lie on each other at an edge");
       ring_.insert(ring_.begin() + static_cast<std::ptrdiff_t>(place), {face_of_[use.child], m});
     }
-    ComplexEdit::Ring given{id(u), id(v), {}};
+    ComplexEdit::RadialOrder given{id(u), id(v), {}};
     for (const Place& p : ring_) given.faces.push_back(p.face);
-    edit_.rings.push_back(std::move(given));
+    edit_.radial_orders.push_back(std::move(given));
   }
 
   void sort_like_complex() {
@@ -122,7 +124,7 @@ class Stitcher {
     if (b > 2) throw GeometryError("three faces meet at an edge that is not one of the complex");
     const auto& v = complex_.face(a_.elements[first.element].face).v;
     const VertexId p = v[b], q = v[(b + 1) % 3];
-    const auto order = complex_.around(p, q);
+    const auto order = complex_.faces_around(p, q);
     if (order.size() != at_.size()) throw GeometryError("a face around a met edge was not met");
     std::vector<Place> sorted;
     for (const FaceId f : order) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "crack/lookup_internal.h"
-#include "crack/points_internal.h"
+#include "crack/index_map.h"
+#include "crack/points.h"
 #include "geometry/predicates.h"
 
 namespace geo {
@@ -57,8 +57,8 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
         builder.triangle(old[k], old[k + 1], q, {-1, -1, k == 0 ? s : -1});
       continue;
     }
-    // A fan around p, closed by the triangle that holds the new front (nothing when q stands still: the fan's last
-    // side).
+    // A fan around p, closed by the triangle that holds the new front (nothing when q stands still:
+    // the fan's last side).
     for (std::size_t k = 0; k + 1 < old.size(); ++k)
       builder.triangle(old[k], old[k + 1], p, {-1, stands_q && k + 2 == old.size() ? s : -1, -1});
     if (!stands_q) builder.triangle(old.back(), q, p, {-1, s, -1});
@@ -80,7 +80,7 @@ void find_near(Strip& strip, const Complex& complex, double reach) {
   const Box3 extent = complex.extent().grown(reach);
   for (const auto& t : strip.triangles) {
     if (box_of(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]).meets(extent))
-      complex.near_triangle(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]], reach, strip.near);
+      complex.faces_near_triangle(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]], reach, strip.near);
     strip.near_begin.push_back(static_cast<std::uint32_t>(strip.near.size()));
   }
 }

@@ -176,7 +176,7 @@ void read_surface(const KerfFile& in, Body& body) {
   if (traced) mesh.source = in.read<std::uint32_t>("surface/source");
   try {
     body.surface = Complex::from_two_sided(mesh);
-    if (traced) body.surface.trace_sources(mesh.source);
+    if (traced) body.surface.map_sources(mesh.source);
   } catch (const InputError& e) {
     in.fail(e.what());
   }

@@ -30,8 +30,8 @@ Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds
   return {{"pieces", pieces}, {"bonds", held}};
 }
 
-// Unit normals at the corners: of the triangles there, weighed by their areas, that are of the same kind and bent less
-// than 45°.
+// Unit normals at the corners: of the triangles there, weighed by their areas, that are of the same
+// kind and bent less than 45°.
 std::vector<std::array<Vec3, 3>> smooth_normals(const TriangleMesh& mesh) {
   std::vector<Vec3> normal(mesh.triangles.size());
   std::vector<std::vector<std::uint32_t>> at(mesh.vertices.size());
@@ -225,7 +225,7 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
                  {"mesh", glb.mesh(primitives, notes.names[p])},
                  {"extras", {{"volume", chunk.volume}}}};
     if (options.hull_corners > 0) {
-      const auto hulls = convex_parts(chunk.mesh, options.hull_parts, options.hull_corners);
+      const auto hulls = convex_decomposition(chunk.mesh, options.hull_parts, options.hull_corners);
       for (std::size_t h = 0; h < hulls.size(); ++h) {
         const std::string name = "UCX_" + notes.names[p] + hull_suffix(h, hulls.size());
         const Json shape = Json::array({hull_primitive(glb, hulls[h], chunk.centroid)});

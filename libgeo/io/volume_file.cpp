@@ -99,7 +99,7 @@ TriangleMesh wrapped(const TriangleMesh& solid, double voxel) {
   for (Vec3& p : mesh.vertices) p = middle + voxel * p;
   for (const auto& [a, b, c] : mesh.triangles)
     mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).triangle);
-  carry(solid, mesh);
+  transfer_attributes(solid, mesh);
   return mesh;
 }
 

@@ -5,9 +5,9 @@
 #include <queue>
 #include <unordered_map>
 
+#include "crack/noise.h"
 #include "geometry/triangle_index.h"
 #include "kerf/check.h"
-#include "kerf/crack_edits.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 
@@ -175,7 +175,8 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
       double high = o.amplitude * size, fine = o.frequency / size;
       for (int octave = 0; octave < o.octaves; ++octave, high *= 0.6, fine *= 2)
         for (int k = 0; k < 3; ++k)
-          way[i][k] += high * noise(fine * (flat[i] - skin.box().lo),
+          way[i][k] +=
+              high * gradient_noise(fine * (flat[i] - skin.box().lo),
                                     o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
       walls.vertices[i] = flat[i] + way[i];
     }

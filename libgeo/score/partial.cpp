@@ -72,7 +72,8 @@ class Rim {
     });
   }
 
-  // Triangles that meet in the material across an edge which no other wall has belong together: one level for all.
+  // Triangles that meet in the material across an edge which no other wall has belong together: one
+  // level for all.
   void find_levels(const TriangleBvh& skin, double depth) {
     UnionFind joined(level_.size());
     for (const auto& [name, e] : edges_)
@@ -90,7 +91,8 @@ class Rim {
     }
   }
 
-  // Where levels of the walls at an edge cross it; at its end where that is nearer than a twentieth.
+  // Where levels of the walls at an edge cross it; at its end where that is nearer than a
+  // twentieth.
   void split(Edge& e, std::uint32_t a, std::uint32_t b) {
     for (const auto t : e.triangles) {
       const double level = level_[t];

@@ -60,7 +60,8 @@ TriangleMesh planes(const Box3& box, int cells, const PatternOptions& o) {
 }
 
 TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
-  // Twice as long as wide, wide as high; each course is shifted by half a brick both ways. A brick is 2 × 2 halves.
+  // Twice as long as wide, wide as high; each course is shifted by half a brick both ways. A brick
+  // is 2 × 2 halves.
   const Mat3 frame = frame_along(axis_of(box, o));
   const Box3 along = box_along(box, frame);
   const Vec3 size = along.hi - along.lo;
@@ -102,7 +103,8 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
   for (int s = 0; s < spokes; ++s) angle.push_back(turn / spokes * (s + 0.5 * random.uniform(-0.5, 0.5)));
   for (int s = 0; s < spokes; ++s)
     for (int c = 1; c <= circles; ++c) {
-      // Circles stand the closer the nearer to the hub; the last one is outside, where no chord comes near the model.
+      // Circles stand the closer the nearer to the hub; the last one is outside, where no chord
+      // comes near the model.
       const double uneven = rings && c < circles ? 0.25 * random.uniform(-1, 1) : 0;
       const double radius = c == circles ? 3 * reach + box.diagonal() : reach * std::pow((c + uneven) / circles, 1.6);
       const double a = angle[std::size_t(s)] + (c < circles ? turn / spokes * 0.15 * random.uniform(-1, 1) : 0);
@@ -120,7 +122,7 @@ TriangleMesh cells_of_sites(const TriangleBvh& skin, int cells, const PatternOpt
     const Vec3 axis = axis_of(skin.box(), o).normalized();
     stretch -= (1 - 1 / o.grain) * axis * axis.transpose();
   }
-  const auto sites = spread_sites(skin, cells, stretch, o);
+  const auto sites = sample_sites(skin, cells, stretch, o);
   if (sites.size() < 2) return {};
   TriangleMesh walls = voronoi_walls(sites, box_along(widened(skin.box()), stretch.transpose()));
   const Mat3 back = stretch.inverse();
@@ -157,7 +159,7 @@ Pattern pattern_named(std::string_view name) {
   throw InputError("there is no pattern of this name; give one of " + all);
 }
 
-std::vector<Vec3> spread_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o) {
+std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o) {
   Random random(o.seed);
   const Box3& box = skin.box();
   const double diagonal = box.diagonal();

@@ -5,8 +5,10 @@
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/pieces.h"
+#include "score/jagged.h"
 #include "score/join.h"
 #include "score/partial.h"
+#include "score/patterns.h"
 
 namespace geo {
 namespace {
@@ -70,8 +72,8 @@ class Scoring {
   }
   double off(std::uint32_t pieces) const { return pieces == 0 ? 1e300 : std::abs(double(pieces) - o_.pieces); }
 
-  // Counts the pieces of the pattern as it is; where they are few enough too many to be joined, finishes it. False when
-  // it cannot be inserted.
+  // Counts the pieces of the pattern as it is; where they are few enough too many to be joined,
+  // finishes it. False when it cannot be inserted.
   bool attempt(Try& t) {
     report(progress_, "score", static_cast<std::size_t>(best_.attempts), static_cast<std::size_t>(o_.attempts));
     ++best_.attempts;
@@ -88,7 +90,8 @@ class Scoring {
     }
   }
 
-  // Roughens walls, joins pieces that are too many, and keeps what comes nearest. Returns the pieces there were before.
+  // Roughens walls, joins pieces that are too many, and keeps what comes nearest. Returns the
+  // pieces there were before.
   std::uint32_t finish(TriangleMesh walls) {
     if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged);
     const Complex cut = cut_by(walls);

@@ -63,7 +63,8 @@ class Corners {
   std::map<Name, Vec3> places_;
 };
 
-// A convex cell: a loop of corners for each plane that bounds it, each corner named by the two planes beside this one.
+// A convex cell: a loop of corners for each plane that bounds it, each corner named by the two
+// planes beside this one.
 struct Side {
   std::uint32_t plane;
   std::vector<Name> loop;
@@ -83,15 +84,16 @@ Cell box_cell(std::uint32_t site, std::uint32_t count) {
   return cell;
 }
 
-// The third plane that two neighbouring corners of a side have in common, besides that side and the cell's own site.
+// The third plane that two neighbouring corners of a side have in common, besides that side and the
+// cell's own site.
 std::uint32_t shared_plane(const Name& a, const Name& b, std::uint32_t site, std::uint32_t plane) {
   for (const auto p : a)
     if (p != site && p != plane && std::find(b.begin(), b.end(), p) != b.end()) return p;
   return ~0u;
 }
 
-// Cuts off what is nearer to `other`. False when corners so close together that rounding misplaces them make no
-// polygon.
+// Cuts off what is nearer to `other`. False when corners so close together that rounding misplaces
+// them make no polygon.
 bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners) {
   std::map<Name, Name> next;  // along the new side
   bool any = false;
@@ -132,8 +134,9 @@ bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners)
   return true;
 }
 
-// All walls, or nothing when the sites are too regular for names of four: a corner's place follows from the sites with
-// about as many digits lost as the walls' edges there are short, and half of all digits must be left.
+// All walls, or nothing when the sites are too regular for names of four: a corner's place follows
+// from the sites with about as many digits lost as the walls' edges there are short, and half of
+// all digits must be left.
 std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& box) {
   const auto count = static_cast<std::uint32_t>(sites.size());
   Corners corners(sites, box);

@@ -34,7 +34,7 @@ void prescore(const Scene& scene, RunStart& run, const Progress& progress) {
     for (std::size_t k = 1; k < front.steps.size(); ++k) {
       report(progress, "prescoring", s, scene.scores.size());
       try {
-        follow_donors(split(run.body, state, correspond(front.steps[0], front.steps[k], front.closed), options),
+        follow_donors(split(run.body, state, resample_front(front.steps[0], front.steps[k], front.closed), options),
                       run.state);
       } catch (const GeometryError&) {
         throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name +

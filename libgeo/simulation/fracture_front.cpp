@@ -23,7 +23,7 @@ double distance_to_face(const Complex& complex, const Vec3& p, const Vec3& d, do
   Box3 box{from, from};
   box.add(to);
   std::vector<FaceId> near;
-  complex.near(box, near);
+  complex.faces_near(box, near);
   double first = std::numeric_limits<double>::infinity();
   for (const FaceId f : near) {
     const auto t = complex.corners(f);

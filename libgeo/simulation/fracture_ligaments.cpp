@@ -27,7 +27,7 @@ FrontState front_along(const Complex& complex, std::int32_t crack, const std::ve
 
 // Direction of growth at an edge where a crack ends, as long as the edge; zero at any other edge.
 Vec3 ahead_of(const Complex& complex, VertexId a, VertexId b) {
-  const auto ring = complex.around(a, b);
+  const auto ring = complex.faces_around(a, b);
   if (ring.size() != 1) return Vec3::Zero();
   Vec3 behind = Vec3::Zero();
   for (const VertexId v : complex.face(ring[0]).v)
@@ -47,14 +47,15 @@ std::vector<FrontState> unfollowed_borders(const Complex& complex, std::int32_t 
   // Border edges in the direction of their faces: the crack is on their left, seen against its
   // normal.
   std::vector<FaceId> faces;
-  complex.near(where, faces);
+  complex.faces_near(where, faces);
   std::map<VertexId, std::vector<VertexId>> next;
   std::map<VertexId, int> arriving;
   for (const FaceId f : faces) {
     const auto& face = complex.face(f);
     for (std::size_t k = 0; k < 3 && face.crack == crack; ++k) {
       const VertexId a = face.v[k], b = face.v[(k + 1) % 3];
-      if (complex.around(a, b).size() == 1 && !followed.contains(unordered(a, b))) next[a].push_back(b), ++arriving[b];
+      if (complex.faces_around(a, b).size() == 1 && !followed.contains(unordered(a, b)))
+        next[a].push_back(b), ++arriving[b];
     }
   }
   std::vector<FrontState> found;

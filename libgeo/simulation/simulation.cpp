@@ -356,7 +356,7 @@ TriangleMesh Simulation::surface(const TriangleMesh* model) const {
   const Impl& run = *impl_;
   std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
   TriangleMesh mesh = run.body.surface.two_sided(&rows);
-  if (model) carry(*model, mesh);
+  if (model) transfer_attributes(*model, mesh);
   mesh.attributes.normal.clear();
   if (run.collisions->on()) {
     mesh.vertices = run.collisions->rows(run.body);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "kerf/crack_edits.h"
+#include "crack/noise.h"
 
 namespace geo {
 
 double strength_factor(const Strength& s, std::uint64_t seed, double diagonal, const Vec3& x) {
   if (s.variation == 0) return 1;
-  return std::max(0.05, 1 + s.variation * noise(x / (s.grain > 0 ? s.grain : 0.1 * diagonal), seed));
+  return std::max(0.05, 1 + s.variation * gradient_noise(x / (s.grain > 0 ? s.grain : 0.1 * diagonal), seed));
 }
 
 bool may_break(const FractureOptions& f, const Vec3& x) {

@@ -8,7 +8,8 @@
 namespace geo {
 namespace {
 
-// Where a point lies in a triangle: at a corner, on an edge or within, with the weight of each corner concerned.
+// Where a point lies in a triangle: at a corner, on an edge or within, with the weight of each
+// corner concerned.
 struct Place {
   int count = 1;
   std::array<int, 3> corner{};
@@ -22,8 +23,9 @@ bool before(const Vec3& p, const Vec3& q) {
 Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
   for (int k = 0; k < 3; ++k)
     if (t[k] == p) return {1, {k}, {1}};
-  // A cut leaves points on edges, up to the last few places of a coordinate. There both triangles of the edge must see
-  // the same weights, so the edge is taken in one direction whichever triangle it belongs to.
+  // A cut leaves points on edges, up to the last few places of a coordinate. There both triangles
+  // of the edge must see the same weights, so the edge is taken in one direction whichever triangle
+  // it belongs to.
   double largest = p.cwiseAbs().maxCoeff();
   for (const Vec3& c : t) largest = std::max(largest, c.cwiseAbs().maxCoeff());
   double best = 8 * std::numeric_limits<double>::epsilon() * largest;
@@ -39,8 +41,8 @@ Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
     if (distance <= best) best = distance, on_edge = {2, {a, b}, {1 - s, s}};
   }
   if (on_edge.count == 2) return on_edge;
-  // Height over the longest edge first, then the place along it that goes with this height: the error is a few last
-  // places of a length, however thin the triangle.
+  // Height over the longest edge first, then the place along it that goes with this height: the
+  // error is a few last places of a length, however thin the triangle.
   const int a = longest, b = (a + 1) % 3, c = (a + 2) % 3;
   const Vec3 e = t[b] - t[a], q = t[c] - t[a], d = p - t[a];
   const Vec3 up = q - e * (q.dot(e) / e.squaredNorm());
@@ -69,7 +71,8 @@ std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, std::size_t t) {
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-// The other side of a crack's triangle, where it follows in the next row, as Kerf writes it; else the row itself.
+// The other side of a crack's triangle, where it follows in the next row, as Kerf writes it; else
+// the row itself.
 std::uint32_t other_side(const TriangleMesh& mesh, std::uint32_t row) {
   if (mesh.patch.empty() || row + 1 >= mesh.triangles.size() || mesh.patch[row] <= 0 ||
       mesh.patch[row + 1] != -mesh.patch[row])
@@ -104,7 +107,7 @@ Vec3 face_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).stableNormalized().cross((c - a).stableNormalized()).stableNormalized();
 }
 
-void carry(const TriangleMesh& original, TriangleMesh& derived) {
+void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
   const Attributes& from = original.attributes;
   const std::size_t count = derived.triangles.size();
   if (derived.source.size() != count)

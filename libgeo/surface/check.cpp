@@ -5,8 +5,9 @@
 #include <unordered_map>
 
 #include "geometry/predicates.h"
+#include "geometry/triangle_index.h"
 #include "kerf/error.h"
-#include "surface/complex_internal.h"
+#include "surface/radial_edge.h"
 
 namespace geo {
 namespace {
@@ -102,7 +103,7 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
   return triangles_meet(s, t);
 }
 
-bool stand_around(const Vec3& a, const Vec3& b, std::span<const Vec3> through) {
+bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through) {
   for (std::size_t i = 0; i + 1 < through.size(); ++i)
     if (compare_angle(a, b, through[0], through[i], through[i + 1]) >= 0) return false;
   return true;
@@ -174,7 +175,7 @@ std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex
   std::vector<FaceId> near;
   for (const FaceId f : sorted) {
     near.clear();
-    complex.near(complex.box(f), near);
+    complex.faces_near(complex.box(f), near);
     for (const FaceId g : near) {
       if (g == f || (g < f && (!only || std::binary_search(sorted.begin(), sorted.end(), g)))) continue;
       if (faces_cross(rows(f), complex.corners(f), rows(g), complex.corners(g))) pairs.push_back({f, g});
@@ -194,15 +195,15 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
   }
   for (int e = 0; e < 3; ++e) {
     const VertexId a = face.v[e], b = face.v[(e + 1) % 3];
-    const auto ring = k.around(a, b);
+    const auto ring = k.faces_around(a, b);
     if (std::find(ring.begin(), ring.end(), FaceId(f)) == ring.end()) {
       report.manifold = false;
       note(report, "face " + std::to_string(f) + " is missing around its edge " + edge_name(a, b));
       continue;
     }
     try {
-      check_ring(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b),
-                 [&](FaceId g) { return k.face(g); });
+      check_wedges(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b),
+                   [&](FaceId g) { return k.face(g); });
     } catch (const GeometryError& error) {
       report.closed = false;
       note(report, error.what());
@@ -214,7 +215,7 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
       for (const FaceId g : ring)
         for (const VertexId v : k.face(g).v)
           if (v != a && v != b) apex.push_back(k.point(v));
-      if (!stand_around(k.point(low), k.point(high), apex)) {
+      if (!in_radial_order(k.point(low), k.point(high), apex)) {
         report.manifold = false;
         note(report, "the faces around edge " + edge_name(a, b) + " stand otherwise than they are listed");
       }

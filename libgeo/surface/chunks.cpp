@@ -13,8 +13,8 @@ struct Wall {
   Vec3 normal = Vec3::Zero(), center = Vec3::Zero();  // not yet divided by what they weigh
 };
 
-// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice. Where vertices have
-// moved, a face is half way between its sides, and weighs what it did before.
+// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice. Where
+// vertices have moved, a face is half way between its sides, and weighs what it did before.
 std::map<Pair, Wall> walls_of(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {}) {
   std::map<Pair, Wall> walls;
   for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
@@ -60,7 +60,8 @@ std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::
 std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile,
                                std::span<const Vec3> moved) {
   const auto walls = walls_of(complex, pieces);
-  // The walls that the triangles of each piece belong to, in the order in which piece_mesh() gives them.
+  // The walls that the triangles of each piece belong to, in the order in which piece_mesh() gives
+  // them.
   std::vector<std::vector<std::pair<const Wall*, bool>>> wall_at(pieces.count);
   for (std::uint32_t f = 0; f < complex.face_count(); ++f)
     for (std::uint32_t which = 0; which < 2; ++which) {
@@ -77,7 +78,7 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
     Chunk chunk{piece_mesh(complex, pieces, p, &rows), pieces.volume[p], Vec3::Zero()};
     TriangleMesh& mesh = chunk.mesh;
-    if (!original.triangles.empty()) carry(original, mesh);
+    if (!original.triangles.empty()) transfer_attributes(original, mesh);
     mesh.site.clear();
     Attributes& a = mesh.attributes;
     if (a.group.empty()) {

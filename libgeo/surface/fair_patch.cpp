@@ -86,8 +86,8 @@ class Patch {
   std::map<Edge, std::vector<std::uint32_t>> sides_;
 };
 
-// Exchanges an edge for the other diagonal where that makes the sharper of both triangles less sharp, or the edge may
-// not be: this ends.
+// Exchanges an edge for the other diagonal where that makes the sharper of both triangles less
+// sharp, or the edge may not be: this ends.
 bool Patch::flip(const Edge& edge) {
   const auto at = sides_.find(edge);
   if (at == sides_.end() || at->second.size() != 2) return false;
@@ -153,7 +153,8 @@ bool Patch::divide() {
   return divided;
 }
 
-// The least sum of the squares of how far each vertex, on the rim or inside, is from the mean of those around it.
+// The least sum of the squares of how far each vertex, on the rim or inside, is from the mean of
+// those around it.
 void Patch::fair() {
   const auto inner = static_cast<Eigen::Index>(at_.size() - rim_);
   if (inner == 0) return;

@@ -18,11 +18,12 @@ struct FairPatch {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of corners; they run the rim's way
 };
 
-/// Triangles as fine as the rim, on a surface that bends as little as it can and leaves the rim as the surface beyond
-/// it comes there (P. Liepa, Filling holes in meshes, 2003, from the second step on; weights are inverse lengths).
-/// `rim`: at least three corners; `beyond`: of each, the points that it has edges to other than along the rim;
-/// `joined`: whether two corners have an edge already. The patch may cross itself or something else: who takes it
-/// looks. Without triangles where it would have more than a million of them.
+/// Triangles as fine as the rim, on a surface that bends as little as it can and leaves the rim as
+/// the surface beyond it comes there (P. Liepa, Filling holes in meshes, 2003, from the second step
+/// on; weights are inverse lengths). `rim`: at least three corners; `beyond`: of each, the points
+/// that it has edges to other than along the rim; `joined`: whether two corners have an edge
+/// already. The patch may cross itself or something else: who takes it looks. Without triangles
+/// where it would have more than a million of them.
 FairPatch fair_patch(const std::vector<Vec3>& rim, const std::vector<std::vector<Vec3>>& beyond,
                      const std::function<bool(std::uint32_t, std::uint32_t)>& joined);
 

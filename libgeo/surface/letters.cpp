@@ -103,7 +103,8 @@ double distance_to(const std::vector<Stroke>& strokes, double x, double y) {
   return best;
 }
 
-// A planar region as convex cells; points are known by their grid corner or grid edge, so neighbours share them.
+// A planar region as convex cells; points are known by their grid corner or grid edge, so
+// neighbours share them.
 struct Region {
   std::vector<std::array<double, 2>> points;
   std::vector<std::vector<std::uint32_t>> cells;             // counter-clockwise
@@ -115,8 +116,8 @@ Region contour(const std::vector<Stroke>& strokes, int resolution) {
   const double h = 1.0 / resolution;
   const int nx = static_cast<int>(std::ceil((0.6 + 2 * pad) / h)),
             ny = static_cast<int>(std::ceil((0.8 + 2 * pad) / h));
-  // Sampled off the strokes' own lines, so that no value is zero; a value is never left so small that a cell
-  // degenerates.
+  // Sampled off the strokes' own lines, so that no value is zero; a value is never left so small
+  // that a cell degenerates.
   const auto value = [&](int i, int j) {
     const double v = pen - distance_to(strokes, i * h - pad + 0.37e-3, j * h - pad + 0.53e-3);
     return std::abs(v) < 0.02 * h ? (v < 0 ? -0.02 : 0.02) * h : v;

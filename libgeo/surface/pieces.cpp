@@ -62,8 +62,8 @@ std::vector<std::uint32_t> group(std::size_t shells, const std::vector<std::int3
   return group;
 }
 
-// Of the shells of faces that hang together, one looks outwards at what is around them all: it has corners at the
-// extreme points. Where several have, it is the one with the most volume outside.
+// Of the shells of faces that hang together, one looks outwards at what is around them all: it has
+// corners at the extreme points. Where several have, it is the one with the most volume outside.
 std::uint32_t outward(const Complex& k, const std::vector<Shell>& shells, std::vector<std::uint32_t> of_group) {
   for (int way = 0; way < 6 && of_group.size() > 1; ++way) {
     const auto farther = [&](VertexId a, VertexId b) {
@@ -87,10 +87,11 @@ std::uint32_t outward(const Complex& k, const std::vector<Shell>& shells, std::v
                            [&](auto a, auto b) { return shells[a].volume < shells[b].volume; });
 }
 
-// True for shells that bound a piece from outside. Faces that hang together divide space into one region for each of
-// the shells that they have, air included (Alexander's duality). All but one of these regions are enclosed by them: a
-// piece of material each, however thin, and whatever rounding makes of its volume. The one around them is air where
-// they have skin that encloses something, else the inside of another piece.
+// True for shells that bound a piece from outside. Faces that hang together divide space into one
+// region for each of the shells that they have, air included (Alexander's duality). All but one of
+// these regions are enclosed by them: a piece of material each, however thin, and whatever rounding
+// makes of its volume. The one around them is air where they have skin that encloses something,
+// else the inside of another piece.
 std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>& shells,
                                      const std::vector<std::uint32_t>& root) {
   std::vector<std::vector<std::uint32_t>> groups(shells.size());
@@ -120,8 +121,8 @@ Pieces find_pieces(const Complex& k) {
   for (std::uint32_t s = 0; s < shells.size(); ++s)
     if (is_outer[s]) outer.push_back(s);
 
-  // Cavities and internal cracks belong to the smallest outer shell around them, which is none of those that they share
-  // faces with.
+  // Cavities and internal cracks belong to the smallest outer shell around them, which is none of
+  // those that they share faces with.
   std::vector<std::uint32_t> owner(shells.size());
   std::vector<TriangleBvh> trees(shells.size());
   for (std::uint32_t s = 0; s < shells.size(); ++s) {

@@ -90,7 +90,7 @@ TriangleMesh refined(const TriangleMesh& mesh, double longest) {
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) fine.source.push_back(i);
   while (Pass(fine, longest).divide()) {
   }
-  carry(mesh, fine);
+  transfer_attributes(mesh, fine);
   if (mesh.source.empty()) fine.source.clear();
   return fine;
 }

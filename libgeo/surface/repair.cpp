@@ -73,8 +73,8 @@ void turn(TriangleMesh& mesh, std::uint32_t t) {
     if (n.dot(outwards) < 0) n = -n;
 }
 
-// Triangles with a vertex twice; of those with the same three vertices all but one, or all where as many run one way as
-// the other.
+// Triangles with a vertex twice; of those with the same three vertices all but one, or all where as
+// many run one way as the other.
 std::size_t drop_void(TriangleMesh& mesh) {
   std::map<Triangle, std::pair<int, std::vector<std::uint32_t>>> same;
   std::vector<char> kept(mesh.triangles.size(), 0);
@@ -140,8 +140,8 @@ Parts orient(TriangleMesh& mesh, std::size_t& turned) {
   return parts;
 }
 
-// Loops of edges with one triangle only, each as the sides that it runs along; a loop that passes a vertex twice is
-// two.
+// Loops of edges with one triangle only, each as the sides that it runs along; a loop that passes a
+// vertex twice is two.
 std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
   std::multimap<std::uint32_t, Side>
       from;  // a hole runs against its rim's triangles: by the vertex where it comes to a side
@@ -171,7 +171,8 @@ std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
   return rims;
 }
 
-// Adds a patch over the hole that the rim runs along; what its corners have goes from the rim inwards.
+// Adds a patch over the hole that the rim runs along; what its corners have goes from the rim
+// inwards.
 void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch& patch) {
   const auto corners = static_cast<std::uint32_t>(rim.size()), first = static_cast<std::uint32_t>(mesh.vertices.size()),
              rows = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -218,8 +219,8 @@ void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch
   }
 }
 
-// Smooth patches in place of flat ones, as long as no triangle comes to cross another one, and no edge has more than
-// two.
+// Smooth patches in place of flat ones, as long as no triangle comes to cross another one, and no
+// edge has more than two.
 class SmoothPatches {
  public:
   explicit SmoothPatches(TriangleMesh& mesh) : mesh_(mesh), around_(mesh.vertices.size()) {
@@ -231,8 +232,8 @@ class SmoothPatches {
       for (int k = 0; k < 3; ++k)
         around_[mesh_.triangles[t][k]].insert({mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][(k + 2) % 3]});
   }
-  /// Adds one for the hole whose flat patch is in rows `first` to `last`, which count no longer then; false: it does
-  /// not fit.
+  /// Adds one for the hole whose flat patch is in rows `first` to `last`, which count no longer
+  /// then; false: it does not fit.
   bool replace(const std::vector<Side>& rim, const std::vector<std::uint32_t>& polygon, std::uint32_t first,
                std::uint32_t last) {
     for (auto t = first; t < last; ++t) forget(t);
@@ -319,7 +320,7 @@ class SmoothPatches {
   std::vector<std::uint32_t> near_;
 };
 
-void close_holes(TriangleMesh& mesh, Repairs& done, bool smooth) {
+void close_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   auto rims = rims_of(mesh);
   std::erase_if(rims, [](const auto& rim) { return rim.size() < 3; });
   if (rims.empty()) return;
@@ -332,7 +333,7 @@ void close_holes(TriangleMesh& mesh, Repairs& done, bool smooth) {
     add_patch(mesh, rim, {{}, {}, triangles_of(mesh.vertices, polygon)});
     first.push_back(count());
   }
-  done.holes += rims.size(), done.added += count() - first[0];
+  done.filled_holes += rims.size(), done.added_triangles += count() - first[0];
   if (!smooth) return;
   SmoothPatches patches(mesh);
   patches.look_around(first[0]);
@@ -341,16 +342,16 @@ void close_holes(TriangleMesh& mesh, Repairs& done, bool smooth) {
     if (polygons[hole].size() == 3 || !patches.replace(rims[hole], polygons[hole], first[hole], first[hole + 1]))
       continue;
     std::fill(kept.begin() + first[hole], kept.begin() + first[hole + 1], 0);
-    ++done.smooth;
+    ++done.smooth_fills;
   }
   kept.resize(count(), 1);
-  done.added = static_cast<std::size_t>(std::count(kept.begin() + first[0], kept.end(), 1));
+  done.added_triangles = static_cast<std::size_t>(std::count(kept.begin() + first[0], kept.end(), 1));
   keep(mesh, kept);
 }
 
-// Shells outwards; those wholly inside another are cavities where they ran the other way than that one, else hidden and
-// left out.
-void arrange_shells(TriangleMesh& mesh, const Parts& parts, Repairs& done) {
+// Shells outwards; those wholly inside another are cavities where they ran the other way than that
+// one, else hidden and left out.
+void arrange_shells(TriangleMesh& mesh, const Parts& parts, RepairStats& done) {
   struct Shell {
     std::vector<std::uint32_t> rows;
     std::vector<std::array<Vec3, 3>> corners;
@@ -386,12 +387,12 @@ void arrange_shells(TriangleMesh& mesh, const Parts& parts, Repairs& done) {
   std::vector<char> kept(mesh.triangles.size(), 1);
   for (const Shell& s : shells) {
     const bool inner = s.depth % 2 == 1, hidden = inner && (s.volume > 0) == (shells[s.within].volume > 0);
-    if (hidden) ++done.hidden;
+    if (hidden) ++done.dropped_shells;
     for (const auto t : s.rows)
       if (hidden)
         kept[t] = 0;
       else if ((s.volume > 0) == inner)
-        turn(mesh, t), ++done.turned;
+        turn(mesh, t), ++done.flipped_triangles;
   }
   keep(mesh, kept);
 }
@@ -410,13 +411,14 @@ void drop_loose_vertices(TriangleMesh& mesh) {
 
 }  // namespace
 
-Repairs repair(TriangleMesh& mesh, double reach, bool smooth) {
-  Repairs done;
-  done.welded = weld_seams(mesh, reach);
-  done.dropped = drop_void(mesh);
-  Parts parts = orient(mesh, done.turned);
+RepairStats repair(TriangleMesh& mesh, double reach, bool smooth) {
+  RepairStats done;
+  done.welded_vertices = weld_seams(mesh, reach);
+  done.dropped_triangles = drop_void(mesh);
+  Parts parts = orient(mesh, done.flipped_triangles);
   close_holes(mesh, done, smooth);
-  if (done.holes > 0) parts = orient(mesh, done.turned);  // what was apart may hang together by a patch
+  if (done.filled_holes > 0)
+    parts = orient(mesh, done.flipped_triangles);  // what was apart may hang together by a patch
   arrange_shells(mesh, parts, done);
   drop_loose_vertices(mesh);
   return done;

@@ -27,7 +27,8 @@ double bump(double x) { return std::exp(-x * x); }
 TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& radius) {
   if (frequency < 1) throw InputError("a geodesic sphere needs a frequency of at least 1");
   TriangleMesh mesh;
-  // A grid point is known by its integer weights at the icosahedron's corners, so that neighbours share it exactly.
+  // A grid point is known by its integer weights at the icosahedron's corners, so that neighbours
+  // share it exactly.
   std::map<std::array<std::uint32_t, 6>, std::uint32_t> rows;
   const auto row_of = [&](const std::uint32_t(&face)[3], int wa, int wb, int wc) {
     std::array<std::pair<std::uint32_t, std::uint32_t>, 3> weights{{{face[0], static_cast<std::uint32_t>(wa)},
@@ -86,8 +87,9 @@ TriangleMesh make_apple(int frequency) {
 }
 
 TriangleMesh make_polyp(int frequency) {
-  // A surface of revolution over a geodesic sphere: the polar angle runs along a profile (radius, height) that is a
-  // simple curve, the azimuth stays, and small bumps on the bulb keep it from looking turned.
+  // A surface of revolution over a geodesic sphere: the polar angle runs along a profile (radius,
+  // height) that is a simple curve, the azimuth stays, and small bumps on the bulb keep it from
+  // looking turned.
   constexpr double profile[][2] = {{0, 1.0},      {0.30, 0.95},  {0.52, 0.76},  {0.60, 0.48},  {0.52, 0.20},
                                    {0.32, 0.0},   {0.19, -0.16}, {0.17, -0.38}, {0.20, -0.60}, {0.34, -0.80},
                                    {0.46, -0.92}, {0.42, -1.0},  {0.2, -1.0},   {0, -1.0}};
@@ -139,7 +141,8 @@ TriangleMesh make_block(const Vec3& size, double edge) {
           };
           std::uint32_t a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);
           if (!high) std::swap(b, d);
-          // Diagonals alternate, so that no direction of the block is stiffer or prettier than another.
+          // Diagonals alternate, so that no direction of the block is stiffer or prettier than
+          // another.
           if ((i + j) % 2 == 0) {
             mesh.triangles.push_back({a, b, c});
             mesh.triangles.push_back({a, c, d});

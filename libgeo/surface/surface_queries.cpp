@@ -1,3 +1,4 @@
+// Nearest triangles of meshes, and faces of crack complexes that a segment touches.
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "kerf/complex.h"
@@ -17,7 +18,7 @@ std::vector<FaceId> faces_on_segment(const Complex& complex, const Vec3& p, cons
   Box3 box;
   box.add(p), box.add(q);
   std::vector<FaceId> near;
-  complex.near(box, near);
+  complex.faces_near(box, near);
   std::erase_if(near, [&](FaceId f) {
     const auto c = complex.corners(f);
     return !segment_meets_triangle(p, q, c[0], c[1], c[2]);

@@ -1,4 +1,5 @@
-// Hundreds of partial cuts through one block: what a step costs for each face it meets, and what angles are left.
+// Hundreds of partial cuts through one block: what a step costs for each face it meets, and what
+// angles are left.
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -34,7 +35,7 @@ int block(const Options& options) {
     Window one;
     try {
       for (std::size_t s = 1; s < rows.size(); ++s) {
-        geo::CrackWork work;
+        geo::CrackStats work;
         const double start = cpu_seconds();
         const auto delta = geo::advance(k, front, rows[s], {}, &work);
         const double middle = cpu_seconds();

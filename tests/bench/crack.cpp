@@ -1,4 +1,5 @@
-// Progressive cutting: a curved sheet of 12 steps × 40 front points through a model, ours beside CGAL's corefine.
+// Progressive cutting: a curved sheet of 12 steps × 40 front points through a model, ours beside
+// CGAL's corefine.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -16,7 +17,8 @@ namespace {
 
 constexpr int steps = 12, points = 40;
 
-// The front after `s` steps: a wavy sheet across the box, turned off the axes so that nothing is special.
+// The front after `s` steps: a wavy sheet across the box, turned off the axes so that nothing is
+// special.
 std::vector<geo::Vec3> front_at(const geo::Box3& box, int s) {
   const geo::Vec3 u = geo::Vec3(0.62, -0.47, 0.31).normalized(), v = u.cross(geo::Vec3(0.2, 0.3, -0.9)).normalized(),
                   n = u.cross(v);
@@ -49,7 +51,7 @@ struct Row {
   std::string name;
   std::size_t triangles = 0, cut = 0, pieces = 0;
   double progressive = 0, oneshot = 0, idle = 0, restarted = 0, corefine = 0, floor = 0;
-  geo::CrackWork work;
+  geo::CrackStats work;
 };
 
 Row measure(const std::string& name, const geo::TriangleMesh& model) {
@@ -70,12 +72,13 @@ Row measure(const std::string& name, const geo::TriangleMesh& model) {
   row.progressive = row.oneshot = row.idle = row.restarted = row.corefine = row.floor = 1e300;
   const auto lower = [](double& least_yet, double t) { least_yet = std::min(least_yet, t); };
   geo::Complex k;
-  // All of them in turn and again: a machine that others use has slow moments, and nobody should have them alone.
+  // All of them in turn and again: a machine that others use has slow moments, and nobody should
+  // have them alone.
   const int rounds = row.triangles > 300000 ? 2 : 4;
   for (int round = 0; round < rounds; ++round) {
     for (int run = 0; run < 5; ++run) {
       k = geo::Complex::from_skin(model);
-      geo::CrackWork work;
+      geo::CrackStats work;
       geo::FrontState front = geo::begin_front(fronts[0], false, 1);
       const double start = cpu_seconds();
       for (int s = 1; s <= steps; ++s) geo::advance(k, front, fronts[static_cast<std::size_t>(s)], {}, &work);

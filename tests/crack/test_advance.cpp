@@ -177,11 +177,11 @@ void require_same(const Complex& a, const Complex& b) {
     if (!a.alive(FaceId(f))) continue;
     const auto& v = a.face(FaceId(f)).v;
     for (int k = 0; k < 3; ++k) {
-      rings = rings && std::ranges::equal(a.around(v[k], v[(k + 1) % 3]), b.around(v[k], v[(k + 1) % 3]));
+      rings = rings && std::ranges::equal(a.faces_around(v[k], v[(k + 1) % 3]), b.faces_around(v[k], v[(k + 1) % 3]));
       fans = fans && std::ranges::equal(a.faces_at(v[k]), b.faces_at(v[k]));
     }
     near_a.clear(), near_b.clear();
-    a.near(a.box(FaceId(f)), near_a), b.near(b.box(FaceId(f)), near_b);
+    a.faces_near(a.box(FaceId(f)), near_a), b.faces_near(b.box(FaceId(f)), near_b);
     near = near && near_a == near_b;
   }
   for (std::uint32_t v = 0; v < a.surface_vertex_count(); ++v)
@@ -227,7 +227,7 @@ TEST_CASE("a step that is taken back leaves the complex as it was, and what come
     const GridCase grid = random_case(seed);
     Complex k = Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / grid.divisions)),
             plain = k;
-    REQUIRE_THROWS_AS(k.take_back(), GeometryError);
+    REQUIRE_THROWS_AS(k.undo(), GeometryError);
     for (std::size_t c = 0; c < grid.cracks.size(); ++c) {
       FrontState front = begin_front(grid.cracks[c].rows[0], grid.cracks[c].closed, static_cast<std::int32_t>(c + 1));
       for (std::size_t s = 1; s < grid.cracks[c].rows.size(); ++s) {
@@ -235,10 +235,10 @@ TEST_CASE("a step that is taken back leaves the complex as it was, and what come
         try {
           const bool changed = !advance(k, front, grid.cracks[c].rows[s]).empty();
           if (changed) {
-            k.take_back();
+            k.undo();
             ++taken_back;
             require_same(k, plain);
-            REQUIRE_THROWS_AS(k.take_back(), GeometryError);
+            REQUIRE_THROWS_AS(k.undo(), GeometryError);
             FrontState again = before;
             advance(k, again, grid.cracks[c].rows[s]);
           }

@@ -22,7 +22,8 @@ Row line(const Vec3& from, const Vec3& to, int segments = 4) {
   return points;
 }
 
-// Sweeps a front through the rows, checking everything after each step; returns how many front edges remain in K.
+// Sweeps a front through the rows, checking everything after each step; returns how many front
+// edges remain in K.
 std::size_t sweep(Complex& k, const std::vector<Row>& rows, std::int32_t crack, bool closed = false) {
   FrontState front = begin_front(rows[0], closed, crack);
   double volume = 0;
@@ -40,7 +41,7 @@ std::size_t sweep(Complex& k, const std::vector<Row>& rows, std::int32_t crack, 
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     for (int e = 0; e < 3 && k.alive(FaceId(f)); ++e)
       if (k.face(FaceId(f)).crack > 0)
-        tips += k.around(k.face(FaceId(f)).v[e], k.face(FaceId(f)).v[(e + 1) % 3]).size() == 1;
+        tips += k.faces_around(k.face(FaceId(f)).v[e], k.face(FaceId(f)).v[(e + 1) % 3]).size() == 1;
   return tips;
 }
 

@@ -38,7 +38,8 @@ std::vector<FaceId> alive(const Complex& k) {
   return faces;
 }
 
-// A partial cut from somewhere on the block's skin, remeshed after each of its steps; false when it was refused.
+// A partial cut from somewhere on the block's skin, remeshed after each of its steps; false when it
+// was refused.
 bool cut_block(Complex& k, Random& random, std::int32_t crack, bool remeshed) {
   const auto rows = block_cut(random);
   FrontState front = begin_front(rows[0], false, crack);
@@ -98,7 +99,7 @@ TEST_CASE("a front goes on after remeshing and separates what it would have sepa
       FrontState* const fronts[] = {&b};
       RemeshOptions options;
       options.angle = angle;
-      RemeshWork work;
+      RemeshStats work;
       for (int s = 1; s <= 10; ++s) {
         advance(plain, a, wavy(s / 10.0));
         const CrackDelta delta = advance(better, b, wavy(s / 10.0));
@@ -148,7 +149,7 @@ TEST_CASE("jagged cracks leave the skin to the bit, and the same seed gives the 
     RoughenOptions options;
     options.seed = static_cast<std::uint64_t>(seed);
     FrontState* const fronts[] = {&front};
-    RoughenWork work;
+    RoughenStats work;
     const double flat = [&] {
       double sum = 0;
       for (const FaceId f : alive(k))

@@ -1,4 +1,5 @@
-// Random fronts of every kind: sheets, rings, jagged ones, and ones through vertices, edges and faces of what they cut.
+// Random fronts of every kind: sheets, rings, jagged ones, and ones through vertices, edges and
+// faces of what they cut.
 #pragma once
 
 #include "geometry/distance.h"
@@ -11,7 +12,7 @@ using namespace geo;
 /// The nearest vertex, point of an edge or point of a face, where one is not far; else p.
 inline Vec3 snapped(const Complex& k, const Vec3& p, Random& random) {
   std::vector<FaceId> near;
-  k.near(Box3{p, p}.grown(0.03 * k.extent().diagonal()), near);
+  k.faces_near(Box3{p, p}.grown(0.03 * k.extent().diagonal()), near);
   Vec3 best = p;
   double least = 1e300;
   const auto kind = random.below(3);

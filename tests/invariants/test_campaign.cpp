@@ -1,5 +1,5 @@
-// Random fronts of every kind through every closed model there is: planes, curved, jagged, rings, the same sheet again,
-// a third of them through vertices, edges and faces of what they cut.
+// Random fronts of every kind through every closed model there is: planes, curved, jagged, rings,
+// the same sheet again, a third of them through vertices, edges and faces of what they cut.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -82,7 +82,7 @@ TEST_CASE("Every kind of front through every model keeps every invariant after e
           for (std::size_t s = 1; s < sweep.rows.size(); ++s) {
             INFO("step " << s << " of " << sweep.rows.size() - 1);
             ++steps;
-            CrackWork work;
+            CrackStats work;
             const auto before = k.live_face_count();
             try {
               const CrackDelta delta = advance(k, front, sweep.rows[s], {}, &work);

@@ -25,7 +25,8 @@ std::string obj_of(const TriangleMesh& mesh) {
   return out.str();
 }
 
-// Every attribute; `smooth`: one normal and one colour at each vertex, `coarse`: what floats and bytes can hold.
+// Every attribute; `smooth`: one normal and one colour at each vertex, `coarse`: what floats and
+// bytes can hold.
 TriangleMesh dressed(TriangleMesh mesh, bool smooth, bool coarse) {
   Random random(11);
   const auto number = [&] {
@@ -104,7 +105,7 @@ TEST_CASE("a cut surface's attributes are read back, and vertices tell them wher
     FrontState front = begin_front(std::vector<Vec3>{{-1, -1, 1.3}, {-1, 5, 1.3}}, false, 1);
     advance(complex, front, std::vector<Vec3>{{2.2, -1, 1.3}, {2.2, 5, 1.35}});
     TriangleMesh once = complex.two_sided();
-    carry(model, once);
+    transfer_attributes(model, once);
     const std::string bytes = ply_of(once);
     CHECK(has(bytes, "double nx") == smooth);
     CHECK(bytes.find("double normal\n") == (smooth ? std::string::npos : bytes.find("double normal\n")));
@@ -116,7 +117,7 @@ TEST_CASE("a cut surface's attributes are read back, and vertices tell them wher
     FrontState second = begin_front(std::vector<Vec3>{{1.7, -1, 5}, {1.7, 5, 5}}, false, 2);
     advance(again, second, std::vector<Vec3>{{1.7, -1, -1}, {1.72, 5, -1}});
     TriangleMesh twice = again.two_sided();
-    carry(file, twice);
+    transfer_attributes(file, twice);
     const TriangleMesh last = parse_surface(ply_of(twice), "twice.ply").mesh;
     CHECK(last.attributes == twice.attributes);
     REQUIRE(last.source == twice.source);
@@ -131,7 +132,7 @@ TEST_CASE("a cut surface's attributes are read back, and vertices tell them wher
     CHECK(obj.attributes.uv.size() == obj.triangles.size());
     // A piece is read back too.
     TriangleMesh piece = piece_mesh(again, find_pieces(again), 0);
-    carry(file, piece);
+    transfer_attributes(file, piece);
     piece.site.clear();
     const TriangleMesh piece_file = parse_surface(ply_of(piece), "piece.ply").mesh;
     CHECK(piece_file.attributes == piece.attributes);

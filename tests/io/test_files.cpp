@@ -116,7 +116,7 @@ TEST_CASE("fronts, with their contacts, travel in the surface file") {
   for (std::size_t i = 0; i < front.segments[0].size(); ++i)
     CHECK(file.fronts[0].segments[0][i].id == front.segments[0][i].id);
   TriangleMesh again = Complex::from_two_sided(file.mesh).two_sided();
-  carry(file.mesh, again);
+  transfer_attributes(file.mesh, again);
   CHECK(bytes_of([&](auto& out) { write_ply(out, again, file.fronts); }) == bytes);
 }
 

@@ -96,7 +96,7 @@ Use use_fronts(std::vector<Front> fronts) {
       }
       FrontState state = begin_front(f.steps[0], f.closed, k.crack_count() + 1);
       auto at = f.steps[0];
-      for (std::size_t s = 1; s < f.steps.size(); ++s) advance(k, state, at = correspond(at, f.steps[s], f.closed));
+      for (std::size_t s = 1; s < f.steps.size(); ++s) advance(k, state, at = resample_front(at, f.steps[s], f.closed));
     }
     if (const auto report = check_complex(k, true); !report.good()) throw std::logic_error(report.first_problem);
   };

@@ -62,7 +62,8 @@ struct Seen {
   std::size_t corners_kept = 0, corners_mixed = 0, crack = 0;
 };
 
-// Everything that carry promises, for one surface that was cut from `model`, whose sources are composed already.
+// Everything that carry promises, for one surface that was cut from `model`, whose sources are
+// composed already.
 Seen require_carried(const TriangleMesh& model, const TriangleMesh& surface) {
   Seen seen;
   const Attributes &a = surface.attributes, &b = model.attributes;
@@ -126,7 +127,7 @@ TEST_CASE("affine attributes of the skin stay affine under any cut, and what is 
     cut(complex, random, 1);
     cut(complex, random, 2);
     TriangleMesh surface = complex.two_sided();
-    carry(model, surface);
+    transfer_attributes(model, surface);
     const Seen seen = require_carried(model, surface);
     all.corners_kept += seen.corners_kept, all.corners_mixed += seen.corners_mixed, all.crack += seen.crack;
   }
@@ -143,22 +144,23 @@ TEST_CASE("a surface that is cut again names triangles of the first one, and old
     Complex first = Complex::from_skin(model);
     cut(first, random, 1);
     TriangleMesh once = first.two_sided();
-    carry(model, once);
+    transfer_attributes(model, once);
     Complex second = Complex::from_two_sided(once);
     cut(second, random, 2);
     TriangleMesh twice = second.two_sided();
     const auto rows = twice.source;
-    // Paint both sides of the first crack, each in its own colour, before the second cut is carried.
+    // Paint both sides of the first crack, each in its own colour, before the second cut is
+    // carried.
     TriangleMesh painted = once;
     for (std::size_t t = 0; t < once.triangles.size(); ++t)
       if (once.patch[t] != 0)
         painted.attributes.color[t].fill(once.patch[t] > 0 ? Color(1, 0, 0, 1) : Color(0, 0, 1, 1));
     TriangleMesh again = twice;
-    carry(painted, again);
+    transfer_attributes(painted, again);
     for (std::size_t t = 0; t < again.triangles.size(); ++t)
       if (std::abs(again.patch[t]) == 1)
         REQUIRE(again.attributes.color[t][1] == (again.patch[t] > 0 ? Color(1, 0, 0, 1) : Color(0, 0, 1, 1)));
-    carry(once, twice);
+    transfer_attributes(once, twice);
     for (std::size_t t = 0; t < twice.triangles.size(); ++t) {
       REQUIRE((twice.source[t] == ~0u) == (twice.patch[t] != 0));
       if (twice.source[t] == ~0u) {
@@ -179,7 +181,7 @@ TEST_CASE(
   FrontState front = begin_front(std::vector<Vec3>{{-1, -1, 0.3}, {-1, 2, 0.3}}, false, 1);
   advance(complex, front, std::vector<Vec3>{{2, -1, 0.31}, {2, 2, 0.32}});
   TriangleMesh once = complex.two_sided();
-  carry(model, once);
+  transfer_attributes(model, once);
   TriangleMesh sorted = once;  // all negative sides last
   const auto order = [&](auto& rows) {
     auto copy = rows;
@@ -191,7 +193,7 @@ TEST_CASE(
   order(sorted.triangles), order(sorted.patch), order(sorted.source), order(sorted.attributes.uv),
       order(sorted.attributes.normal), order(sorted.attributes.color), order(sorted.attributes.group);
   TriangleMesh again = Complex::from_two_sided(sorted).two_sided();
-  carry(sorted, again);
+  transfer_attributes(sorted, again);
   for (std::size_t t = 0; t < again.triangles.size(); ++t) {
     if (again.patch[t] == 0) continue;
     const auto c = corners(again, t);
@@ -208,7 +210,7 @@ TEST_CASE("pieces have the attributes of their part of the skin") {
   REQUIRE(pieces.count == 2);
   for (std::uint32_t p = 0; p < 2; ++p) {
     TriangleMesh piece = piece_mesh(complex, pieces, p);
-    carry(model, piece);
+    transfer_attributes(model, piece);
     const Seen seen = require_carried(model, piece);
     CHECK(seen.crack > 0);
     CHECK(seen.corners_kept > 0);
@@ -226,7 +228,7 @@ TEST_CASE("seams of the texture stay: each triangle has the values of its own so
     Complex complex = Complex::from_skin(model);
     cut(complex, random, 1);
     TriangleMesh surface = complex.two_sided();
-    carry(model, surface);
+    transfer_attributes(model, surface);
     CHECK(surface.attributes.names() == std::vector<std::string>{"uv"});
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       for (const Vec2& uv : surface.attributes.uv[t])
@@ -251,7 +253,7 @@ TEST_CASE("a body's surface that follows a cut one still knows its sources") {
 
 TEST_CASE("a surface that was not cut from the model is refused") {
   TriangleMesh model = make_block({1, 1, 1}, 1), other = Complex::from_skin(make_block({1, 1, 1}, 0.5)).two_sided();
-  CHECK_THROWS_WITH(carry(model, other), Catch::Contains("give the model that was cut"));
+  CHECK_THROWS_WITH(transfer_attributes(model, other), Catch::Contains("give the model that was cut"));
   other.source.clear();
-  CHECK_THROWS_AS(carry(model, other), InputError);
+  CHECK_THROWS_AS(transfer_attributes(model, other), InputError);
 }

@@ -9,7 +9,8 @@ using namespace geo;
 
 namespace {
 
-// A cube of eight corners and twelve triangles, and four of its corners as a wall through its middle.
+// A cube of eight corners and twelve triangles, and four of its corners as a wall through its
+// middle.
 TriangleMesh cube() { return make_block({1, 1, 1}, 2); }
 
 std::string refusal(const TriangleMesh& mesh) {
@@ -36,8 +37,8 @@ TEST_CASE("a skin is its own derived surface") {
 TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back changes nothing") {
   const TriangleMesh mesh = cube();
   const Complex before = Complex::from_skin(mesh);
-  // The wall stands on a closed loop of the cube's own edges: find two opposite parallel edges that are diagonal to
-  // each other, and the two face diagonals that join them.
+  // The wall stands on a closed loop of the cube's own edges: find two opposite parallel edges that
+  // are diagonal to each other, and the two face diagonals that join them.
   const auto id = [&](double x, double y, double z) {
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
       if (mesh.vertices[v] == Vec3(x, y, z)) return VertexId(v);
@@ -52,7 +53,7 @@ TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back
     };
     const double s = variant % 2;
     const VertexId a = corner(0, 0, s), b = corner(1, 0, s), c = corner(1, 1, 1 - s), d = corner(0, 1, 1 - s);
-    if (before.around(a, d).empty() || before.around(b, c).empty())
+    if (before.faces_around(a, d).empty() || before.faces_around(b, c).empty())
       continue;  // that face's diagonal runs the other way
     Complex k = before;
     ComplexEdit edit;
@@ -60,9 +61,10 @@ TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back
     edit.new_faces.push_back({{a, c, d}, 1, FaceId()});
     const std::uint32_t base = k.face_count();
     const auto ring = [&](VertexId u, VertexId v, std::uint32_t face) {
-      // Material is before the first face of a skin ring in one of the two ways to insert: try both.
-      const auto old = k.around(u, v);
-      ComplexEdit::Ring r{std::min(u, v), std::max(u, v), {old[0], FaceId(base + face), old[1]}};
+      // Material is before the first face of a skin ring in one of the two ways to insert: try
+      // both.
+      const auto old = k.faces_around(u, v);
+      ComplexEdit::RadialOrder r{std::min(u, v), std::max(u, v), {old[0], FaceId(base + face), old[1]}};
       return r;
     };
     const std::pair<VertexId, VertexId> edges[4] = {{a, b}, {b, c}, {c, d}, {d, a}};
@@ -70,11 +72,11 @@ TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back
     bool done = false;
     CrackDelta delta;
     for (int mask = 0; mask < 16 && !done; ++mask) {
-      edit.rings.clear();
+      edit.radial_orders.clear();
       for (int e = 0; e < 4; ++e) {
         auto r = ring(edges[e].first, edges[e].second, owner[e]);
         if (mask >> e & 1) std::swap(r.faces[0], r.faces[2]);
-        edit.rings.push_back(r);
+        edit.radial_orders.push_back(r);
       }
       const auto unchanged = k.two_sided();
       try {

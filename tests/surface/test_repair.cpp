@@ -76,11 +76,11 @@ TEST_CASE("triangles missing, turned, twice, and with a vertex twice, are mended
   again(mesh.triangles[twice]);
   again({mesh.triangles[0][0], mesh.triangles[0][0], mesh.triangles[0][1]});
   mesh.vertices.push_back({9, 9, 9});
-  const Repairs done = repair(mesh);
-  CHECK(done.dropped == 2);
-  CHECK(done.turned > 0);
-  CHECK(done.holes == 1);
-  CHECK(done.added == 1);
+  const RepairStats done = repair(mesh);
+  CHECK(done.dropped_triangles == 2);
+  CHECK(done.flipped_triangles > 0);
+  CHECK(done.filled_holes == 1);
+  CHECK(done.added_triangles == 1);
   CHECK(check_surface(mesh, true).first_problem == "");
   CHECK(mesh.vertices.size() == ball.vertices.size());
   CHECK(signed_volume(mesh) == Approx(signed_volume(ball)));
@@ -94,8 +94,8 @@ TEST_CASE("a hole of many corners is closed, its dress that of its rim") {
     const auto& [a, b, c] = mesh.triangles[t];
     if (mesh.vertices[a].z() == 1 && mesh.vertices[b].z() == 1 && mesh.vertices[c].z() == 1) drop_row(mesh, t);
   }
-  const Repairs done = repair(mesh);
-  CHECK(done.holes == 1);
+  const RepairStats done = repair(mesh);
+  CHECK(done.filled_holes == 1);
   CHECK(check_surface(mesh, true).first_problem == "");
   CHECK(signed_volume(mesh) == Approx(volume));
   check_dress(mesh);
@@ -114,15 +114,16 @@ TEST_CASE("a hole closed smoothly goes on from what is around it, as fine as its
     const std::size_t rows = open.triangles.size();
     TriangleMesh flat = open, mesh = open;
     repair(flat);
-    const Repairs done = repair(mesh, 0, true);
-    CHECK(done.holes == 1);
-    CHECK(done.smooth == 1);
+    const RepairStats done = repair(mesh, 0, true);
+    CHECK(done.filled_holes == 1);
+    CHECK(done.smooth_fills == 1);
     CHECK(check_surface(mesh, true).first_problem == "");
     CHECK(mesh.attributes.uv.size() == mesh.triangles.size());
     CHECK(mesh.attributes.group.size() == mesh.triangles.size());
     const double missing = signed_volume(ball) - signed_volume(flat);
     CHECK(std::abs(signed_volume(ball) - signed_volume(mesh)) < 0.4 * missing);
-    // Edges about as long as the ball's, and no triangle as thin as those between corners of the rim.
+    // Edges about as long as the ball's, and no triangle as thin as those between corners of the
+    // rim.
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       if (t < rows) continue;
       const auto& [a, b, c] = mesh.triangles[t];
@@ -142,13 +143,13 @@ TEST_CASE("a smooth patch that would cross something is not taken") {
       mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
   }
   TriangleMesh dome = mesh;
-  CHECK(repair(dome, 0, true).smooth == 1);
+  CHECK(repair(dome, 0, true).smooth_fills == 1);
   CHECK(check_surface(dome, true).first_problem == "");
   CHECK(signed_volume(dome) > 1.05);
   add(mesh, make_sphere(6), 0.3, {0.5, 0.5, 1.32}, false);
-  const Repairs done = repair(mesh, 0, true);
-  CHECK(done.holes == 1);
-  CHECK(done.smooth == 0);
+  const RepairStats done = repair(mesh, 0, true);
+  CHECK(done.filled_holes == 1);
+  CHECK(done.smooth_fills == 0);
   CHECK(check_surface(mesh, true).first_problem == "");
 }
 
@@ -169,8 +170,8 @@ TEST_CASE("random holes are closed smoothly or flat, without a crossing where th
   });
   TriangleMesh flat = mesh;
   repair(flat);
-  const Repairs done = repair(mesh, 0, true);
-  CAPTURE(done.holes, done.smooth);
+  const RepairStats done = repair(mesh, 0, true);
+  CAPTURE(done.filled_holes, done.smooth_fills);
   if (check_surface(flat, true).first_problem == "") CHECK(check_surface(mesh, true).first_problem == "");
 }
 
@@ -187,7 +188,7 @@ TEST_CASE("seams that are a little apart are welded within reach") {
   TriangleMesh apart = soup;
   repair(apart);
   CHECK(apart.vertices.size() != ball.vertices.size());
-  CHECK(repair(soup, 1e-5).welded == 3 * ball.triangles.size() - ball.vertices.size());
+  CHECK(repair(soup, 1e-5).welded_vertices == 3 * ball.triangles.size() - ball.vertices.size());
   CHECK(check_surface(soup, true).first_problem == "");
 }
 
@@ -202,8 +203,8 @@ TEST_CASE("shells are turned outwards, cavities inwards, and what is hidden in a
     add(mesh, ball, 0.3, {-0.4, 0, 0}, flipped);  // hidden
     add(mesh, ball, 0.1, {0.4, 0, 0}, flipped);   // a core in the cavity
     add(mesh, ball, 1, {5, 0, 0}, true);          // beside it all
-    const Repairs done = repair(mesh);
-    CHECK(done.hidden == 1);
+    const RepairStats done = repair(mesh);
+    CHECK(done.dropped_shells == 1);
     CHECK(check_surface(mesh, true).first_problem == "");
     CHECK(signed_volume(mesh) == Approx(one * (2 - 0.027 + 0.001)));
   }
@@ -236,8 +237,8 @@ TEST_CASE("a hole whose smooth patch would have millions of triangles is closed 
     const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
     mesh.triangles.insert(mesh.triangles.end(), {{a, b, a + 1}, {b, b + 1, a + 1}, {b, a, 2 * n}});
   }
-  const Repairs done = repair(mesh, 0, true);
-  CHECK(done.holes == 1);
-  CHECK(done.smooth == 0);
+  const RepairStats done = repair(mesh, 0, true);
+  CHECK(done.filled_holes == 1);
+  CHECK(done.smooth_fills == 0);
   CHECK(check_surface(mesh, false).first_problem == "");
 }

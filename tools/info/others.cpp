@@ -31,8 +31,8 @@ std::string twins(const geo::NodeSet& nodes) {
   return {};
 }
 
-// A frame is a surface that has deformed: sheets have parted, triangles may touch, cross and have no area. Only its
-// topology is asked for.
+// A frame is a surface that has deformed: sheets have parted, triangles may touch, cross and have
+// no area. Only its topology is asked for.
 std::string check_frame(const std::string& path) {
   geo::TriangleMesh mesh = geo::read_surface(path).mesh;
   mesh.patch.clear(), mesh.site.clear();
@@ -66,7 +66,7 @@ void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, 
     for (std::size_t s = 0; s < f.steps.size(); ++s) {
       points += f.steps[s].size();
       if (s == 0) continue;
-      const auto next = geo::correspond(f.steps[s - 1], f.steps[s], f.closed);
+      const auto next = geo::resample_front(f.steps[s - 1], f.steps[s], f.closed);
       double longest = 0;
       for (std::size_t i = 0; i < next.size(); ++i) longest = std::max(longest, (next[i] - f.steps[s - 1][i]).norm());
       moves.push_back(longest);

@@ -38,8 +38,8 @@ std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, R
         for (int k = 0; k < 3; ++k)
           if (complex.face(geo::FaceId(f)).crack > 0)
             front_edges +=
-                complex.around(complex.face(geo::FaceId(f)).v[k], complex.face(geo::FaceId(f)).v[(k + 1) % 3]).size() ==
-                1;
+                complex.faces_around(complex.face(geo::FaceId(f)).v[k], complex.face(geo::FaceId(f)).v[(k + 1) % 3])
+                    .size() == 1;
     } catch (const geo::InputError&) {
     }
   const double volume = geo::signed_volume(mesh);

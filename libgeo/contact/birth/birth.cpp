@@ -24,8 +24,8 @@ Mat3 frame_of(const std::array<Vec3, 3>& t) {
   return frame;
 }
 
-// Where a triangle that moved from `rest` to `now` carries x, which is on it but for last places: these make the
-// difference between slivers that cross and such that do not, so they turn with it.
+// Where a triangle that moved from `rest` to `now` carries x, which is on it but for last places:
+// these make the difference between slivers that cross and such that do not, so they turn with it.
 Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Vec3, 3>& now) {
   const Vec3 w = barycentric(x, rest[0], rest[1], rest[2]);
   const Vec3 off = x - (w[0] * rest[0] + w[1] * rest[1] + w[2] * rest[2]);
@@ -80,7 +80,8 @@ class Midwife {
     return {};
   }
 
-  // A side that is still there has its corners where they were: the lowest one about a new vertex says where it is.
+  // A side that is still there has its corners where they were: the lowest one about a new vertex
+  // says where it is.
   void on_old_sides(const CrackDelta& crack) {
     for (const auto v : crack.new_surface_vertices) {
       if (!k_.alive(v)) continue;
@@ -96,8 +97,9 @@ class Midwife {
     }
   }
 
-  // On old faces: each part of one gives its new corners their place in it, the lowest face that has one first. What is
-  // on an edge is placed by its two ends, so that copies are together where these are.
+  // On old faces: each part of one gives its new corners their place in it, the lowest face that
+  // has one first. What is on an edge is placed by its two ends, so that copies are together where
+  // these are.
   void on_parts(const CrackDelta& crack) {
     std::vector<FaceId> parents = crack.removed_faces, parts;
     std::sort(parents.begin(), parents.end());
@@ -160,7 +162,8 @@ class Midwife {
     place(v, to, SurfaceVertexId(at[0]));
   }
 
-  // Between new faces only, at a site that was there: where the other side of one of these is, as the two are together.
+  // Between new faces only, at a site that was there: where the other side of one of these is, as
+  // the two are together.
   void across(const CrackDelta& crack) {
     for (bool any = true; any;) {
       any = false;
@@ -232,7 +235,7 @@ class Midwife {
 
   std::vector<Near> near(const Vec3& x, double reach, const std::vector<std::uint8_t>& is_new) const {
     std::vector<FaceId> faces;
-    k_.near(Box3{x, x}.grown(reach), faces);
+    k_.faces_near(Box3{x, x}.grown(reach), faces);
     std::erase_if(faces, [&](FaceId f) { return is_new[f.index()]; });
     std::vector<std::array<Vec3, 3>> corners;
     std::vector<Box3> boxes;

@@ -39,7 +39,7 @@ class Surroundings {
   bool nearest(const Vec3& x, const Vec3& anchor, std::uint32_t part, double reach, Nearest& found) {
     const Complex& k = body_.surface;
     faces_.clear();
-    k.near(Box3{x, x}.grown(reach), faces_);
+    k.faces_near(Box3{x, x}.grown(reach), faces_);
     double least = reach, squarely = 0;
     found.side.face = FaceId();
     for (const FaceId f : faces_) {
@@ -50,7 +50,8 @@ class Surroundings {
       const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on,
                  normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
       const double d = away.norm(), square = std::abs(normal.dot(away));
-      // Of triangles that share the nearest place the one that looks at x most squarely tells the side.
+      // Of triangles that share the nearest place the one that looks at x most squarely tells the
+      // side.
       if (!(d < least || (d == least && square > squarely))) continue;
       Nearest n{{f, crack && normal.dot(away) > 0 ? 1 : 0}, barycentric(on, c[0], c[1], c[2]), on};
       if (crack && !((world(n, 0) - world(n, 1)).norm() > d)) continue;

@@ -1,4 +1,5 @@
-// A body: surface complex, nodes, graph, neighbourhoods and binding, always in step with each other.
+// A body: surface complex, nodes, graph, neighbourhoods and binding, always in step with each
+// other.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@
 
 namespace geo {
 
-/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have empty entries. A crumb
-/// that has no room for a node is rigid debris, carried by the nearest one.
+/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have
+/// empty entries. A crumb that has no room for a node is rigid debris, carried by the nearest one.
 struct Binding {
   std::vector<NodeId> master_node;       ///< of masters: the node with the visibility edge; else invalid
   std::vector<SurfaceVertexId> master;   ///< the master whose tree a vertex hangs in; invalid: orphan
@@ -28,7 +29,8 @@ struct Binding {
   friend bool operator==(const Binding&, const Binding&) = default;
 };
 
-/// What a split keeps for the next one, so that it need not look at the whole body; derived by the first split.
+/// What a split keeps for the next one, so that it need not look at the whole body; derived by the
+/// first split.
 struct Upkeep {
   std::vector<std::int32_t> piece;  ///< per surface vertex: a number for its piece of material, −1: dead
   std::int32_t pieces = 0;          ///< how many numbers there are
@@ -71,17 +73,18 @@ struct BodyOptions {
   double guides = 0;  ///< along concave edges and crack fronts: how far apart, in spacings of the nodes; 0: none (§ 8)
 };
 
-/// Builds graph, neighbourhoods and binding (§ 6.1, 6.2, 6.5). Passages too narrow for the sampling (more components
-/// in G than pieces of material) get extra nodes until components and pieces agree. Throws InputError when a node is
-/// outside the material or a piece has no node.
+/// Builds graph, neighbourhoods and binding (§ 6.1, 6.2, 6.5). Passages too narrow for the sampling
+/// (more components in G than pieces of material) get extra nodes until components and pieces
+/// agree. Throws InputError when a node is outside the material or a piece has no node.
 Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options = {}, const Progress& progress = {});
 
-/// From scratch on the same complex, nodes and edges' end points: what incremental updates must equal, bit for bit.
+/// From scratch on the same complex, nodes and edges' end points: what incremental updates must
+/// equal, bit for bit.
 Binding build_binding(const Body& body);
 
 /// Counts and seconds of one split, by phase.
 struct SplitWork {
-  CrackWork crack;
+  CrackStats crack;
   std::size_t edges_cut = 0, edges_added = 0, nodes_updated = 0, nodes_added = 0, nodes_moved = 0, orphans = 0;
   std::size_t nodes_mended =
       0;  ///< of those added, the last: in pieces without a node and passages too narrow for the sampling
@@ -102,25 +105,26 @@ struct BodyDelta {
       parted;  ///< of each piece that came off, the nodes, ascending; the largest part is not among them
 };
 
-/// One front step through all seven steps of § 4: crack, cut graph, sample, update neighbours, re-bind. Commits all or
-/// nothing: on GeometryError body and front are unchanged.
+/// One front step through all seven steps of § 4: crack, cut graph, sample, update neighbours,
+/// re-bind. Commits all or nothing: on GeometryError body and front are unchanged.
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
                 SplitWork* work = nullptr);
 
-/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown from the body's own.
-/// Where `progress` stops the work, body is of no more use.
+/// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown
+/// from the body's own. Where `progress` stops the work, body is of no more use.
 BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr, const Progress& progress = {});
 
-/// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest: graph, neighbours and
-/// binding follow, and equal those from scratch with the same edges, bit for bit. The cost follows what changes. Throws
-/// InputError for a radius that is not positive.
+/// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest:
+/// graph, neighbours and binding follow, and equal those from scratch with the same edges, bit for
+/// bit. The cost follows what changes. Throws InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
-/// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its master's node, the node
-/// itself included, that are within their support radius.
+/// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its
+/// master's node, the node itself included, that are within their support radius.
 void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
 
-/// Every invariant of a body that can be checked alone; empty when all hold, else the first offending ids.
+/// Every invariant of a body that can be checked alone; empty when all hold, else the first
+/// offending ids.
 struct BodyReport {
   std::size_t graph_components = 0, pieces = 0, edges_crossing = 0, orphans = 0, nodes_outside = 0;
   std::size_t crumbs = 0;  ///< of the pieces, those without a node: too thin for one

@@ -1,53 +1,65 @@
-// Checks of surfaces and complexes: each names the first offending ids. Exact (CGAL) where it is about geometry.
+// Validity of meshes and crack complexes. Geometric tests are exact; reports name the first
+// offending ids.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kerf/complex.h"
 #include "kerf/mesh.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
 struct SurfaceReport {
   bool closed = true, manifold = true, oriented = true;
-  std::size_t degenerate_faces = 0;               ///< zero area, exactly
-  std::optional<std::size_t> self_intersections;  ///< pairs; empty: not asked for
-  std::string first_problem;                      ///< empty when all is well; names rows
+  std::size_t degenerate_faces = 0;               ///< faces of zero area, exactly
+  std::optional<std::size_t> self_intersections;  ///< pairs of faces; empty: not tested
+  std::string first_problem;                      ///< names indices; empty for a valid surface
+  /// True without a problem.
   bool good() const { return first_problem.empty(); }
 };
 
-/// Checks a plain mesh, or the derived surface of a two-sided one as a mesh (collocated sheets are then no
-/// intersection: the complex is tested, with each crack face once).
+/// Checks a mesh. A two-sided surface is checked as a crack complex, each crack face once, so that
+/// coincident sheets are no intersection.
 SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 
-/// Checks K: structure (rings list their edges' faces as they stand, and material sides agree), derived surface closed,
-/// oriented, manifold, no face without area, and with `self_intersections` no two faces crossing or overlapping,
-/// exactly.
+/// Checks K: radial cycles list their edges' faces in geometric order, wedges agree, the derived
+/// surface is closed, oriented and manifold, no face is degenerate, and with `self_intersections`
+/// no two faces cross or overlap. Exact.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 
-/// The structural part of check_complex() for some faces (dead ones are skipped) and those that share a corner with
-/// them: all that a step with these new faces can have broken. Cost follows the faces.
+/// The structural part of check_complex() for some faces (dead ones are skipped) and those that
+/// share a corner with them: all that a step with these new faces can break. Cost follows the
+/// faces.
 SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 
-/// True when two triangles, given by vertex ids and points, meet other than in the vertices and edges they share by id.
-/// Exact. True also where one of them names a vertex twice that they share.
-bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
-                 const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q);
-
-/// True when the half-planes from line ab through the points stand counter-clockwise about a→b, each strictly after the
-/// one before it. Exact.
-bool stand_around(const Vec3& a, const Vec3& b, std::span<const Vec3> through);
-
-/// Pairs of faces of K that meet other than in shared vertices and edges; only pairs with a face in `only`, where
-/// given.
+/// Pairs of faces of K that meet other than in shared vertices and edges; with `only`, pairs with
+/// at least one face of that list. Exact.
 std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex,
                                                           const std::vector<FaceId>* only = nullptr);
 
-/// Throws InputError unless `mesh` is a valid model: closed, manifold, oriented outwards, no degenerate or
-/// self-intersecting triangles, finite coordinates. The message names the first offending rows and what to do.
+/// Throws InputError unless `mesh` is a valid model: closed, manifold, oriented outwards, no
+/// degenerate or self-intersecting triangles, finite coordinates. The message names the first
+/// offending indices and the remedy.
 void require_solid(const TriangleMesh& mesh);
+
+// ---- Predicates
+
+/// True when two triangles, given by vertex ids f, g and points p, q, meet other than in the
+/// vertices and edges they share by id, or when a vertex they share occurs twice in one of them.
+/// Exact.
+bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
+                 const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q);
+
+/// True when the half-planes from line ab through the points are in radial order: counter-clockwise
+/// about a→b, each strictly after the one before it. Exact.
+bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through);
 
 }  // namespace geo

@@ -1,8 +1,13 @@
-// Splitting fronts (§ 5.1): a polyline per time step, in material coordinates; or a crack that is given whole.
+// Crack insertion: a splitting front that sweeps through the material (§ 5.1, 5.2), or a crack
+// given as a surface.
+//
+// Symbols of the paper:
+//   F_i   the splitting front at time step i: a polyline in material coordinates
+//   S_S   the strip: triangles swept from F_i to F_(i+1), in the code `Strip`
+//   K     the crack complex (kerf/complex.h), into which the strip's material parts are inserted
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,76 +18,86 @@
 
 namespace geo {
 
-/// One front over time. A closed front joins its last point to its first. A sheet has a single step, and triangles of
-/// its points.
+// ---- Fronts as given
+
+/// A front over time: F_0, F_1, … A closed front joins its last point to its first. A sheet is a
+/// crack given whole: a single step, and triangles of its points.
 struct Front {
   std::string name;
   bool closed = false;
-  std::vector<std::vector<Vec3>> steps;  ///< points per time step, each at least two
-  std::vector<Triangle> triangles{};     ///< of a sheet: rows of steps[0]; else none
+  std::vector<std::vector<Vec3>> steps;  ///< points per time step, each at least two; material coordinates
+  std::vector<Triangle> triangles{};     ///< of a sheet: indices into steps[0]; else none
 
+  /// Whether this is a sheet.
   bool is_sheet() const { return !triangles.empty(); }
 };
 
-/// Points of `next` resampled so that they correspond one to one with those of `previous`: by index where the counts
-/// agree, else by arc length.
-std::vector<Vec3> correspond(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed);
+/// Resamples `next` so that its points correspond one to one with those of `previous`: by index
+/// where the counts agree, else by fraction of arc length.
+std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed);
 
-/// How many substeps keep every front point's motion per substep at or below `limit` (§ 5.1); at least 1.
-int substeps(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit);
+/// The number of substeps, at least 1, that keeps each front point's motion per substep at or below
+/// `limit` (§ 5.1; model units). Throws InputError unless `limit` is positive.
+int substep_count(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit);
 
-// ---- One step of a crack (§ 5.1, 5.2): sweep, meet, split, keep, stitch, all or nothing.
+// ---- Fronts in a crack complex
 
-/// A front as the crack complex knows it between two steps. Contacts are carried by id and never found again by
-/// geometry: each segment of the front lists the vertices of K that lie on it, in order, its ends included.
+/// F_i as the crack complex knows it between two steps. Its contacts with K are kept by id and
+/// never recomputed from geometry: each segment lists the vertices of K that lie on it, in order,
+/// its ends included.
 struct FrontState {
   struct Point {
     Vec3 position;  ///< material coordinates
     VertexId id;    ///< the vertex of K at this point; invalid while the point is outside the material
   };
   bool closed = false;
-  std::int32_t crack = 0;                    ///< the number of the crack that this front leaves behind; ≥ 1
-  std::vector<Point> points;                 ///< the front points as given (or as moved by the guard)
-  std::vector<std::vector<Point>> segments;  ///< segments[i]: from points[i] to points[i+1], with the contacts between
+  std::int32_t crack = 0;                    ///< number of the crack behind this front; at least 1
+  std::vector<Point> points;                 ///< the front points as given (or as displaced by a repeated attempt)
+  std::vector<std::vector<Point>> segments;  ///< segments[i]: points[i], the contacts, points[i+1]
   std::uint32_t step = 0;                    ///< how many time steps of its file this front has made
   std::string name;
 };
 
+/// Tolerances are relative to the diagonal of Complex::extent().
 struct CrackOptions {
-  double snap = 1e-14;  ///< pre-snap of the strip to vertices of K, relative to the extent's diagonal
-  double clear =
-      1e-6;  ///< new front points a hundredth of this from a face of K, but not on it, move this far off, relative
-  double clearance = 0x1p-46;  ///< how far apart a step must leave what does not touch, relative; the later half of the
-                               ///< attempts does without
-  double jitter = 1e-9;        ///< first displacement of the new front when the guard refuses a step, relative
-  int attempts = 12;           ///< how often a refused step is jittered and redone
-  std::uint64_t seed = 1;      ///< of the jitter
+  double snap = 1e-14;  ///< strip vertices this near to a vertex of K become that vertex
+  double face_offset =
+      1e-6;  ///< a new front point within a hundredth of this of a face of K, but not on it, moves this
+             // /< far off the face
+  double clearance = 0x1p-46;  ///< least distance between features that do not touch; the later half of the attempts
+                               // /< does without
+  double jitter = 1e-9;        ///< displacement of the new front in the first repeated attempt
+  int attempts = 12;           ///< how often a refused step is repeated with the front displaced
+  std::uint64_t seed = 1;      ///< of the displacements
 };
 
 /// Counts and seconds of one step, by phase.
-struct CrackWork {
+struct CrackStats {
   std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0;
   double near_seconds = 0, meet_seconds = 0, split_seconds = 0, keep_seconds = 0, stitch_seconds = 0, guard_seconds = 0;
-  CrackWork& operator+=(const CrackWork& o);
+  /// Adds all counts and seconds.
+  CrackStats& operator+=(const CrackStats& other);
+  /// Sum of all phases.
   double seconds() const;
 };
 
-/// The front before its first step: no contacts are known yet. Throws InputError for fewer than two points or
-/// coordinates that are not finite.
+/// The front before its first step: F_0, without contacts. Throws InputError for fewer than two
+/// points or coordinates that are not finite.
 FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t crack);
 
-/// Sweeps the front to `next` (as many points as the front has), inserts the strip into K and returns what changed.
-/// Crack initiation, branching, merging and termination need no flags: they are what the intersection says. Throws
-/// GeometryError when no attempt passes the guard; `complex` and `front` are then unchanged.
+/// One step of § 5.2: sweeps the front to `next` (as many points as the front has), inserts the
+/// strip into K and returns the changes. Initiation, branching, merging and termination of cracks
+/// need no flags: they follow from the intersection. Throws InputError for points that do not fit
+/// the front, GeometryError when no attempt passes the guard; `complex` and `front` are then
+/// unchanged. `stats`, where given, is added to.
 CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options = {},
-                   CrackWork* work = nullptr);
+                   CrackStats* stats = nullptr);
 
-// ---- A crack given as a whole surface, not as the trace of a front.
-
-/// Inserts what of `sheet` lies in the material as one crack, in one step: any triangles, connected or not, crossing
-/// themselves or not; patch and site are ignored. Throws InputError for a sheet with rows out of range or coordinates
-/// that are not finite, GeometryError when no attempt passes the guard; `complex` is then unchanged.
+/// Inserts the parts of `sheet` in the material as one crack, in one step. Any triangles will do,
+/// connected or not, crossing each other or not; patch and site are ignored. Throws InputError for
+/// a sheet with indices out of range or coordinates that are not finite, GeometryError when no
+/// attempt passes the guard; `complex` is then unchanged.
 CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
-                        const CrackOptions& options = {}, CrackWork* work = nullptr);
+                        const CrackOptions& options = {}, CrackStats* stats = nullptr);
 
 }  // namespace geo

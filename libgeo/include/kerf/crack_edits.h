@@ -1,6 +1,12 @@
-// Local remeshing of crack and skin after cuts (§ 5.2's merging of near points, § 8's first limitation).
+// Local edits of a crack complex: remeshing, roughening by noise, decimation (§ 5.2, § 8's first
+// limitation).
+//
+// Each edit is guarded: K never intersects itself and S_A stays closed. Vertices stay on all that
+// they lie on: the skin as given, the cracks, and the feature lines where these meet.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -10,79 +16,83 @@
 
 namespace geo {
 
+// ---- Remeshing
+
+/// Lengths are relative to the diagonal of Complex::extent().
 struct RemeshOptions {
-  double angle = 15;  ///< degrees: faces with a smaller angle are improved
-  double deviation =
-      1e-4;  ///< how far a crack's surface may move, relative to the extent's diagonal; the skin never does
-  double shortest = 2e-3;  ///< no edge is divided into shorter ones, relative
-  double crease = 20;      ///< degrees: an edge of a crack that is bent more is a feature
-  /// Refuses what passes through a tetrahedron that this returns false for, where given (a body's nodes must keep their
-  /// sides).
-  std::function<bool(const std::array<Vec3, 4>&)> may_pass;
+  double angle = 15;        ///< degrees: faces with a smaller angle are improved
+  double deviation = 1e-4;  ///< how far a crack's surface may move; the skin never does
+  double shortest = 2e-3;   ///< no edge is divided into shorter ones
+  double crease = 20;       ///< degrees: an edge of a crack with a larger dihedral deviation is a feature
+  /// Where given: refuses edits whose faces sweep a tetrahedron for which this is false (a body's
+  /// nodes must stay on their sides of a crack).
+  std::function<bool(const std::array<Vec3, 4>&)> may_sweep;
 };
 
-struct RemeshWork {
-  std::size_t faces = 0, flips = 0, collapses = 0, moves = 0, divisions = 0, refused = 0;
+struct RemeshStats {
+  std::size_t faces = 0, flips = 0, collapses = 0, moves = 0, divisions = 0;
+  std::size_t refused = 0;  ///< edits that the guard or may_sweep refused
   double seconds = 0;
 };
 
-/// Improves the faces of `region` (dead ones are skipped) that have a smaller angle than wanted, by flips, collapses,
-/// moves and divisions. What must keep: the skin's surface (vertices stay on the triangles of the input that they lie
-/// on), the lines where cracks meet each other and the skin, crack tips, creases, and the contacts of `fronts`, which
-/// are followed where one is merged with its neighbour. Every edit is guarded: K never intersects itself. Cost follows
-/// the region. Returns what changed in all. Throws InputError for options out of range.
+/// Improves the faces of `region` (dead ones are skipped) that have a smaller angle than wanted, by
+/// flips, collapses, moves and divisions. Kept are the skin's surface, the lines where cracks meet
+/// each other and the skin, crack tips, creases, and the contacts of `fronts`, which are updated
+/// where a contact is merged with its neighbour. Cost follows the region. Returns all changes.
+/// Throws InputError for options out of range.
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
-                  const RemeshOptions& options = {}, RemeshWork* work = nullptr);
+                  const RemeshOptions& options = {}, RemeshStats* stats = nullptr);
 
 /// The smallest angle of a triangle, in degrees.
 double smallest_angle(const std::array<Vec3, 3>& corners);
 
-// ---- Jagged cracks (§ 5.2, brittle fracture): crack faces subdivided and displaced by fractal noise.
+// ---- Roughening: jagged cracks of brittle fracture
 
+/// Lengths are relative to the diagonal of Complex::extent().
 struct RoughenOptions {
-  double amplitude = 0.01;  ///< of the largest bumps, relative to the extent's diagonal
-  double frequency = 8;     ///< of these, per diagonal
+  double amplitude = 0.01;  ///< of the largest bumps
+  double frequency = 8;     ///< of the largest bumps, per diagonal
   int octaves = 4;          ///< each twice as fine and 0.6 times as high
-  double edge = 0;          ///< longest edge inside a crack, relative; 0: a twelfth of the largest bumps
+  double edge = 0;          ///< longest edge inside a crack; 0: a twelfth of the largest bumps
   std::uint64_t seed = 1;
-  std::vector<std::int32_t> cracks;  ///< which; empty: all
+  std::vector<std::int32_t> cracks;  ///< numbers of the cracks to roughen; empty: all
 };
 
-struct RoughenWork {
-  std::size_t divisions = 0, moves = 0, lowered = 0,
-              refused = 0;  ///< lowered: moved less far than wanted, for something is in the way
+struct RoughenStats {
+  std::size_t divisions = 0, moves = 0;
+  std::size_t lowered = 0;  ///< vertices that moved less far than wanted: something is in the way
+  std::size_t refused = 0;  ///< vertices that did not move
   double seconds = 0;
 };
 
-/// Divides the inner edges of the cracks and moves their inner vertices along the normal by noise that fades towards
-/// the skin, other cracks and the tips, which stay as they are. Both sides of a crack are alike, the pieces' volumes
-/// sum to what they did, and nothing crosses: where it would, a vertex moves less. Contacts of `fronts` stay. Returns
-/// what changed. Throws InputError for options out of range.
+/// Divides the inner edges of the cracks and displaces their inner vertices along the normal by
+/// fractal noise. The noise fades towards the skin, other cracks and the tips, which stay. Both
+/// sides of a crack stay alike and the volumes of the pieces keep their sum. A vertex moves less
+/// where it would make faces cross. Contacts of `fronts` stay. Returns all changes. Throws
+/// InputError for options out of range.
 CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options = {},
-                   RoughenWork* work = nullptr);
+                   RoughenStats* stats = nullptr);
 
-/// Gradient noise (Perlin 2002) in about [−1, 1], the same for the same seed everywhere.
-double noise(const Vec3& p, std::uint64_t seed);
-
-// ---- Fewer faces where few will do, for interactive use (§ 5.2).
+// ---- Decimation: fewer faces for interactive use
 
 struct DecimateOptions {
-  double deviation = 1e-3;  ///< how far the surface may be from where it was, relative to the extent's diagonal
-  std::size_t faces = 0;    ///< no fewer live faces than this
-  double crease = 30;       ///< degrees: edges that are bent more are kept as lines
-  double angle = 5;         ///< degrees: no face gets a smaller angle, unless it had
+  double deviation = 1e-3;  ///< how far the surface may move, relative to the diagonal of Complex::extent()
+  std::size_t faces = 0;    ///< no fewer living faces than this
+  double crease = 30;       ///< degrees: edges with a larger dihedral deviation are kept as lines
+  double angle = 5;         ///< degrees: no face gets a smaller angle unless it had one
 };
 
-struct DecimateWork {
-  std::size_t collapses = 0, refused = 0;
+struct DecimateStats {
+  std::size_t collapses = 0;
+  std::size_t refused = 0;  ///< collapses that the guard refused
   double seconds = 0;
 };
 
-/// Collapses edges of skin and cracks, the shortest first. Lines where surfaces meet, tips and creases stay lines;
-/// contacts of `fronts` stay or are left out between their neighbours. K never crosses itself, the derived surface
-/// stays closed; volumes change by what the deviation allows. Cost follows the whole. Returns what changed. Throws
+/// Collapses edges of skin and cracks, the shortest first. Lines where surfaces meet, tips and
+/// creases stay lines; contacts of `fronts` stay, or are omitted between their neighbours. Volumes
+/// change within the deviation. Cost follows the whole complex. Returns all changes. Throws
 /// InputError for options out of range.
 CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options = {},
-                    DecimateWork* work = nullptr);
+                    DecimateStats* stats = nullptr);
 
 }  // namespace geo

@@ -48,7 +48,7 @@ void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std:
 struct GlbOptions {
   std::size_t hull_corners =
       0;  ///< of the convex hulls below each piece's node, named UCX_ and the piece's name; 0: none
-  std::size_t hull_parts = 1;  ///< see convex_parts(); where there are several, their names end in _00, _01 …
+  std::size_t hull_parts = 1;  ///< see convex_decomposition(); where there are several, their names end in _00, _01 …
   bool z_up = false;           ///< the model's z is up; glTF's is y
 };
 

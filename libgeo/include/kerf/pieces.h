@@ -1,4 +1,4 @@
-// The pieces of material that the cracks have made: which side of which face belongs to which piece.
+// Pieces of material that cracks have separated, and their export for games and renderers (§ 7).
 #pragma once
 
 #include <cstddef>
@@ -11,58 +11,63 @@
 
 namespace geo {
 
-/// A piece is a connected region of material. Its boundary may have several shells: an internal cavity, or a crack that
-/// never reaches the skin, belongs to the piece around it.
+/// A piece is a connected region of material. Its boundary may have several shells: an internal
+/// cavity, or a crack that never reaches the skin, belongs to the piece around it.
 struct Pieces {
   std::uint32_t count = 0;
-  std::uint32_t shells = 0;           ///< closed surfaces that bound them, inner ones included: at least `count`
-  std::vector<std::int32_t> of_side;  ///< piece of side (face, which) at [2·face + which], −1 where there is none
+  std::uint32_t shells = 0;           ///< connected components of S_A, inner shells included: at least `count`
+  std::vector<std::int32_t> of_side;  ///< piece of side (face, which) at [2·face + which], −1 for no side
   std::vector<double> volume;         ///< per piece, model units³; they sum to the skin's volume
 };
 
-/// Pieces in descending order of volume (ties: by lowest face id).
+/// Finds the pieces, in descending order of volume (ties: by lowest face id). Cost follows the
+/// whole complex.
 Pieces find_pieces(const Complex& complex);
 
-/// The closed boundary of one piece as a mesh of its own (patch, site and source filled). `of`: which surface vertex
-/// each row is.
+/// The closed boundary of one piece as a mesh of its own, with patch, site and source. `vertex_of`,
+/// where given, receives for each vertex of the mesh the vertex of S_A.
 TriangleMesh piece_mesh(const Complex& complex, const Pieces& pieces, std::uint32_t piece,
-                        std::vector<SurfaceVertexId>* of = nullptr);
+                        std::vector<SurfaceVertexId>* vertex_of = nullptr);
 
-// ---- Pieces as a game or a renderer wants them: closed meshes, and the bonds that held them together (§ 7).
+// ---- Chunks and bonds: pieces with attributes, and the areas that held them together
 
-/// What two pieces share: crack faces with one piece on either side.
+/// The crack faces that two pieces share.
 struct Bond {
   std::uint32_t a = 0, b = 0;    ///< pieces, a < b
   double area = 0;               ///< model units²
-  Vec3 normal = Vec3::Zero();    ///< mean, a unit vector from a to b; zero where the wall closes round one of them
+  Vec3 normal = Vec3::Zero();    ///< mean, a unit vector from a to b; zero where the faces close around one piece
   Vec3 centroid = Vec3::Zero();  ///< of the shared area
 };
 
-/// The bonds of a cut body, by (a, b). `moved`: where each surface vertex of a deformed body is; then normals and
-/// centroids are those of the shared area where it is now, half way between its two sides, and areas still those of the
-/// undeformed material, which held.
+/// The bonds of a cut body, ordered by (a, b). `moved`, where given, holds the deformed position of
+/// each vertex of S_A; then normals and centroids are deformed ones, half way between the two
+/// sides, and areas still undeformed ones.
 std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {});
 
+/// A piece as a mesh for export.
 struct Chunk {
-  TriangleMesh mesh;  ///< closed; patch 0: skin, else inner. Site is empty
-  double volume = 0;
+  TriangleMesh mesh;             ///< closed; patch 0: skin, else inner faces; without sites
+  double volume = 0;             ///< model units³
   Vec3 centroid = Vec3::Zero();  ///< of the material
 };
 
-/// The pieces, in descending order of volume, with the attributes of `original`, the surface that `complex` was made
-/// from, or none where it is empty. Each triangle has a group, inner ones "crack", all others "skin" where the original
-/// has no groups. Inner triangles without texture coordinates (0 0) get them along the mean plane of the wall that they
-/// belong to, one for `tile` model units; skin that had none has 0 0. `moved`: where each surface vertex of a deformed
-/// body is; then volumes and centroids are those of the deformed pieces.
+/// The pieces in descending order of volume, with the attributes of `original`, the surface that
+/// `complex` was made from (empty: no attributes). Each triangle has a group: inner ones "crack",
+/// and all others "skin" where the original has no groups. Inner triangles without texture
+/// coordinates get them by projection along the mean plane of their bond, one unit of uv for `tile`
+/// model units; skin without has (0, 0). `moved`, where given, holds the deformed position of each
+/// vertex of S_A; then volumes and centroids are deformed ones.
 std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile,
                                std::span<const Vec3> moved = {});
 
-// ---- Convex bodies that stand for a piece in a physics engine.
+// ---- Collision shapes
 
-/// The convex hulls, of `corners` corners at most each, of at most `parts` parts of a closed mesh. Parts are made by
-/// planes across the principal axes of what is divided, the one first that saves most volume of hulls (after Mamou and
-/// Ghorbel 2009), while that is more than a hundredth of the whole hull's. Hulls of all their corners cover the mesh.
-/// None where it lies in one plane.
-std::vector<TriangleMesh> convex_parts(const TriangleMesh& mesh, std::size_t parts, std::size_t corners);
+/// Approximate convex decomposition of a closed mesh: at most `max_hulls` convex hulls of at most
+/// `max_vertices` vertices each. Planes across principal axes divide the mesh greedily; each
+/// division is the one that saves most hull volume (after Mamou and Ghorbel 2009), while that is
+/// more than a hundredth of the whole hull's. Hulls with no limit on vertices cover the mesh. Empty
+/// for a planar mesh.
+std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t max_hulls,
+                                               std::size_t max_vertices);
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// Making a solid of a surface that is nearly one.
+// Turns a surface that is nearly solid into a solid, and refines meshes that are too coarse.
 #pragma once
 
 #include <cstddef>
@@ -7,32 +7,36 @@
 
 namespace geo {
 
-/// What repair() did, in its order.
-struct Repairs {
-  std::size_t welded = 0;   ///< vertices that became others
-  std::size_t dropped = 0;  ///< triangles with a vertex twice, or there twice
-  std::size_t turned = 0;   ///< triangles
-  std::size_t holes = 0;    ///< closed, with so many
-  std::size_t added = 0;    ///< triangles
-  std::size_t smooth = 0;   ///< of the holes, those closed by smooth patches
-  std::size_t hidden = 0;   ///< shells left out: solid ones wholly inside another solid one
-  bool nothing() const { return welded + dropped + turned + holes + hidden == 0; }
+/// What repair() changed, in its order.
+struct RepairStats {
+  std::size_t welded_vertices = 0;    ///< vertices merged into others
+  std::size_t dropped_triangles = 0;  ///< degenerate (a vertex twice) or duplicate
+  std::size_t flipped_triangles = 0;  ///< orientation reversed
+  std::size_t filled_holes = 0;
+  std::size_t added_triangles = 0;  ///< in holes
+  std::size_t smooth_fills = 0;     ///< holes that are filled by fair patches
+  std::size_t dropped_shells = 0;   ///< solid shells wholly inside another solid one
+  /// True when the mesh is as it was.
+  bool nothing() const {
+    return welded_vertices + dropped_triangles + flipped_triangles + filled_holes + dropped_shells == 0;
+  }
 };
 
-/// Turns a plain mesh (no sites) into a solid as far as its topology is what is wrong: welds seams (weld_seams), open
-/// ones also where they are up to `reach` apart (model units); drops triangles that bound nothing; makes neighbours run
-/// the same way; closes holes, each by triangles between its corners, or, where `smooth` asks for it and nothing
-/// crosses, by a patch that goes on from the surface around it (fair_patch); turns shells outwards, and inwards those
-/// that are cavities of another. Attributes stay with their triangles; a hole's have those of its rim. Vertices that no
-/// triangle has go. Triangles that cross, and edges of more than two, stay: check_surface() tells.
-Repairs repair(TriangleMesh& mesh, double reach = 0, bool smooth = false);
+/// Repairs the topology of a plain mesh (no sites), in this order: welds seams, open ones also
+/// where their vertices are up to `weld_distance` apart (model units); drops triangles that bound
+/// nothing; orients neighbours alike; fills each hole by triangles between its corners, or, with
+/// `smooth_fill` and where nothing crosses, by a fair patch that continues the surface around it;
+/// turns shells outwards, cavities inwards; drops vertices without triangles.
+///
+/// Attributes stay with their triangles; a filled hole has those of its rim. Intersecting triangles
+/// and edges of more than two triangles remain: check_surface() finds them.
+RepairStats repair(TriangleMesh& mesh, double weld_distance = 0, bool smooth_fill = false);
 
-// ---- Shorter edges where a mesh is coarser than what it is to touch, or than it is to bend.
-
-/// A plain mesh (no sites) with edges of `longest` at most, model units: longer ones are divided in the middle, again
-/// and again, the same for both triangles of each. The shape stays to rounding, vertices keep their rows, triangles
-/// come in the order of those that they are parts of; attributes are interpolated. An edge whose middle is one of its
-/// ends by rounding stays. Throws InputError where more than 20 million triangles would come of it.
+/// A plain mesh (no sites) with edges of at most `longest`, model units. Longer edges are bisected
+/// repeatedly, for both triangles of each. The shape stays to rounding, vertices keep their
+/// indices, triangles come in the order of those that contain them; attributes are interpolated. An
+/// edge whose midpoint rounds to one of its ends stays. Throws InputError where more than 20
+/// million triangles would result.
 TriangleMesh refined(const TriangleMesh& mesh, double longest);
 
 }  // namespace geo

@@ -10,7 +10,8 @@ bool before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-// Where the shortest way from p to q meets the segment ab: both unfolded into a plane on either side of its line.
+// Where the shortest way from p to q meets the segment ab: both unfolded into a plane on either
+// side of its line.
 Vec3 shortest_by(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   const Vec3 along = b - a;
   const double length = along.squaredNorm();
@@ -30,7 +31,7 @@ std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceI
     if (!face.alive || face.crack == 0) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       VertexId v = face.v[k], w = face.v[(k + 1) % 3];
-      if (complex.around(v, w).size() != 1) continue;
+      if (complex.faces_around(v, w).size() != 1) continue;
       if (before(complex.point(w), complex.point(v))) std::swap(v, w);  // whatever the order of ids is
       const Vec3 &a = complex.point(v), &b = complex.point(w), &c = complex.point(face.v[(k + 2) % 3]);
       const Vec3 along = (b - a).normalized();

@@ -98,14 +98,14 @@ Vec3 PointMap::deformed(SurfaceVertexId v, Memory& memory) const {
   return it->second;
 }
 
-// What Eq. 1 and the deformed triangles of the skin near y differ by: the nearest ones say most, and one that holds y
-// all.
+// What Eq. 1 and the deformed triangles of the skin near y differ by: the nearest ones say most,
+// and one that holds y all.
 Vec3 PointMap::on_skin(Round& round, const Vec3& x, double reach, Memory& memory) const {
   const Vec3& y = round.world;
   Vec3 to;
   Mat3 slope;
   std::vector<FaceId> faces;
-  body_.surface.near(Box3{x, x}.grown(2 * reach), faces);
+  body_.surface.faces_near(Box3{x, x}.grown(2 * reach), faces);
   if (faces.empty() || !forward(round, x, to, slope)) return Vec3::Zero();
   const Mat3 back = inverse_of(slope);
   Vec3 sum = Vec3::Zero();

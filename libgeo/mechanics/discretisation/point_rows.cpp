@@ -16,7 +16,7 @@ constexpr std::size_t most_in_run = 32;
 
 bool on_face(const Complex& surface, const Vec3& p) {
   std::vector<FaceId> near;
-  surface.near({p, p}, near);
+  surface.faces_near({p, p}, near);
   return std::any_of(near.begin(), near.end(), [&](FaceId f) {
     const auto [a, b, c] = surface.corners(f);
     return segment_meets_triangle(p, p, a, b, c);
@@ -119,7 +119,7 @@ Obstacles near_obstacles(const Complex& surface, std::span<const Run> runs) {
   }
   std::vector<std::vector<FaceId>> near(boxes.size());
   parallel_for(boxes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) surface.near(boxes[b], near[b]);
+    for (std::size_t b = begin; b < end; ++b) surface.faces_near(boxes[b], near[b]);
   });
   std::vector<FaceId> ids;
   std::vector<char> found(surface.face_count(), 0);

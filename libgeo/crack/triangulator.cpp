@@ -1,4 +1,4 @@
-#include "crack/triangulate_internal.h"
+#include "crack/triangulator.h"
 
 #include <algorithm>
 #include <cmath>

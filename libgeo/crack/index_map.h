@@ -10,7 +10,8 @@ namespace geo::crack {
 template <class Key, class Hash>
 class Lookup {
  public:
-  /// The value under the key; ~0u where there is none as yet, to be filled in by the caller before the next call.
+  /// The value under the key; ~0u where there is none as yet, to be filled in by the caller before
+  /// the next call.
   std::uint32_t& operator[](const Key& key) {
     if (2 * (used_ + 1) > slots_.size()) grow();
     Slot& slot = slots_[place(key)];

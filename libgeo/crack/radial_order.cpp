@@ -1,4 +1,4 @@
-#include "crack/ring_order.h"
+#include "crack/radial_order.h"
 
 #include <algorithm>
 
@@ -16,19 +16,20 @@ class RingOrder {
 
   Fault first_fault() const {
     std::vector<Edge> given;
-    for (const auto& ring : edit_.rings) {
+    for (const auto& ring : edit_.radial_orders) {
       given.push_back(std::minmax(ring.a, ring.b));
       if (Fault fault = fault_around(ring.a, ring.b, ring.faces)) return fault;
     }
     std::sort(given.begin(), given.end());
-    // Whole edges of K whose faces are in parts now keep their order, and their parts take the faces' places.
+    // Whole edges of K whose faces are in parts now keep their order, and their parts take the
+    // faces' places.
     std::vector<std::pair<Edge, std::uint32_t>> parts;
     for (std::uint32_t i = 0; i < edit_.new_faces.size(); ++i) {
       const auto& f = edit_.new_faces[i];
       if (!f.parent.valid()) continue;
       for (std::size_t e = 0; e < 3; ++e) {
         const Edge edge = std::minmax(f.v[e], f.v[(e + 1) % 3]);
-        if (edge.second.value < complex_.vertex_count() && complex_.around(edge.first, edge.second).size() > 2 &&
+        if (edge.second.value < complex_.vertex_count() && complex_.faces_around(edge.first, edge.second).size() > 2 &&
             !std::binary_search(given.begin(), given.end(), edge))
           parts.push_back({edge, i});
       }
@@ -39,7 +40,7 @@ class RingOrder {
       const Edge edge = from->first;
       to = std::find_if(from, parts.end(), [&](const auto& part) { return part.first != edge; });
       ring.clear();
-      for (const FaceId f : complex_.around(edge.first, edge.second)) {
+      for (const FaceId f : complex_.faces_around(edge.first, edge.second)) {
         const auto part = std::find_if(from, to, [&](const auto& p) { return edit_.new_faces[p.second].parent == f; });
         ring.push_back(part == to ? f : FaceId(complex_.face_count() + part->second));
       }
@@ -66,7 +67,7 @@ class RingOrder {
       for (const VertexId c : v)
         if (c != a && c != b) apex.push_back(point(c)), touched |= is_moved(c);
     }
-    return !touched || stand_around(point(a), point(b), apex) ? Fault{} : fault;
+    return !touched || in_radial_order(point(a), point(b), apex) ? Fault{} : fault;
   }
 
   const Complex& complex_;

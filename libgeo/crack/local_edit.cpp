@@ -1,17 +1,17 @@
-#include "crack/local_internal.h"
+#include "crack/local_edit.h"
 
 #include <algorithm>
 
 #include "geometry/predicates.h"
 #include "kerf/error.h"
-#include "surface/complex_internal.h"
+#include "surface/radial_edge.h"
 
 namespace geo::crack {
 namespace {
 
 // The faces around uv, counter-clockwise about u→v.
 std::vector<FaceId> directed(const Complex& k, VertexId u, VertexId v) {
-  const auto ring = k.around(u, v);
+  const auto ring = k.faces_around(u, v);
   std::vector<FaceId> order(ring.begin(), ring.end());
   if (u > v) std::reverse(order.begin(), order.end());
   return order;
@@ -48,7 +48,7 @@ class Maker {
     return ring;
   }
   void order(VertexId u, VertexId v, std::vector<FaceId> ring) {
-    if (ring.size() >= 3) local.edit.rings.push_back({u, v, std::move(ring)});
+    if (ring.size() >= 3) local.edit.radial_orders.push_back({u, v, std::move(ring)});
   }
 
  private:
@@ -88,7 +88,7 @@ std::optional<LocalEdit> collapse(const Complex& k, VertexId b, VertexId a) {
       vanishing.push_back({x == a ? y : x, f});
       continue;
     }
-    for (const FaceId other : k.around(x, y))
+    for (const FaceId other : k.faces_around(x, y))
       if (corner_at(k.face(other), a) >= 0) return {};
     maker.replace(f, b, a);
     maker.local.swept.push_back({k.point(b), k.point(a), k.point(x), k.point(y)});
@@ -115,7 +115,7 @@ std::optional<LocalEdit> collapse(const Complex& k, VertexId b, VertexId a) {
 std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
   const auto& face = k.face(f);
   const VertexId a = face.v[e], b = face.v[(e + 1) % 3], c = face.v[(e + 2) % 3];
-  const auto ring = k.around(a, b);
+  const auto ring = k.faces_around(a, b);
   if (ring.size() != 2) return {};
   const FaceId g = ring[0] == f ? ring[1] : ring[0];
   const auto& other = k.face(g);
@@ -123,7 +123,7 @@ std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
   if (other.crack != face.crack || (face.crack == 0 && other.source != face.source) || other.v[(at + 1) % 3] != a)
     return {};
   const VertexId d = other.v[(at + 2) % 3];
-  if (c == d || !k.around(c, d).empty()) return {};
+  if (c == d || !k.faces_around(c, d).empty()) return {};
   for (const FaceId old : {f, g}) {  // the new ones are oriented like both
     const auto t = k.corners(old);
     const auto [axis, turn] = projection_axis(t[0], t[1], t[2]);
@@ -206,7 +206,7 @@ bool is_sound(const Complex& k, LocalEdit& local) {
     for (const Vec3& p : t) box.add(p);
   for (const Vec3& p : local.edit.new_vertices) box.add(p);
   std::vector<FaceId> near;
-  k.near(box, near);
+  k.faces_near(box, near);
   std::erase_if(near, [&](FaceId f) { return std::find(removed.begin(), removed.end(), f) != removed.end(); });
   for (Family& family : local.families) family.near = near;
   const bool faulty = static_cast<bool>(find_fault(k, local.edit, local.families, {}));

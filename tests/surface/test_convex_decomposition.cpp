@@ -25,7 +25,7 @@ TEST_CASE("Convex parts are closed, cover the mesh and hold less air the more th
        {make_letter('L', 0.3, 12), make_letter('K', 0.3, 12), make_polyp(5), make_apple(5)}) {
     double before = std::numeric_limits<double>::infinity();
     for (const std::size_t most : {1, 2, 4, 8}) {
-      const auto parts = convex_parts(mesh, most, ~std::size_t(0));
+      const auto parts = convex_decomposition(mesh, most, ~std::size_t(0));
       CHECK((!parts.empty() && parts.size() <= most));
       CHECK(volume_of(parts) <= before);
       CHECK(volume_of(parts) >= signed_volume(mesh) * (1 - 1e-12));
@@ -50,14 +50,14 @@ TEST_CASE("Convex parts are closed, cover the mesh and hold less air the more th
 
 TEST_CASE("A letter L is two blocks, nearly, and a ball is one part", "[parts]") {
   const TriangleMesh letter = make_letter('L', 0.3, 16);
-  const auto one = convex_parts(letter, 1, 64), two = convex_parts(letter, 2, 64);
+  const auto one = convex_decomposition(letter, 1, 64), two = convex_decomposition(letter, 2, 64);
   REQUIRE((one.size() == 1 && two.size() == 2));
   CHECK(volume_of(one) > 1.5 * signed_volume(letter));
   CHECK(volume_of(two) < 1.15 * signed_volume(letter));
-  CHECK(convex_parts(make_sphere(4), 8, ~std::size_t(0)).size() == 1);
-  for (const auto& part : convex_parts(make_polyp(6), 6, 12)) CHECK(part.vertices.size() <= 12);
+  CHECK(convex_decomposition(make_sphere(4), 8, ~std::size_t(0)).size() == 1);
+  for (const auto& part : convex_decomposition(make_polyp(6), 6, 12)) CHECK(part.vertices.size() <= 12);
   TriangleMesh flat;
   flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   flat.triangles = {{0, 1, 2}, {0, 2, 1}};
-  CHECK(convex_parts(flat, 4, 64).empty());
+  CHECK(convex_decomposition(flat, 4, 64).empty());
 }

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <map>
 
-#include "crack/place_internal.h"
+#include "crack/features.h"
 #include "geometry/distance.h"
-#include "surface/complex_internal.h"
+#include "surface/radial_edge.h"
 
 namespace geo::crack {
 namespace {
@@ -39,7 +39,7 @@ bool is_feature_between(const Complex& k, FaceId ff, FaceId gg, VertexId a, Vert
 }  // namespace
 
 bool is_feature(const Complex& k, VertexId a, VertexId b, const PlaceRules& rules) {
-  const auto ring = k.around(a, b);
+  const auto ring = k.faces_around(a, b);
   return ring.size() != 2 || is_feature_between(k, ring[0], ring[1], a, b, rules);
 }
 

@@ -1,4 +1,4 @@
-#include "crack/keep_internal.h"
+#include "crack/classify.h"
 
 #include <algorithm>
 
@@ -28,7 +28,8 @@ Member member_at(const Arrangement& a, const Use& use, Local u) {
 
 namespace {
 
-// Which quarter of the turn from `zero`: 0 on its half-plane, 1 before half a turn, 2 at half a turn, 3 beyond it.
+// Which quarter of the turn from `zero`: 0 on its half-plane, 1 before half a turn, 2 at half a
+// turn, 3 beyond it.
 int quarter(const Arrangement& a, Local u, Local v, const Member& zero, const Member& w) {
   if (zero.element == w.element) return zero.forward == w.forward ? 0 : 2;
   const int side = a.side(zero.element, w.apex);
@@ -72,7 +73,8 @@ bool in_material(const Arrangement& a, const Complex& complex, Local u, Local v,
     if (!last || compare_around(a, u, v, part, m, last_member) > 0) last = &use, last_member = m;
   }
   if (complex.face(a.elements[last->element].face).crack > 0) return true;
-  // Going on counter-clockwise from the last face one comes to the part: material if the face's back looks that way.
+  // Going on counter-clockwise from the last face one comes to the part: material if the face's
+  // back looks that way.
   return !last_member.forward;
 }
 
@@ -144,7 +146,7 @@ bool inside_material(const Complex& complex, const Vec3& q) {
     Box3 box{q, q};
     box.add(end);
     near.clear();
-    complex.near(box, near);
+    complex.faces_near(box, near);
     bool clean = true;
     int crossings = 0;
     for (const FaceId f : near) {

@@ -1,10 +1,11 @@
-// Which parts of the strip lie in the material (§ 5.2's trimming), and in which order faces stand around an edge.
+// Which parts of the strip lie in the material (§ 5.2's trimming), and in which order faces stand
+// around an edge.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "crack/arrangement_internal.h"
+#include "crack/arrangement.h"
 
 namespace geo::crack {
 
@@ -47,19 +48,22 @@ int compare_around(const Arrangement& a, Local u, Local v, const Member& zero, c
 /// The edges of all faces of K in the arrangement, after splitting.
 EdgeTable edges_of_complex(const Arrangement& arrangement);
 
-/// The strip's parts (rows of arrangement.children, by their element) that lie in material and on no face. Decided at
-/// the edges they share with K by the wedge they stand in, and flooded elsewhere; a part that touches nothing is asked
-/// against the skin. Throws GeometryError when two edges disagree.
+/// The strip's parts (rows of arrangement.children, by their element) that lie in material and on
+/// no face. Decided at the edges they share with K by the wedge they stand in, and flooded
+/// elsewhere; a part that touches nothing is asked against the skin. Throws GeometryError when two
+/// edges disagree.
 struct Part {
   std::uint32_t element, child;
 };
 std::vector<Part> keep_inside(const Arrangement& arrangement, const Complex& complex, const EdgeTable& edges);
 
-/// True when q is in the material (not in a cavity, not outside): exact parity along a line through the index.
+/// True when q is in the material (not in a cavity, not outside): exact parity along a line through
+/// the index.
 bool inside_material(const Complex& complex, const Vec3& q);
 
-/// Fills the edit from the arrangement: removed faces, children, crack faces, vertices, and the order around each edge
-/// that a crack face joins or that has three faces and more. `vertex` receives the vertex of each local point in use.
+/// Fills the edit from the arrangement: removed faces, children, crack faces, vertices, and the
+/// order around each edge that a crack face joins or that has three faces and more. `vertex`
+/// receives the vertex of each local point in use.
 ComplexEdit stitch(const Arrangement& arrangement, const Complex& complex, const EdgeTable& edges,
                    std::span<const Part> parts, std::int32_t crack, std::vector<VertexId>& vertex);
 

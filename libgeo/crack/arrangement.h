@@ -1,13 +1,14 @@
-// The arrangement of one step: the strip, the faces of K that it meets, and their common pieces, exactly.
+// The arrangement of one step: the strip, the faces of K that it meets, and their common pieces,
+// exactly.
 #pragma once
 
 #include <array>
 #include <unordered_map>
 #include <vector>
 
-#include "crack/lookup_internal.h"
+#include "crack/index_map.h"
 #include "crack/sweep.h"
-#include "crack/triangulate_internal.h"
+#include "crack/triangulator.h"
 
 namespace geo::crack {
 
@@ -19,14 +20,14 @@ struct Element {
   std::uint32_t first = 0, end = 0;  ///< its children: children[first..end)
 };
 
-/// Points that edges and faces define are named by them, so that one place has one row; only where the strip meets
-/// itself are places compared.
+/// Points that edges and faces define are named by them, so that one place has one row; only where
+/// the strip meets itself are places compared.
 class Arrangement {
  public:
   Arrangement(const Complex& complex, const Strip& strip);
 
   /// Finds the faces near the strip and what they share with it, and the strip with itself.
-  void meet(CrackWork& work);
+  void meet(CrackStats& work);
   /// Triangulates each element that something divides, alone and constrained to what it shares.
   void split();
 
@@ -37,7 +38,8 @@ class Arrangement {
     const auto& c = elements[element].corner;
     return points_.orient3d(c[0], c[1], c[2], p);
   }
-  /// True when child `c` of strip element `e` lies on a face of K, or on an earlier triangle of the strip.
+  /// True when child `c` of strip element `e` lies on a face of K, or on an earlier triangle of the
+  /// strip.
   bool lies_on_other(std::uint32_t e, const Child& c) const;
   /// The points on edge k of an element, its ends included, in order from corner k.
   std::vector<Local> along_edge(std::uint32_t e, int k) const;

@@ -25,8 +25,8 @@ TriangleMesh hull_of(const std::vector<Vec3>& points, std::size_t corners) {
   return hull;
 }
 
-// A closed soup of triangles. Where it was cut off it is closed by a fan, which may pass over itself, but not beyond
-// the hull.
+// A closed soup of triangles. Where it was cut off it is closed by a fan, which may pass over
+// itself, but not beyond the hull.
 struct Part {
   std::vector<std::array<Vec3, 3>> triangles;
   TriangleMesh hull;
@@ -96,7 +96,7 @@ Division divide(const Part& part, std::size_t corners) {
 
 }  // namespace
 
-std::vector<TriangleMesh> convex_parts(const TriangleMesh& mesh, std::size_t parts, std::size_t corners) {
+std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t parts, std::size_t corners) {
   std::vector<Part> all{Part(corners_of(mesh), mesh.vertices, corners)};
   if (all[0].hull.triangles.empty()) return {};
   const double least = 0.01 * all[0].volume;

@@ -1,7 +1,8 @@
-// The points of one step's arrangement: doubles, and points that edges and planes of doubles define exactly.
+// The points of one step's arrangement: doubles, and points that edges and planes of doubles define
+// exactly.
 //
-// A defined point is kept as a double with a bound of its error, which settles nearly every predicate; its exact
-// coordinates are worked out only when one asks for them.
+// A defined point is kept as a double with a bound of its error, which settles nearly every
+// predicate; its exact coordinates are worked out only when one asks for them.
 #pragma once
 
 #include <array>
@@ -41,7 +42,8 @@ class Points {
 
   /// Sign of det(b−a, c−a, d−a) as in geometry/predicates.h.
   int orient3d(Local a, Local b, Local c, Local d) const;
-  /// Sign of the turn abc seen against `axis` (0, 1, 2), counter-clockwise positive in the two axes that follow it.
+  /// Sign of the turn abc seen against `axis` (0, 1, 2), counter-clockwise positive in the two axes
+  /// that follow it.
   int orient2d(Local a, Local b, Local c, int axis) const;
   /// Sign of coordinate `axis` of a minus that of b.
   int compare(Local a, Local b, int axis) const;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "crack/points_internal.h"
+#include "crack/points.h"
 
 namespace geo::crack {
 

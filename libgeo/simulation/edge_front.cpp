@@ -17,13 +17,13 @@ bool has(std::span<const EdgePoint> points, double at) {
   return std::any_of(points.begin(), points.end(), [&](const EdgePoint& p) { return p.at == at; });
 }
 
-// Point k twice: the copy before it where `before`, else behind it.
-void double_point(EdgeFront& edge, std::size_t k, bool before, double at) {
+// Inserts a copy of point k, before or after it, and an empty segment between the two.
+void duplicate_point(EdgeFront& edge, std::size_t k, bool before, double at) {
   const FrontState::Point p = edge.front.points[k];
-  const auto place = static_cast<std::ptrdiff_t>(before ? k : k + 1);
-  edge.front.points.insert(edge.front.points.begin() + place, p);
+  const auto index = static_cast<std::ptrdiff_t>(before ? k : k + 1);
+  edge.front.points.insert(edge.front.points.begin() + index, p);
   edge.front.segments.insert(edge.front.segments.begin() + static_cast<std::ptrdiff_t>(k), {p, p});
-  edge.at.insert(edge.at.begin() + place, at);
+  edge.at.insert(edge.at.begin() + index, at);
 }
 
 }  // namespace
@@ -45,9 +45,9 @@ EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::v
     if (k < result.at.size() && result.at[k] == p.at) continue;
     const bool after = k == result.at.size() || (k > 0 && p.at - result.at[k - 1] < result.at[k] - p.at);
     if (after)
-      double_point(result, k - 1, false, p.at);
+      duplicate_point(result, k - 1, false, p.at);
     else
-      double_point(result, k, true, p.at);
+      duplicate_point(result, k, true, p.at);
   }
   to.clear();
   for (const double at : result.at) to.push_back(nearest(next, at).material);
@@ -61,9 +61,9 @@ void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {
       ++s;
       continue;
     }
-    const std::size_t gone = has(next, at[s]) ? s + 1 : s;
-    points.erase(points.begin() + static_cast<std::ptrdiff_t>(gone)),
-        at.erase(at.begin() + static_cast<std::ptrdiff_t>(gone));
+    const std::size_t removed = has(next, at[s]) ? s + 1 : s;
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(removed)),
+        at.erase(at.begin() + static_cast<std::ptrdiff_t>(removed));
     segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(s));
   }
 }

@@ -1,7 +1,9 @@
-// The part of a blade's edge that is about in the material, and the front that it leaves (§ 5.1).
+// Fronts that a blade's edge leaves in the material, with the edge parameter of their points
+// (§ 5.1).
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "kerf/crack.h"
@@ -9,27 +11,29 @@
 
 namespace geo {
 
-/// A point of an edge that was mapped into the material.
+/// A point of a blade's edge that was mapped into the material.
 struct EdgePoint {
-  double at = 0;
+  double at = 0;  ///< edge parameter: i + t lies between the blade's points i and i + 1
   Vec3 material;
-  double spacing = 0;  ///< of the nodes there
+  double spacing = 0;  ///< of the nodes there, model units
 };
 
-/// Where a front begins. At least two points.
+/// A new front at the given points, at least two.
 EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name,
                      bool closed = false);
 
-/// The same front, with the points that `next` has and it lacks (upsampling: each begins where its
-/// neighbour on the edge is), and where every point goes; those that `next` lacks go where their
-/// nearest neighbour does (downsampling).
+/// Upsampling: the front with a copy of the nearest point for each parameter of `next` that it
+/// lacks. `to` receives the next position of every point; points whose parameter `next` lacks move
+/// to that of the nearest one (downsampling). Both are ascending in the parameter.
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to);
-/// After that step: takes out the points that `next` lacks, unless the step kept them apart.
+/// Downsampling, after the step: removes points whose parameter `next` lacks, where they coincide
+/// with a neighbour.
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next);
 
-/// The part of a front between two places on the edge; of fewer than two points: none.
+/// The points of a front with parameters in [from, to]; an empty front where there are fewer than
+/// two.
 EdgeFront part_of(const EdgeFront& edge, double from, double to);
-/// One front of two that follow each other on the edge.
+/// One front of two, the parameters of `a` below those of `b`; it keeps the crack number of `a`.
 EdgeFront joined(EdgeFront a, const EdgeFront& b);
 
 }  // namespace geo

@@ -1,4 +1,5 @@
-// Where a blade's edge is in the material: several runs where it meets a body in several places (§ 5.1).
+// The parts of a blade's edge that are inside the material: its runs, one for each place where it
+// meets a body (§ 5.1).
 #pragma once
 
 #include <vector>
@@ -9,18 +10,19 @@
 
 namespace geo {
 
-/// The parts of the edge that are within the support of nodes, each mapped back as one. Between the blade's own points
-/// others are put in where the mapping bends the edge by more than a tenth of a spacing, and where a run ends; points
-/// that it brings closer than a twentieth are left out. A run ends where no node is near, and where the edge goes on in
-/// material that is apart from that before.
+/// The runs of an open edge within the support of nodes, mapped into the material. Between the
+/// blade's own points, samples are inserted where the map bends the edge by more than a tenth of a
+/// node spacing, and at the ends of a run; points closer than a twentieth are left out. A run ends
+/// where no node is near, and where the edge continues in material that is disconnected from it.
 std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade,
                                               const Pose& pose);
 
-/// All points of a closed edge, mapped one by one.
+/// The points of a closed edge, each mapped into the material.
 std::vector<EdgePoint> closed_run(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose);
 
-/// The fronts that go with `runs`, found among `before`: those that a run goes on from, joined where it goes on from
-/// several, parted where several go on from one. Runs that go on from none have no points yet.
+/// A front for each run: the one among `before` that the run continues. Fronts are joined where a
+/// run continues several, and split where several runs continue one. A run that continues none gets
+/// a front without points.
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before);
 
 }  // namespace geo

@@ -11,11 +11,10 @@
 namespace geo {
 namespace {
 
-// The triangles of all cracks by themselves: reaches are wide, and the skin within them is many
-// times as much.
-class Cracks {
+// The triangles of all cracks. A search in the complex would visit the skin, which is far larger.
+class CrackTriangles {
  public:
-  explicit Cracks(const Complex& complex) {
+  explicit CrackTriangles(const Complex& complex) {
     for (std::uint32_t f = 0; f < complex.face_count(); ++f)
       if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack != 0)
         triangles_.push_back(complex.corners(FaceId(f)));
@@ -56,27 +55,27 @@ std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const St
 }
 
 std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const FractureOptions& fracture,
-                                    const std::vector<std::uint32_t>& body_index, std::size_t most) {
+                                    const std::vector<std::uint32_t>& body_index, std::size_t limit) {
   const double diagonal = body.surface.extent().diagonal();
   std::vector<CrackStart> over;
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const Vec3& x = body.nodes.position[i];
     const Strength& own = fracture.at_node(body_index, i);
     const double strength = own.strength * strength_factor(own, fracture.seed, diagonal, x);
-    // No eigenvalue is larger than the norm: most nodes need no decomposition.
+    // The norm bounds the eigenvalues: few nodes need a decomposition.
     if (stress[i].norm() <= strength || !may_break(fracture, x)) continue;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(stress[i]);
     if (eigen.eigenvalues()[2] > strength)
       over.push_back({NodeId(i), eigen.eigenvectors().col(2), eigen.eigenvalues()[2] / strength});
   }
   std::sort(over.begin(), over.end(), [](const CrackStart& a, const CrackStart& b) {
-    return a.share != b.share ? a.share > b.share : a.node < b.node;
+    return a.ratio != b.ratio ? a.ratio > b.ratio : a.node < b.node;
   });
   std::vector<CrackStart> starts;
-  if (over.empty() || most == 0) return starts;
-  const Cracks cracks(body.surface);
+  if (over.empty() || limit == 0) return starts;
+  const CrackTriangles cracks(body.surface);
   for (const CrackStart& s : over) {
-    if (starts.size() == most) break;
+    if (starts.size() == limit) break;
     const Vec3& x = body.nodes.position[s.node.index()];
     const double reach = fracture.separation * body.nodes.spacing[s.node.index()];
     if (cracks.within(x, reach)) continue;

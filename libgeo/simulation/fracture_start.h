@@ -1,5 +1,9 @@
-// Where cracks begin.
+// Where cracks start: nodes at which the largest principal stress exceeds the strength.
 #pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "kerf/body.h"
 #include "kerf/scene.h"
@@ -7,23 +11,22 @@
 
 namespace geo {
 
-/// A place where the stress has passed the strength.
+/// A node at which a crack starts.
 struct CrackStart {
   NodeId node;
-  Vec3 normal;   ///< of the plane that the largest principal stress pulls apart, unit, material coordinates
-  double share;  ///< of that stress in the strength there; > 1
+  Vec3 normal;   ///< principal direction of the largest stress: of the crack plane, unit, material coordinates
+  double ratio;  ///< of that stress to the strength there; > 1
 };
 
-/// For each node the mean of Cauchy's stress over the material points that take it, weighed by
-/// volume and the kernel: no mean reaches across a crack, and it is the stress that forces come
-/// from. Turned back by the material's rotation at the points; Pa, in material coordinates. Zero
-/// where no point takes a node, or all are inside out.
+/// Cauchy stress at each node, Pa, rotated back to material coordinates. It is the mean over the
+/// material points that have the node in their support, weighted by volume and kernel, so it never
+/// averages across a crack. Zero where a node has no such point, or all are inverted.
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion);
 
-/// Nodes whose averaged stress has passed the strength of their body, where cracks may begin and
-/// none is within `fracture.separation` spacings; the most overstrained first, none within that
-/// distance of one before it; at most `most`.
+/// At most `limit` starts, the largest ratio first. No start is within `fracture.separation` node
+/// spacings of a crack or of another start, nor in a box without fracture. `stress`: as
+/// averaged_stress(); `body_index`: per node, its body of the scene.
 std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& stress, const FractureOptions& fracture,
-                                    const std::vector<std::uint32_t>& body_index, std::size_t most);
+                                    const std::vector<std::uint32_t>& body_index, std::size_t limit);
 
 }  // namespace geo

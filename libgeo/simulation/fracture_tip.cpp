@@ -39,8 +39,8 @@ double TipField::hoop(double angle) const {
 }
 
 TipField::Strongest TipField::strongest() const {
-  // The hoop stress has one maximum between the flanks or two; a scan by degrees finds the larger,
-  // bisection its place.
+  // There are one or two maxima between the crack faces: a scan by degrees finds the larger one,
+  // bisection its angle.
   constexpr double degree = std::numbers::pi / 180;
   double best = 0;
   for (int a = -85; a <= 85; ++a)
@@ -53,15 +53,16 @@ TipField::Strongest TipField::strongest() const {
 
 namespace {
 
-struct Nearby {
+// Nodes that are fitted, with the square roots of their weights.
+struct Neighborhood {
   std::vector<std::uint32_t> nodes;
   std::vector<double> weight;
   double support = 0;
 };
 
-// The nodes that a point a little ahead of the tip sees, within two support radii of the tip.
-Nearby nodes_about(const Body& body, const TipFrame& tip) {
-  Nearby found;
+// The nodes within two support radii of the tip that a point just ahead of the tip sees.
+Neighborhood nodes_about(const Body& body, const TipFrame& tip) {
+  Neighborhood found;
   const auto nearest = body.grid.nearest(body.nodes.position, tip.at, 1, ~0u, [](auto) { return true; });
   if (nearest.empty()) return found;
   found.support = body.nodes.radius[nearest[0]];
@@ -83,9 +84,9 @@ Nearby nodes_about(const Body& body, const TipFrame& tip) {
   return found;
 }
 
-// How much of the way straight back from the tip, between one support radius and three, there is
-// crack.
-double share_behind(const Complex& complex, const TipFrame& tip, double h) {
+// Share of the line straight back from the tip, from one support radius to three, that has a crack
+// on it.
+double crack_behind(const Complex& complex, const TipFrame& tip, double h) {
   int crack = 0;
   for (int k = 0; k < 4; ++k) {
     const Vec3 back = tip.at - (1.25 + 0.5 * k) * h * tip.ahead;
@@ -94,10 +95,10 @@ double share_behind(const Complex& complex, const TipFrame& tip, double h) {
   return 0.25 * crack;
 }
 
-// Coefficients of a uniform gradient (9, column-major), a translation (3) and modes (`modes` of
-// them, in units of `scale`), by weighted least squares with as small a norm as there is.
+// Coefficients of a uniform gradient (9, column-major), a translation (3) and the modes (`modes` of
+// them, in units of `scale`): the weighted least-squares fit of smallest norm to displacements v.
 Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material& material, const TipFrame& tip,
-                    const Nearby& near, int modes, double scale) {
+                    const Neighborhood& near, int modes, double scale) {
   const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
   const auto n = static_cast<Eigen::Index>(near.nodes.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 12 + modes);
@@ -114,7 +115,7 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
     b.segment<3>(3 * j) = w * (frame.transpose() * v[static_cast<std::size_t>(j)]);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-4);  // directions in which the nodes hardly spread: as for moment matrices
+  solver.setThreshold(1e-4);  // relative: drops directions in which the nodes hardly extend
   solver.compute(a);
   return solver.solve(b);
 }
@@ -122,7 +123,7 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
 }  // namespace
 
 TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip) {
-  const Nearby near = nodes_about(body, tip);
+  const Neighborhood near = nodes_about(body, tip);
   TipField field;
   field.nodes = near.nodes.size();
   field.support = near.support;
@@ -133,8 +134,8 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   std::vector<Vec3> v;
   for (const auto i : near.nodes) v.push_back(u[i]);
   const auto gradient = [&](const Eigen::VectorXd& c) { return Mat3(Eigen::Map<const Mat3>(c.data()) / near.support); };
-  // First as one affine map, whose rotation is taken out; then with the modes, where there are
-  // nodes enough for them.
+  // First one affine map, whose rotation is removed; then the modes too, where there are enough
+  // nodes.
   const Mat3 f = Mat3::Identity() + frame * gradient(fit(body, v, material, tip, near, 0, 1)) * frame.transpose();
   const Mat3 rotation = nearest_rotation(f).rotation;
   for (std::size_t j = 0; j < v.size(); ++j) {
@@ -149,9 +150,8 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   field.uniform = stress(material, stretch) * stretch / stretch.determinant();
   if (modes == 0) return field;
   field.k = scale * c.tail<3>();
-  // What the nodes' field has of tractions on the crack itself is an error of theirs, as far as
-  // there is a crack behind.
-  const double open = 1 - share_behind(body.surface, tip, near.support);
+  // A traction on the crack faces is an error of the fit, as far as there is a crack behind.
+  const double open = 1 - crack_behind(body.surface, tip, near.support);
   const Vec3 traction = open * field.uniform.col(1);
   field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();
   return field;

@@ -1,50 +1,60 @@
-// The field of stress about a point of a crack's front, from how the nodes around it have moved.
+// The stress field around a point of a crack front, fitted to the displacements of nearby nodes.
 #pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "kerf/body.h"
 #include "kerf/material.h"
 
 namespace geo {
 
-/// A right-handed frame at a point of a front, in material coordinates: ahead in the crack's plane, normal to that
-/// plane, and along the front (ahead × normal).
+/// A right-handed frame at a point of a front, in material coordinates: `ahead` in the crack plane,
+/// `normal` to it, and ahead × normal along the front.
 struct TipFrame {
   Vec3 at, ahead, normal;
+  /// Direction along the front.
   Vec3 along() const { return ahead.cross(normal); }
 };
 
-/// What is around a tip: a uniform stress, and the three singular modes of a sharp crack (Williams 1957). Stresses are
-/// Cauchy's, turned back by the material's rotation, in the tip's frame. So a flaw too small for the nodes to see has
-/// the stress of its surroundings, and a long crack its stress intensities, whatever the sampling.
+/// Stress around a crack tip: a uniform part, and the three singular modes of a sharp crack
+/// (Williams 1957). Cauchy stress, without the material's rotation, in the tip's frame. A flaw that
+/// the nodes do not resolve thus has the stress of its surroundings, and a long crack has its
+/// stress intensities, whatever the sampling. Symbols: K_I, K_II, K_III stress intensities of
+/// opening, in-plane shear and out-of-plane shear; r, angle polar coordinates about the tip from
+/// `ahead`.
 struct TipField {
   Mat3 uniform = Mat3::Zero();  ///< Pa
   Vec3 k = Vec3::Zero();        ///< K_I, K_II, K_III; Pa √m
-  double support = 0;           ///< support radius h here, model units
-  std::size_t nodes = 0;        ///< how many nodes tell it; fewer than four: the field is zero
-  std::uint32_t node = 0;       ///< one of these: the tip is in its body
+  double support = 0;           ///< support radius h of the nodes here, model units
+  std::size_t nodes = 0;        ///< number of nodes fitted; the field is zero below four
+  std::uint32_t node = 0;       ///< one of them: it is in the same body as the tip
 
-  /// Stress across the half-plane at `angle` from straight ahead, at the distance where K / √(2πr) is its own average
-  /// over 0 < r < h, h/4: the uniform part's share, and the modes'. Pa.
+  /// Hoop stress, Pa, across the half-plane at `angle` (radians, towards +normal from straight
+  /// ahead), at r = h/4: there K / √(2πr) is its own mean over 0 < r < h.
   double hoop(double angle) const;
   struct Strongest {
-    double angle, stress;  ///< radians, towards +normal; Pa
+    double angle, stress;  ///< radians; Pa
   };
-  /// Where the hoop stress is largest (Erdogan and Sih 1963; with the uniform part Smith, Ayatollahi and Pavier 2001).
+  /// The largest hoop stress within 85° of straight ahead (Erdogan and Sih 1963; with the uniform
+  /// part Smith, Ayatollahi and Pavier 2001).
   Strongest strongest() const;
 };
 
-/// The displacements of a uniform gradient and of unit stress intensities are fitted to those of the nodes that a point
-/// a little ahead of the tip sees, within two support radii, by weighted least squares (moving least squares with the
-/// modes in its basis: Fleming, Chu, Moran and Belytschko 1997). `u`: per node. Where the nodes move as linear
-/// elasticity says, the answer is exact. A crack that nodes see carries no traction: as far as there is crack straight
-/// behind the tip, the uniform stress keeps only what does not pull at its faces (Williams' second term).
+/// Fits the displacements of a uniform gradient and of unit stress intensities to those of the
+/// nodes within two support radii that a point just ahead of the tip sees, by weighted least
+/// squares (moving least squares enriched with the modes: Fleming, Chu, Moran and Belytschko 1997).
+/// Exact where the nodes move as linear elasticity predicts. The crack faces carry no traction: by
+/// the share of crack straight behind the tip, the uniform stress loses its traction on them
+/// (Williams' second term remains). `u`: displacement per node.
 TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip);
 
-/// Displacement that a stress intensity of 1 in each mode gives a point at (r, angle) from the tip, plane strain, in
-/// the tip's frame: one column a mode.
+/// Displacements at (r, angle) of unit stress intensities, plane strain, in the tip's frame: one
+/// column for each mode.
 Mat3 mode_displacement(const Material& material, double r, double angle);
 
-/// The stress of mode 0, 1 or 2 there, in the tip's frame, for a stress intensity of 1.
+/// Stress at (r, angle) of a unit stress intensity of mode 0, 1 or 2, in the tip's frame.
 Mat3 mode_stress(double poisson, int mode, double r, double angle);
 
 }  // namespace geo

@@ -1,23 +1,28 @@
 #include "kerf/run.h"
 
 namespace geo {
+namespace {
+
+void add(SplitWork& sum, const SplitWork& o) {
+  sum.crack += o.crack;
+  sum.edges_cut += o.edges_cut, sum.edges_added += o.edges_added, sum.nodes_updated += o.nodes_updated;
+  sum.nodes_added += o.nodes_added, sum.nodes_moved += o.nodes_moved, sum.orphans += o.orphans;
+  sum.resample_seconds += o.resample_seconds, sum.graph_seconds += o.graph_seconds;
+  sum.binding_seconds += o.binding_seconds;
+}
+
+}  // namespace
 
 FrameStats& FrameStats::operator+=(const FrameStats& o) {
-  split.crack += o.split.crack;
-  split.edges_cut += o.split.edges_cut, split.edges_added += o.split.edges_added,
-      split.nodes_updated += o.split.nodes_updated;
-  split.nodes_added += o.split.nodes_added, split.nodes_moved += o.split.nodes_moved, split.orphans += o.split.orphans;
-  split.resample_seconds += o.split.resample_seconds, split.graph_seconds += o.split.graph_seconds,
-      split.binding_seconds += o.split.binding_seconds;
+  add(split, o.split);
   refused += o.refused, fronts += o.fronts, newton += o.newton, cg += o.cg, steps += o.steps;
-  front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds, contact_seconds += o.contact_seconds,
-      write_seconds += o.write_seconds;
-  fracture_seconds += o.fracture_seconds;
-  fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided, fracture.advanced += o.fracture.advanced,
-      fracture.refused += o.fracture.refused;
+  front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds;
+  contact_seconds += o.contact_seconds, write_seconds += o.write_seconds, fracture_seconds += o.fracture_seconds;
+  fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided;
+  fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
   contact += o.contact;
-  energy = o.energy, blade_force = o.blade_force, obstacle_force = o.obstacle_force,
-  obstacle_torque = o.obstacle_torque;
+  energy = o.energy, blade_force = o.blade_force;
+  obstacle_force = o.obstacle_force, obstacle_torque = o.obstacle_torque;
   return *this;
 }
 

@@ -1,92 +1,102 @@
-// Self-contact (§ 3.3): the surface of a deforming body, which follows its nodes by Eq. 1 and does
-// not come to cross itself.
+// Self-contact (§ 3.3): the surface of a deforming body, which tracks its nodes by Eq. 1 and never
+// crosses itself.
 //
-// The surface has positions of its own. At each step the nodes move as if nothing touched; places
-// that would pass through each other are found, and impulses on the nodes take away their approach;
-// then the surface goes where Eq. 1 wants it, but for what would still cross (bounded_motion.h).
-// How far it stays behind is reported, and made good as soon as there is room.
+// The surface has positions of its own. In each time step forces or impulses keep the nodes apart,
+// then the surface moves to its targets, where Eq. 1 puts it, as far as nothing crosses
+// (bounded_motion.h). The rest is reported as the tracking error and recovered in later steps.
 //
-// Sheets are born together: copies of a site at the same coordinates, to the bit, that move as one
-// (their average) and part along their own normals once Eq. 1 pulls them apart or along each other
-// by more than its own noise.
+// The two sides of a crack sheet start as coincident vertices, equal to the bit, that move as one.
+// They separate along their normals once their targets differ by more than the noise of Eq. 1.
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "contact/birth/birth.h"
 #include "contact/detection/near_pairs.h"
-#include "contact/motion/bounded_motion.h"
 #include "contact/response/self_contact_penalty.h"
-#include "contact/surface/contact_surface.h"
+#include "contact/surface/moving_surface.h"
+#include "contact/surface/surface_targets.h"
 #include "contact/surface/surface_weights.h"
-#include "kerf/run.h"
-#include "kerf/scene.h"
+#include "kerf/contact.h"
 
 namespace geo {
 
+/// Contact of one implicit time step: made by SelfContact::begin_step(), used up by finish_step().
+/// It owns the potential that acts in between.
+struct ContactStep {
+  /// The self-contact forces of the step; null where no parts of the surface can meet.
+  Potential* potential() const { return penalty && penalty->size() > 0 ? penalty.get() : nullptr; }
+
+  std::unique_ptr<SelfContactPenalty> penalty;  ///< null: finished
+  std::vector<Vec3> tracking_error;             ///< per surface vertex, position less mean target at the beginning
+  std::uint64_t revision = 0;                   ///< SelfContact::revision() at the beginning
+};
+
+/// Where the surface that a crack step makes will be: made by SelfContact::plan_embedding(), used
+/// up by commit().
+struct EmbeddingPlan {
+  Birth embedding;             ///< the surface after the crack step
+  std::uint64_t revision = 0;  ///< SelfContact::revision() when it was planned
+};
+
+/// The surface of one body, with self-contact. Not thread-safe.
 class SelfContact {
  public:
-  /// The surface of a body at rest (no displacement), or at the positions of an earlier one (per
-  /// surface vertex).
+  /// The surface of a body at rest, without displacement, or at the given positions (per surface
+  /// vertex, world) of an earlier run.
   SelfContact(const Body& body, const Solid& solid, const ContactOptions& options = {},
               std::vector<Vec3> positions = {});
 
-  /// Before a crack step is made that will turn the surface into `grown`: where what is new will be
-  /// (birth.h). Throws GeometryError when it would cross itself or what is there; the step must not
-  /// be made then.
-  void expect(const Body& body, const Solid& solid, const State& state, const Complex& grown, const CrackDelta& crack);
-  /// After it was made; nothing happens where it changed nothing.
-  void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
-  /// Before an implicit step of dt, at whose beginning state is: what parts of the surface that may
-  /// come together in it do to each other (touch_penalty.h); null: nothing. It is valid until the
-  /// next call. resolve() then leaves the nodes as they are.
-  Potential* begin(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
-                   const std::vector<std::uint8_t>& fixed);
-  /// After a step of nodes that began at displacements `before` and took dt: moves the surface;
-  /// displacements and velocities are corrected by impulses before, unless begin() was called.
-  /// `fixed` (per node, or empty) as in Environment.
-  void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-               const std::vector<std::uint8_t>& fixed, State& state, ContactStats* work = nullptr);
+  /// Begins an implicit time step of dt seconds at `state`: finds what may touch in it. `gravity`
+  /// in model units / s². `fixed`: per node, or empty, as in Environment.
+  ContactStep begin_step(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
+                         const std::vector<std::uint8_t>& fixed);
+  /// Moves the surface after the nodes' implicit step, which has ended at `displacement`, per node.
+  /// Throws std::logic_error when the surface has changed since `step` began, or `step` was
+  /// finished.
+  ContactStats finish_step(ContactStep step, const Body& body, const std::vector<Vec3>& displacement);
+  /// Moves the surface after a step of the nodes in which no contact acted: corrects displacements
+  /// and velocities by impulses first. The step began at displacements `before` and took dt
+  /// seconds.
+  ContactStats finish_step_with_impulses(const Body& body, const Solid& solid, const std::vector<Vec3>& before,
+                                         double dt, const std::vector<std::uint8_t>& fixed, State& state);
 
-  /// World positions, per surface vertex; of dead ones nothing is said.
-  const std::vector<Vec3>& positions() const { return positions_; }
-  /// Where displacements of nodes have each; kept until other ones are asked for.
-  const std::vector<Vec3>& targets_at(const Body& body, const std::vector<Vec3>& u);
+  /// Positions of the surface that a crack step will turn this one into; `grown`: the complex after
+  /// that step. Throws GeometryError when it would cross itself: the crack step must not be
+  /// committed then.
+  EmbeddingPlan plan_embedding(const Body& body, const Solid& solid, const State& state, const Complex& grown,
+                               const CrackDelta& crack) const;
+  /// Takes over the surface of a plan after its crack step, `delta`. Throws std::logic_error when
+  /// the surface has changed since the plan was made.
+  void commit(EmbeddingPlan plan, const Body& body, const Solid& solid, const BodyDelta& delta);
+
+  /// World positions, per surface vertex; unspecified for dead ones.
+  const std::vector<Vec3>& positions() const { return surface_.positions(); }
+  /// Positions that Eq. 1 gives, per surface vertex, at displacements u of the nodes; valid until
+  /// the next call of a method that is not const.
+  const std::vector<Vec3>& targets_at(const Body& body, const std::vector<Vec3>& u) {
+    return targets_.at(body, weights_, u);
+  }
+  /// Eq. 1 as weights of nodes.
   const SurfaceWeights& weights() const { return weights_; }
-  const ContactSurface& surface() const { return surface_; }
+  /// Triangles and sites.
+  const ContactSurface& surface() const { return surface_.topology(); }
+  /// Grows with every change of the surface.
+  std::uint64_t revision() const { return revision_; }
 
  private:
-  std::vector<Vec3> targets(const Body& body, const std::vector<Vec3>& u) const;
-  std::size_t apply_impulses_after(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-                                   const std::vector<std::uint8_t>& fixed, std::span<const std::uint32_t> together,
-                                   const Copies& copies, State& state);
-  std::vector<Vec3> likely(const std::vector<Vec3>& goal, std::span<const std::uint32_t> together) const;
-  const VertexFans& fans();
-  // Which of the vertices are together where they are.
-  struct Standing {
-    std::vector<std::uint32_t> together;
-    Copies copies;
-  };
-  const Standing& standing();
+  double gap() const { return options_.gap * surface().edge; }
+  ContactStats move_surface(const Body& body, const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error);
 
   ContactOptions options_;
-  ContactSurface surface_;
   SurfaceWeights weights_;
-  std::vector<Vec3> positions_;
-  SelfContactPenalty touch_{SelfContactPenaltyOptions{}};
-  NearPairs near_;                    // of the step that is worked on
-  VertexFans fans_;                   // of the surface; empty: not asked for yet
-  std::optional<Standing> standing_;  // empty: not asked for since positions_ changed
-  // What targets_at() said last, of which displacements, and the vertices whose weights have
-  // changed since.
-  struct {
-    std::vector<Vec3> targets, of;
-    std::vector<std::uint32_t> stale;
-  } last_;
-  std::vector<Vec3>
-      held_off_;        // how far the surface was from where nodes would have it at begin(); empty: no step has begun
-  bool begun_ = false;  // a step that touch_ acts in
-  Birth birth_;         // of the step that was expected last
+  MovingSurface surface_;
+  SurfaceTargetCache targets_;
+  NearPairs near_;  // broad phase of the current step; its memory is kept between steps
+  std::unique_ptr<SelfContactPenalty> spare_penalty_;  // of a finished step, for its memory
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace geo

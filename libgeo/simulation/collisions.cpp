@@ -1,36 +1,49 @@
 #include "simulation/collisions.h"
 
+#include <stdexcept>
+
 #include "kerf/error.h"
 #include "kerf/progress.h"
 
 namespace geo {
 
-Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows)
+Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& positions)
     : implicit_(scene.implicit) {
   if (!scene.self_contact) return;
-  std::vector<Vec3> positions;
-  if (!rows.empty()) {
-    positions.assign(body.surface.surface_vertex_count(), Vec3::Zero());
+  std::vector<Vec3> all;
+  if (!positions.empty()) {
+    all.assign(body.surface.surface_vertex_count(), Vec3::Zero());
     std::size_t next = 0;
-    for (std::uint32_t v = 0; v < positions.size(); ++v)
-      if (body.surface.alive(SurfaceVertexId(v)) && next++ < rows.size()) positions[v] = rows[next - 1];
-    if (next != rows.size()) throw InputError("the checkpoint's surface does not belong to its body");
+    for (std::uint32_t v = 0; v < all.size(); ++v)
+      if (body.surface.alive(SurfaceVertexId(v)) && next++ < positions.size()) all[v] = positions[next - 1];
+    if (next != positions.size()) throw InputError("the checkpoint's surface does not belong to its body");
   }
-  surface_.emplace(body, solid, scene.contact, std::move(positions));
+  surface_.emplace(body, solid, scene.contact, std::move(all));
 }
 
-void Collisions::begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment) {
-  if (!surface_ || !implicit_) return;
-  if (Potential* touch = surface_->begin(body, solid, motion, dt, environment.gravity, environment.fixed))
-    environment.contact.push_back(touch);
+std::optional<ContactStep> Collisions::begin_step(const Body& body, const Solid& solid, const State& motion, double dt,
+                                                  Environment& environment) {
+  if (!surface_ || !implicit_) return {};
+  ContactStep step = surface_->begin_step(body, solid, motion, dt, environment.gravity, environment.fixed);
+  if (Potential* potential = step.potential()) environment.contact.push_back(potential);
+  return step;
 }
 
-Agreement Collisions::agreement(const Body& body, const Solid& solid, const State& motion, double& seconds) {
+ContactStats Collisions::finish_step(std::optional<ContactStep> step, const Body& body, const Solid& solid,
+                                     const std::vector<Vec3>& before, double dt, const Environment& environment,
+                                     State& motion) {
+  if (!surface_) return {};
+  return step ? surface_->finish_step(std::move(*step), body, motion.displacement)
+              : surface_->finish_step_with_impulses(body, solid, before, dt, environment.fixed, motion);
+}
+
+Agreement Collisions::embedding_check(const Body& body, const Solid& solid, const State& motion,
+                                      std::optional<EmbeddingPlan>& plan, double& seconds) {
   if (!surface_) return {};
   return [&](const Complex& grown, const CrackDelta& crack) {
     Stopwatch watch;
     try {
-      surface_->expect(body, solid, motion, grown, crack);
+      plan = surface_->plan_embedding(body, solid, motion, grown, crack);
     } catch (...) {
       seconds += watch.lap();
       throw;
@@ -39,16 +52,14 @@ Agreement Collisions::agreement(const Body& body, const Solid& solid, const Stat
   };
 }
 
-void Collisions::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
-  if (surface_) surface_->follow(body, solid, delta);
+void Collisions::commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid,
+                        const BodyDelta& delta) {
+  if (!surface_ || delta.crack.empty()) return;
+  if (!plan) throw std::logic_error("no embedding was planned for this crack step");
+  surface_->commit(std::move(*plan), body, solid, delta);
 }
 
-void Collisions::resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-                         const Environment& environment, State& motion, ContactStats& work) {
-  if (surface_) surface_->resolve(body, solid, before, dt, environment.fixed, motion, &work);
-}
-
-std::vector<Vec3> Collisions::rows(const Body& body) const {
+std::vector<Vec3> Collisions::living_positions(const Body& body) const {
   std::vector<Vec3> result;
   if (!surface_) return result;
   for (std::uint32_t v = 0; v < surface_->positions().size(); ++v)

@@ -1,4 +1,5 @@
-// Contact in the loop (§ 3.3): what a scene asks of it, and the surface it keeps.
+// Self-contact in the time loop (§ 3.3): the surface of the bodies, where the scene wants it kept
+// from crossing itself.
 #pragma once
 
 #include <optional>
@@ -9,34 +10,44 @@
 
 namespace geo {
 
+/// Adapts a SelfContact to the scene's options; without self-contact all methods do nothing.
 class Collisions {
  public:
-  /// `rows`: where the surface is, a row a living surface vertex, ascending, as rows() gives it; empty: at rest. Throws
-  /// InputError when there are as many as the body does not have.
-  Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& rows);
+  /// `positions`: of living surface vertices in ascending order, as living_positions() gives them;
+  /// empty: at rest. Throws InputError when their number is not that of the body.
+  Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& positions);
 
-  /// Before a step: puts what the surface does to itself into the environment, where the step is implicit.
-  void begin(const Body& body, const Solid& solid, const State& motion, double dt, Environment& environment);
-  /// What has to agree to a crack step; empty: nothing. `seconds`: what it takes is added.
-  Agreement agreement(const Body& body, const Solid& solid, const State& motion, double& seconds);
-  /// After a crack step that was agreed to, and after a step of nodes that began at displacements `before`.
-  void follow(const Body& body, const Solid& solid, const BodyDelta& delta);
-  void resolve(const Body& body, const Solid& solid, const std::vector<Vec3>& before, double dt,
-               const Environment& environment, State& motion, ContactStats& work);
+  /// Begins a time step of dt seconds; adds the potential of an implicit one to `environment`. The
+  /// result owns that potential, and is empty for explicit steps.
+  std::optional<ContactStep> begin_step(const Body& body, const Solid& solid, const State& motion, double dt,
+                                        Environment& environment);
+  /// Moves the surface after a step that begin_step() began at displacements `before`; in explicit
+  /// steps changes `motion` by impulses.
+  ContactStats finish_step(std::optional<ContactStep> step, const Body& body, const Solid& solid,
+                           const std::vector<Vec3>& before, double dt, const Environment& environment, State& motion);
 
-  /// False: the scene asks for none, and the surface is where Eq. 1 has it.
+  /// A check of a crack step before its commit: plans the embedding of its surface into `plan`, and
+  /// adds its time to `seconds`. Refers to all arguments. Empty without self-contact.
+  Agreement embedding_check(const Body& body, const Solid& solid, const State& motion,
+                            std::optional<EmbeddingPlan>& plan, double& seconds);
+  /// Follows a crack step that embedding_check() has planned.
+  void commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid, const BodyDelta& delta);
+
+  /// Whether the scene has self-contact; otherwise the surface is where Eq. 1 has it.
   bool on() const { return surface_.has_value(); }
-  std::vector<Vec3> rows(const Body& body) const;
-  /// The surface's weights where on(), else nothing.
+  /// World positions of living surface vertices in ascending order; empty without self-contact.
+  std::vector<Vec3> living_positions(const Body& body) const;
+  /// The surface's weights; null without self-contact.
   const SurfaceWeights* weights() const { return surface_ ? &surface_->weights() : nullptr; }
-  /// Where nodes have each surface vertex where on(), else nothing; until the next call of anything.
-  std::span<const Vec3> wanted(const Body& body, const State& motion) {
+  /// Targets of surface vertices (Eq. 1), valid until the next call of a method that is not const;
+  /// empty without self-contact.
+  std::span<const Vec3> targets(const Body& body, const State& motion) {
     return surface_ ? std::span<const Vec3>(surface_->targets_at(body, motion.displacement)) : std::span<const Vec3>();
   }
 
  private:
   std::optional<SelfContact> surface_;
-  bool implicit_;
+  bool implicit_;  // steps of the scene
 };
 
 }  // namespace geo

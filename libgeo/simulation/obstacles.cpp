@@ -8,36 +8,78 @@
 namespace geo {
 namespace {
 
+// Slip below this share of the expected motion of a step is regularised, so that what rests sticks.
+constexpr double relative_slip = 1e-2;
+// The least slip regularisation, in node spacings: for steps in which nothing is expected to move.
+constexpr double least_slip = 1e-6;
+
 Eigen::Isometry3d isometry(const Pose& p) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
   at.linear() = p.rotation.toRotationMatrix(), at.translation() = p.position;
   return at;
 }
 
-// The surface is within a support radius of its nodes. So what is far from obstacles needs no weights of its surface.
-std::vector<std::uint8_t> near_nodes(const RigidShape& shape, const Eigen::Isometry3d& back, const NodeSet& nodes,
+// Nodes whose surface may be within reach of a shape; the surface is within a support radius of its
+// nodes. Weights of the surface are needed for these only.
+std::vector<std::uint8_t> near_nodes(const RigidShape& shape, const Eigen::Isometry3d& to_local, const NodeSet& nodes,
                                      const std::vector<Vec3>& u, double reach) {
   std::vector<std::uint8_t> near(nodes.size());
   parallel_for(nodes.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      near[i] = shape.near(back * (nodes.position[i] + u[i]), reach + nodes.radius[i]);
+      near[i] = shape.near(to_local * (nodes.position[i] + u[i]), reach + nodes.radius[i]);
   });
   return near;
 }
 
-// True when the boxes that bodies may be in during the step meet.
-bool parts_meet(const NodeSet& nodes, const std::vector<std::uint32_t>& part, const State& motion, double dt,
-                double fall) {
+// Whether boxes that contain each body during the step meet. `fall`: velocity that gravity adds in
+// a step, model units / s.
+bool bodies_may_meet(const ObjectContactStep& step, double fall) {
+  const NodeSet& nodes = step.body.nodes;
   std::vector<Box3> box;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (part[i] >= box.size()) box.resize(part[i] + 1);
-    const Vec3 x = nodes.position[i] + motion.displacement[i], way = 2 * dt * motion.velocity[i];
-    box[part[i]].add(Box3{x.cwiseMin(x + way), x.cwiseMax(x + way)}.grown(nodes.spacing[i] + 2 * dt * fall));
+    const std::uint32_t b = step.body_index[i];
+    if (b >= box.size()) box.resize(b + 1);
+    const Vec3 x = nodes.position[i] + step.motion.displacement[i], motion = 2 * step.dt * step.motion.velocity[i];
+    box[b].add(Box3{x.cwiseMin(x + motion), x.cwiseMax(x + motion)}.grown(nodes.spacing[i] + 2 * step.dt * fall));
   }
   for (std::size_t a = 0; a < box.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (box[a].meets(box[b])) return true;
   return false;
+}
+
+// What scales penalties and search distances of a step.
+struct ContactScale {
+  double areal_density = 1;             // kg / model unit², of the only material; 1 where there are several
+  std::vector<double> pressure_factor;  // per node: its material's areal density; empty where there is one
+  double spacing = 0;                   // mean, of nodes
+  double fastest = 0;                   // of nodes, model units / s
+  double fall = 0;                      // velocity that gravity adds in the step
+};
+
+// Scenes give stiffness as acceleration over depth. The pressure that accelerates a layer of nodes
+// so is that times its areal density: mass of a node over spacing². All current nodes count, so
+// that a restored run computes the same.
+ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
+  const Materials& materials = step.solid.materials();
+  const NodeSet& nodes = step.body.nodes;
+  const std::size_t n = step.solid.size();
+  std::vector<double> density(materials.count(), 0), count(density);
+  ContactScale scale;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto m = materials.number(i);
+    density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]), ++count[m];
+    scale.spacing += nodes.spacing[i];
+  }
+  for (std::size_t m = 0; m < density.size(); ++m) density[m] /= count[m];
+  scale.spacing /= double(n);
+  if (density.size() == 1)
+    scale.areal_density = density[0];
+  else
+    for (std::size_t i = 0; i < n; ++i) scale.pressure_factor.push_back(density[materials.number(i)]);
+  for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
+  scale.fall = step.dt * gravity.norm();
+  return scale;
 }
 
 }  // namespace
@@ -53,69 +95,57 @@ Obstacles::Obstacles(const Scene& scene) {
     shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
 }
 
-const SurfaceWeights& Obstacles::weights_of(const SurfaceWeights* given, const Body& body, const Solid& solid) {
-  if (given) return *given;
-  if (!own_) own_.emplace().update(body, solid);
-  return *own_;
+const SurfaceWeights& Obstacles::weights_of(const ObjectContactStep& step) {
+  if (step.weights) return *step.weights;
+  if (!own_weights_) own_weights_.emplace().update(step.body, step.solid);
+  return *own_weights_;
 }
 
-void Obstacles::begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights,
-                      std::span<const Vec3> at, const std::vector<std::uint32_t>& part, const State& motion,
-                      double time, double dt, Environment& environment) {
-  acting_.clear();
-  const bool mutual = scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
-  if (shapes_.empty() && !mutual) return;
-  // As stiff as the same penalty on each node of the lowest layer: acceleration times mass over area; by the nodes
-  // there are now, so that a run taken up does the same.
-  const Materials& materials = solid.materials();
-  std::vector<double> layer(materials.count(), 0), count(layer),
-      firmness;  // per material; per node, where there are several
-  double spacing = 0, fastest = 0;
-  for (std::size_t i = 0; i < solid.size(); ++i) {
-    const auto m = materials.number(i);
-    layer[m] += solid.mass(NodeId(i)) / (body.nodes.spacing[i] * body.nodes.spacing[i]), ++count[m],
-        spacing += body.nodes.spacing[i];
-  }
-  for (std::size_t m = 0; m < layer.size(); ++m) layer[m] /= count[m];
-  spacing /= double(solid.size());
-  const double each = layer.size() == 1 ? layer[0] : 1;
-  for (std::size_t i = 0; i < solid.size() && layer.size() > 1; ++i) firmness.push_back(layer[materials.number(i)]);
-  for (const Vec3& v : motion.velocity) fastest = std::max(fastest, v.norm());
-  const double fall = dt * environment.gravity.norm();
+void Obstacles::add_potentials(const ObjectContactStep& step, Environment& environment) {
+  const Scene& scene = step.scene;
+  const double dt = step.dt;
+  obstacles_.clear();
+  const bool between_bodies = scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
+  if (shapes_.empty() && !between_bodies) return;
+  const ContactScale scale = scale_of(step, environment.gravity);
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
     ObstaclePenaltyOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness,
                                    ground ? scene.friction : scene.obstacles[k].friction};
-    options.pressure *= each;
+    options.pressure *= scale.areal_density;
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
     if (ground)
       from.translation() = to.translation() = scene.ground_point;
     else
-      from = isometry(scene.obstacles[k].pose(time)), to = isometry(scene.obstacles[k].pose(time + dt));
+      from = isometry(scene.obstacles[k].pose(step.time)), to = isometry(scene.obstacles[k].pose(step.time + dt));
     const double moved = (to.translation() - from.translation()).norm() +
                          shapes_[k]->extent() * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
-    const double reach = 2 * dt * (fastest + fall) + moved + spacing;
-    acting_.emplace_back(shapes_[k], options, from, to);
-    if (const auto near = near_nodes(*shapes_[k], from.inverse(), body.nodes, motion.displacement, reach);
+    // Twice what nodes go at their present speed, since forces of the step may accelerate them.
+    const double reach = 2 * dt * (scale.fastest + scale.fall) + moved + scale.spacing;
+    obstacles_.emplace_back(shapes_[k], options, from, to);
+    if (const auto near = near_nodes(*shapes_[k], from.inverse(), step.body.nodes, step.motion.displacement, reach);
         std::find(near.begin(), near.end(), 1) != near.end())
-      acting_.back().watch(body, weights_of(weights, body, solid), {motion.displacement, at, near}, reach,
-                           1e-2 * std::max(dt * fall, moved) + 1e-6 * spacing, firmness);
+      obstacles_.back().find_contacts(
+          step.body, weights_of(step), {step.motion.displacement, step.surface, near}, reach,
+          relative_slip * std::max(dt * scale.fall, moved) + least_slip * scale.spacing, scale.pressure_factor);
   }
   if (scene.ground && scene.self_contact) environment.ground = false;
-  for (ObstaclePenalty& o : acting_)
+  for (ObstaclePenalty& o : obstacles_)
     if (!o.empty()) environment.contact.push_back(&o);
-  if (!mutual || !parts_meet(body.nodes, part, motion, dt, fall)) return;
-  mutual_ = body_contact(body, solid, weights_of(weights, body, solid), part, motion.displacement,
-                         {scene.contact_stiffness * each, scene.contact.friction, 4 * dt * (fastest + fall) + spacing,
-                          1e-2 * dt * fall + 1e-6 * spacing, firmness});
-  if (!mutual_->empty()) environment.contact.push_back(&*mutual_);
+  if (!between_bodies || !bodies_may_meet(step, scale.fall)) return;
+  const double reach = 4 * dt * (scale.fastest + scale.fall) + scale.spacing;  // both bodies move
+  body_contact_ =
+      find_body_contacts({step.body, step.solid, weights_of(step), step.body_index, step.motion.displacement},
+                         {scene.contact_stiffness * scale.areal_density, scene.contact.friction, reach,
+                          relative_slip * dt * scale.fall + least_slip * scale.spacing, scale.pressure_factor});
+  if (!body_contact_->empty()) environment.contact.push_back(&*body_contact_);
 }
 
-void Obstacles::reaction(const State& motion, double share, FrameStats& work) const {
-  work.obstacle_force.resize(shapes_.size(), Vec3::Zero()), work.obstacle_torque.resize(shapes_.size(), Vec3::Zero());
-  for (std::size_t k = 0; k < acting_.size(); ++k) {
-    const ObstaclePenalty::Reaction r = acting_[k].reaction(motion.displacement);
-    work.obstacle_force[k] += share * r.force, work.obstacle_torque[k] += share * r.torque;
+void Obstacles::add_reactions(const State& motion, double share, FrameStats& stats) const {
+  stats.obstacle_force.resize(shapes_.size(), Vec3::Zero()), stats.obstacle_torque.resize(shapes_.size(), Vec3::Zero());
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const ObstaclePenalty::Reaction r = obstacles_[k].reaction(motion.displacement);
+    stats.obstacle_force[k] += share * r.force, stats.obstacle_torque[k] += share * r.torque;
   }
 }
 

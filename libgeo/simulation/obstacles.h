@@ -1,9 +1,10 @@
-// Contact of objects in the loop: rigid obstacles, where they are and what bodies do to them; bodies that touch each
-// other.
+// Contact of objects in the time loop: rigid obstacles, the ground as one of them, and bodies of
+// the scene with each other (§ 3.3).
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "contact/response/body_contact_penalty.h"
@@ -13,30 +14,40 @@
 
 namespace geo {
 
+/// The bodies when a time step begins. Refers to everything.
+struct ObjectContactStep {
+  const Scene& scene;
+  const Body& body;
+  const Solid& solid;
+  const SurfaceWeights* weights;                 ///< of the surface; null: Obstacles computes its own
+  std::span<const Vec3> surface;                 ///< per surface vertex, world; empty: found from the nodes
+  const std::vector<std::uint32_t>& body_index;  ///< per node, its body of the scene
+  const State& motion;
+  double time, dt;  ///< s
+};
+
+/// Owns the potentials of objects in contact.
 class Obstacles {
  public:
-  /// The scene's obstacles; the ground, too, where surfaces are kept from crossing.
+  /// The scene's obstacles; with self-contact the ground, too, which then acts on surfaces.
   explicit Obstacles(const Scene& scene);
-  /// False: begin() has nothing to look at but bodies that touch each other.
+  /// Whether there is an obstacle.
   bool any() const { return !shapes_.empty(); }
 
-  /// Before a step of dt seconds from `time` on: adds them to what acts on nodes, and bodies that touch each other
-  /// where nothing else keeps them apart. `part`: per node, its body of the scene. `weights`: of the surface as it is;
-  /// none: they are found here. `at`: where they have the surface now; empty: that is found here.
-  void begin(const Scene& scene, const Body& body, const Solid& solid, const SurfaceWeights* weights,
-             std::span<const Vec3> at, const std::vector<std::uint32_t>& part, const State& motion, double time,
-             double dt, Environment& environment);
-  /// After a crack step.
-  void follow() { own_.reset(); }
-  /// After a step: adds `share` of what was done to the scene's obstacles.
-  void reaction(const State& motion, double share, FrameStats& work) const;
+  /// Adds the potentials of a time step to `environment`; valid until the next call. Bodies of the
+  /// scene repel each other only without self-contact, which includes that.
+  void add_potentials(const ObjectContactStep& step, Environment& environment);
+  /// The surface has changed by a crack step.
+  void invalidate_weights() { own_weights_.reset(); }
+  /// Adds to `stats`, after a time step, `share` of the mean forces and torques on the obstacles.
+  void add_reactions(const State& motion, double share, FrameStats& stats) const;
 
  private:
-  const SurfaceWeights& weights_of(const SurfaceWeights* given, const Body& body, const Solid& solid);
-  std::vector<std::shared_ptr<const RigidShape>> shapes_;  // of the scene's obstacles, then that of the ground
-  std::vector<ObstaclePenalty> acting_;
-  std::optional<BodyContactPenalty> mutual_;
-  std::optional<SurfaceWeights> own_;
+  const SurfaceWeights& weights_of(const ObjectContactStep& step);
+  std::vector<std::shared_ptr<const RigidShape>> shapes_;  // of the scene's obstacles, then of the ground
+  std::vector<ObstaclePenalty> obstacles_;                 // of the current step, one for each shape
+  std::optional<BodyContactPenalty> body_contact_;         // of the current step
+  std::optional<SurfaceWeights> own_weights_;
 };
 
 }  // namespace geo

@@ -61,12 +61,13 @@ struct Simulation::Impl {
   void cut(double dt, FrameStats& stats);
   void cut_at(std::size_t blade, double time, FrameStats& stats);
   bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
-  void apply_delta(const BodyDelta& delta, FrameStats& stats);
+  void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   std::int32_t unused_crack() const;
   void add_wedges(double dt);
-  void add_contact(double dt, FrameStats& stats);
+  std::optional<ContactStep> begin_contact(double dt, FrameStats& stats);
   void integrate(double dt, FrameStats& stats);
-  void move_surface(const std::vector<Vec3>& before, double dt, FrameStats& stats);
+  void finish_contact(std::optional<ContactStep> contact, const std::vector<Vec3>& before, double dt,
+                      FrameStats& stats);
   void fracture(double dt, FrameStats& stats);
   void require_finite() const;
   double time_of(int frame) const { return frame * (1 / scene.frame_rate); }
@@ -123,8 +124,9 @@ void Simulation::Impl::reset_environment() {
       environment.clearance[i] = (body.surface.point(body.surface.site(v)) - body.nodes.position[i]).norm();
 }
 
-// Updates mechanics and contact after a crack step.
-void Simulation::Impl::apply_delta(const BodyDelta& delta, FrameStats& stats) {
+// Updates mechanics and contact after a crack step. `plan`: of the surface, empty without
+// self-contact.
+void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
   cut_since_build = true;
@@ -135,8 +137,8 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, FrameStats& stats) {
                   });
   for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
   stats.mechanics_seconds += watch.lap();
-  if (collisions) collisions->follow(body, solid, delta);
-  obstacles.follow();
+  if (collisions) collisions->commit(std::move(plan), body, solid, delta);
+  obstacles.invalidate_weights();
   stats.contact_seconds += watch.lap();
 }
 
@@ -145,10 +147,11 @@ bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& ne
   CrackOptions options;
   options.seed = scene.seed;
   try {
-    apply_delta(
-        split(body, front, next, options, &stats.split,
-              collisions ? collisions->agreement(body, solid, state.motion, stats.contact_seconds) : Agreement()),
-        stats);
+    std::optional<EmbeddingPlan> plan;
+    const Agreement check =
+        collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : Agreement();
+    const BodyDelta delta = split(body, front, next, options, &stats.split, check);
+    apply_delta(delta, std::move(plan), stats);
     return true;
   } catch (const GeometryError&) {
     ++stats.refused;
@@ -224,20 +227,25 @@ void Simulation::Impl::add_wedges(double dt) {
     const Blade& blade = scene.blades[b];
     if (!(blade.thickness > 0) || !blade.active(state.time)) continue;
     for (std::size_t i = mass.size(); i < body.nodes.size(); ++i) mass.push_back(solid.mass(NodeId(i)));
-    wedge.add(b, blade, blade.motion.at(state.time + dt), body.nodes.position, state.motion.displacement,
-              environment.clearance, mass, blade.stiffness);
+    const double end = state.time + dt;
+    wedge.add(
+        b, {blade.at(end), blade.closed, blade.motion.at(end).rotation * blade.back, blade.thickness, blade.stiffness},
+        {body.nodes.position, state.motion.displacement, environment.clearance, mass});
   }
   if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
 
-// Adds obstacles, contact between bodies, and self-contact.
-void Simulation::Impl::add_contact(double dt, FrameStats& stats) {
+// Adds obstacles, contact between bodies, and self-contact. The result owns the latter's potential.
+std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
-  const std::span<const Vec3> at = obstacles.any() ? collisions->wanted(body, state.motion) : std::span<const Vec3>();
-  obstacles.begin(scene, body, solid, collisions->weights(), at, state.body_index, state.motion, state.time, dt,
-                  environment);
-  collisions->begin(body, solid, state.motion, dt, environment);
+  const std::span<const Vec3> surface =
+      obstacles.any() ? collisions->targets(body, state.motion) : std::span<const Vec3>();
+  obstacles.add_potentials(
+      {scene, body, solid, collisions->weights(), surface, state.body_index, state.motion, state.time, dt},
+      environment);
+  std::optional<ContactStep> contact = collisions->begin_step(body, solid, state.motion, dt, environment);
   stats.contact_seconds += watch.lap();
+  return contact;
 }
 
 void Simulation::Impl::integrate(double dt, FrameStats& stats) {
@@ -249,7 +257,7 @@ void Simulation::Impl::integrate(double dt, FrameStats& stats) {
   stats.blade_force.resize(scene.blades.size(), Vec3::Zero());
   const auto reaction = wedge.reaction(state.motion.displacement, scene.blades.size());
   for (std::size_t b = 0; b < reaction.size(); ++b) stats.blade_force[b] += dt * scene.frame_rate * reaction[b];
-  obstacles.reaction(state.motion, dt * scene.frame_rate, stats);
+  obstacles.add_reactions(state.motion, dt * scene.frame_rate, stats);
   stats.newton += static_cast<std::size_t>(report.newton), stats.cg += static_cast<std::size_t>(report.cg);
   ++stats.steps;
   stats.energy = report.energy;
@@ -258,9 +266,10 @@ void Simulation::Impl::integrate(double dt, FrameStats& stats) {
 
 // Moves the surface after the nodes, without crossings. `before`: displacements of the nodes at the
 // beginning of the step.
-void Simulation::Impl::move_surface(const std::vector<Vec3>& before, double dt, FrameStats& stats) {
+void Simulation::Impl::finish_contact(std::optional<ContactStep> contact, const std::vector<Vec3>& before, double dt,
+                                      FrameStats& stats) {
   Stopwatch watch;
-  collisions->resolve(body, solid, before, dt, environment, state.motion, stats.contact);
+  stats.contact += collisions->finish_step(std::move(contact), body, solid, before, dt, environment, state.motion);
   stats.contact_seconds += watch.lap();
 }
 
@@ -284,9 +293,9 @@ void Simulation::Impl::step(double dt, FrameStats& stats) {
   gripped.place(scene.grips, body.nodes, state.time + dt, environment.fixed, state.motion);
   environment.contact.clear();
   add_wedges(dt);
-  add_contact(dt, stats);
+  std::optional<ContactStep> contact = begin_contact(dt, stats);
   integrate(dt, stats);
-  move_surface(before, dt, stats);
+  finish_contact(std::move(contact), before, dt, stats);
   state.time += dt;
   fracture(dt, stats);
 }
@@ -347,7 +356,7 @@ FrameStats Simulation::advance_frame(const Progress& progress) {
     run.require_finite();
   }
   ++run.state.frame;
-  run.state.surface = run.collisions->rows(run.body);
+  run.state.surface = run.collisions->living_positions(run.body);
   run.state.total += stats;
   return stats;
 }
@@ -359,7 +368,7 @@ TriangleMesh Simulation::surface(const TriangleMesh* model) const {
   if (model) transfer_attributes(*model, mesh);
   mesh.attributes.normal.clear();
   if (run.collisions->on()) {
-    mesh.vertices = run.collisions->rows(run.body);
+    mesh.vertices = run.collisions->living_positions(run.body);
     return mesh;
   }
   const std::vector<Vec3>& u = run.state.motion.displacement;

@@ -1,4 +1,5 @@
-// The order of the modules, read from the includes: a module includes only those before it (docs/design.md).
+// The order of the modules, read from the includes: a module includes only those before it
+// (docs/design.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -42,6 +43,7 @@ const std::map<std::string, std::string> public_headers{
     {"body_file", "io"},
     {"check", "surface"},
     {"complex", "surface"},
+    {"contact", "contact"},
     {"crack", "crack"},
     {"crack_edits", "crack"},
     {"crossing", "contact/detection"},
@@ -74,7 +76,8 @@ const std::map<std::string, std::string> public_headers{
 // The paper's main claim is that surface and discretisation do not know each other.
 const std::set<std::pair<std::string, std::string>> strangers{{"crack", "graph"}, {"crack", "sampling"}};
 
-// Modules (up to the first slash) whose sources may include a heavy library, and whether their private headers may.
+// Modules (up to the first slash) whose sources may include a heavy library, and whether their
+// private headers may.
 struct Door {
   std::set<std::string> modules;
   bool headers = false;
@@ -121,8 +124,8 @@ std::vector<fs::path> sources_below(const fs::path& folder) {
   return files;
 }
 
-/// The module of a file named relative to libgeo or, for a public header, to its include folder; empty where it is
-/// none.
+/// The module of a file named relative to libgeo or, for a public header, to its include folder;
+/// empty where it is none.
 std::string module_of(const std::string& name) {
   if (name.rfind("kerf/", 0) == 0) {
     const auto found = public_headers.find(fs::path(name).stem().string());

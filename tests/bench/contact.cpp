@@ -43,13 +43,14 @@ int contact(const Options& options) {
       };
       geo::FrontState front = geo::begin_front(edge(1.3), false, blade + 1);
       for (int step = 1; step <= 8; ++step) {
+        std::optional<geo::EmbeddingPlan> plan;
         const geo::BodyDelta delta = geo::split(body, front, edge(1.3 - 0.14 * step), {}, nullptr,
                                                 [&](const geo::Complex& grown, const geo::CrackDelta& crack) {
-                                                  surface.expect(body, solid, state, grown, crack);
+                                                  plan = surface.plan_embedding(body, solid, state, grown, crack);
                                                 });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         const double start = cpu_seconds();
-        surface.follow(body, solid, delta);
+        if (plan) surface.commit(std::move(*plan), body, solid, delta);
         following += cpu_seconds() - start;
       }
     }
@@ -60,16 +61,16 @@ int contact(const Options& options) {
     geo::ContactStats work;
     constexpr int steps = 24;
     for (int step = 0; step < steps; ++step) {
-      const std::vector<geo::Vec3> before = state.displacement;
       double start = cpu_seconds();
       environment.contact.clear();
-      if (geo::Potential* touch = surface.begin(body, solid, state, 1.0 / 24, environment.gravity, environment.fixed))
-        environment.contact.push_back(touch);
+      geo::ContactStep contact =
+          surface.begin_step(body, solid, state, 1.0 / 24, environment.gravity, environment.fixed);
+      if (geo::Potential* potential = contact.potential()) environment.contact.push_back(potential);
       double one = cpu_seconds() - start;
       start = cpu_seconds();
       solid.step_implicit(state, 1.0 / 24, environment);
       moving += cpu_seconds() - start, start = cpu_seconds();
-      surface.resolve(body, solid, before, 1.0 / 24, environment.fixed, state, &work);
+      work += surface.finish_step(std::move(contact), body, state.displacement);
       one += cpu_seconds() - start;
       touching += one, worst = std::max(worst, one);
     }

@@ -18,8 +18,8 @@ Eigen::Isometry3d pose(const Vec3& place, const Vec3& normal) {
   return at;
 }
 
-// A body between two plates that face each other along z, each pressed in as far, without friction; the force between
-// them.
+// A body between two plates that face each other along z, each pressed in as far, without friction;
+// the force between them.
 class Press {
  public:
   Press(const TriangleMesh& mesh, const SampleOptions& sampling, const Material& material, double pressure)
@@ -46,12 +46,13 @@ class Press {
     ObstaclePenalty below(shape, {pressure_, 0}, low, low), above(shape, {pressure_, 0}, high, high);
     environment_.contact = {&below, &above};
     const std::vector<std::uint8_t> all(solid.size(), 1);
-    // Nothing but inertia holds it from turning: steps no longer than that bounds this well, each from rest.
+    // Nothing but inertia holds it from turning: steps no longer than that bounds this well, each
+    // from rest.
     for (int k = 0; k < 3; ++k) {
       for (Vec3& v : state.velocity) v.setZero();
       state.acceleration.clear();
       for (ObstaclePenalty* o : {&below, &above})
-        o->watch(body, weights_, {state.displacement, {}, all}, 0.2 * box_.diagonal(), 1);
+        o->find_contacts(body, weights_, {state.displacement, {}, all}, 0.2 * box_.diagonal(), 1);
       solid.step_implicit(state, 1, environment_, 1e-5);
     }
     return 0.5 * (above.reaction(state.displacement).force.z() - below.reaction(state.displacement).force.z());

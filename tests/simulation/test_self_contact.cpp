@@ -71,10 +71,12 @@ TEST_CASE("what a crack step needs of contact before it is made counts as contac
   const State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
   Collisions collisions(scene, body, solid, {});
   double seconds = 0;
+  std::optional<EmbeddingPlan> plan;
   auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 1.3, 0.53}}, false, 1);
   split(body, front, {{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}}, {}, nullptr,
-        collisions.agreement(body, solid, state, seconds));
+        collisions.embedding_check(body, solid, state, plan, seconds));
   CHECK(seconds > 0);
+  CHECK(plan.has_value());
 }
 
 TEST_CASE("nor with the time step doubled or halved, nor in softer or stiffer material", "[campaign]") {
@@ -90,8 +92,8 @@ TEST_CASE("nor with the time step doubled or halved, nor in softer or stiffer ma
   }
 }
 
-// Two crossed blades go down into Jell-O, turning: the second crack goes across the first, whose sheets slide and press
-// on each other.
+// Two crossed blades go down into Jell-O, turning: the second crack goes across the first, whose
+// sheets slide and press on each other.
 TEST_CASE("no crack step is refused where soft sheets that lie on each other are cut across") {
   const Scene scene = parse_scene(R"(
 gravity = [0, 0, -9.81]

@@ -1,66 +1,81 @@
 #include "contact/response/blade_penalty.h"
 
-#include <algorithm>
 #include <cmath>
 
-namespace geo {
+#include "mechanics/terms/contact_law.h"
 
-void BladePenalty::add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x,
-                       const std::vector<Vec3>& u, const std::vector<double>& clearance,
-                       const std::vector<double>& mass, double stiffness) {
-  const Vec3 back = pose.rotation * shape.back;
-  const double width = back.norm(), slope = 0.5 * shape.thickness / width;
-  const std::size_t n = shape.points.size(), segments = shape.closed ? n : n - 1;
-  Box3 box;
-  for (const Vec3& p : shape.points) box.add(pose * p), box.add(pose * p + back);
-  box = box.grown(shape.thickness + *std::max_element(clearance.begin(), clearance.end()));
-  // In the plane of a flank: r = α along + β back + d normal.
-  struct Flank {
-    Vec3 a, along, normal;
-    double aa, ab, det;
-  };
-  const double bb = width * width;
+namespace geo {
+namespace {
+
+// The middle plane of a wedge behind one segment of its edge.
+struct Flank {
+  Vec3 start, along, normal;                      // of the segment; of the plane, unit
+  double along_squared, along_back, determinant;  // of the normal equations for the coordinates
+};
+
+std::vector<Flank> flanks_of(const BladeWedge& wedge) {
+  const std::size_t n = wedge.edge.size(), segments = wedge.closed ? n : n - 1;
+  const double back_squared = wedge.back.norm() * wedge.back.norm();
   std::vector<Flank> flanks;
   for (std::size_t s = 0; s < segments; ++s) {
-    const Vec3 a = pose * shape.points[s], along = pose * shape.points[(s + 1) % n] - a;
-    const double aa = along.squaredNorm(), ab = along.dot(back);
-    flanks.push_back({a, along, along.cross(back).normalized(), aa, ab, aa * bb - ab * ab});
+    const Vec3 a = wedge.edge[s], along = wedge.edge[(s + 1) % n] - a;
+    const double aa = along.squaredNorm(), ab = along.dot(wedge.back);
+    flanks.push_back({a, along, along.cross(wedge.back).normalized(), aa, ab, aa * back_squared - ab * ab});
   }
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 world = x[i] + u[i];
+  return flanks;
+}
+
+// Whether the point r from the start of a flank is behind its segment, but not behind the blade:
+// r = α along + β back + d normal with α and β in [0, 1].
+bool is_beside(const Flank& f, const Vec3& r, const Vec3& back, double back_squared) {
+  const double ra = r.dot(f.along), rb = r.dot(back);
+  const double alpha = (ra * back_squared - rb * f.along_back) / f.determinant,
+               beta = (rb * f.along_squared - ra * f.along_back) / f.determinant;
+  return alpha >= 0 && alpha <= 1 && beta >= 0 && beta <= 1;
+}
+
+}  // namespace
+
+void BladePenalty::add(std::size_t blade, const BladeWedge& wedge, const BladeNodes& nodes) {
+  const Vec3& back = wedge.back;
+  const double width = back.norm(), slope = 0.5 * wedge.thickness / width, back_squared = width * width;
+  Box3 box;
+  for (const Vec3& p : wedge.edge) box.add(p), box.add(p + back);
+  box = box.grown(wedge.thickness + *std::max_element(nodes.clearance.begin(), nodes.clearance.end()));
+  const std::vector<Flank> flanks = flanks_of(wedge);
+  for (std::size_t i = 0; i < nodes.position.size(); ++i) {
+    const Vec3 world = nodes.position[i] + nodes.displacement[i];
     if (!box.meets({world, world})) continue;
-    // The segment behind which the node is, the nearest one of several.
-    Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), mass[i] * stiffness, 0};
-    double least = 0.5 * shape.thickness + clearance[i];
+    // The nearest flank that the node is beside.
+    Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), nodes.mass[i] * wedge.stiffness, 0};
+    double least = 0.5 * wedge.thickness + nodes.clearance[i];
     for (const Flank& f : flanks) {
-      const Vec3 r = world - f.a;
+      const Vec3 r = world - f.start;
       const double d = r.dot(f.normal);
-      if (!(std::abs(d) < least)) continue;
-      const double ra = r.dot(f.along), rb = r.dot(back);
-      const double alpha = (ra * bb - rb * f.ab) / f.det, beta = (rb * f.aa - ra * f.ab) / f.det;
-      if (!(alpha >= 0 && alpha <= 1 && beta >= 0 && beta <= 1)) continue;
+      if (!(std::abs(d) < least) || !is_beside(f, r, back, back_squared)) continue;
       least = std::abs(d);
       found.normal = ((d < 0 ? -1.0 : 1.0) * f.normal - slope * back / width).normalized();
-      found.offset = clearance[i] - found.normal.dot(r - u[i]);
+      found.offset = nodes.clearance[i] - found.normal.dot(r - nodes.displacement[i]);
     }
     if (found.normal != Vec3::Zero()) contacts_.push_back(found);
   }
 }
 
-double BladePenalty::energy(std::size_t r, const Vec3& way) const {
-  return 0.5 * contacts_[r].stiffness * std::pow(contacts_[r].depth(way), 2);
+double BladePenalty::energy(std::size_t k, const Vec3& d) const {
+  const double depth = contacts_[k].depth(d);
+  return penalty_energy(contacts_[k].stiffness, depth * depth);
 }
 
-Potential::Derivatives BladePenalty::derivatives(std::size_t r, const Vec3& way) {
-  const Contact& c = contacts_[r];
-  const double depth = c.depth(way);
-  return {c.stiffness * depth * c.normal,
-          depth > 0 ? Mat3(c.stiffness * c.normal * c.normal.transpose()) : Mat3(Mat3::Zero())};
+Potential::Derivatives BladePenalty::derivatives(std::size_t k, const Vec3& d) {
+  const Contact& c = contacts_[k];
+  const double depth = c.depth(d);
+  return {penalty_force(c.stiffness, depth, c.normal),
+          depth > 0 ? plane_penalty_hessian(c.stiffness, c.normal) : Mat3(Mat3::Zero())};
 }
 
 std::vector<Vec3> BladePenalty::reaction(const std::vector<Vec3>& u, std::size_t blades) const {
   std::vector<Vec3> sum(blades, Vec3::Zero());
-  for (const Contact& c : contacts_) sum[c.blade] -= c.stiffness * c.depth(u[c.at.node]) * c.normal;
+  for (const Contact& c : contacts_) sum[c.blade] -= penalty_force(c.stiffness, c.depth(u[c.node.node]), c.normal);
   return sum;
 }
 

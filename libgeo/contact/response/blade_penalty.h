@@ -1,36 +1,57 @@
-// What a thick blade does: behind its edge the material has to make way (§ 5.1 leaves it to the
-// contact of objects).
+// Potential of thick blades: behind its edge a blade is a wedge that presses the material apart.
+// The paper leaves this to the contact of objects (§ 5.1).
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
-#include "kerf/scene.h"
+#include "kerf/vec.h"
 #include "mechanics/terms/potential.h"
 
 namespace geo {
 
-/// Nodes beside the flanks of blades, each before a plane through the edge: an energy ½ m k d²
-/// where the material that the node stands for is d beyond it, as with the ground. Made anew for
-/// each time step, by the sides that nodes are on.
+/// A blade where it is at the end of a step. Its flanks are the parallelograms of edge segments and
+/// `back`.
+struct BladeWedge {
+  std::vector<Vec3> edge;    ///< points of the cutting edge, world
+  bool closed = false;       ///< the last point is followed by the first
+  Vec3 back = Vec3::Zero();  ///< from the edge to the back of the blade, world
+  double thickness = 0;      ///< at the back, model units
+  double stiffness = 0;      ///< acceleration over depth, 1/s²
+};
+
+/// Nodes of a body. Refers to everything.
+struct BladeNodes {
+  const std::vector<Vec3>&position, &displacement;  ///< material coordinates; displacements
+  const std::vector<double>& clearance;             ///< distance of the surface that a node is nearest to
+  const std::vector<double>& mass;                  ///< kg
+};
+
+/// The penalty of contact_law.h, without friction, for every node that is beside a flank when the
+/// step begins. The plane of a contact is the wedge's face on the node's side, for the whole step.
+/// Its depth is that of the node's surface, `clearance` away.
 class BladePenalty : public Potential {
  public:
-  /// Adds the nodes that a blade at `pose` has beside it. `x`, `u`, `clearance` (how far the
-  /// material goes around each), `mass`: per node. `stiffness`: acceleration per depth, 1/s².
-  void add(std::size_t blade, const Blade& shape, const Pose& pose, const std::vector<Vec3>& x,
-           const std::vector<Vec3>& u, const std::vector<double>& clearance, const std::vector<double>& mass,
-           double stiffness);
+  /// Adds the contacts of a blade. `blade`: its number, for reaction().
+  void add(std::size_t blade, const BladeWedge& wedge, const BladeNodes& nodes);
+  /// Whether no node is beside a blade.
   bool empty() const { return contacts_.empty(); }
 
+  /// Number of nodes in contact.
   std::size_t size() const override { return contacts_.size(); }
-  Stencil stencil(std::size_t k) const override { return {&contacts_[k].at, 1}; }
+  /// The node.
+  Stencil stencil(std::size_t k) const override { return {&contacts_[k].node, 1}; }
+  /// Of the penalty, J.
   double energy(std::size_t k, const Vec3& d) const override;
+  /// Of the penalty.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
-  /// What the material does to each of so many blades at displacements u, N.
+  /// Force of the material on each of `blades` blades at displacements u, N.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
 
  private:
   struct Contact {
-    NodeWeight at;  // the node, 1
+    NodeWeight node;  // with weight 1
     std::size_t blade;
     Vec3 normal;       // out of the blade
     double stiffness;  // N/m

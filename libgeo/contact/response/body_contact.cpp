@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
-#include "contact/surface/contact_surface.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "mechanics/discretisation/point_map.h"
@@ -11,119 +11,132 @@
 namespace geo {
 namespace {
 
-// The place on a body's surface that is nearest to a point in its material.
-struct Nearest {
+// A point on the surface of a body.
+struct SidePoint {
   Side side{FaceId(), 0};
   Vec3 weight = Vec3::Zero();  // of the side's corners
-  Vec3 point = Vec3::Zero();
+  Vec3 point = Vec3::Zero();   // material coordinates
 };
 
-class Surroundings {
+class BodyContactFinder {
  public:
-  Surroundings(const Body& body, const SurfaceWeights& weights, const std::vector<std::uint32_t>& part,
-               const std::vector<Vec3>& u)
-      : body_(body), weights_(weights), part_(part), u_(u) {}
+  BodyContactFinder(const BodyContactInput& input, const BodyContactOptions& options)
+      : in_(input), options_(options), contacts_(options.friction, options.slip_regularisation) {}
 
-  std::uint32_t part_of(SurfaceVertexId v) const {
-    return weights_.row(v.index()).empty() ? ~0u : part_[weights_.row(v.index())[0].node];
-  }
-  Vec3 material(SurfaceVertexId v) const { return body_.surface.point(body_.surface.site(v)); }
-  Vec3 world(SurfaceVertexId v) const { return material(v) + weights_.at(v.index(), u_); }
-  Vec3 world(const Nearest& n, int which) const {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) sum += n.weight[k] * world(body_.surface.surface_vertex({n.side.face, which}, k));
-    return sum;
-  }
-
-  // False: none within reach, or x lies beyond a crack from its anchor, in the gap.
-  bool nearest(const Vec3& x, const Vec3& anchor, std::uint32_t part, double reach, Nearest& found) {
-    const Complex& k = body_.surface;
-    faces_.clear();
-    k.faces_near(Box3{x, x}.grown(reach), faces_);
-    double least = reach, squarely = 0;
-    found.side.face = FaceId();
-    for (const FaceId f : faces_) {
-      const bool crack = k.face(f).crack != 0;
-      if (part_of(k.surface_vertex({f, 0}, 0)) != part) continue;
-      const auto c = k.corners(f);
-      if (crack && segment_meets_triangle(anchor, x, c[0], c[1], c[2])) return false;
-      const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on,
-                 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
-      const double d = away.norm(), square = std::abs(normal.dot(away));
-      // Of triangles that share the nearest place the one that looks at x most squarely tells the
-      // side.
-      if (!(d < least || (d == least && square > squarely))) continue;
-      Nearest n{{f, crack && normal.dot(away) > 0 ? 1 : 0}, barycentric(on, c[0], c[1], c[2]), on};
-      if (crack && !((world(n, 0) - world(n, 1)).norm() > d)) continue;
-      least = d, squarely = square, found = n;
+  BodyContactPenalty run() {
+    const auto& index = in_.body_index;
+    const std::uint32_t bodies = index.empty() ? 0 : *std::max_element(index.begin(), index.end()) + 1;
+    if (bodies < 2) return contacts_;
+    const NodeGradients gradient = in_.solid.gradients_when_asked(in_.displacement);
+    std::vector<Box3> box(bodies);
+    for (std::uint32_t v = 0; v < complex().surface_vertex_count(); ++v) {
+      const SurfaceVertexId id(v);
+      if (!complex().alive(id) || in_.weights.row(v).empty()) continue;
+      vertices_.push_back({id, world(id)});
+      box[body_of(id)].add(vertices_.back().world);
     }
-    return found.side.face.valid();
+    for (std::uint32_t b = 0; b < bodies; ++b) add_contacts_inside(b, box[b], gradient);
+    return std::move(contacts_);
   }
 
  private:
-  const Body& body_;
-  const SurfaceWeights& weights_;
-  const std::vector<std::uint32_t>& part_;
-  const std::vector<Vec3>& u_;
-  std::vector<FaceId> faces_;
+  struct Vertex {
+    SurfaceVertexId id;
+    Vec3 world;
+  };
+
+  const Complex& complex() const { return in_.body.surface; }
+  std::uint32_t body_of(SurfaceVertexId v) const {
+    const Stencil carriers = in_.weights.row(v.index());
+    return carriers.empty() ? ~0u : in_.body_index[carriers[0].node];
+  }
+  Vec3 material(SurfaceVertexId v) const { return complex().point(complex().site(v)); }
+  Vec3 world(SurfaceVertexId v) const { return material(v) + in_.weights.at(v.index(), in_.displacement); }
+  // The point's position where it is on the given side of its face.
+  Vec3 world(const SidePoint& p, int which) const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) sum += p.weight[k] * world(complex().surface_vertex({p.side.face, which}, k));
+    return sum;
+  }
+
+  // Adds contacts of vertices of other bodies in body b, whose deformed surface has this box.
+  void add_contacts_inside(std::uint32_t b, const Box3& box, const NodeGradients& gradient) {
+    std::vector<Vertex> near;
+    Box3 near_box;
+    for (const Vertex& v : vertices_)
+      if (body_of(v.id) != b && box.grown(options_.reach).meets({v.world, v.world}))
+        near.push_back(v), near_box.add(v.world);
+    if (near.empty()) return;
+    std::vector<std::uint8_t> of_body;
+    for (const auto other : in_.body_index) of_body.push_back(other == b);
+    const PointMap map(in_.body, in_.displacement, gradient, near_box, std::move(of_body));
+    PointMap::Memory memory;
+    for (const Vertex& v : near) {
+      const PointMap::Place mapped = map.material(v.world, memory);
+      if (!mapped.within) continue;
+      const auto nearest = nearest_point(mapped.material, in_.body.nodes.position[mapped.anchor.index()], b);
+      if (nearest) add_contact(v.id, *nearest);
+    }
+  }
+
+  // The point of body b's surface nearest to x, material coordinates; none where there is none
+  // within reach, or x lies beyond a crack from the node `anchor` that it was mapped by: in an open
+  // gap.
+  std::optional<SidePoint> nearest_point(const Vec3& x, const Vec3& anchor, std::uint32_t b) {
+    faces_.clear();
+    complex().faces_near(Box3{x, x}.grown(options_.reach), faces_);
+    std::optional<SidePoint> found;
+    double least = options_.reach, most_frontal = 0;
+    for (const FaceId f : faces_) {
+      const bool crack = complex().face(f).crack != 0;
+      if (body_of(complex().surface_vertex({f, 0}, 0)) != b) continue;
+      const auto c = complex().corners(f);
+      if (crack && segment_meets_triangle(anchor, x, c[0], c[1], c[2])) return {};
+      const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on,
+                 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+      const double d = away.norm(), frontal = std::abs(normal.dot(away));
+      // Of triangles that share the nearest point, the one that faces x most decides the side.
+      if (!(d < least || (d == least && frontal > most_frontal))) continue;
+      const SidePoint p{{f, crack && normal.dot(away) > 0 ? 1 : 0}, barycentric(on, c[0], c[1], c[2]), on};
+      if (crack && !((world(p, 0) - world(p, 1)).norm() > d)) continue;
+      least = d, most_frontal = frontal, found = p;
+    }
+    return found;
+  }
+
+  void add_contact(SurfaceVertexId v, const SidePoint& p) {
+    Vec3 corner[3];
+    std::map<std::uint32_t, double> stencil;
+    for (const auto& e : in_.weights.row(v.index())) stencil[e.node] += e.weight;
+    for (int c = 0; c < 3; ++c) {
+      const SurfaceVertexId id = complex().surface_vertex(p.side, c);
+      corner[c] = world(id);
+      for (const auto& e : in_.weights.row(id.index())) stencil[e.node] -= p.weight[c] * e.weight;
+    }
+    const Vec3 normal =
+        (p.side.which == 0 ? 1.0 : -1.0) * (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    if (!normal.allFinite() || normal.isZero(0)) return;  // a collapsed triangle
+    std::vector<NodeWeight> entries;
+    for (const auto& [node, weight] : stencil) entries.push_back({node, weight});
+    const double factor = std::max(pressure_factor(v), pressure_factor(complex().surface_vertex(p.side, 0)));
+    const double pressure = 0.5 * options_.pressure * factor;
+    contacts_.add(std::move(entries), material(v) - p.point, normal, pressure * in_.weights.area(v.index()));
+  }
+  double pressure_factor(SurfaceVertexId v) const {
+    return options_.pressure_factor.empty() ? 1.0 : options_.pressure_factor[in_.weights.heaviest()[v.index()]];
+  }
+
+  const BodyContactInput& in_;
+  const BodyContactOptions& options_;
+  BodyContactPenalty contacts_;
+  std::vector<Vertex> vertices_;  // of all bodies, world
+  std::vector<FaceId> faces_;     // scratch
 };
 
 }  // namespace
 
-BodyContactPenalty body_contact(const Body& body, const Solid& solid, const SurfaceWeights& weights,
-                                const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
-                                const BodyContactOptions& options) {
-  BodyContactPenalty contact(options.friction, options.slow);
-  const std::uint32_t parts = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
-  if (parts < 2) return contact;
-  const Complex& k = body.surface;
-  Surroundings around(body, weights, part, u);
-  const NodeGradients gradient = solid.gradients_when_asked(u);
-  std::vector<Box3> box(parts);
-  std::vector<std::pair<SurfaceVertexId, Vec3>> vertices;
-  for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
-    const SurfaceVertexId id(v);
-    if (!k.alive(id) || weights.row(v).empty()) continue;
-    vertices.push_back({id, around.world(id)});
-    box[around.part_of(id)].add(vertices.back().second);
-  }
-  for (std::uint32_t p = 0; p < parts; ++p) {
-    std::vector<std::pair<SurfaceVertexId, Vec3>> near;
-    Box3 about;
-    for (const auto& v : vertices)
-      if (around.part_of(v.first) != p && box[p].grown(options.reach).meets({v.second, v.second}))
-        near.push_back(v), about.add(v.second);
-    if (near.empty()) continue;
-    std::vector<std::uint8_t> counted;
-    for (const auto q : part) counted.push_back(q == p);
-    const PointMap map(body, u, gradient, about, std::move(counted));
-    PointMap::Memory memory;
-    for (const auto& [v, y] : near) {
-      const PointMap::Place place = map.material(y, memory);
-      Nearest n;
-      if (!place.within ||
-          !around.nearest(place.material, body.nodes.position[place.anchor.index()], p, options.reach, n))
-        continue;
-      Vec3 at[3];
-      std::map<std::uint32_t, double> apart;
-      for (const auto& e : weights.row(v.index())) apart[e.node] += e.weight;
-      for (int c = 0; c < 3; ++c) {
-        const SurfaceVertexId corner = k.surface_vertex(n.side, c);
-        at[c] = around.world(corner);
-        for (const auto& e : weights.row(corner.index())) apart[e.node] -= n.weight[c] * e.weight;
-      }
-      const Vec3 normal = (n.side.which == 0 ? 1.0 : -1.0) * (at[1] - at[0]).cross(at[2] - at[0]).normalized();
-      if (!normal.allFinite() || normal.isZero(0)) continue;
-      std::vector<SurfaceWeights::Entry> entries;
-      for (const auto& [node, w] : apart) entries.push_back({node, w});
-      const auto firm = [&](SurfaceVertexId of) {
-        return options.firmness.empty() ? 1.0 : options.firmness[weights.heaviest()[of.index()]];
-      };
-      const double pressure = 0.5 * options.pressure * std::max(firm(v), firm(k.surface_vertex(n.side, 0)));
-      contact.add(std::move(entries), around.material(v) - n.point, normal, pressure * weights.area(v.index()));
-    }
-  }
-  return contact;
+BodyContactPenalty find_body_contacts(const BodyContactInput& input, const BodyContactOptions& options) {
+  return BodyContactFinder(input, options).run();
 }
 
 }  // namespace geo

@@ -1,4 +1,5 @@
-// Deforming bodies of one scene that touch each other (§ 3.3, between objects).
+// Finds where deforming bodies of one scene touch each other (§ 3.3, contact between deforming
+// bodies).
 #pragma once
 
 #include <cstdint>
@@ -6,26 +7,38 @@
 #include <vector>
 
 #include "contact/response/body_contact_penalty.h"
+#include "contact/surface/surface_weights.h"
 
 namespace geo {
 
-struct BodyContactOptions {
-  double pressure = 1e6;  ///< Pa for a metre of depth
-  double friction = 0.3;  ///< Coulomb's coefficient
-  double reach = 0;  ///< vertices so near, or so deep, are looked at: no less than what bodies approach each other in a
-                     ///< step, and a cell
-  double slow = 0;   ///< a way below which friction is smooth
-  std::span<const double> firmness =
-      {};  ///< per node: the pressure is times the larger one of the two bodies'; empty: 1
+/// The bodies when a step begins, as components of one Body. Refers to everything.
+struct BodyContactInput {
+  const Body& body;
+  const Solid& solid;
+  const SurfaceWeights& weights;
+  const std::vector<std::uint32_t>& body_index;  ///< per node
+  const std::vector<Vec3>& displacement;         ///< per node
 };
 
-/// For a step that begins at displacements u: the surface vertices that are in another body, or may come to be. Which
-/// body a node belongs to is in `part`. The distance field of a body is that of its own surface in the material, asked
-/// where the vertex is mapped back to (point_map.h); so it follows cuts, costs nothing to keep, and is exact at corners
-/// and in thin parts. The sheets of a crack count where they are open wider than the vertex is deep. Each side's
-/// vertices get half the pressure.
-BodyContactPenalty body_contact(const Body& body, const Solid& solid, const SurfaceWeights& weights,
-                                const std::vector<std::uint32_t>& part, const std::vector<Vec3>& u,
-                                const BodyContactOptions& options);
+/// Strength and search distance.
+struct BodyContactOptions {
+  double pressure = 1e6;  ///< pressure over depth, Pa/m
+  double friction = 0.3;  ///< Coulomb's coefficient
+  /// Vertices at most so far from or deep in another body are considered, model units: no less than
+  /// what bodies approach each other in a step, plus a node spacing.
+  double reach = 0;
+  double slip_regularisation = 0;  ///< model units (contact_law.h)
+  /// Per node, of the pressure on the surface that it carries; the larger one of the two sides
+  /// acts. Empty:
+  /// 1.
+  std::span<const double> pressure_factor = {};
+};
+
+/// Contacts of all surface vertices that are inside another body. A vertex is mapped back to that
+/// body's material (point_map.h), where the nearest point of its undeformed surface is looked for.
+/// So the distance field follows cuts, needs no update, and is exact at corners and in thin parts.
+/// Sheets of a crack count where they are open wider than the vertex is deep. Vertices of both
+/// bodies are treated so, each with half the pressure.
+BodyContactPenalty find_body_contacts(const BodyContactInput& input, const BodyContactOptions& options);
 
 }  // namespace geo

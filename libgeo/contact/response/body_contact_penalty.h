@@ -1,52 +1,68 @@
-// Surface vertices against triangles of the surface that they are inside of: a penalty between
-// deforming bodies, with friction (§ 3.3).
+// Potential of contact between deforming bodies: a penalty on surface vertices inside another body,
+// with Coulomb friction (§ 3.3).
 #pragma once
 
-#include "contact/surface/surface_weights.h"
+#include <algorithm>
+#include <vector>
+
+#include "mechanics/terms/contact_law.h"
 #include "mechanics/terms/potential.h"
 
 namespace geo {
 
-/// ½ k depth² along a direction that is kept during a step, and Coulomb friction as that of an
-/// ObstaclePenalty. Both sides get the same force, so that momentum is kept; the angular one to
-/// second order of the depth.
+/// The law of contact_law.h for a vertex and the point of another body's surface that it is nearest
+/// to. The normal is fixed during a step. Forces on both sides are equal and opposite: linear
+/// momentum is conserved, the angular one to second order of the depth.
 class BodyContactPenalty : public Potential {
  public:
-  BodyContactPenalty(double friction, double slow) : friction_(friction), slow_(slow) {}
+  /// A potential without contacts. `friction`: Coulomb's coefficient; `slip_regularisation`: model
+  /// units.
+  BodyContactPenalty(double friction, double slip_regularisation)
+      : friction_(friction), slip_regularisation_(slip_regularisation) {}
 
-  /// Displacements of the two sides differ by `apart`: weights of nodes, the vertex's less those of
-  /// the place on the triangle. `way`: from the place to the vertex at rest. `normal`: out of the
-  /// body that the triangle bounds. `stiffness`: N/m.
-  void add(std::vector<SurfaceWeights::Entry> apart, const Vec3& way, const Vec3& normal, double stiffness) {
-    rows_.push_back({std::move(apart), way, normal, stiffness});
+  /// Adds a contact. `stencil`: of the vertex' displacement less that of the surface point.
+  /// `offset`: from that point to the vertex at rest. `normal`: unit, out of the body that the
+  /// point is on. `stiffness`: N/m.
+  void add(std::vector<NodeWeight> stencil, const Vec3& offset, const Vec3& normal, double stiffness) {
+    contacts_.push_back({std::move(stencil), offset, normal, stiffness});
   }
-  bool empty() const { return rows_.empty(); }
+  /// Whether there are no contacts.
+  bool empty() const { return contacts_.empty(); }
 
+  /// Takes the friction bound and the origin of slip from displacements u.
   void begin_substep(const std::vector<Vec3>& u, double from, double to) override;
-  std::size_t size() const override { return rows_.size(); }
-  Stencil stencil(std::size_t k) const override { return rows_[k].apart; }
+  /// Number of contacts.
+  std::size_t size() const override { return contacts_.size(); }
+  /// Nodes of a contact's vertex and point.
+  Stencil stencil(std::size_t k) const override { return contacts_[k].stencil; }
+  /// Of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
+  /// Of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
-  double stiffness_bound(std::size_t k) const override { return rows_[k].stiffness; }
+  /// The stiffness of the penalty.
+  double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
+  /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
+  /// can.
   void apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
                      std::vector<Vec3>& velocity) override;
 
-  /// The deepest vertex at displacements u; 0: none.
+  /// Largest depth of a vertex at displacements u, model units; 0: none is inside.
   double depth(const std::vector<Vec3>& u) const;
 
  private:
-  struct Row {
-    std::vector<SurfaceWeights::Entry> apart;
-    Vec3 way, normal;
+  struct Contact {
+    std::vector<NodeWeight> stencil;
+    Vec3 offset, normal;
     double stiffness;
-    double pressed = 0;         // N, when this part of the step began
-    Vec3 start = Vec3::Zero();  // how far apart then
-    Vec3 at(const std::vector<Vec3>& values) const { return weighted_sum(apart, values); }
-    double depth(const Vec3& apart) const { return std::max(0.0, -normal.dot(way + apart)); }
-    Vec3 along(const Vec3& v) const { return v - normal.dot(v) * normal; }
+    double friction_bound = 0;  // N, of the current substep
+    Vec3 start = Vec3::Zero();  // relative displacement at its beginning
+    double depth(const Vec3& d) const { return std::max(0.0, -normal.dot(offset + d)); }
+    Vec3 tangential(const Vec3& v) const { return v - normal.dot(v) * normal; }
   };
-  double friction_, slow_;
-  std::vector<Row> rows_;
+  LaggedFriction friction(const Contact& c) const { return {c.friction_bound, slip_regularisation_}; }
+
+  double friction_, slip_regularisation_;
+  std::vector<Contact> contacts_;
 };
 
 }  // namespace geo

@@ -1,107 +1,123 @@
 #include "contact/response/contact_constraints.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <tuple>
 
 #include "kerf/parallel.h"
 
 namespace geo {
+namespace {
 
-std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& watched, const SurfaceMotion& m,
-                                                   const ConstraintOptions& how) {
-  using Key = std::array<std::uint32_t, 6>;
-  using Name = std::pair<Key, Key>;  // of the places; and of the couple that has them, so that it does not depend on
-                                     // the couples' order which of several is taken
-  constexpr std::size_t stretch = 256;
-  std::vector<std::pair<std::vector<ContactConstraint>, std::vector<Name>>> some((watched.size() + stretch - 1) /
-                                                                                 stretch);
-  const auto look_at = [&](const Watched& w, std::vector<ContactConstraint>& result, std::vector<Name>& names) {
-    if (parted(w.normal, w.a, w.b, m.to) >= w.gap + how.reach) return;
-    const ClosestPlaces& c = w.closest;
-    ContactConstraint t{{{}, {}, 0}, {{}, {}, 0}, w.normal, 0, 0};
-    const auto take = [](SurfacePoint& place, const Simplex& s, const Vec3& weights) {
-      for (int k = 0; k < s.size; ++k)
-        if (weights[k] > 0) place.vertex[place.size] = s.v[k], place.weight[place.size++] = weights[k];
-    };
-    take(t.a, w.a, c.from), take(t.b, w.b, c.to);
-    t.approach = std::max(0.0, w.normal.dot(c.apart) - w.gap) / how.dt;
-    Vec3 apart = Vec3::Zero();
-    for (int k = 0; k < t.a.size; ++k) apart += t.a.weight[k] * m.to[t.a.vertex[k]];
-    for (int k = 0; k < t.b.size; ++k) apart -= t.b.weight[k] * m.to[t.b.vertex[k]];
-    t.depth = w.gap - t.normal.dot(apart);
-    if (how.share > 0) t.approach = -how.share * std::max(0.0, t.depth) / how.dt;
-    // Neighbouring triangles have places in common: they are named by the vertices that carry them.
-    Key key;
-    key.fill(~0u);
-    std::copy(t.a.vertex, t.a.vertex + t.a.size, key.begin()),
-        std::copy(t.b.vertex, t.b.vertex + t.b.size, key.begin() + 3);
-    std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
-    if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3))
-      std::rotate(key.begin(), key.begin() + 3, key.end());
-    names.push_back({key, {w.a.v[0], w.a.v[1], w.a.v[2], w.b.v[0], w.b.v[1], w.b.v[2]}}), result.push_back(t);
-  };
-  parallel_for(some.size(), 1, [&](std::size_t begin, std::size_t end) {
+SurfacePoint surface_point(const Simplex& s, const Vec3& weights) {
+  SurfacePoint point{{}, {}, 0};
+  for (int k = 0; k < s.size; ++k)
+    if (weights[k] > 0) point.vertex[point.size] = s.v[k], point.weight[point.size++] = weights[k];
+  return point;
+}
+
+// Identifies the two points of a constraint by the vertices that carry them, in either order.
+using PointPairKey = std::array<std::uint32_t, 6>;
+
+PointPairKey key_of(const SurfacePoint& a, const SurfacePoint& b) {
+  PointPairKey key;
+  key.fill(~0u);
+  std::copy(a.vertex, a.vertex + a.size, key.begin()), std::copy(b.vertex, b.vertex + b.size, key.begin() + 3);
+  std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
+  if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3))
+    std::rotate(key.begin(), key.begin() + 3, key.end());
+  return key;
+}
+
+// A constraint with its sort key: neighbouring triangles share points, and the pair of simplices
+// decides which of equal constraints is kept.
+struct KeyedConstraint {
+  ContactConstraint constraint;
+  std::pair<PointPairKey, PointPairKey> key;  // of the points; of the two simplices
+};
+
+void add_constraint(const Watched& candidate, const SurfaceMotion& motion, const ConstraintOptions& options,
+                    std::vector<KeyedConstraint>& out) {
+  const Simplex &a = candidate.a, &b = candidate.b;
+  if (parted(candidate.normal, a, b, motion.to) >= candidate.gap + options.reach) return;
+  const ClosestPlaces& closest = candidate.closest;
+  ContactConstraint c{surface_point(a, closest.from), surface_point(b, closest.to), candidate.normal, 0, 0};
+  c.approach = std::max(0.0, candidate.normal.dot(closest.apart) - candidate.gap) / options.dt;
+  Vec3 apart = Vec3::Zero();  // at the end of the motion
+  for (int k = 0; k < c.a.size; ++k) apart += c.a.weight[k] * motion.to[c.a.vertex[k]];
+  for (int k = 0; k < c.b.size; ++k) apart -= c.b.weight[k] * motion.to[c.b.vertex[k]];
+  c.depth = candidate.gap - c.normal.dot(apart);
+  if (options.share > 0) c.approach = -options.share * std::max(0.0, c.depth) / options.dt;
+  out.push_back({c, {key_of(c.a, c.b), {a.v[0], a.v[1], a.v[2], b.v[0], b.v[1], b.v[2]}}});
+}
+
+}  // namespace
+
+std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& candidates, const SurfaceMotion& motion,
+                                                   const ConstraintOptions& options) {
+  constexpr std::size_t chunk = 256;  // candidates; the result does not depend on it
+  std::vector<std::vector<KeyedConstraint>> of_chunk((candidates.size() + chunk - 1) / chunk);
+  parallel_for(of_chunk.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
-      for (std::size_t i = s * stretch; i < std::min(watched.size(), (s + 1) * stretch); ++i)
-        look_at(watched[i], some[s].first, some[s].second);
+      for (std::size_t i = s * chunk; i < std::min(candidates.size(), (s + 1) * chunk); ++i)
+        add_constraint(candidates[i], motion, options, of_chunk[s]);
   });
-  std::vector<ContactConstraint> result;
-  std::vector<Name> names;
-  for (const auto& [places, named] : some)
-    result.insert(result.end(), places.begin(), places.end()), names.insert(names.end(), named.begin(), named.end());
-  std::vector<std::uint32_t> order(result.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](auto i, auto j) { return std::tie(names[i], i) < std::tie(names[j], j); });
-  std::vector<ContactConstraint> once;
-  for (std::size_t i = 0; i < order.size(); ++i)
-    if (i == 0 || names[order[i]].first != names[order[i - 1]].first) once.push_back(result[order[i]]);
-  return once;
+  std::vector<const KeyedConstraint*> sorted;
+  for (const auto& constraints : of_chunk)
+    for (const auto& c : constraints) sorted.push_back(&c);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto* c, const auto* d) { return c->key < d->key; });
+  std::vector<ContactConstraint> unique;
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    if (i == 0 || sorted[i]->key.first != sorted[i - 1]->key.first) unique.push_back(sorted[i]->constraint);
+  return unique;
 }
 
 void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                           double tolerance, const ConstraintOptions& how, std::vector<ContactConstraint>& out) {
+                           double tolerance, const ConstraintOptions& options,
+                           std::vector<ContactConstraint>& constraints) {
   for (std::size_t v = 0; v < copies.size(); ++v)
     for (std::size_t i = 0; i < copies[v].size(); ++i)
       for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
         const auto a = copies[v][i], b = copies[v][j];
-        const Vec3 across =
-            normals[b].normalized() - normals[a].normalized();  // b's material looks at a along its normal
-        if (!(across.norm() > 0.5)) continue;
+        // The outward normal of b's side points to a's material.
+        const Vec3 across = normals[b].normalized() - normals[a].normalized();
+        if (!(across.norm() > 0.5)) continue;  // they do not face each other
         const Vec3 n = across.normalized();
         const double apart = n.dot(targets[a] - targets[b]);
-        if (apart < -tolerance) out.push_back({{{a}, {1}, 1}, {{b}, {1}, 1}, n, -apart, how.share * apart / how.dt});
+        if (apart < -tolerance)
+          constraints.push_back({{{a}, {1}, 1}, {{b}, {1}, 1}, n, -apart, options.share * apart / options.dt});
       }
 }
 
-std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& touching,
-                                                   const SurfaceWeights& weights, std::size_t most) {
-  const auto node = [&](const SurfacePoint& place) {
-    return weights.heaviest()[place.vertex[std::max_element(place.weight, place.weight + place.size) - place.weight]];
+std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& constraints,
+                                                   const SurfaceWeights& weights, std::size_t count) {
+  const auto heaviest_node = [&](const SurfacePoint& point) {
+    return weights.heaviest()[point.vertex[std::max_element(point.weight, point.weight + point.size) - point.weight]];
   };
   struct Entry {
     std::uint32_t low, high;  // the two nodes
     double depth;
-    std::size_t row;
+    std::size_t index;  // of the constraint
   };
-  std::vector<Entry> order(touching.size());
+  std::vector<Entry> order(constraints.size());
   parallel_for(order.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto a = node(touching[i].a), b = node(touching[i].b);
-      order[i] = {std::min(a, b), std::max(a, b), touching[i].depth, i};
+      const auto a = heaviest_node(constraints[i].a), b = heaviest_node(constraints[i].b);
+      order[i] = {std::min(a, b), std::max(a, b), constraints[i].depth, i};
     }
   });
   std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) {
-    return std::tie(p.low, p.high, q.depth, p.row) < std::tie(q.low, q.high, p.depth, q.row);
+    return std::tie(p.low, p.high, q.depth, p.index) < std::tie(q.low, q.high, p.depth, q.index);
   });
   std::vector<std::size_t> kept;
   for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
     if (order[i].low != order[first].low || order[i].high != order[first].high) first = i;
-    if (i - first < most) kept.push_back(order[i].row);
+    if (i - first < count) kept.push_back(order[i].index);
   }
   std::sort(kept.begin(), kept.end());
   std::vector<ContactConstraint> result;
-  for (const auto i : kept) result.push_back(touching[i]);
+  for (const auto i : kept) result.push_back(constraints[i]);
   return result;
 }
 

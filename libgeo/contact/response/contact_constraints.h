@@ -1,33 +1,52 @@
-// From pairs that might meet to constraints on what touches.
+// Contact constraints of a time step: the pairs of surface points that its motion brings too near
+// each other.
 #pragma once
 
 #include "contact/detection/watch.h"
-#include "contact/response/impulses.h"
+#include "contact/response/relative_stencil.h"
 #include "contact/surface/contact_surface.h"
 
 namespace geo {
 
-/// How constraints come out: on velocities, as the speed at which the two may still approach; on displacements, as the
-/// share of what they lack at the end of the motion that they must part by in a time step.
-struct ConstraintOptions {
-  double dt;
-  double share = 0;  ///< 0: on velocities
-  double reach = 0;  ///< model units: what the motion brings nearer to its gap than that counts, too
+/// Two surface points that must not come nearer to each other along a normal.
+struct ContactConstraint {
+  SurfacePoint a, b;
+  Vec3 normal;       ///< unit, from b to a
+  double depth = 0;  ///< by how much the motion falls short of their gap, model units
+  /// Relative speed along −normal that is still allowed, model units per second; negative: they
+  /// must separate.
+  double approach = 0;
 };
 
-/// The closest places of each watched pair that the motion would bring nearer than its gap, each couple of places once;
-/// the same in whatever order pairs are watched.
-std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& watched, const SurfaceMotion& motion,
-                                                   const ConstraintOptions& how);
+/// How constraints are stated.
+struct ConstraintOptions {
+  double dt;  ///< s
+  /// 0: on velocities, which may close the distance down to the gap. Otherwise on displacements:
+  /// the points must recover this share of their depth in a step.
+  double share = 0;
+  double reach = 0;  ///< points that the motion brings nearer than gap + reach are included, model units
+};
 
-/// Copies that are together and that their own targets would push through each other: the two sides of a sheet, parted
-/// by the difference of their normals.
+/// Constraints kept between two nodes' neighbourhoods: three points hold a plane off another, and
+/// one more is for a pair that is not flat.
+constexpr std::size_t constraints_per_node_pair = 4;
+
+/// A constraint for the closest points of each candidate pair that the motion brings nearer than
+/// its gap (and reach). Points that several pairs share are constrained once. The result does not
+/// depend on the order of candidates.
+std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& candidates, const SurfaceMotion& motion,
+                                                   const ConstraintOptions& options);
+
+/// Adds constraints between coincident vertices, the sides of a closed sheet, whose targets lie
+/// farther than `tolerance` behind each other. The normal is the difference of the vertices'
+/// normals (`normals`: vertex_normals()). Of the options, `reach` is not used.
 void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                           double tolerance, const ConstraintOptions& how, std::vector<ContactConstraint>& out);
+                           double tolerance, const ConstraintOptions& options,
+                           std::vector<ContactConstraint>& constraints);
 
-/// Of those between the same two neighbourhoods of nodes, the deepest `most`: more say the same, for nodes are farther
-/// apart than vertices. In the order given.
-std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& touching,
-                                                   const SurfaceWeights& weights, std::size_t most);
+/// For every two nodes, of those constraints whose points these nodes carry the most, the `count`
+/// deepest. More would be redundant, since nodes are farther apart than vertices. Keeps the order.
+std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& constraints,
+                                                   const SurfaceWeights& weights, std::size_t count);
 
 }  // namespace geo

@@ -1,62 +1,77 @@
 #include "contact/response/impulses.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "kerf/parallel.h"
+#include "mechanics/terms/contact_law.h"
 
 namespace geo {
+namespace {
 
-std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
-                                               std::span<const ContactConstraint> touching, const Copies& stands_for,
-                                               const std::vector<double>& inverse_mass) {
-  std::vector<RelativeStencil> rows(touching.size());
-  parallel_for(touching.size(), 64, [&](std::size_t begin, std::size_t end) {
-    RelativeStencilBuilder maker(weights, stands_for, inverse_mass);
-    for (std::size_t i = begin; i < end; ++i) rows[i] = maker.make(touching[i].a, touching[i].b);
-  });
-  return rows;
+// Impulses accumulated at one contact.
+struct ContactImpulse {
+  double normal = 0;
+  Vec3 friction = Vec3::Zero();
+};
+
+// One Gauss–Seidel update of a contact: the change of its impulse that gives its points, which have
+// the relative velocity v, the missing normal speed `deficit` and stops their slip as far as
+// friction can.
+Vec3 update_impulse(const Vec3& n, const Vec3& v, double deficit, double softness, double inverse_mass, double friction,
+                    ContactImpulse& impulse) {
+  const double before = impulse.normal;
+  impulse.normal = std::max(0.0, before + deficit / inverse_mass);
+  Vec3 change = (impulse.normal - before) * n;
+  if (friction > 0) {
+    const Vec3 slip = v - n.dot(v) * n;
+    Vec3 along = impulse.friction - (slip + softness * impulse.friction) / inverse_mass;
+    along -= n.dot(along) * n;
+    if (const double bound = friction * impulse.normal, size = along.norm(); size > bound)
+      along *= size > 0 ? bound / size : 0.0;
+    change += along - impulse.friction;
+    impulse.friction = along;
+  }
+  return change;
 }
 
-ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> touching,
+}  // namespace
+
+std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
+                                               std::span<const ContactConstraint> constraints, const Copies& stands_for,
+                                               const std::vector<double>& inverse_mass) {
+  std::vector<RelativeStencil> stencils(constraints.size());
+  parallel_for(constraints.size(), 64, [&](std::size_t begin, std::size_t end) {
+    RelativeStencilBuilder builder(weights, stands_for, inverse_mass);
+    for (std::size_t i = begin; i < end; ++i) stencils[i] = builder.make(constraints[i].a, constraints[i].b);
+  });
+  return stencils;
+}
+
+ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> constraints,
                             const Copies& stands_for, const std::vector<double>& inverse_mass,
                             const ImpulseOptions& options, std::vector<Vec3>& velocity) {
-  ImpulseStats report;
-  const std::vector<RelativeStencil> rows = relative_stencils(weights, touching, stands_for, inverse_mass);
-  std::vector<double> pressed(touching.size(), 0);
-  std::vector<Vec3> rubbed(touching.size(), Vec3::Zero());
-  const auto kick = [&](const RelativeStencil& row, const Vec3& impulse) {
-    for (const auto& e : row.entries) velocity[e.node] += e.weight * inverse_mass[e.node] * impulse;
-  };
-  for (report.sweeps = 0; report.sweeps < options.sweeps; ++report.sweeps) {
-    double change = 0, speed = 0;
-    for (std::size_t i = 0; i < touching.size(); ++i) {
-      const RelativeStencil& row = rows[i];
-      const Vec3& n = touching[i].normal;
-      const double softness = options.softness * row.of_a, mobility = row.mobility + softness;
-      if (!(mobility > 0)) continue;
-      Vec3 v = weighted_sum(row.entries, velocity);
-      const double lack = -touching[i].approach - n.dot(v) - softness * pressed[i];
-      const double before = pressed[i];
-      if (lack <= 0 && before == 0) continue;
-      pressed[i] = std::max(0.0, before + lack / mobility);
-      Vec3 impulse = (pressed[i] - before) * n;
-      if (options.friction > 0) {
-        const Vec3 slip = v - n.dot(v) * n;
-        Vec3 rub = rubbed[i] - (slip + softness * rubbed[i]) / mobility;
-        rub -= n.dot(rub) * n;
-        if (const double most = options.friction * pressed[i], is = rub.norm(); is > most)
-          rub *= is > 0 ? most / is : 0.0;
-        impulse += rub - rubbed[i];
-        rubbed[i] = rub;
-      }
-      kick(row, impulse);
-      change = std::max(change, impulse.norm() * mobility), speed = std::max(speed, v.norm());
+  ImpulseStats stats;
+  const std::vector<RelativeStencil> stencils = relative_stencils(weights, constraints, stands_for, inverse_mass);
+  std::vector<ContactImpulse> impulses(constraints.size());
+  for (; stats.sweeps < options.sweeps; ++stats.sweeps) {
+    double largest_change = 0, largest_speed = 0;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      const RelativeStencil& stencil = stencils[i];
+      const double softness = options.softness * stencil.inverse_mass_a, soft_mass = stencil.inverse_mass + softness;
+      if (!(soft_mass > 0)) continue;
+      const Vec3 v = weighted_sum(stencil.entries, velocity);
+      const Vec3& n = constraints[i].normal;
+      const double deficit = -constraints[i].approach - n.dot(v) - softness * impulses[i].normal;
+      if (deficit <= 0 && impulses[i].normal == 0) continue;
+      const Vec3 change = update_impulse(n, v, deficit, softness, soft_mass, options.friction, impulses[i]);
+      add_impulse(stencil.entries, change, inverse_mass, velocity);
+      largest_change = std::max(largest_change, change.norm() * soft_mass);
+      largest_speed = std::max(largest_speed, v.norm());
     }
-    if (change <= options.tolerance * speed || change == 0) break;
+    if (largest_change <= options.tolerance * largest_speed || largest_change == 0) break;
   }
-  for (const double p : pressed) report.touching += p > 0;
-  return report;
+  for (const ContactImpulse& impulse : impulses) stats.touching += impulse.normal > 0;
+  return stats;
 }
 
 }  // namespace geo

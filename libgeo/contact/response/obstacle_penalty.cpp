@@ -1,10 +1,8 @@
 #include "contact/response/obstacle_penalty.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "kerf/parallel.h"
-#include "mechanics/terms/contact_law.h"
 #include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
@@ -13,12 +11,14 @@ ObstaclePenalty::ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const 
                                  const Eigen::Isometry3d& from, const Eigen::Isometry3d& to)
     : shape_(std::move(shape)), options_(options), from_(from), to_(to), now_(to) {}
 
-template <class Take>
-void ObstaclePenalty::each_way(const std::vector<Vec3>& u, const Take& take) const {
+// Calls use(contact number, displacement of its vertex) for every contact, from any thread.
+template <class Use>
+void ObstaclePenalty::for_each_displacement(const std::vector<Vec3>& u, const Use& use) const {
   for_each_weighted_sum(
-      rows_.size(), u, [&](std::size_t r) { return rows_[r].weights; }, take);
+      contacts_.size(), u, [&](std::size_t k) { return contacts_[k].weights; }, use);
 }
 
+// Of the obstacle at a share of the step.
 Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   if (share <= 0) return from_;
   if (share >= 1) return to_;
@@ -28,38 +28,41 @@ Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   return p;
 }
 
-void ObstaclePenalty::watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach,
-                            double slow, std::span<const double> firmness) {
+void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weights, const BodyPlacement& placement,
+                                    double reach, double slip_regularisation, std::span<const double> pressure_factor) {
   const Complex& k = body.surface;
-  slow_ = slow, sum_ = {}, begun_ = ended_ = 0;
+  slip_regularisation_ = slip_regularisation, sum_ = {}, substep_begin_ = substep_end_ = 0;
   const auto rest = [&](std::uint32_t v) -> const Vec3& { return k.point(k.site(SurfaceVertexId(v))); };
-  std::vector<std::uint8_t> reached(k.surface_vertex_count(), 0);
-  std::vector<Vec3> at(watched.at.empty() ? reached.size() : 0);
-  const auto place = [&](std::uint32_t v) -> const Vec3& { return at.empty() ? watched.at[v] : at[v]; };
-  const Eigen::Isometry3d back = from_.inverse();
-  parallel_for(reached.size(), 256, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::uint8_t> reaches(k.surface_vertex_count(), 0);
+  std::vector<Vec3> own(placement.surface.empty() ? reaches.size() : 0);  // positions found here
+  const auto position = [&](std::uint32_t v) -> const Vec3& { return own.empty() ? placement.surface[v] : own[v]; };
+  const Eigen::Isometry3d to_local = from_.inverse();
+  parallel_for(reaches.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      const auto row = weights.row(v);
-      if (!k.alive(SurfaceVertexId(v)) || row.empty()) continue;
-      if (!at.empty()) {
-        if (std::none_of(row.begin(), row.end(), [&](const NodeWeight& w) { return watched.near[w.node] != 0; }))
+      const Stencil carriers = weights.row(v);
+      if (!k.alive(SurfaceVertexId(v)) || carriers.empty()) continue;
+      if (!own.empty()) {
+        if (std::none_of(carriers.begin(), carriers.end(),
+                         [&](const NodeWeight& w) { return placement.near_nodes[w.node] != 0; }))
           continue;
-        at[v] = rest(v) + weights.at(v, watched.u);
+        own[v] = rest(v) + weights.at(v, placement.displacement);
       }
-      reached[v] = shape_->near(back * place(v), reach);
+      reaches[v] = shape_->near(to_local * position(v), reach);
     }
   });
   std::vector<std::uint32_t> vertices;
-  for (std::uint32_t v = 0; v < reached.size(); ++v)
-    if (reached[v]) vertices.push_back(v);
-  rows_.resize(vertices.size());
-  parallel_for(rows_.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      const auto v = vertices[r];
-      Row& row = rows_[r];
-      row = {};
-      row.weights = weights.row(v), row.spread = weights.spread(v), row.rest = rest(v), row.way = place(v) - row.rest;
-      row.stiffness = options_.pressure * (firmness.empty() ? 1 : firmness[weights.heaviest()[v]]) * weights.area(v);
+  for (std::uint32_t v = 0; v < reaches.size(); ++v)
+    if (reaches[v]) vertices.push_back(v);
+  contacts_.resize(vertices.size());
+  parallel_for(contacts_.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto v = vertices[i];
+      Contact& c = contacts_[i];
+      c = {};
+      c.weights = weights.row(v), c.weight_norm = weights.spread(v);
+      c.rest = rest(v), c.displacement = position(v) - c.rest;
+      const double factor = pressure_factor.empty() ? 1 : pressure_factor[weights.heaviest()[v]];
+      c.stiffness = options_.pressure * factor * weights.area(v);
     }
   });
 }
@@ -67,98 +70,97 @@ void ObstaclePenalty::watch(const Body& body, const SurfaceWeights& weights, con
 void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, double to) {
   if (from <= 0)
     sum_ = {}, impulses_ = false;
-  else if (from == ended_ && !impulses_)
+  else if (from == substep_end_ && !impulses_)
     add_reaction(u, sum_);
-  const Eigen::Isometry3d start = pose(from), back = start.inverse();
-  begun_ = from, ended_ = to, now_ = pose(to);
-  const auto stand = [&](std::size_t r, const Vec3& way) {
-    Row& row = rows_[r];
-    row.start = row.rest + way;
-    const Vec3 local = back * row.start;
+  const Eigen::Isometry3d start = pose(from), to_local = start.inverse();
+  substep_begin_ = from, substep_end_ = to, now_ = pose(to);
+  const auto begin_contact = [&](std::size_t k, const Vec3& displacement) {
+    Contact& c = contacts_[k];
+    c.start = c.rest + displacement;
+    const Vec3 local = to_local * c.start;
     const RigidShape::Field field = shape_->at(local);
-    row.outside = field.distance;
-    row.pressed = row.stiffness * std::max(0.0, -field.distance);
-    row.normal = start.linear() * field.normal;
-    row.stuck = now_ * local;
-    row.reach = std::max(0.0, row.outside - (row.start - row.stuck).norm()) / row.spread;
+    c.distance = field.distance;
+    c.normal_force = c.stiffness * std::max(0.0, -field.distance);
+    c.normal = start.linear() * field.normal;
+    c.stuck = now_ * local;
+    c.activation_distance = std::max(0.0, c.distance - (c.start - c.stuck).norm()) / c.weight_norm;
   };
-  if (from > 0) return each_way(u, stand);
-  parallel_for(rows_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) stand(r, rows_[r].way);
+  if (from > 0) return for_each_displacement(u, begin_contact);
+  parallel_for(contacts_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) begin_contact(k, contacts_[k].displacement);
   });
 }
 
-RigidShape::Field ObstaclePenalty::inside(const Row& row, const Vec3& y) const {
-  // No nearer than it was, less the ways that the vertex and what it would stick to have gone.
-  if (row.outside > 0 && (y - row.stuck).norm() < row.outside) return {};
+// The distance field at a vertex that is at y, world coordinates; distance 0 outside.
+RigidShape::Field ObstaclePenalty::penetration(const Contact& c, const Vec3& y) const {
+  // The distance has shrunk at most by the vertex' motion relative to the obstacle.
+  if (c.distance > 0 && (y - c.stuck).norm() < c.distance) return {};
   RigidShape::Field field = shape_->at(now_.inverse() * y);
   if (!(field.distance < 0)) return {};
   const Mat3 turn = now_.linear();
-  return {field.distance, turn * field.normal, turn * field.square * turn.transpose()};
+  return {field.distance, turn * field.normal, turn * field.half_square_hessian * turn.transpose()};
 }
 
-Vec3 ObstaclePenalty::slide(const Row& row, const Vec3& y) {
-  const Vec3 way = y - row.stuck;
-  return way - row.normal.dot(way) * row.normal;
+// Slip along the obstacle of a vertex that is at y, since the substep began.
+Vec3 ObstaclePenalty::slip(const Contact& c, const Vec3& y) {
+  const Vec3 moved = y - c.stuck;
+  return moved - c.normal.dot(moved) * c.normal;
 }
 
-double ObstaclePenalty::drag(const Row& row, const Vec3& slide) const {
-  return friction_drag(options_.friction * row.pressed, slide.norm(), slow_);
+double ObstaclePenalty::energy(std::size_t k, const Vec3& d) const {
+  const Contact& c = contacts_[k];
+  const Vec3 y = c.rest + d;
+  const double distance = penetration(c, y).distance, penalty = penalty_energy(c.stiffness, distance * distance);
+  const LaggedFriction f = friction(c);
+  return f.acts() ? penalty + f.energy(slip(c, y).norm()) : penalty;
 }
 
-double ObstaclePenalty::energy(std::size_t r, const Vec3& way) const {
-  const Row& row = rows_[r];
-  const Vec3 y = row.rest + way;
-  const double normal = 0.5 * row.stiffness * std::pow(inside(row, y).distance, 2);
-  return row.pressed > 0 ? normal + friction_energy(options_.friction * row.pressed, slide(row, y).norm(), slow_)
-                         : normal;
-}
-
-Potential::Derivatives ObstaclePenalty::pushed(const Row& row, const Vec3& way) const {
-  const Vec3 y = row.rest + way;
-  const RigidShape::Field field = inside(row, y);
-  Derivatives result{-row.stiffness * field.distance * field.normal, row.stiffness * field.square};
-  if (row.pressed > 0) {
-    const Vec3 slid = slide(row, y);
-    const double rub = drag(row, slid);
-    result.force -= rub * slid, result.hessian += rub * (Mat3::Identity() - row.normal * row.normal.transpose());
-  }
+Potential::Derivatives ObstaclePenalty::derivatives(const Contact& c, const Vec3& d) const {
+  const Vec3 y = c.rest + d;
+  const RigidShape::Field field = penetration(c, y);
+  Derivatives result{penalty_force(c.stiffness, -field.distance, field.normal),
+                     penalty_hessian(c.stiffness, field.half_square_hessian)};
+  if (const LaggedFriction f = friction(c); f.acts())
+    f.add(slip(c, y), c.normal * c.normal.transpose(), result.force, result.hessian);
   return result;
 }
 
 void ObstaclePenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
                                     std::vector<Vec3>& velocity) {
-  const Eigen::Isometry3d start = pose(begun_);
-  std::vector<RigidShape::Field> fields(rows_.size());
-  const double share = ended_ - begun_;
+  const Eigen::Isometry3d start = pose(substep_begin_);
+  std::vector<RigidShape::Field> fields(contacts_.size());
+  const double share = substep_end_ - substep_begin_;
   impulses_ = true;
-  each_way(u, [&](std::size_t r, const Vec3& way) { fields[r] = inside(rows_[r], rows_[r].rest + way); });
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const Row& row = rows_[r];
-    if (!(fields[r].distance < 0)) continue;
-    const Vec3 push = -h * row.stiffness * fields[r].distance * fields[r].normal;
-    double lightness = 0;
-    for (const auto& e : row.weights) lightness += e.weight * e.weight * inverse_mass[e.node];
-    if (!(lightness > 0)) continue;
-    const Vec3 y = row.rest + at(row, u), along = (now_ * (start.inverse() * y) - y) / h;  // what it touches moves so
-    Vec3 slide = at(row, velocity) - along;
-    slide -= fields[r].normal.dot(slide) * fields[r].normal;
-    const double speed = slide.norm(), most = options_.friction * push.norm();
-    const Vec3 total = push - (speed * (1 / lightness) > most ? most / speed : 1 / lightness) * slide;
-    for (const auto& e : row.weights) velocity[e.node] += inverse_mass[e.node] * e.weight * total;
-    sum_.force -= share / h * total;
-    sum_.torque -= share / h * (y - now_.translation()).cross(total);
+  for_each_displacement(
+      u, [&](std::size_t k, const Vec3& d) { fields[k] = penetration(contacts_[k], contacts_[k].rest + d); });
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const Contact& c = contacts_[k];
+    const RigidShape::Field& field = fields[k];
+    if (!(field.distance < 0)) continue;
+    const double inverse = effective_inverse_mass(c.weights, inverse_mass);
+    if (!(inverse > 0)) continue;
+    const Vec3 normal_impulse = penalty_force(h * c.stiffness, -field.distance, field.normal);
+    const Vec3 y = c.rest + weighted_sum(c.weights, u);
+    const Vec3 obstacle_velocity = (now_ * (start.inverse() * y) - y) / h;  // of the obstacle's point at y
+    Vec3 slip = weighted_sum(c.weights, velocity) - obstacle_velocity;
+    slip -= field.normal.dot(slip) * field.normal;
+    const double factor = friction_impulse_factor(options_.friction * normal_impulse.norm(), slip.norm(), inverse);
+    const Vec3 impulse = normal_impulse - factor * slip;
+    add_impulse(c.weights, impulse, inverse_mass, velocity);
+    sum_.force -= share / h * impulse;
+    sum_.torque -= share / h * (y - now_.translation()).cross(impulse);
   }
 }
 
-void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& to) const {
-  const double share = ended_ - begun_;
-  std::vector<Reaction> of(rows_.size());
-  each_way(u, [&](std::size_t r, const Vec3& way) {
-    const Vec3 f = share * pushed(rows_[r], way).force;
-    of[r] = {f, (rows_[r].rest + way - now_.translation()).cross(f)};
+// Adds the reaction of this substep at displacements u, times its share of the step.
+void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& sum) const {
+  const double share = substep_end_ - substep_begin_;
+  std::vector<Reaction> on_body(contacts_.size());
+  for_each_displacement(u, [&](std::size_t k, const Vec3& d) {
+    const Vec3 f = share * derivatives(contacts_[k], d).force;
+    on_body[k] = {f, (contacts_[k].rest + d - now_.translation()).cross(f)};
   });
-  for (const Reaction& r : of) to.force -= r.force, to.torque -= r.torque;
+  for (const Reaction& r : on_body) sum.force -= r.force, sum.torque -= r.torque;
 }
 
 ObstaclePenalty::Reaction ObstaclePenalty::reaction(const std::vector<Vec3>& u) const {
@@ -168,9 +170,10 @@ ObstaclePenalty::Reaction ObstaclePenalty::reaction(const std::vector<Vec3>& u) 
 }
 
 double ObstaclePenalty::depth(const std::vector<Vec3>& u) const {
-  double most = 0;
-  for (const Row& row : rows_) most = std::max(most, -inside(row, row.rest + at(row, u)).distance);
-  return most;
+  double deepest = 0;
+  for (const Contact& c : contacts_)
+    deepest = std::max(deepest, -penetration(c, c.rest + weighted_sum(c.weights, u)).distance);
+  return deepest;
 }
 
 }  // namespace geo

@@ -1,104 +1,114 @@
-// A rigid obstacle: a penalty on each vertex of the surface that is inside it, with Coulomb
-// friction (§ 3.3, between objects).
+// Potential of a rigid obstacle: a penalty on surface vertices inside it, with Coulomb friction
+// (§ 3.3, contact with rigid objects).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "contact/response/rigid_shape.h"
 #include "contact/surface/surface_weights.h"
+#include "mechanics/terms/contact_law.h"
 #include "mechanics/terms/potential.h"
 
 namespace geo {
 
+/// Strength of an obstacle's penalty.
 struct ObstaclePenaltyOptions {
-  double pressure =
-      1e6;  ///< Pa for a metre of depth: a body that presses with p stands p / pressure deep, in model units
+  /// Pressure over depth, Pa/m: a body that presses with p stands p / pressure deep, in model
+  /// units.
+  double pressure = 1e6;
   double friction = 0.5;  ///< Coulomb's coefficient
 };
 
-/// ½ pressure area depth² at each surface vertex, area being a third of its triangles' at rest,
-/// depth how far it is inside. Friction acts on the way beside the obstacle since the step began,
-/// with the normal and the normal force of that moment: that is the derivative of a convex
-/// potential (Li et al. 2020, § 5). Vertices act on nodes by the weights of Eq. 1.
+/// The law of contact_law.h for every surface vertex inside the obstacle. Its stiffness is pressure
+/// times a third of the area of its triangles at rest. Vertices act on nodes by the weights of Eq.
+/// 1. Slip is relative to the obstacle's own motion; friction has the normal of the substep's
+/// beginning.
 class ObstaclePenalty : public Potential {
  public:
-  /// Moves from one pose to the other during the step, its turn even.
+  /// The obstacle moves from one pose to the other during the step, at even speed.
   ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options,
                   const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
-  /// Where a body is when a step begins.
-  struct Watched {
-    const std::vector<Vec3>& u;          ///< displacements of its nodes
-    std::span<const Vec3> at;            ///< its surface vertices; empty: found from u, where they may be near
-    std::span<const std::uint8_t> near;  ///< then: nodes that carry surface that may be
+  /// A body when a step begins. Refers to everything.
+  struct BodyPlacement {
+    const std::vector<Vec3>& displacement;     ///< per node
+    std::span<const Vec3> surface;             ///< per surface vertex, world; empty: found from displacements
+    std::span<const std::uint8_t> near_nodes;  ///< used then: per node, whether its surface may be near
   };
-  /// Which vertices may reach the obstacle in that step (those nearer than `reach`), and their
-  /// weights, which must outlive it. `slow`: a way along the obstacle, model units, below which
-  /// friction is smooth. `firmness`: per node, of what its surface is pressed with, times the
-  /// pressure; empty: 1.
-  void watch(const Body& body, const SurfaceWeights& weights, const Watched& watched, double reach, double slow,
-             std::span<const double> firmness = {});
+  /// Makes contacts of the vertices that may reach the obstacle in this step: those nearer than
+  /// `reach`, model units. `weights` must outlive this. `slip_regularisation`: model units.
+  /// `pressure_factor`: per node, of the pressure on the surface that it carries; empty: 1.
+  void find_contacts(const Body& body, const SurfaceWeights& weights, const BodyPlacement& placement, double reach,
+                     double slip_regularisation, std::span<const double> pressure_factor = {});
+  /// Whether no vertex may reach the obstacle.
+  bool empty() const { return contacts_.empty(); }
 
-  bool empty() const { return rows_.empty(); }  ///< no vertex may reach it
-
-  /// A step's first part begins at the displacements of watch().
+  /// Moves the obstacle to the substep's end and takes friction bounds at its beginning. The first
+  /// substep begins at the placement of find_contacts(), not at u.
   void begin_substep(const std::vector<Vec3>& u, double from, double to) override;
-  std::size_t size() const override { return rows_.size(); }
-  Stencil stencil(std::size_t k) const override { return rows_[k].weights; }
-  /// A vertex follows its master's node, that node's neighbours and theirs.
+  /// Number of vertices.
+  std::size_t size() const override { return contacts_.size(); }
+  /// Nodes that carry a vertex.
+  Stencil stencil(std::size_t k) const override { return contacts_[k].weights; }
+  /// A vertex is carried by its master node, that node's neighbours and theirs.
   bool within_components() const override { return true; }
-  double activation_distance(std::size_t k) const override { return rows_[k].reach; }
+  /// Distance of a vertex less the obstacle's motion, over the norm of the vertex' weights.
+  double activation_distance(std::size_t k) const override { return contacts_[k].activation_distance; }
+  /// Of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
-  Derivatives derivatives(std::size_t k, const Vec3& d) override { return pushed(rows_[k], d); }
-  double stiffness_bound(std::size_t k) const override { return rows_[k].stiffness; }
-  /// Pushes vertex by vertex, and takes away as much of its velocity along the obstacle as friction
+  /// Of penalty and friction.
+  Derivatives derivatives(std::size_t k, const Vec3& d) override { return derivatives(contacts_[k], d); }
+  /// The stiffness of the penalty.
+  double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
+  /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
   /// can.
   void apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
                      std::vector<Vec3>& velocity) override;
 
+  /// What acts on the obstacle.
   struct Reaction {
     Vec3 force = Vec3::Zero();   ///< N
     Vec3 torque = Vec3::Zero();  ///< N m, about the obstacle's origin
   };
-  /// What the body did to the obstacle, mean over the step that ended at displacements u.
+  /// Mean reaction of the body over the step that ended at displacements u.
   Reaction reaction(const std::vector<Vec3>& u) const;
-  /// Deepest vertex inside, at displacements u; 0: none.
+  /// Largest depth of a vertex at displacements u, model units; 0: none is inside.
   double depth(const std::vector<Vec3>& u) const;
 
  private:
-  struct Row {
-    std::span<const SurfaceWeights::Entry> weights;
-    Vec3 rest = Vec3::Zero(), way = Vec3::Zero();  // way: when it was watched
-    double stiffness = 0;                          // N/m
-    double spread = 0;                             // of its weights
-    Vec3 start = Vec3::Zero();                     // where the vertex was
-    double outside = 0;                            // how far outside then
-    double reach = 0;                              // how far nodes may go before it can be inside
-    double pressed = 0;                            // N, then
-    Vec3 normal = Vec3::Zero();                    // world, then
-    Vec3 stuck = Vec3::Zero();                     // where it would be had it stuck to the obstacle
+  // A surface vertex. Positions are world coordinates.
+  struct Contact {
+    Stencil weights;
+    Vec3 rest = Vec3::Zero(), displacement = Vec3::Zero();  // displacement: at the step's beginning
+    double stiffness = 0;                                   // N/m
+    double weight_norm = 0;
+    // At the substep's beginning:
+    Vec3 start = Vec3::Zero();       // position
+    double distance = 0;             // to the obstacle; negative inside
+    double activation_distance = 0;  // of nodes
+    double normal_force = 0;         // N
+    Vec3 normal = Vec3::Zero();
+    Vec3 stuck = Vec3::Zero();  // where the vertex would be now had it stuck to the obstacle
   };
-  static Vec3 at(const Row& row, const std::vector<Vec3>& values) { return weighted_sum(row.weights, values); }
-  Derivatives pushed(const Row& row, const Vec3& way) const;
+  Derivatives derivatives(const Contact& c, const Vec3& d) const;
   Eigen::Isometry3d pose(double share) const;
-  /// In world coordinates; distance 0 where the row is outside.
-  RigidShape::Field inside(const Row& row, const Vec3& y) const;
-  /// The way beside the obstacle of a vertex that is at y now, and the force of friction over it,
-  /// N/m.
-  static Vec3 slide(const Row& row, const Vec3& y);
-  double drag(const Row& row, const Vec3& slide) const;
-  void add_reaction(const std::vector<Vec3>& u, Reaction& to) const;
-  /// Calls take(row number, its way) for each row, from any thread.
-  template <class Take>
-  void each_way(const std::vector<Vec3>& u, const Take& take) const;
+  RigidShape::Field penetration(const Contact& c, const Vec3& y) const;
+  static Vec3 slip(const Contact& c, const Vec3& y);
+  LaggedFriction friction(const Contact& c) const { return {options_.friction * c.normal_force, slip_regularisation_}; }
+  void add_reaction(const std::vector<Vec3>& u, Reaction& sum) const;
+  template <class Use>
+  void for_each_displacement(const std::vector<Vec3>& u, const Use& use) const;
 
   std::shared_ptr<const RigidShape> shape_;
   ObstaclePenaltyOptions options_;
-  Eigen::Isometry3d from_, to_, now_;        // now_: at the end of this part of the step
-  double slow_ = 0, begun_ = 0, ended_ = 0;  // shares of the step
-  Reaction sum_;                             // of the parts before this one, times their shares
-  bool impulses_ = false;                    // sum_ is of impulses, this part's included
-  std::vector<Row> rows_;
+  Eigen::Isometry3d from_, to_, now_;                                     // now_: at the end of the substep
+  double slip_regularisation_ = 0, substep_begin_ = 0, substep_end_ = 0;  // the last two in shares of the step
+  Reaction sum_;           // of earlier substeps, times their shares; of impulses, this substep included
+  bool impulses_ = false;  // the step is explicit
+  std::vector<Contact> contacts_;
 };
 
 }  // namespace geo

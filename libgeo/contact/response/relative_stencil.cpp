@@ -7,32 +7,33 @@ RelativeStencilBuilder::RelativeStencilBuilder(const SurfaceWeights& weights, co
     : weights_(weights),
       stands_for_(stands_for),
       inverse_mass_(inverse_mass),
-      sum_(inverse_mass.size(), Sums{0, 0}),
-      taken_(inverse_mass.size(), 0) {}
+      sum_(inverse_mass.size(), PointWeights{0, 0}),
+      in_use_(inverse_mass.size(), 0) {}
 
 RelativeStencil RelativeStencilBuilder::make(const SurfacePoint& a, const SurfacePoint& b) {
-  RelativeStencil row;
-  used_.clear();
+  RelativeStencil stencil;
+  nodes_.clear();
   add(a, 0), add(b, 1);
-  row.entries.reserve(used_.size());
-  for (const auto j : used_) {
-    const auto [of_a, of_b] = sum_[j];
-    const double weight = of_a - of_b;
-    if (weight != 0) row.entries.push_back({j, weight});
-    row.mobility += weight * weight * inverse_mass_[j];
-    row.of_a += of_a * of_a * inverse_mass_[j], row.of_b += of_b * of_b * inverse_mass_[j];
-    sum_[j] = {0, 0}, taken_[j] = 0;
+  stencil.entries.reserve(nodes_.size());
+  for (const auto j : nodes_) {
+    const auto [weight_a, weight_b] = sum_[j];
+    const double weight = weight_a - weight_b;
+    if (weight != 0) stencil.entries.push_back({j, weight});
+    stencil.inverse_mass += weight * weight * inverse_mass_[j];
+    stencil.inverse_mass_a += weight_a * weight_a * inverse_mass_[j];
+    stencil.inverse_mass_b += weight_b * weight_b * inverse_mass_[j];
+    sum_[j] = {0, 0}, in_use_[j] = 0;
   }
-  return row;
+  return stencil;
 }
 
-void RelativeStencilBuilder::add(const SurfacePoint& place, std::size_t which) {
-  for (int k = 0; k < place.size; ++k) {
-    const auto copies = stands_for_[place.vertex[k]];
+void RelativeStencilBuilder::add(const SurfacePoint& point, std::size_t which) {
+  for (int k = 0; k < point.size; ++k) {
+    const auto copies = stands_for_[point.vertex[k]];
     for (const auto v : copies)
       for (const auto& e : weights_.row(v)) {
-        if (!taken_[e.node]) used_.push_back(e.node), taken_[e.node] = 1;
-        sum_[e.node][which] += place.weight[k] / double(copies.size()) * e.weight;
+        if (!in_use_[e.node]) nodes_.push_back(e.node), in_use_[e.node] = 1;
+        sum_[e.node][which] += point.weight[k] / double(copies.size()) * e.weight;
       }
   }
 }

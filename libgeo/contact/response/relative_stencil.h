@@ -1,4 +1,4 @@
-// How two places of the surface move against each other, as one row over the nodes.
+// Relative displacement of two points of the surface as a stencil over the nodes.
 #pragma once
 
 #include <array>
@@ -9,44 +9,49 @@
 
 namespace geo {
 
-/// A place of the surface: up to three surface vertices with weights that sum to 1.
+/// A point of the surface: up to three surface vertices with weights that sum to 1.
 struct SurfacePoint {
   std::uint32_t vertex[3];
   double weight[3];
   int size;
 };
 
-struct RelativeStencil {
-  std::vector<SurfaceWeights::Entry> entries;  ///< of a's motion less b's, nodes in no particular order
-  double mobility = 0;                         ///< Σ weight² × inverse mass
-  double of_a = 0, of_b = 0;                   ///< the same of each alone: what the pair's would be were the other held
-};
-
-/// Where it is when vertices are at `at`.
-inline Vec3 place(const SurfacePoint& p, const std::vector<Vec3>& at) {
+/// Position of a point when the surface vertices are at `positions`.
+inline Vec3 position_of(const SurfacePoint& p, const std::vector<Vec3>& positions) {
   Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < p.size; ++k) sum += p.weight[k] * at[p.vertex[k]];
+  for (int k = 0; k < p.size; ++k) sum += p.weight[k] * positions[p.vertex[k]];
   return sum;
 }
 
-/// Makes rows, one at a time. `stands_for`: which surface vertices carry one vertex of a place (they move as their
-/// average).
+/// The displacement of point a less that of point b is Σ weight × nodal displacement. An impulse
+/// along it that changes the nodes' velocities by weight × inverse mass conserves momentum.
+struct RelativeStencil {
+  std::vector<NodeWeight> entries;  ///< no node twice, in no particular order
+  double inverse_mass = 0;          ///< effective, 1/kg: Σ weight² × inverse mass of the node
+  double inverse_mass_a = 0;        ///< the same of point a alone, as if b were fixed
+  double inverse_mass_b = 0;        ///< the same of point b alone
+};
+
+/// Makes stencils one at a time, with scratch memory per node that is cleared after each.
 class RelativeStencilBuilder {
  public:
+  /// `stands_for`: the surface vertices whose mean a vertex of a point is. `inverse_mass`: per
+  /// node, 1/kg; 0 for fixed nodes. Refers to all of them.
   RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for,
                          const std::vector<double>& inverse_mass);
+  /// The stencil of a's displacement less b's.
   RelativeStencil make(const SurfacePoint& a, const SurfacePoint& b);
 
  private:
-  using Sums = std::array<double, 2>;  // of a and b
-  void add(const SurfacePoint& place, std::size_t which);
+  using PointWeights = std::array<double, 2>;  // of a node in a and in b
+  void add(const SurfacePoint& point, std::size_t which);
 
   const SurfaceWeights& weights_;
   const Copies& stands_for_;
   const std::vector<double>& inverse_mass_;
-  std::vector<Sums> sum_;
-  std::vector<std::uint8_t> taken_;
-  std::vector<std::uint32_t> used_;
+  std::vector<PointWeights> sum_;     // per node; zero between calls
+  std::vector<std::uint8_t> in_use_;  // per node; zero between calls
+  std::vector<std::uint32_t> nodes_;  // of the current stencil, in the order found
 };
 
 }  // namespace geo

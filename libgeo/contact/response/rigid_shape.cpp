@@ -53,11 +53,11 @@ RigidShape::Field RigidShape::at(const Vec3& x) const {
   Field field{side * distance, distance > 0 ? Vec3(side / distance * away) : outwards, Mat3::Identity()};
   if (on.feature < 0) {
     field.normal = outwards;
-    field.square = outwards * outwards.transpose();
+    field.half_square_hessian = outwards * outwards.transpose();
   } else if (on.feature >= 3) {
     const auto k = static_cast<std::size_t>(on.feature - 3);
     const Vec3 along = (t[(k + 1) % 3] - t[k]).normalized();
-    field.square -= along * along.transpose();
+    field.half_square_hessian -= along * along.transpose();
   }
   return field;
 }

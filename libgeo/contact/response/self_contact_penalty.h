@@ -1,62 +1,77 @@
-// What surfaces of one body that touch do to each other within an implicit step: a penalty on how
-// far places pass each other, with Coulomb friction (§ 3.3).
+// Potential of self-contact in an implicit step: a penalty between points of one body's surface,
+// with Coulomb friction (§ 3.3).
 #pragma once
 
-#include "contact/response/impulses.h"
+#include <vector>
+
+#include "contact/response/relative_stencil.h"
+#include "mechanics/terms/contact_law.h"
 #include "mechanics/terms/potential.h"
 
 namespace geo {
 
+/// Friction between the points.
 struct SelfContactPenaltyOptions {
-  double friction = 0.3;  ///< Coulomb's coefficient
-  double slow = 0;        ///< way along each other, model units, below which friction is smooth
+  double friction = 0.3;           ///< Coulomb's coefficient
+  double slip_regularisation = 0;  ///< model units (contact_law.h)
 };
 
-/// ½ stiffness depth² for each couple of places that passes its normal's limit. Friction acts on
-/// the way since the step began, with the normal force of that moment, as friction.h has it.
+/// The law of contact_law.h for pairs of surface points with a normal that is fixed during the
+/// step.
 class SelfContactPenalty : public Potential {
  public:
+  /// A potential without contacts.
   explicit SelfContactPenalty(const SelfContactPenaltyOptions& options) : options_(options) {}
-  /// As if it were new; the memory is kept.
-  void restart(const SelfContactPenaltyOptions& options) { options_ = options, rows_.clear(), entries_.clear(); }
+  /// Removes all contacts; their memory is kept.
+  void restart(const SelfContactPenaltyOptions& options) { options_ = options, contacts_.clear(), entries_.clear(); }
 
-  /// A couple whose places, along its normal, have passed the limit by `depth` (negative: not yet)
-  /// at displacements u, those at which the step begins.
-  void add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness, const std::vector<Vec3>& u) {
-    add(row, normal, depth, stiffness, weighted_sum(row.entries, u));
+  /// Adds a contact. `normal`: unit, from point b of the stencil to point a. `depth`: of
+  /// penetration at displacements u, where the step begins, model units; negative: a distance.
+  /// `stiffness`: N/m.
+  void add(const RelativeStencil& stencil, const Vec3& normal, double depth, double stiffness,
+           const std::vector<Vec3>& u) {
+    add(stencil, normal, depth, stiffness, weighted_sum(stencil.entries, u));
   }
-  /// The same, given the row's relative displacement.
-  void add(const RelativeStencil& row, const Vec3& normal, double depth, double stiffness, const Vec3& start);
-  /// Room for as many more.
-  void reserve(std::span<const RelativeStencil> rows);
-  /// How many press on each other, where each was last asked for its derivatives().
+  /// The same, given the relative displacement at the beginning.
+  void add(const RelativeStencil& stencil, const Vec3& normal, double depth, double stiffness, const Vec3& start);
+  /// Reserves memory for contacts with these stencils.
+  void reserve(std::span<const RelativeStencil> stencils);
+  /// Number of contacts with a normal force at their last derivatives().
   std::size_t pressing() const;
 
-  std::size_t size() const override { return rows_.size(); }
+  /// Number of contacts.
+  std::size_t size() const override { return contacts_.size(); }
+  /// Nodes of a contact's two points.
   Stencil stencil(std::size_t k) const override {
-    return {entries_.data() + rows_[k].first, entries_.data() + rows_[k].end};
+    return {entries_.data() + contacts_[k].first, entries_.data() + contacts_[k].end};
   }
-  void begin_substep(const std::vector<Vec3>&, double from, double) override { begun_ = from <= 0; }
-  double activation_distance(std::size_t k) const override { return begun_ ? rows_[k].reach : 0; }
+  /// Activation distances hold in substeps that begin where the contacts were added.
+  void begin_substep(const std::vector<Vec3>&, double from, double) override { at_start_ = from <= 0; }
+  /// Distance of a contact over the norm of its weights.
+  double activation_distance(std::size_t k) const override { return at_start_ ? contacts_[k].activation_distance : 0; }
+  /// Of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
+  /// Of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
 
  private:
-  struct Row {
+  struct Contact {
     std::size_t first, end;  // of its entries
     Vec3 normal;
-    double depth;      // when the step began
-    double stiffness;  // N/m
-    double reach;      // how far nodes may go since then before the couple can press
-    Vec3 start;        // relative displacement then
-    bool pressing;     // at the last derivatives()
+    double depth;                // at the step's beginning, model units
+    double stiffness;            // N/m
+    double activation_distance;  // of nodes since the step's beginning, model units
+    Vec3 start;                  // relative displacement at the step's beginning
+    bool pressing;               // at the last derivatives()
   };
-  double most_friction(const Row& row) const { return options_.friction * row.stiffness * row.depth; }
+  LaggedFriction friction(const Contact& c) const {
+    return {options_.friction * c.stiffness * c.depth, options_.slip_regularisation};
+  }
 
   SelfContactPenaltyOptions options_;
-  bool begun_ = false;  // rows' starts are where nodes were at begin()
-  std::vector<Row> rows_;
-  std::vector<SurfaceWeights::Entry> entries_;
+  bool at_start_ = false;  // the substep begins where the contacts were added
+  std::vector<Contact> contacts_;
+  std::vector<NodeWeight> entries_;  // of all stencils, one after the other
 };
 
 }  // namespace geo

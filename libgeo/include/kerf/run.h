@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kerf/body.h"
+#include "kerf/contact.h"
 #include "kerf/crack.h"
 #include "kerf/solid.h"
 #include "kerf/vec.h"
@@ -37,19 +38,6 @@ struct GrowingFront {
 struct FractureState {
   std::vector<GrowingFront> fronts;  ///< inside the material, growing or arrested
   std::int32_t cracks = 0;           ///< number of cracks started so far, branches included
-};
-
-/// Statistics of contact.
-struct ContactStats {
-  std::size_t planes = 0;     ///< separating planes used, over all steps
-  std::size_t touching = 0;   ///< pairs in contact
-  std::size_t in_zones = 0;   ///< vertices moved in rigid impact zones
-  std::size_t opened = 0;     ///< coincident sheets that separated
-  std::size_t held = 0;       ///< steps in which the surface was not moved at all
-  double tracking_error = 0;  ///< largest distance of a vertex from Eq. 1, model units
-  double seconds = 0;
-  /// Adds counts and seconds; keeps the larger tracking error.
-  ContactStats& operator+=(const ContactStats& o);
 };
 
 /// Statistics of fracture by stress.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kerf/contact.h"
 #include "kerf/crack.h"
 #include "kerf/material.h"
 #include "kerf/mesh.h"
@@ -73,17 +74,6 @@ struct FractureOptions : Strength {
   const Strength& at_node(const std::vector<std::uint32_t>& body_index, std::size_t node) const {
     return per_body.empty() ? *this : per_body[body_index[node]];
   }
-};
-
-/// Parameters of contact between surfaces of the bodies. Lengths are in mean edge lengths of the
-/// surface.
-struct ContactOptions {
-  double friction = 0.3;  ///< Coulomb's coefficient
-  double gap = 1e-4;      ///< distance that opened sheets of a crack keep
-  double opening = 1e-2;  ///< two sheets of a crack separate where Eq. 1 has them this far apart along
-                          // /< the normal, or three times as far tangentially
-  double recovery = 0.3;  ///< share of an interpenetration of node positions that a step removes
-  int rounds = 2;         ///< iterations of contact detection and impulses, explicit steps only
 };
 
 /// One solid of a scene. All solids become disconnected components of one Body, whose material

@@ -1,18 +1,82 @@
-// Coulomb friction over a step: the derivative of a convex potential of the way slid since it began, smooth where that
-// is less than `slow` (Li et al. 2020, § 5).
+// The law of contact of every potential that acts on nodes: a quadratic penalty on penetration,
+// and lagged Coulomb friction with regularised slip.
+//
+// Penalty of stiffness k, N/m, on a penetration depth d(x) ≥ 0, model units (§ 3.3):
+//   E = ½ k d²,  −∇E = k d n with n = −∇d,  ∇²E = k ∇²(½ d²), which is k n nᵀ behind a plane.
+//
+// Friction on the slip s, the relative displacement across n since the step began, with the bound
+// b = μ N of the normal force N of that moment (Li et al. 2020, Incremental Potential Contact, § 5,
+// with the Huber function for the smooth transition) and the slip regularisation ε, model units:
+//   E = b |s|² / (2 ε) where |s| < ε, else b (|s| − ½ ε),
+//   −∇E = −c s,  ∇²E ≼ c (I − n nᵀ),  c = b / max(|s|, ε), the secant stiffness.
+// The secant Hessian is that of E where |s| < ε and bounds it from above elsewhere.
 #pragma once
 
 #include <algorithm>
 
+#include "mechanics/terms/potential.h"
+
 namespace geo {
 
-/// The potential, J. `most`: the largest force of friction, N, a coefficient times the normal force when the step
-/// began; `slid` and `slow`: model units.
-inline double friction_energy(double most, double slid, double slow) {
-  return most * (slid < slow ? 0.5 * slid * slid / slow : slid - 0.5 * slow);
+/// Energy of the penalty, J: ½ k d², given d².
+inline double penalty_energy(double stiffness, double squared_depth) { return 0.5 * stiffness * squared_depth; }
+
+/// The same energy, J: ½ (k d) d, given the force. The two differ by rounding alone.
+inline double penalty_work(double force, double depth) { return 0.5 * force * depth; }
+
+/// Force of the penalty, N: k d n. `normal`: unit, out of what is penetrated.
+inline Vec3 penalty_force(double stiffness, double depth, const Vec3& normal) { return stiffness * depth * normal; }
+
+/// Hessian of the penalty, N/m, given the second derivative of ½ d².
+inline Mat3 penalty_hessian(double stiffness, const Mat3& half_square_hessian) {
+  return stiffness * half_square_hessian;
 }
 
-/// The force over the way slid, N/m: as stiff as the whole is taken to be, too.
-inline double friction_drag(double most, double slid, double slow) { return most / std::max(slid, slow); }
+/// Hessian of the penalty behind a plane, N/m: k n nᵀ.
+inline Mat3 plane_penalty_hessian(double stiffness, const Vec3& normal) {
+  return stiffness * normal * normal.transpose();
+}
+
+/// Coulomb friction of one contact over a step. The normal force is that of the step's beginning.
+struct LaggedFriction {
+  double bound = 0;                ///< μ N, N
+  double slip_regularisation = 0;  ///< ε, model units; positive where the bound is
+
+  /// False where the contact did not press when the step began.
+  bool acts() const { return bound > 0; }
+  /// Energy, J. `slip`: |s|, model units.
+  double energy(double slip) const {
+    return bound *
+           (slip < slip_regularisation ? 0.5 * slip * slip / slip_regularisation : slip - 0.5 * slip_regularisation);
+  }
+  /// c, N/m: the force over the slip.
+  double secant_stiffness(double slip) const { return bound / std::max(slip, slip_regularisation); }
+  /// Adds the force −c s and the secant Hessian c (I − n nᵀ). `slip`: s; `normal_projector`: n nᵀ.
+  void add(const Vec3& slip, const Mat3& normal_projector, Vec3& force, Mat3& hessian) const {
+    const double stiffness = secant_stiffness(slip.norm());
+    force -= stiffness * slip, hessian += stiffness * (Mat3::Identity() - normal_projector);
+  }
+};
+
+/// Effective inverse mass of a relative displacement, 1/kg: Σ w² / m. `inverse_mass`: per node, 0
+/// for fixed nodes.
+inline double effective_inverse_mass(Stencil stencil, const std::vector<double>& inverse_mass) {
+  double sum = 0;
+  for (const auto& e : stencil) sum += e.weight * e.weight * inverse_mass[e.node];
+  return sum;
+}
+
+/// Friction of an explicit step, as an impulse over the slip velocity, kg: it stops the slip unless
+/// that takes more than the bound. `bound`: μ times the normal impulse, N s; `speed`: of the slip;
+/// `inverse_mass`: effective, positive.
+inline double friction_impulse_factor(double bound, double speed, double inverse_mass) {
+  return speed > bound * inverse_mass ? bound / speed : 1 / inverse_mass;
+}
+
+/// Changes the velocities of a stencil's nodes by an impulse along its relative displacement, N s.
+inline void add_impulse(Stencil stencil, const Vec3& impulse, const std::vector<double>& inverse_mass,
+                        std::vector<Vec3>& velocity) {
+  for (const auto& e : stencil) velocity[e.node] += inverse_mass[e.node] * e.weight * impulse;
+}
 
 }  // namespace geo

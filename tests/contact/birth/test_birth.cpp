@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "body/agreement.h"
 #include "cases.h"
+#include "contact/cut_body.h"
 #include "contact/self_contact.h"
 #include "kerf/crossing.h"
 #include "kerf/nodes.h"
@@ -30,18 +30,12 @@ TEST_CASE("sheets cut in a body at rest are born together") {
     };
     FrontState front = begin_front(edge(1.3), false, blade + 1);
     for (int step = 1; step <= 8; ++step) {
-      const BodyDelta delta = split(
-          body, front, edge(1.3 - 0.14 * step), {}, nullptr,
-          [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
-      solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-      surface.follow(body, solid, delta);
+      cut(body, solid, state, surface, front, edge(1.3 - 0.14 * step));
       const auto& s = surface.surface();
       for (std::size_t v = 0; v < s.site.size(); ++v)
         if (body.surface.alive(SurfaceVertexId(v)))
           CHECK((surface.positions()[v] - body.surface.point(VertexId(s.site[v]))).norm() < 1e-14);
-      TriangleMesh mesh_now;
-      mesh_now.vertices = surface.positions(), mesh_now.triangles = s.triangles, mesh_now.site = s.site;
-      CHECK(count_crossings(mesh_now) == 0);
+      CHECK(count_crossings(mesh_of(surface)) == 0);
     }
   }
 }
@@ -66,7 +60,7 @@ TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over i
     };
     bend(0);
     SelfContact surface(body, solid);
-    surface.resolve(body, solid, state.displacement, 1, {}, state);
+    surface.finish_step_with_impulses(body, solid, state.displacement, 1, {}, state);
     const auto edge = [&](double z) {
       std::vector<Vec3> points;
       for (int i = 0; i <= 10; ++i)
@@ -76,13 +70,9 @@ TEST_CASE("the two sides of a sheet that is cut in a bent body, and folds over i
     };
     FrontState front = begin_front(edge(1.2), false, 1);
     for (int step = 1; step <= 8; ++step) {
-      const BodyDelta delta = split(
-          body, front, edge(1.2 - 0.18 * step), {}, nullptr,
-          [&](const Complex& grown, const CrackDelta& crack) { surface.expect(body, solid, state, grown, crack); });
       const std::size_t known = solid.size();
-      solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
+      const BodyDelta delta = cut(body, solid, state, surface, front, edge(1.2 - 0.18 * step));
       bend(known);
-      surface.follow(body, solid, delta);
       const ContactSurface &grown = surface.surface(), made = contact_surface(body.surface);
       CHECK(grown.triangles == made.triangles);
       CHECK(grown.side == made.side);

@@ -61,8 +61,10 @@ TEST_CASE("the field of a mesh: distance and side of random points, its derivati
         const Vec3 step = 1e-7 * random.direction();
         const auto other = shape.at(x + step);
         const double change = 0.5 * (std::pow(other.distance, 2) - std::pow(field.distance, 2));
-        const double second = field.distance * field.normal.dot(step) + 0.5 * step.dot(field.square * step);
-        if ((other.square - field.square).norm() < 1e-12) CHECK(change == Approx(second).margin(1e-15));
+        const double second =
+            field.distance * field.normal.dot(step) + 0.5 * step.dot(field.half_square_hessian * step);
+        if ((other.half_square_hessian - field.half_square_hessian).norm() < 1e-12)
+          CHECK(change == Approx(second).margin(1e-15));
       }
     }
   }
@@ -79,7 +81,7 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
     const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
     ObstaclePenalty o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
-    o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    o.find_contacts(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
     o.begin_substep(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
     const std::vector<Vec3> begun = u;
@@ -120,7 +122,7 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   ObstaclePenalty o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place),
                     at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero());
-  o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+  o.find_contacts(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
   o.begin_substep(u, 0, 1);
   const std::vector<Vec3> force = AssembledPotential(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
@@ -151,7 +153,7 @@ TEST_CASE(
     SelfContactPenalty touch({0.4, 0.05});
     std::vector<Vec3> u, part;
     for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());
-    o.watch(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    o.find_contacts(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
     for (int r = 0; r < 30; ++r) {
       RelativeStencil row;
       for (int k = 0; k < 4; ++k)

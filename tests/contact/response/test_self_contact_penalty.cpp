@@ -6,8 +6,8 @@
 #include "assembled_potential.h"
 #include "base/random.h"
 #include "base/union_find.h"
-#include "body/agreement.h"
 #include "cases.h"
+#include "contact/cut_body.h"
 #include "contact/detection/triangle_planes.h"
 #include "contact/response/body_contact_penalty.h"
 #include "contact/response/self_contact_penalty.h"
@@ -240,11 +240,7 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
   State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
   SelfContact contact(body, solid);
   auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 0.5, 0.53}, {-0.3, 1.3, 0.52}}, false, 1);
-  const auto delta =
-      split(body, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}}, {}, nullptr,
-            [&](const Complex& grown, const CrackDelta& crack) { contact.expect(body, solid, state, grown, crack); });
-  solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-  contact.follow(body, solid, delta);
+  cut(body, solid, state, contact, front, {{1.3, -0.3, 0.47}, {1.3, 0.5, 0.48}, {1.3, 1.3, 0.47}});
   Environment environment;
   environment.gravity = {0, 0, -9.81};
   environment.fixed.assign(solid.size(), 0);
@@ -252,18 +248,11 @@ TEST_CASE("what lies on a cut presses on it and does not sink in") {
   ContactStats last;
   for (int step = 0; step < 40; ++step) {
     environment.contact.clear();
-    if (Potential* touch = contact.begin(body, solid, state, 0.02, environment.gravity, environment.fixed))
-      environment.contact.push_back(touch);
-    const std::vector<Vec3> before = state.displacement;
+    ContactStep contact_step = contact.begin_step(body, solid, state, 0.02, environment.gravity, environment.fixed);
+    if (Potential* potential = contact_step.potential()) environment.contact.push_back(potential);
     solid.step_implicit(state, 0.02, environment);
-    const std::vector<Vec3> after = state.displacement;
-    last = {};
-    contact.resolve(body, solid, before, 0.02, environment.fixed, state, &last);
-    CHECK(state.displacement == after);  // the nodes have met in the step
-    TriangleMesh surface;
-    surface.vertices = contact.positions(), surface.triangles = contact.surface().triangles,
-    surface.site = contact.surface().site;
-    CHECK(count_crossings(surface) == 0);
+    last = contact.finish_step(std::move(contact_step), body, state.displacement);
+    CHECK(count_crossings(mesh_of(contact)) == 0);
   }
   CHECK(last.touching > 10);
   CHECK(last.tracking_error < 0.2 * contact.surface().edge);

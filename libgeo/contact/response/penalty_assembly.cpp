@@ -1,0 +1,134 @@
+#include "contact/response/penalty_assembly.h"
+
+#include <algorithm>
+
+#include "contact/response/contact_constraints.h"
+#include "contact/response/impulses.h"
+#include "kerf/parallel.h"
+
+namespace geo {
+namespace {
+
+// Separation that the penalty keeps beyond the gap, in mean edges: room for the penetration that
+// carries the load, so that the surface can follow its targets.
+constexpr double clearance = 0.02;
+// Distance below which pairs are contact candidates, in mean edges: more than the clearance, since
+// the prediction leaves out the forces of the step.
+constexpr double candidate_distance = 0.05;
+// Share of an existing separation deficit that one step recovers. Recovering all of it at once
+// would throw the walls apart.
+constexpr double recovery = 0.5;
+// Stiffness over that of the material between two nodes, E / (ρ h²) per mass. A contact is deep by
+// about a quarter of what the material between two nodes is compressed.
+constexpr double relative_stiffness = 4;
+
+class PenaltyAssembly {
+ public:
+  PenaltyAssembly(const PenaltyInput& input, MovingSurface& surface, SelfContactPenalty& penalty)
+      : in_(input), surface_(surface), edge_(surface.topology().edge), penalty_(penalty) {
+    // 1 / dt² lets a contact stop in one step what comes at it.
+    const double h = input.free.mean_spacing;
+    for (const Material& m : input.solid.materials().all())
+      stiffness_.push_back(relative_stiffness * m.young / (m.density * h * h) + 1 / (input.dt * input.dt));
+  }
+
+  // Contacts between points of different triangles.
+  void add_near_pairs(NearPairs& near) {
+    const auto& [representative, copies] = surface_.coincidence();
+    const std::vector<Vec3> to = surface_.coincidence().averaged(in_.free_targets);
+    const double reach = candidate_distance * edge_;
+    const SurfaceMotion motion{surface_.topology().triangles, representative, surface_.positions(), to, in_.gap, reach};
+    const auto candidates = watch(motion, near, in_.weights.heaviest(), 2 * constraints_per_node_pair);
+    add(deepest_constraints(contact_constraints(candidates, motion, {in_.dt, 0, reach}), in_.weights,
+                            constraints_per_node_pair),
+        copies, in_.mean_targets, in_.gap + clearance * edge_);
+  }
+
+  // Contacts between the two sides of a closed sheet: coincident vertices.
+  void add_sheet_sides() {
+    const Copies& copies = surface_.coincidence().copies;
+    std::vector<ContactConstraint> sides;
+    const auto normals = vertex_normals(surface_.topology(), surface_.fans(), copies, surface_.positions());
+    add_sheet_constraints(copies, in_.free_targets, normals, -candidate_distance * edge_, {in_.dt}, sides);
+    add(deepest_constraints(sides, in_.weights, constraints_per_node_pair), Copies::each_alone(copies.size()),
+        in_.targets, 0);
+  }
+
+ private:
+  // `at`: targets of vertices at the beginning; `separation`: to be kept, 0 between sides of a
+  // sheet.
+  void add(const std::vector<ContactConstraint>& constraints, const Copies& stands_for, const std::vector<Vec3>& at,
+           double separation) {
+    const std::vector<RelativeStencil> stencils =
+        relative_stencils(in_.weights, constraints, stands_for, in_.free.inverse_mass);
+    std::vector<double> depth(stencils.size());
+    std::vector<Vec3> start(stencils.size());
+    parallel_for(stencils.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const ContactConstraint& c = constraints[i];
+        const double limit = separation > 0 ? std::min(separation, separation_at_rest(c)) : 0;
+        const double deficit = limit - c.normal.dot(position_of(c.a, at) - position_of(c.b, at));
+        depth[i] = deficit > 0 ? recovery * deficit : deficit;
+        start[i] = weighted_sum(stencils[i].entries, in_.displacement);
+      }
+    });
+    penalty_.reserve(stencils);
+    for (std::size_t i = 0; i < stencils.size(); ++i) {
+      // Without the nodes that both points share: near a crack front these would make it too stiff.
+      const double inverse_mass = stencils[i].inverse_mass_a + stencils[i].inverse_mass_b;
+      if (inverse_mass > 0)
+        penalty_.add(stencils[i], constraints[i].normal, depth[i], stiffness(constraints[i], stencils[i]), start[i]);
+    }
+  }
+
+  // How far the two points are apart along the normal in the undeformed body. What was modelled
+  // nearer than the separation to be kept stays so.
+  double separation_at_rest(const ContactConstraint& c) const {
+    const auto rest = [&](const SurfacePoint& p) {
+      Vec3 sum = Vec3::Zero();
+      for (int k = 0; k < p.size; ++k)
+        sum += p.weight[k] * in_.body.surface.point(VertexId(surface_.topology().site[p.vertex[k]]));
+      return sum;
+    };
+    const std::vector<Vec3>& x = surface_.positions();
+    return (rest(c.a) - rest(c.b)).norm() * c.normal.dot((position_of(c.a, x) - position_of(c.b, x)).normalized());
+  }
+
+  // N/m: springs of the two points' materials in series.
+  double stiffness(const ContactConstraint& c, const RelativeStencil& stencil) const {
+    const double a = stiffness_at(c.a), b = stiffness_at(c.b);
+    return a == b ? a / (stencil.inverse_mass_a + stencil.inverse_mass_b)
+                  : 1 / (stencil.inverse_mass_a / a + stencil.inverse_mass_b / b);
+  }
+  double stiffness_at(const SurfacePoint& p) const {
+    const auto node = in_.weights.heaviest()[p.vertex[0]];
+    return stiffness_[node == ~0u ? 0 : in_.solid.materials().number(node)];
+  }
+
+  const PenaltyInput& in_;
+  MovingSurface& surface_;
+  double edge_;  // mean edge of the surface, model units
+  SelfContactPenalty& penalty_;
+  std::vector<double> stiffness_;  // per material, per effective mass, 1/s²
+};
+
+}  // namespace
+
+FreeMotion free_motion(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
+                       const std::vector<std::uint8_t>& fixed) {
+  const std::size_t n = solid.size();
+  FreeMotion free{std::vector<double>(n), state.displacement, 0};
+  for (std::size_t i = 0; i < n; ++i) {
+    free.inverse_mass[i] = 1 / solid.mass(NodeId(i)), free.mean_spacing += body.nodes.spacing[i] / double(n);
+    if (fixed.empty() || !fixed[i]) free.displacement[i] += dt * state.velocity[i] + dt * dt * gravity;
+  }
+  return free;
+}
+
+void assemble_penalty(const PenaltyInput& input, MovingSurface& surface, NearPairs& near, SelfContactPenalty& penalty) {
+  PenaltyAssembly assembly(input, surface, penalty);
+  assembly.add_near_pairs(near);
+  assembly.add_sheet_sides();
+}
+
+}  // namespace geo

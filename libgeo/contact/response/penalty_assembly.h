@@ -1,0 +1,45 @@
+// Assembles the self-contact potential of one implicit time step from the predicted motion of the
+// surface (§ 3.3).
+#pragma once
+
+#include <vector>
+
+#include "contact/detection/near_pairs.h"
+#include "contact/response/self_contact_penalty.h"
+#include "contact/surface/moving_surface.h"
+#include "contact/surface/surface_weights.h"
+
+namespace geo {
+
+/// What the nodes would do in a time step if only inertia and gravity acted.
+struct FreeMotion {
+  std::vector<double> inverse_mass;  ///< per node, 1/kg; fixed nodes included
+  std::vector<Vec3> displacement;    ///< per node, at the end of the step
+  double mean_spacing = 0;           ///< of nodes, model units
+};
+
+/// The free motion of a step of dt seconds that begins at `state`. `fixed`: per node, or empty;
+/// fixed nodes stay where they are.
+FreeMotion free_motion(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
+                       const std::vector<std::uint8_t>& fixed);
+
+/// The beginning of a step and its prediction. Refers to everything.
+struct PenaltyInput {
+  const Body& body;
+  const Solid& solid;
+  const SurfaceWeights& weights;
+  const std::vector<Vec3>& displacement;  ///< per node, at the beginning
+  const FreeMotion& free;
+  const std::vector<Vec3>& targets;       ///< per surface vertex, at the beginning
+  const std::vector<Vec3>& mean_targets;  ///< Coincidence::averaged() of these
+  const std::vector<Vec3>& free_targets;  ///< per surface vertex, at the end of the free motion
+  double dt = 0;                          ///< s
+  double gap = 0;                         ///< that sheets in contact keep, model units
+};
+
+/// Adds to `penalty` the contacts that the free motion may close: pairs of surface points that come
+/// near each other, and the two sides of closed sheets. `near`: is left with the broad phase's
+/// pairs.
+void assemble_penalty(const PenaltyInput& input, MovingSurface& surface, NearPairs& near, SelfContactPenalty& penalty);
+
+}  // namespace geo

@@ -1,0 +1,33 @@
+// Options and statistics of self-contact (§ 3.3).
+#pragma once
+
+#include <cstddef>
+
+namespace geo {
+
+/// Parameters of contact between surfaces of the bodies. Lengths are in mean edge lengths of the
+/// surface.
+struct ContactOptions {
+  double friction = 0.3;  ///< Coulomb's coefficient
+  double gap = 1e-4;      ///< distance that opened sheets of a crack keep
+  /// Two sheets of a crack separate where Eq. 1 has them this far apart along the normal, or three
+  /// times as far tangentially.
+  double opening = 1e-2;
+  double recovery = 0.3;  ///< share of an interpenetration that a step removes, explicit steps only
+  int rounds = 2;         ///< iterations of contact detection and impulses, explicit steps only
+};
+
+/// Statistics of contact, summed over steps.
+struct ContactStats {
+  std::size_t planes = 0;     ///< separating planes used
+  std::size_t touching = 0;   ///< contacts with a force or an impulse
+  std::size_t in_zones = 0;   ///< vertices moved in rigid impact zones
+  std::size_t opened = 0;     ///< vertices of coincident sheets that separated
+  std::size_t held = 0;       ///< steps in which the surface was not moved at all
+  double tracking_error = 0;  ///< largest distance of a vertex from Eq. 1, model units
+  double seconds = 0;         ///< of moving the surface, and of impulses
+  /// Adds counts and seconds; keeps the larger tracking error.
+  ContactStats& operator+=(const ContactStats& o);
+};
+
+}  // namespace geo

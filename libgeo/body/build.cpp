@@ -4,7 +4,9 @@
 #include "body/front_guides.h"
 #include "body/locate.h"
 #include "body/nodes.h"
-#include "graph/guides.h"
+#include "graph/build_graph.h"
+#include "graph/guide_edges.h"
+#include "graph/update.h"
 #include "kerf/error.h"
 
 namespace geo {
@@ -47,9 +49,13 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
     count_pieces(body);
     auto found = find_disagreement(body, component);
     mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
-      update_graph(
-          body.nodes, first_new, {}, {}, [&](const Box3& box, auto& out) { triangles_near(body.surface, box, out); },
-          body.k, body.grid, body.graph, joins);
+      update_graph({.nodes = body.nodes,
+                    .grid = body.grid,
+                    .first_new = first_new,
+                    .k = body.k,
+                    .triangles_near = triangles_near(body.surface),
+                    .joins = joins},
+                   body.graph);
     });
   }
   if (body.guides > 0) add_guides(body.nodes, body.grid, obstacles, all_guides(body), body.graph);

@@ -2,6 +2,8 @@
 
 #include "body/connect.h"
 #include "body/locate.h"
+#include "graph/build_graph.h"
+#include "graph/graph_storage.h"
 #include "kerf/body.h"
 #include "kerf/pieces.h"
 
@@ -15,6 +17,7 @@ BodyReport check_body(const Body& body) {
   const Complex& k = body.surface;
   const std::size_t n = body.nodes.size();
   std::vector<std::uint32_t> component;
+  const GraphStorage& graph = body.graph.storage();
   report.graph_components = body.graph.components(component);
   const Pieces pieces = find_pieces(k);
   report.pieces = pieces.count;
@@ -43,10 +46,10 @@ BodyReport check_body(const Body& body) {
         note("edge " + std::to_string(i) + "-" + std::to_string(j.value) + " crosses a face");
       }
   }
-  for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) {
-    const auto id = VisibilityGraph::first_guide + g;
-    for (const auto j : body.graph.entries(id).to)
-      if (is_blocked(k, body.graph.position(body.nodes, j), body.graph.position(body.nodes, id))) {
+  for (std::uint32_t g = 0; g < graph.guides().size(); ++g) {
+    const auto id = GraphStorage::guide_id(g);
+    for (const auto j : graph.entries(id).to)
+      if (is_blocked(k, graph.position(body.nodes, j), graph.position(body.nodes, id))) {
         ++report.edges_crossing;
         note("an edge of guide " + std::to_string(g) + " crosses a face");
       }
@@ -70,7 +73,7 @@ BodyReport check_body(const Body& body) {
   VisibilityGraph scratch = body.graph;
   build_neighborhoods(body.nodes, scratch, TriangleBvh(soup));
   for (std::size_t i = 0; i < n; ++i)
-    if (!(scratch.rows().row(i) == body.graph.rows().row(i))) {
+    if (!(scratch.row(NodeId(i)) == body.graph.row(NodeId(i)))) {
       note("the neighbours of node " + std::to_string(i) + " are not those that a build from scratch finds");
       break;
     }

@@ -4,7 +4,8 @@
 
 #include "body/locate.h"
 #include "geometry/distance.h"
-#include "graph/place_guides.h"
+#include "graph/graph_storage.h"
+#include "graph/guide_placement.h"
 
 namespace geo {
 namespace {
@@ -57,7 +58,7 @@ std::vector<Guide> all_guides(const Body& body) {
 GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideChange change;
   if (body.guides == 0) return change;
-  const GuideSet& guides = body.graph.guides();
+  const GuideSet& guides = body.graph.storage().guides();
   // Guides stand closer to their edges than a 64th of their radius; what a face comes that near to
   // has lost its edge.
   std::vector<std::uint32_t> near, others;
@@ -73,7 +74,7 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
       if (guides.retired(g)) continue;
       const bool reached =
           fresh && (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm() <= guides.radius(g) / 64;
-      (reached ? change.retired : others).push_back(VisibilityGraph::first_guide + g);
+      (reached ? change.retired : others).push_back(GraphStorage::guide_id(g));
     }
   }
   const auto tidy = [](std::vector<std::uint32_t>& ids) {
@@ -84,7 +85,7 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideSet taken;
   for (const auto g : others)
     if (!std::binary_search(change.retired.begin(), change.retired.end(), g))
-      taken.add({guides.position(VisibilityGraph::place(g)), guides.radius(VisibilityGraph::place(g))});
+      taken.add({guides.position(GraphStorage::index_of(g)), guides.radius(GraphStorage::index_of(g))});
   std::vector<FaceId> faces = crack.new_faces;
   std::sort(faces.begin(), faces.end());
   change.added = guides_at(body, faces, taken);

@@ -1,6 +1,7 @@
 // Guides of a body (§ 8): along all of its surface, and along what a step makes of it.
 #pragma once
 
+#include "graph/guide_set.h"
 #include "kerf/body.h"
 
 namespace geo {

@@ -13,6 +13,10 @@ void triangles_near(const Complex& complex, const Box3& box, std::vector<std::ar
   for (const FaceId f : faces) out.push_back(complex.corners(f));
 }
 
+std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)> triangles_near(const Complex& complex) {
+  return [&complex](const Box3& box, std::vector<std::array<Vec3, 3>>& out) { triangles_near(complex, box, out); };
+}
+
 bool touches(const Complex& complex, FaceId f, const Vec3& p, const Vec3& q) {
   const auto t = complex.corners(f);
   return segment_meets_triangle(p, q, t[0], t[1], t[2]);

@@ -7,8 +7,10 @@
 
 namespace geo {
 
-/// The triangles of K whose boxes meet a box, as update_graph asks for them.
+/// Appends the triangles of K whose boxes meet a box.
 void triangles_near(const Complex& complex, const Box3& box, std::vector<std::array<Vec3, 3>>& out);
+/// The same as a function of the box. Refers to the complex, which must outlive it.
+std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)> triangles_near(const Complex& complex);
 
 /// True when the face touches the closed segment pq: exact.
 bool touches(const Complex& complex, FaceId f, const Vec3& p, const Vec3& q);

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "base/random.h"
+#include "body/binding.h"
 #include "body/connect.h"
 #include "body/locate.h"
 #include "body/way_along.h"
@@ -83,7 +84,7 @@ bool join_by_sight(const Body& body, Neighborhood& pieces, const std::vector<std
     for (const auto other : pieces.nearest(NodeId(part[n]), 8, part)) {
       const Vec3 &p = body.nodes.position[part[n]], &q = body.nodes.position[other];
       const auto [low, high] = std::minmax(part[n], other);
-      if ((p - q).norm() > body.graph.plain_unit() * 0x1p26 ||
+      if ((p - q).norm() > longest_reach(body) ||
           is_blocked(body.surface, body.nodes.position[low], body.nodes.position[high]))
         continue;
       joins.push_back({NodeId(low), NodeId(high)});

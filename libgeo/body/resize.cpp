@@ -5,6 +5,7 @@
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "body/upkeep.h"
+#include "graph/update.h"
 #include "kerf/error.h"
 
 namespace geo {
@@ -28,12 +29,14 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
     now = radius;
   }
   if (resized.empty()) return delta;
-  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
-    triangles_near(body.surface, box, out);
-  };
-  delta.updated_nodes =
-      update_graph(body.nodes, delta.first_new_node, {}, {}, near, body.k, body.grid, body.graph, {}, {}, {}, resized)
-          .updated_nodes;
+  delta.updated_nodes = update_graph({.nodes = body.nodes,
+                                      .grid = body.grid,
+                                      .first_new = delta.first_new_node,
+                                      .k = body.k,
+                                      .triangles_near = triangles_near(body.surface),
+                                      .resized = resized},
+                                     body.graph)
+                            .updated_nodes;
   mark_debris(body, delta.updated_nodes);
   // How far a node looks for its closest vertex is its radius.
   delta.rebound = rebind(body, {}, delta.first_new_node, resized);

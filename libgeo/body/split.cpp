@@ -8,6 +8,7 @@
 #include "body/connect.h"
 #include "body/front_guides.h"
 #include "body/locate.h"
+#include "graph/update.h"
 
 namespace geo {
 namespace {
@@ -30,16 +31,21 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work, const Prog
   for (const FaceId f : delta.crack.new_faces) faces.push_back(body.surface.corners(f));
   // Where rounding moved a part of a face, two nodes may see each other past it now.
   for (const FaceId f : delta.crack.removed_faces) faces.push_back(body.surface.corners(f));
-  const auto near = [&](const Box3& box, std::vector<std::array<Vec3, 3>>& out) {
-    triangles_near(body.surface, box, out);
-  };
+  const TrianglesNear near = triangles_near(body.surface);
 
   report(progress, "new nodes", 0, delta.crack.new_crack_faces.size());
   delta.moved_nodes = move_off(body, delta.crack.new_crack_faces);
   if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 0, body.updates);
   const double resample = since(clock);
-  auto update = update_graph(body.nodes, delta.first_new_node, delta.moved_nodes, faces, near, body.k, body.grid,
-                             body.graph, {}, guides_after(body, delta.crack), progress);
+  auto update = update_graph({.nodes = body.nodes,
+                              .grid = body.grid,
+                              .first_new = delta.first_new_node,
+                              .k = body.k,
+                              .triangles_near = near,
+                              .new_faces = faces,
+                              .moved = delta.moved_nodes,
+                              .guides = guides_after(body, delta.crack)},
+                             body.graph, progress);
   std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
   // Each piece that the crack cut off needs nodes, connected among themselves.
   bool recounted = false;
@@ -51,7 +57,13 @@ BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work, const Prog
                                              delta.first_new_node);
   const std::size_t sampled = body.nodes.size();
   mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
-    const auto more = update_graph(body.nodes, first_new, {}, {}, near, body.k, body.grid, body.graph, joins);
+    const auto more = update_graph({.nodes = body.nodes,
+                                    .grid = body.grid,
+                                    .first_new = first_new,
+                                    .k = body.k,
+                                    .triangles_near = near,
+                                    .joins = joins},
+                                   body.graph);
     updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
   });
   delta.parted = parted_nodes(body, offcuts, found);

@@ -4,18 +4,18 @@
 
 namespace geo {
 
-BlockRelease::BlockRelease(const NodeSet& nodes, VisibilityGraph& graph, std::size_t run, RowStore& to)
+BlockRelease::BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run, AdjacencyStore& to)
     : graph_(graph), to_(to) {
   const std::size_t n = nodes.size();
   // A search goes by bounds of edges, which are low by less than 2¹⁰: by a share of the least of them at most. Where
   // that is nothing it may go anywhere, and all blocks are kept.
   std::uint32_t least = unit_radius;
-  for (std::uint32_t i = 0; i < n; ++i) least = std::min(least, VisibilityGraph::bound(graph.rows().least(i)));
-  const VisibilityGraph& all = graph;
+  for (std::uint32_t i = 0; i < n; ++i) least = std::min(least, AdjacencyRow::bound(graph.rows().lowest_bound(i)));
+  const GraphStorage& all = graph;
   for (std::uint32_t g = 0; g < graph.guides().size(); ++g)
-    least = std::min(least, VisibilityGraph::bound(all.store(VisibilityGraph::first_guide).least(g)));
+    least = std::min(least, AdjacencyRow::bound(all.store(GraphStorage::guide_id(0)).lowest_bound(g)));
   if (least == 0) return;
-  const double reach = graph.reach() * (1 + 1024.0 / least) * (1 + 1e-6);
+  const double reach = graph.longest_edge() * (1 + 1024.0 / least) * (1 + 1e-6);
   blocks_.resize(graph.rows().block_count());
   for (std::size_t i = 0; i < n; ++i) {
     if (i % run == 0) read_.emplace_back();

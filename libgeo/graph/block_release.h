@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kerf/graph.h"
+#include "graph/graph_storage.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -15,13 +15,13 @@ namespace geo {
 class BlockRelease {
  public:
   /// Run c is of the nodes from c · `run` on, `run` of them or those that are left.
-  BlockRelease(const NodeSet& nodes, VisibilityGraph& graph, std::size_t run, RowStore& to);
+  BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run, AdjacencyStore& to);
   /// Called once for each run, when its rows are in the store; from several threads.
   void done(std::size_t run);
 
  private:
-  VisibilityGraph& graph_;
-  RowStore& to_;
+  GraphStorage& graph_;
+  AdjacencyStore& to_;
   std::vector<Box3> read_, blocks_;               // what each run may read, and what is in each block
   std::vector<std::atomic<std::uint32_t>> runs_;  // of each block, so many are left
 };

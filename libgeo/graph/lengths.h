@@ -5,14 +5,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include "graph/node_tree.h"
+#include "kerf/graph.h"
 #include "kerf/nodes.h"
 #include "kerf/vec.h"
 
 namespace geo {
 
-/// The support radius in units of warped length.
-constexpr std::uint32_t unit_radius = 1u << 24;
 /// No length is longer than this.
 constexpr std::uint32_t longest_length = 1u << 30;
 

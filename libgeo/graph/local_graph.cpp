@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "graph/lane_search.h"
+#include "graph/batched_search.h"
 
 namespace geo {
 inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
@@ -17,7 +17,7 @@ inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
 }
 
 // Which nodes and edges: a search from all sources at once, with bounds from below in place of lengths.
-void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint32_t> sources) {
+void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_t> sources) {
   const auto count = static_cast<std::uint32_t>(sources.size());
   numbers_.clear();
   discovered_ = 0;
@@ -28,15 +28,15 @@ void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint
     queue_[tail++] = number, discoveries_[number].reach = 0, queued_[number] = 1;
   const auto leads_on = [&](std::uint32_t number) {
     const Discovery& d = discoveries_[number];
-    return d.reach + VisibilityGraph::bound(graph.store(d.id).least(VisibilityGraph::place(d.id))) < unit_radius;
+    return d.reach + AdjacencyRow::bound(graph.store(d.id).lowest_bound(GraphStorage::index_of(d.id))) < unit_radius;
   };
-  const auto prefetch_place = [&](std::uint32_t id) { graph.store(id).prefetch_place(VisibilityGraph::place(id)); };
-  const auto prefetch = [&](std::uint32_t id) { graph.store(id).prefetch(VisibilityGraph::place(id)); };
+  const auto prefetch_location = [&](std::uint32_t id) { graph.store(id).prefetch_location(GraphStorage::index_of(id)); };
+  const auto prefetch = [&](std::uint32_t id) { graph.store(id).prefetch(GraphStorage::index_of(id)); };
   for (std::size_t at = 0; at < tail; ++at) {
     const auto number = queue_[at];
     queued_[number] = 0;
     constexpr std::size_t ahead = 6;
-    if (at + 2 * ahead < tail) prefetch_place(discoveries_[queue_[at + 2 * ahead]].id);
+    if (at + 2 * ahead < tail) prefetch_location(discoveries_[queue_[at + 2 * ahead]].id);
     if (at + ahead < tail && leads_on(queue_[at + ahead])) prefetch(discoveries_[queue_[at + ahead]].id);
     if (number >= count && !leads_on(number)) continue;
     const auto reach = discoveries_[number].reach;
@@ -47,7 +47,7 @@ void LocalGraph::explore(const VisibilityGraph& graph, std::span<const std::uint
     if (next_.size() < size + vector) next_.resize(2 * size + vector);
     if (queue_.size() < tail + size) queue_.resize(2 * tail + size);
     auto* const targets = targets_.data() + used;
-    const std::size_t edges = edges_that_lead_on(row, reach, targets, next_.data());
+    const std::size_t edges = edges_within_support(row, reach, targets, next_.data());
     for (std::size_t k = 0; k < edges; ++k) {
       const auto to = targets[k] = discover(targets[k]);
       auto& known = discoveries_[to].reach;
@@ -101,7 +101,7 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
                                               [&](auto to) { return to >= nodes_; });
 }
 
-void LocalGraph::gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources) {
+void LocalGraph::gather(const NodeSet& nodes, const GraphStorage& graph, std::span<const std::uint32_t> sources) {
   explore(graph, sources);
   nodes_ = 0;
   id_.resize(discovered_), place_.resize(discovered_), places_.resize(discovered_), number_.resize(discovered_);
@@ -110,7 +110,7 @@ void LocalGraph::gather(const NodeSet& nodes, const VisibilityGraph& graph, std:
     id_[local] = id, number_[local] = number, place_[number] = local;
     const Vec3& p = graph.position(nodes, id);
     places_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
-    nodes_ += !VisibilityGraph::is_guide(id);
+    nodes_ += !GraphStorage::is_guide(id);
     ++local;
   });
   first_.assign(1, 0), limit_.clear();

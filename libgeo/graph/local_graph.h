@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "graph/id_pages.h"
-#include "kerf/graph.h"
+#include "graph/id_numbering.h"
+#include "graph/graph_storage.h"
 
 namespace geo {
 
@@ -24,7 +24,7 @@ class LocalGraph {
   }
 
   /// Everything within a support radius of one of the sources (ascending; best near each other).
-  void gather(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const std::uint32_t> sources);
+  void gather(const NodeSet& nodes, const GraphStorage& graph, std::span<const std::uint32_t> sources);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(id_.size()); }
   /// Of them, the first so many are nodes; the rest, if any, are guides.
@@ -35,7 +35,7 @@ class LocalGraph {
   std::uint32_t source(std::size_t k) const { return place_[k]; }
   Vec3 position(std::uint32_t local) const { return {places_[local].x, places_[local].y, places_[local].z}; }
   /// Has the k-th source edges that join no neighbours: as long as the support, which are not here, or to guides?
-  bool has_bare_edges(std::size_t k) const { return bare_edges_[k]; }
+  bool has_edge_only_entries(std::size_t k) const { return bare_edges_[k]; }
   /// By class of length. A node has those edges only that lead to a neighbour of a source.
   std::span<const Edge> edges(std::uint32_t local) const {
     return {edges_.data() + first_[local], edges_.data() + first_[local + 1]};
@@ -52,11 +52,11 @@ class LocalGraph {
     std::uint32_t begin, end;  // of its targets
   };
   std::uint32_t discover(std::uint32_t id);
-  void explore(const VisibilityGraph& graph, std::span<const std::uint32_t> sources);
+  void explore(const GraphStorage& graph, std::span<const std::uint32_t> sources);
   void measure(std::uint32_t number, bool source);
 
   // By number, in the order of discovery; sources come first.
-  IdPages numbers_;
+  IdNumbering numbers_;
   std::uint32_t discovered_ = 0;
   std::vector<Discovery> discoveries_;
   std::vector<std::uint8_t> queued_, bare_edges_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "graph/nearest_internal.h"
+#include "graph/nearest_lanes.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 

@@ -12,7 +12,7 @@
 #include <bit>
 #include <cmath>
 
-#include "graph/nearest_internal.h"
+#include "graph/nearest_lanes.h"
 
 #ifndef KERF_NEAREST_LANES_ONCE
 #define KERF_NEAREST_LANES_ONCE

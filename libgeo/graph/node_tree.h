@@ -9,11 +9,8 @@
 
 namespace geo {
 
-/// The square of the distance between two nodes as the graph compares it: in doubles, in this order of rounding.
+/// The square of a vector's length, rounded as squared_distance() is.
 inline double square_of(double x, double y, double z) { return (x * x + y * y) + z * z; }
-inline double squared_distance(const Vec3& p, const Vec3& q) {
-  return square_of(p.x() - q.x(), p.y() - q.y(), p.z() - q.z());
-}
 
 /// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot tell nodes apart,
 /// they are coded anew within their own box. So any distribution gives small leaves, and O(n) time but for one sort of

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "body/nodes.h"
+#include "graph/graph_storage.h"
 #include "io/body_sections.h"
 #include "io/json_integer.h"
 
@@ -63,7 +64,7 @@ void add_nodes(Arrays& a) {
 
 // Only where there are some; their edges to nodes are in the nodes' rows.
 void add_guides(Arrays& a) {
-  const GuideSet& guides = a.body.graph.guides();
+  const GuideSet& guides = a.body.graph.storage().guides();
   if (guides.size() == 0) return;
   a.add<double>("guides/position", guides.size(), 3, [&guides](KerfSink& out) {
     for (std::uint32_t g = 0; g < guides.size(); ++g)
@@ -72,7 +73,7 @@ void add_guides(Arrays& a) {
   a.add<double>("guides/radius", guides.size(), 1, [&guides](KerfSink& out) {
     for (std::uint32_t g = 0; g < guides.size(); ++g) out.put(guides.radius(g));
   });
-  a.guide_edges = a.body.graph.guide_edges();
+  a.guide_edges = a.body.graph.storage().guide_edges();
   a.add("guides/edges",
         std::span<const std::uint32_t>(a.guide_edges.empty() ? nullptr : a.guide_edges[0].data(),
                                        2 * a.guide_edges.size()),
@@ -81,11 +82,11 @@ void add_guides(Arrays& a) {
 
 // Edges and neighbours. Rows are given by their lengths: what changes in one row changes no other.
 void add_rows(Arrays& a) {
-  const RowStore& rows = a.body.graph.rows();
+  const AdjacencyStore& rows = a.body.graph.storage().rows();
   const std::size_t n = rows.size();
   std::uint64_t entries = 0, paths = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const RowView row = rows.row(i);
+    const AdjacencyRow row = rows.row(i);
     entries += row.to.size(), paths += row.paths.size();
   }
   const auto each = [&rows, n](const auto& part) {
@@ -93,13 +94,13 @@ void add_rows(Arrays& a) {
       for (std::size_t i = 0; i < n; ++i) out.write(std::as_bytes(part(rows.row(i))));
     };
   };
-  a.add<double>("graph/plain_unit", 1, 1, [&body = a.body](KerfSink& out) { out.put(body.graph.plain_unit()); });
+  a.add<double>("graph/plain_unit", 1, 1, [&body = a.body](KerfSink& out) { out.put(body.graph.storage().plain_unit()); });
   a.add<std::uint32_t>("graph/count", n, 1, [&rows, n](KerfSink& out) {
     for (std::size_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(rows.entries(i).to.size()));
   });
-  a.add<std::uint32_t>("graph/to", entries, 1, each([](const RowView& row) { return row.to; }));
-  a.add<std::uint16_t>("graph/bits", entries, 1, each([](const RowView& row) { return row.bits; }));
-  a.add<float>("graph/paths", paths, 1, each([](const RowView& row) { return row.paths; }));
+  a.add<std::uint32_t>("graph/to", entries, 1, each([](const AdjacencyRow& row) { return row.to; }));
+  a.add<std::uint16_t>("graph/bits", entries, 1, each([](const AdjacencyRow& row) { return row.bits; }));
+  a.add<float>("graph/paths", paths, 1, each([](const AdjacencyRow& row) { return row.paths; }));
 }
 
 void add_binding(Arrays& a) {
@@ -235,7 +236,7 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
     std::map<std::uint32_t, std::pair<std::uint16_t, float>> row;
     for (const NodeId j : edges.edges(NodeId(i)))
       row[j.value] = {
-          VisibilityGraph::edge_bit | VisibilityGraph::path_bit | VisibilityGraph::bits_of_bound(unit_radius), 0};
+          AdjacencyRow::edge_bit | AdjacencyRow::path_bit | AdjacencyRow::bits_of_bound(unit_radius), 0};
     for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
       if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e]))
         in.fail("neighbour " + std::to_string(e) + " is out of range");
@@ -243,18 +244,18 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
       const auto straight =
           static_cast<float>(std::sqrt(squared_distance(nodes.position[i], nodes.position[neighbor[e]])));
       const bool hidden = distance[e] > std::nextafter(straight, 2 * straight);
-      const std::uint16_t kind = row.count(neighbor[e]) ? VisibilityGraph::edge_bit
-                                 : hidden               ? VisibilityGraph::path_bit
+      const std::uint16_t kind = row.count(neighbor[e]) ? AdjacencyRow::edge_bit
+                                 : hidden               ? AdjacencyRow::path_bit
                                                         : 0;
-      row[neighbor[e]] = {kind | VisibilityGraph::bits_of_bound(warped[e]), distance[e]};
+      row[neighbor[e]] = {kind | AdjacencyRow::bits_of_bound(warped[e]), distance[e]};
     }
     count.push_back(static_cast<std::uint32_t>(row.size()));
     for (const auto& [j, entry] : row) {
       to.push_back(j), bits.push_back(entry.first);
-      if (RowStore::has_path(entry.first)) paths.push_back(entry.second);
+      if (AdjacencyRow::has_path(entry.first)) paths.push_back(entry.second);
     }
   }
-  body.graph = VisibilityGraph::from_rows(nodes, unit, count, to, bits, paths);
+  body.graph.storage() = GraphStorage::from_arrays(nodes, unit, {count, to, bits, paths});
 }
 
 std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::uint32_t, 2>>& edges) {
@@ -284,7 +285,8 @@ void read_rows(const KerfFile& in, Body& body) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   const auto guides = read_guides(in, edges);
   try {
-    body.graph = VisibilityGraph::from_rows(body.nodes, unit[0], count, to, bits, paths, guides, edges);
+    body.graph.storage() =
+        GraphStorage::from_arrays(body.nodes, unit[0], {count, to, bits, paths, guides, edges});
   } catch (const InputError& e) {
     in.fail(e.what());
   }

@@ -3,8 +3,8 @@
 
 #include "graph.h"
 #include "graph/concave_shapes.h"
-#include "graph/guides.h"
-#include "graph/place_guides.h"
+#include "graph/guide_edges.h"
+#include "graph/guide_placement.h"
 #include "graph/update.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
@@ -135,8 +135,14 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
       timed(rows[with], [&] { geo::build_neighborhoods(c.nodes, graph, tree); });
       whole[with] = graph;
       timed(update[with], [&] {
-        const auto result = geo::update_graph(c.nodes, NodeId(c.nodes.size()), {}, crack, near, 26, grid, graph, {},
-                                              {with ? front : std::vector<geo::Guide>(), {}});
+        const auto result = geo::update_graph({.nodes = c.nodes,
+                                               .grid = grid,
+                                               .first_new = NodeId(c.nodes.size()),
+                                               .k = 26,
+                                               .triangles_near = near,
+                                               .new_faces = crack,
+                                               .guides = {with ? front : std::vector<geo::Guide>(), {}}},
+                                              graph);
         updated[with] = result.updated_nodes.size();
       });
     }

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "graph.h"
-#include "graph/reference_rows.h"
+#include "graph/reference_neighborhoods.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
 

@@ -48,7 +48,13 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
   std::size_t cut = 0, updated = 0;
   const auto step = [&](const Soup& faces) {
     const double start = cpu_seconds();
-    const auto update = geo::update_graph(c.nodes, geo::NodeId(c.nodes.size()), {}, faces, near, 26, grid, graph);
+    const auto update = geo::update_graph({.nodes = c.nodes,
+                                            .grid = grid,
+                                            .first_new = geo::NodeId(c.nodes.size()),
+                                            .k = 26,
+                                            .triangles_near = near,
+                                            .new_faces = faces},
+                                           graph);
     const double seconds = cpu_seconds() - start;
     cut += update.cut_edges.size(), updated += update.updated_nodes.size();
     return seconds;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "graph/place_guides.h"
+#include "graph/guide_placement.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
 

@@ -27,7 +27,7 @@ TEST_CASE("edges are those that no triangle touches") {
       const bool blocked =
           segment_meets_triangle(nodes.position[i], nodes.position[j.index()], wall[0][0], wall[0][1], wall[0][2]) ||
           segment_meets_triangle(nodes.position[i], nodes.position[j.index()], wall[1][0], wall[1][1], wall[1][2]);
-      REQUIRE(graph.has(NodeId(i), j) == !blocked);
+      REQUIRE(graph.has_edge(NodeId(i), j) == !blocked);
     }
   CHECK(graph == build_visibility_graph(nodes, tree, 26));
 }

@@ -5,9 +5,9 @@
 
 #include "cases.h"
 #include "concave_shapes.h"
-#include "graph/guides.h"
-#include "graph/lane_search.h"
-#include "graph/place_guides.h"
+#include "graph/guide_edges.h"
+#include "graph/batched_search.h"
+#include "graph/guide_placement.h"
 #include "kerf/error.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"

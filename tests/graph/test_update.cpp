@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cases.h"
-#include "graph/guides.h"
+#include "graph/guide_edges.h"
 #include "graph/update.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
@@ -42,29 +42,39 @@ struct Cut {
       for (const auto& t : all)
         if (box_of(t[0], t[1], t[2]).meets(box)) out.push_back(t);
     };
-    return update_graph(nodes, first, moved, fresh, near, k, grid, graph, joins, guides, {}, resized);
+    return update_graph({.nodes = nodes,
+                         .grid = grid,
+                         .first_new = first,
+                         .k = k,
+                         .triangles_near = near,
+                         .new_faces = fresh,
+                         .moved = moved,
+                         .resized = resized,
+                         .joins = joins,
+                         .guides = guides},
+                        graph);
   }
 };
 
 // The same edges, of which nothing else is known yet.
 VisibilityGraph edges_alone(const NodeSet& nodes, const VisibilityGraph& graph) {
   VisibilityGraph bare;
-  bare.resize(nodes.size());
-  bare.set_plain_unit(graph.plain_unit());
+  bare.storage().resize(nodes.size());
+  bare.storage().set_plain_unit(graph.storage().plain_unit());
   for (std::uint32_t i = 0; i < nodes.size(); ++i)
     for (const NodeId j : graph.edges(NodeId(i)))
       if (i < j.value) bare.add(nodes, NodeId(i), j);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_guides;
-  for (std::uint32_t g = 0; g < graph.guides().size(); ++g) {
-    const auto id = bare.add_guide({graph.guides().position(g), graph.guides().radius(g)});
-    if (graph.guides().retired(g)) bare.retire_guide(id);
-    for (const auto other : graph.entries(id).to) {
+  for (std::uint32_t g = 0; g < graph.storage().guides().size(); ++g) {
+    const auto id = bare.storage().add_guide({graph.storage().guides().position(g), graph.storage().guides().radius(g)});
+    if (graph.storage().guides().retired(g)) bare.storage().retire_guide(id);
+    for (const auto other : graph.storage().entries(id).to) {
       of_guides.push_back({id, other});
       if (!VisibilityGraph::is_guide(other)) of_guides.push_back({other, id});
     }
   }
   std::sort(of_guides.begin(), of_guides.end());
-  bare.append_guide_edges(nodes, of_guides);
+  bare.storage().append_guide_edges(nodes, of_guides);
   return bare;
 }
 
@@ -81,8 +91,8 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
     }
   REQUIRE(cut.graph.edge_count() == edges / 2);
   // Guides see what they see within their reach, no more and no less.
-  for (std::uint32_t g = 0; g < cut.graph.guides().size(); ++g) {
-    const auto& guides = cut.graph.guides();
+  for (std::uint32_t g = 0; g < cut.graph.storage().guides().size(); ++g) {
+    const auto& guides = cut.graph.storage().guides();
     const Vec3& p = guides.position(g);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < cut.nodes.size(); ++i)
@@ -94,25 +104,25 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
           h != g && !guides.retired(g) && !guides.retired(h) && squared_distance(p, guides.position(h)) <= r * r &&
           !tree.blocks(guides.position(h), p))
         expected.push_back(VisibilityGraph::first_guide + h);
-    const auto row = cut.graph.entries(VisibilityGraph::first_guide + g);
+    const auto row = cut.graph.storage().entries(VisibilityGraph::first_guide + g);
     CAPTURE(g);
     REQUIRE(std::vector<std::uint32_t>(row.to.begin(), row.to.end()) == expected);
     for (std::size_t e = 0; e < row.to.size(); ++e) {
-      REQUIRE(cut.graph.has(NodeId(row.to[e]), NodeId(VisibilityGraph::first_guide + g)));
-      REQUIRE((VisibilityGraph::is_edge(row.bits[e]) && !VisibilityGraph::is_neighbor(row.bits[e])));
+      REQUIRE(cut.graph.has_edge(NodeId(row.to[e]), NodeId(VisibilityGraph::first_guide + g)));
+      REQUIRE((AdjacencyRow::is_edge(row.bits[e]) && !AdjacencyRow::is_neighbor(row.bits[e])));
     }
   }
   REQUIRE(cut.graph.edge_count() == before.edge_count() - update.cut_edges.size() + update.added_edges.size());
   VisibilityGraph scratch = edges_alone(cut.nodes, cut.graph);
   build_neighborhoods(cut.nodes, scratch, tree);
-  for (std::uint32_t g = 0; g < cut.graph.guides().size(); ++g) {
+  for (std::uint32_t g = 0; g < cut.graph.storage().guides().size(); ++g) {
     CAPTURE(g);
-    REQUIRE(cut.graph.entries(VisibilityGraph::first_guide + g) == scratch.entries(VisibilityGraph::first_guide + g));
+    REQUIRE(cut.graph.storage().entries(VisibilityGraph::first_guide + g) == scratch.storage().entries(VisibilityGraph::first_guide + g));
   }
   for (std::size_t i = 0; i < cut.nodes.size(); ++i, ++rows_compared) {
     CAPTURE(i);
-    REQUIRE(cut.graph.rows().row(i) == scratch.rows().row(i));
-    const bool same = i < before.node_count() && before.rows().row(i) == cut.graph.rows().row(i);
+    REQUIRE(cut.graph.storage().rows().row(i) == scratch.storage().rows().row(i));
+    const bool same = i < before.node_count() && before.storage().rows().row(i) == cut.graph.storage().rows().row(i);
     const bool listed = std::binary_search(update.updated_nodes.begin(), update.updated_nodes.end(), NodeId(i));
     REQUIRE((same || listed));
   }
@@ -214,7 +224,7 @@ TEST_CASE("updates with any faces, and nodes inserted, moved, resized and joined
       }
       GuideChange guides{random_guides(random, guided ? static_cast<int>(random.below(6)) : 0, fresh), {}};
       for (std::uint32_t m = guided ? random.below(3) : 0; m > 0; --m) {
-        const auto g = VisibilityGraph::first_guide + random.below(cut.graph.guides().size());
+        const auto g = VisibilityGraph::first_guide + random.below(cut.graph.storage().guides().size());
         if (std::find(guides.retired.begin(), guides.retired.end(), g) == guides.retired.end())
           guides.retired.push_back(g);
       }
@@ -253,17 +263,17 @@ TEST_CASE("updates where a face cuts hardly more than one edge of a guide") {
              random_guides(random, 60, walls));
     for (int step = 0; step < 12; ++step) {
       CAPTURE(step);
-      const auto g = VisibilityGraph::first_guide + random.below(body.graph.guides().size());
-      const auto row = body.graph.entries(g);
+      const auto g = VisibilityGraph::first_guide + random.below(body.graph.storage().guides().size());
+      const auto row = body.graph.storage().entries(g);
       if (row.to.empty()) continue;
-      const Vec3 p = body.graph.position(body.nodes, g),
-                 q = body.graph.position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
+      const Vec3 p = body.graph.storage().position(body.nodes, g),
+                 q = body.graph.storage().position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
       const Vec3 at = p + random.uniform(0.2, 0.8) * (q - p), u = (q - p).unitOrthogonal(),
                  v = u.cross((q - p).normalized());
       const VisibilityGraph before = body.graph;
       const auto update =
           body.step(NodeId(body.nodes.size()), {}, {{at + 0.002 * u, at + 0.002 * (v - u), at - 0.002 * (v + u)}});
-      cut += !(before.entries(g).to.size() == body.graph.entries(g).to.size());
+      cut += !(before.storage().entries(g).to.size() == body.graph.storage().entries(g).to.size());
       require_as_from_scratch(body, update, before, rows_compared);
     }
   }

@@ -101,10 +101,10 @@ inline std::string fault_of(const Body& body, double volume) {
   if (std::abs(total(body.nodes.volume) - volume) > 1e-12 * volume)
     return "the volumes of the nodes do not sum to what they did";
 
-  for (std::uint32_t g = 0; g < body.graph.guides().size(); ++g) {
+  for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g) {
     const auto id = VisibilityGraph::first_guide + g;
-    for (const auto to : body.graph.entries(id).to)
-      if (to < id && faces.blocks(body.graph.position(body.nodes, to), body.graph.guides().position(g)))
+    for (const auto to : body.graph.storage().entries(id).to)
+      if (to < id && faces.blocks(body.graph.storage().position(body.nodes, to), body.graph.storage().guides().position(g)))
         return "an edge of guide " + name(g) + " crosses a face";
   }
 
@@ -117,10 +117,10 @@ inline std::string fault_of(const Body& body, double volume) {
   VisibilityGraph scratch = body.graph;
   build_neighborhoods(body.nodes, scratch, faces);
   for (std::uint32_t i = 0; i < x.size(); ++i) {
-    const RowView a = scratch.rows().row(i), b = body.graph.rows().row(i);
+    const AdjacencyRow a = scratch.storage().rows().row(i), b = body.graph.storage().rows().row(i);
     if (a == b) continue;
     const auto [at, other] = std::mismatch(a.to.begin(), a.to.end(), b.to.begin(), b.to.end());
-    const auto tell = [](const RowView& row, auto n) { return n == row.to.end() ? "none" : std::to_string(*n); };
+    const auto tell = [](const AdjacencyRow& row, auto n) { return n == row.to.end() ? "none" : std::to_string(*n); };
     return "the row of node " + name(i) + " is not that of scratch: " + tell(b, other) + " for " + tell(a, at) +
            " is the first other node";
   }
@@ -171,7 +171,7 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
   std::vector<std::pair<double, std::uint32_t>> near;
   const auto sees = [&](std::uint32_t i, std::uint32_t j) {
     const auto [low, high] = std::minmax(i, j);
-    return !faces.blocks(body.graph.position(body.nodes, low), body.graph.position(body.nodes, high));
+    return !faces.blocks(body.graph.storage().position(body.nodes, low), body.graph.storage().position(body.nodes, high));
   };
   const auto is_moved = [&](std::uint32_t i) {
     return std::binary_search(delta.moved_nodes.begin(), delta.moved_nodes.end(), NodeId(i));
@@ -188,20 +188,20 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
       const auto j = near[c].second;
       if (!sees(i, j)) continue;
       ++seen;
-      if ((j < i || j < first_mended) && !body.graph.has(NodeId(i), NodeId(j)))
+      if ((j < i || j < first_mended) && !body.graph.has_edge(NodeId(i), NodeId(j)))
         return "node " + std::to_string(i) + " has no edge to " + std::to_string(j) +
                ", one of the nearest that it sees";
     }
   }
-  const GuideSet &guides = body.graph.guides(), &old = before.graph.guides();
+  const GuideSet &guides = body.graph.storage().guides(), &old = before.graph.storage().guides();
   for (std::uint32_t g = 0; g < guides.size(); ++g) {
     const auto id = VisibilityGraph::first_guide + g;
     const auto wrong = [&](std::uint32_t other, double reach, bool fresh) {
-      const bool edge = body.graph.has(NodeId(id), NodeId(other)),
-                 had = g < old.size() && before.graph.has(NodeId(id), NodeId(other));
+      const bool edge = body.graph.has_edge(NodeId(id), NodeId(other)),
+                 had = g < old.size() && before.graph.has_edge(NodeId(id), NodeId(other));
       if (g < old.size() && !fresh && !had) return edge;
       return edge != (reach > 0 &&
-                      squared_distance(body.graph.position(body.nodes, other), guides.position(g)) <= reach * reach &&
+                      squared_distance(body.graph.storage().position(body.nodes, other), guides.position(g)) <= reach * reach &&
                       sees(id, other));
     };
     for (std::uint32_t i = 0; i < n; ++i)
@@ -231,11 +231,11 @@ inline std::string fault_of(const Body& before, const Body& body, const BodyDelt
   for (std::uint32_t i = 0; i < before.nodes.size(); ++i) {
     if (stood(NodeId(i)) != (x[i] == before.nodes.position[i])) return "node " + std::to_string(i) + " moved unsaid";
     for (const NodeId j : before.graph.edges(NodeId(i)))
-      if (j.value > i && stood(NodeId(i)) && stood(j) && !body.graph.has(NodeId(i), j) &&
+      if (j.value > i && stood(NodeId(i)) && stood(j) && !body.graph.has_edge(NodeId(i), j) &&
           !faces.blocks(x[i], x[j.index()]))
         return "edge " + std::to_string(i) + "-" + std::to_string(j.value) + " was removed for nothing";
     const bool updated = std::binary_search(delta.updated_nodes.begin(), delta.updated_nodes.end(), NodeId(i));
-    if (!updated && !(before.graph.rows().row(i) == body.graph.rows().row(i)))
+    if (!updated && !(before.graph.storage().rows().row(i) == body.graph.storage().rows().row(i)))
       return "row " + std::to_string(i) + " changed unsaid";
   }
   std::vector<SurfaceVertexId> rebound;

@@ -29,19 +29,18 @@ void ask_node(const geo::Body& body, std::size_t i, Report& report) {
   std::vector<std::uint32_t> component, edges, masters;
   body.graph.components(component);
   for (const geo::NodeId j : body.graph.edges(node)) edges.push_back(j.value);
-  const geo::RowView row = body.graph.entries(node.value);
-  std::set<std::uint32_t> behind;
-  for (std::size_t e = 0; e < row.to.size(); ++e)
-    if (geo::RowStore::has_path(row.bits[e])) behind.insert(row.to[e]);
+  std::size_t hidden = 0;
   std::vector<std::string> neighbors;
-  for (const auto& n : body.graph.neighbors(body.nodes, node))
+  for (const auto& n : body.graph.neighbors(body.nodes, node)) {
+    hidden += n.hidden;
     neighbors.push_back("{\"node\":" + std::to_string(n.to.value) + ",\"distance\":" + tool::number(n.distance) +
-                        ",\"seen\":" + (behind.count(n.to.value) ? "false" : "true") + "}");
+                        ",\"seen\":" + (n.hidden ? "false" : "true") + "}");
+  }
   for (std::uint32_t v = 0; v < body.binding.master_node.size(); ++v)
     if (body.binding.master_node[v] == node) masters.push_back(v);
   report.headline = "Node " + std::to_string(i) + " at " + words(body.nodes.position[i]) + ": " +
                     counted(edges.size(), "edge") + ", " + counted(neighbors.size(), "neighbour") +
-                    (behind.empty() ? "" : ", " + std::to_string(behind.size()) + " of them behind a face") +
+                    (hidden == 0 ? "" : ", " + std::to_string(hidden) + " of them behind a face") +
                     "; carries the trees of " + counted(masters.size(), "master") + "." +
                     (body.debris[i] ? " It is debris." : "");
   report.add("node", i);
@@ -65,7 +64,7 @@ void ask_edge(const geo::Body& body, std::size_t i, std::size_t j, Report& repor
   for (const geo::FaceId f : geo::faces_on_segment(body.surface, p, q))
     faces.push_back("{\"face\":" + std::to_string(f.value) +
                     ",\"crack\":" + std::to_string(body.surface.face(f).crack) + "}");
-  const bool edge = body.graph.has(geo::NodeId(i), geo::NodeId(j));
+  const bool edge = body.graph.has_edge(geo::NodeId(i), geo::NodeId(j));
   const double straight = (p - q).norm();
   std::string distance = "null";
   for (const auto& n : body.graph.neighbors(body.nodes, geo::NodeId(i)))

@@ -68,7 +68,7 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
   report.add_text("kind", "body");
   report.add("nodes", body.nodes.size());
   report.add("edges", body.graph.edge_count());
-  if (body.graph.guides().size() > 0) report.add("guides", std::size_t(body.graph.guides().size()));
+  if (body.graph.guide_count() > 0) report.add("guides", body.graph.guide_count());
   report.add("graph_components", result.graph_components);
   report.add("pieces", result.pieces);
   report.add("edges_crossing", wishes.check ? std::to_string(result.edges_crossing) : "null");

@@ -33,7 +33,7 @@ Count edges_missing(const geo::Body& a, const geo::Body& b) {
   Count gone;
   for (std::uint32_t i = 0; i < a.nodes.size(); ++i)
     for (const geo::NodeId j : a.graph.edges(geo::NodeId(i)))
-      if (j.value > i && (j.index() >= b.nodes.size() || !b.graph.has(geo::NodeId(i), j))) gone.add(pair(i, j.value));
+      if (j.value > i && (j.index() >= b.nodes.size() || !b.graph.has_edge(geo::NodeId(i), j))) gone.add(pair(i, j.value));
   return gone;
 }
 
@@ -53,8 +53,7 @@ bool report_difference(const geo::Body& a, const geo::Body& b, Report& report) {
     if (a.nodes.radius[i] != b.nodes.radius[i] || a.nodes.volume[i] != b.nodes.volume[i] ||
         a.nodes.spacing[i] != b.nodes.spacing[i] || a.debris[i] != b.debris[i])
       resized.add(i);
-    const auto id = static_cast<std::uint32_t>(i);
-    if (!(a.graph.rows().row(id) == b.graph.rows().row(id))) rows.add(i);
+    if (!(a.graph.row(geo::NodeId(i)) == b.graph.row(geo::NodeId(i)))) rows.add(i);
   }
   for (std::size_t i = common; i < b.nodes.size(); ++i) added.add(i);
   for (std::size_t i = common; i < a.nodes.size(); ++i) removed.add(i);

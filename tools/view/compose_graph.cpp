@@ -40,13 +40,10 @@ void add_neighborhood(Stage& stage, const geo::Body& body, const std::vector<Vec
   double reach = 0;
   for (const auto& n : body.graph.neighbors(body.nodes, geo::NodeId(i))) reach = std::max(reach, double(n.distance));
   const auto from = paths_from(body, i, 1.5 * reach);
-  const geo::RowView row = body.graph.entries(i);
-  std::map<std::uint32_t, bool> behind;
-  for (std::size_t e = 0; e < row.to.size(); ++e) behind[row.to[e]] = geo::RowStore::has_path(row.bits[e]);
   for (const auto& n : body.graph.neighbors(body.nodes, geo::NodeId(i))) {
     const std::uint32_t j = n.to.value;
-    stage.spheres.push_back({position[j], 0.17 * spacing[j], behind[j] ? orange : bright});
-    if (!behind[j])
+    stage.spheres.push_back({position[j], 0.17 * spacing[j], n.hidden ? orange : bright});
+    if (!n.hidden)
       stage.sticks.push_back({position[i], position[j], 0.07 * spacing[i] * (1.15 - n.distance / reach), bright});
     else
       for (auto step = from.find(j); step != from.end(); step = from.find(step->second))

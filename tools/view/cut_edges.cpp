@@ -12,7 +12,7 @@ geo::VisibilityGraph graph_within_skin(const geo::Body& body) {
   for (std::uint32_t f = 0; f < body.surface.face_count(); ++f)
     if (body.surface.alive(geo::FaceId(f)) && body.surface.face(geo::FaceId(f)).crack == 0)
       skin.push_back(body.surface.corners(geo::FaceId(f)));
-  return geo::build_visibility_graph(body.nodes, geo::TriangleBvh(skin), body.k);
+  return geo::build_visibility_graph(body.nodes, skin, body.k);
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> cut_edges(const geo::Body& 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cut;
   for (std::uint32_t i = 0; i < std::min(whole.node_count(), body.nodes.size()); ++i)
     for (const geo::NodeId j : whole.edges(geo::NodeId(i)))
-      if (j.value > i && j.index() < body.nodes.size() && !body.graph.has(geo::NodeId(i), j))
+      if (j.value > i && j.index() < body.nodes.size() && !body.graph.has_edge(geo::NodeId(i), j))
         cut.push_back({i, j.value});
   return cut;
 }
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> updated_nodes(const geo::Body& body, const geo::Body& 
     throw geo::InputError("the body before has more nodes than the one after; exchange them");
   std::vector<std::uint8_t> updated(body.nodes.size(), 1);
   for (std::uint32_t i = 0; i < before.nodes.size(); ++i)
-    updated[i] = !(before.graph.rows().row(i) == body.graph.rows().row(i));
+    updated[i] = !(before.graph.row(geo::NodeId(i)) == body.graph.row(geo::NodeId(i)));
   return updated;
 }
 

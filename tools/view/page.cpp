@@ -189,16 +189,16 @@ class Writer {
     Numbers count, to, bits;
     std::vector<double> distance;
     for (std::uint32_t i = 0; i < body.nodes.size(); ++i) {
-      const geo::RowView row = body.graph.rows().row(i);
+      const geo::AdjacencyRow row = body.graph.row(geo::NodeId(i));
       std::size_t path = 0, had = to.size();
       for (std::size_t e = 0; e < row.to.size(); ++e) {
-        const bool behind = geo::RowStore::has_path(row.bits[e]);
+        const bool behind = geo::AdjacencyRow::has_path(row.bits[e]);
         const float length = behind ? row.paths[path++] : 0;
         const std::uint32_t j = row.to[e];
         if (geo::VisibilityGraph::is_guide(j) || j < i) continue;
         to.push_back(j);
-        bits.push_back(geo::VisibilityGraph::is_edge(row.bits[e]) |
-                       geo::VisibilityGraph::is_neighbor(row.bits[e]) << 1 | behind << 2);
+        bits.push_back(geo::AdjacencyRow::is_edge(row.bits[e]) |
+                       geo::AdjacencyRow::is_neighbor(row.bits[e]) << 1 | behind << 2);
         distance.push_back((behind ? double(length) : (body.nodes.position[i] - body.nodes.position[j]).norm()) /
                            std::max(0.5 * box_.diagonal(), 1e-300));
       }
@@ -263,7 +263,7 @@ Budget needs_of(const Subject& subject) {
   Budget needed{double(subject.surface.triangles.size()), double(subject.nodes.size()), 0};
   if (subject.body)
     for (std::uint32_t i = 0; i < subject.nodes.size(); ++i)
-      needed.pairs += double(subject.body->graph.entries(i).to.size()) / 2;
+      needed.pairs += double(subject.body->graph.row(geo::NodeId(i)).to.size()) / 2;
   return needed;
 }
 

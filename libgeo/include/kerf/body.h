@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "graph/update.h"
 #include "kerf/complex.h"
 #include "kerf/crack.h"
 #include "kerf/graph.h"

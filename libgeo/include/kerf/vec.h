@@ -91,4 +91,10 @@ inline Box3 box_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
+/// The square of the distance between two points, always summed as (x² + y²) + z².
+inline double squared_distance(const Vec3& p, const Vec3& q) {
+  const double x = p.x() - q.x(), y = p.y() - q.y(), z = p.z() - q.z();
+  return (x * x + y * y) + z * z;
+}
+
 }  // namespace geo

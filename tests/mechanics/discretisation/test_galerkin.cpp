@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "base/random.h"
-#include "graph/lane_search.h"
+#include "graph/batched_search.h"
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"

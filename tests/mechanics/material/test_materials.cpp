@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
-#include "graph/lane_search.h"
+#include "graph/batched_search.h"
 #include "kerf/error.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"

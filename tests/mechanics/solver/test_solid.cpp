@@ -28,7 +28,7 @@ Bar bar(int nx, int ny, int nz, double jitter, std::uint64_t seed = 1) {
         (p + Vec3::Constant(0.5) + jitter * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
     b.nodes.radius.push_back(1.9 * h), b.nodes.spacing.push_back(h), b.nodes.volume.push_back(h * h * h);
   }
-  b.graph.resize(b.nodes.size());
+  b.graph.storage().resize(b.nodes.size());
   for (std::uint32_t i = 0; i < b.nodes.size(); ++i)
     for (std::uint32_t j = 0; j < i; ++j)
       if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i])
@@ -149,7 +149,7 @@ TEST_CASE("few, coplanar and no neighbours give no NaN") {
   Bar b = bar(4, 4, 1, 0.0);
   b.nodes.position.push_back({50, 0, 0}), b.nodes.radius.push_back(0.5), b.nodes.spacing.push_back(0.25),
       b.nodes.volume.push_back(0.01);
-  b.graph.resize(b.nodes.size());
+  b.graph.storage().resize(b.nodes.size());
   const Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   CHECK(solid.rung(NodeId(0u)) == Rung::regularised);
   CHECK(solid.rung(NodeId(16u)) == Rung::rigid);
@@ -170,7 +170,7 @@ TEST_CASE("momentum is conserved through insertion") {
   b.nodes.position.push_back(b.nodes.position[5] + Vec3(0.05, 0.03, 0.02));
   b.nodes.radius.push_back(b.nodes.radius[5]), b.nodes.spacing.push_back(0.2),
       b.nodes.volume.push_back(b.nodes.volume[5]);
-  b.graph.resize(b.nodes.size());
+  b.graph.storage().resize(b.nodes.size());
   b.graph.add(b.nodes, NodeId(5u), NodeId(64u));
   build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   const std::vector<NodeId> donors{NodeId(5u)}, updated{NodeId(64u)};

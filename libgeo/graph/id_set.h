@@ -4,20 +4,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "kerf/graph.h"
+#include "graph/graph_storage.h"
 
 namespace geo {
 
 /// Looks an id up faster than a hash table. Memory is a bit a node of the graph, kept from one use to the next; what it
 /// takes to begin anew follows what was added.
-class IdFlags {
+class IdSet {
  public:
   void clear() {
     for (const auto id : ids_) part(id)[word(id)] = 0;
     ids_.clear();
   }
   bool has(std::uint32_t id) const {
-    const auto& bits = VisibilityGraph::is_guide(id) ? guides_ : nodes_;
+    const auto& bits = GraphStorage::is_guide(id) ? guides_ : nodes_;
     return word(id) < bits.size() && (bits[word(id)] >> (id & 63) & 1);
   }
   void add(std::uint32_t id) {
@@ -32,8 +32,8 @@ class IdFlags {
   const std::vector<std::uint32_t>& ids() const { return ids_; }
 
  private:
-  static std::size_t word(std::uint32_t id) { return VisibilityGraph::place(id) >> 6; }
-  std::vector<std::uint64_t>& part(std::uint32_t id) { return VisibilityGraph::is_guide(id) ? guides_ : nodes_; }
+  static std::size_t word(std::uint32_t id) { return GraphStorage::index_of(id) >> 6; }
+  std::vector<std::uint64_t>& part(std::uint32_t id) { return GraphStorage::is_guide(id) ? guides_ : nodes_; }
   std::vector<std::uint64_t> nodes_, guides_;
   std::vector<std::uint32_t> ids_;
 };

@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "kerf/graph.h"
+#include "graph/graph_storage.h"
 
 namespace geo {
 
 /// Faster than a hash table where ids are near each other. Memory is a kilobyte for each run of 256 ids of which one
 /// came, and four bytes for each run of the graph.
-class IdPages {
+class IdNumbering {
  public:
   /// Forgets all ids.
   void clear() {
-    for (const auto& [run, page] : used_) table(run << shift)[VisibilityGraph::place(run << shift) >> shift] = none;
+    for (const auto& [run, page] : used_) table(run << shift)[GraphStorage::index_of(run << shift) >> shift] = none;
     used_.clear();
     size_ = 0;
   }
@@ -25,7 +25,7 @@ class IdPages {
   /// The number of an id, which becomes the next one when it is new.
   std::uint32_t add(std::uint32_t id) {
     auto& pages = table(id);
-    const std::size_t at = VisibilityGraph::place(id) >> shift;
+    const std::size_t at = GraphStorage::index_of(id) >> shift;
     if (at >= pages.size() || pages[at] == none) open(pages, at, id >> shift);
     auto& number = pages_[pages[at]][id & (length - 1)];
     if (number == none) number = size_++;
@@ -43,7 +43,7 @@ class IdPages {
  private:
   static constexpr std::uint32_t none = ~0u, shift = 8, length = 1u << shift;
   using Page = std::array<std::uint32_t, length>;
-  std::vector<std::uint32_t>& table(std::uint32_t id) { return tables_[VisibilityGraph::is_guide(id)]; }
+  std::vector<std::uint32_t>& table(std::uint32_t id) { return tables_[GraphStorage::is_guide(id)]; }
   void open(std::vector<std::uint32_t>& pages, std::size_t at, std::uint32_t run) {
     if (at >= pages.size()) pages.resize(2 * at + 64, none);
     const auto page = static_cast<std::uint32_t>(used_.size());

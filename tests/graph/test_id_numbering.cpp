@@ -4,12 +4,12 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "graph/id_pages.h"
+#include "graph/id_numbering.h"
 
 using namespace geo;
 
 TEST_CASE("ids are numbered as they come and listed ascending, guides last") {
-  IdPages pages;  // one for all cases: each begins with what the one before has left
+  IdNumbering pages;  // one for all cases: each begins with what the one before has left
   for (int seed = 1; seed <= cases(20); ++seed) {
     CAPTURE(seed);
     Random random(static_cast<std::uint64_t>(seed));

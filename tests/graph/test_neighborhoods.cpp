@@ -4,8 +4,8 @@
 
 #include "cases.h"
 #include "geometry/predicates.h"
-#include "graph/lane_search.h"
-#include "graph/row_search.h"
+#include "graph/batched_search.h"
+#include "graph/neighborhood_search.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
 #include "node_cases.h"
@@ -37,11 +37,11 @@ TEST_CASE("every method gives the same rows, with cracks and graded supports") {
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       const auto row = rows.rows().row(i);
       for (std::size_t k = 0; k < row.to.size(); ++k) {
-        hidden += RowStore::has_path(row.bits[k]);
-        long_edges += !VisibilityGraph::is_neighbor(row.bits[k]);
-        REQUIRE(VisibilityGraph::is_edge(row.bits[k]) == graph.has(NodeId(i), NodeId(row.to[k])));
-        REQUIRE((VisibilityGraph::is_edge(row.bits[k]) ||
-                 RowStore::has_path(row.bits[k]) ==
+        hidden += AdjacencyRow::has_path(row.bits[k]);
+        long_edges += !AdjacencyRow::is_neighbor(row.bits[k]);
+        REQUIRE(AdjacencyRow::is_edge(row.bits[k]) == graph.has_edge(NodeId(i), NodeId(row.to[k])));
+        REQUIRE((AdjacencyRow::is_edge(row.bits[k]) ||
+                 AdjacencyRow::has_path(row.bits[k]) ==
                      tree.blocks(nodes.position[std::min(i, row.to[k])], nodes.position[std::max(i, row.to[k])])));
       }
       for (const auto& n : rows.neighbors(nodes, NodeId(i))) {
@@ -100,9 +100,9 @@ TEST_CASE("a search from scattered nodes finds their rows of a build") {
     std::vector<std::uint32_t> sources;
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
       if (random.uniform() < std::exp(random.uniform(-6, 0))) sources.push_back(i);
-    RowSearch search;
+    NeighborhoodSearch search;
     std::size_t next = 0;
-    search.run(nodes, rows, sources, {}, [&](std::uint32_t i, const RowView& row) {
+    search.run(nodes, rows, sources, {}, [&](std::uint32_t i, const AdjacencyRow& row) {
       REQUIRE(i == sources[next++]);
       REQUIRE(row == rows.rows().row(i));
     });

@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "graph/row_store.h"
+#include "graph/adjacency_store.h"
 #include "kerf/error.h"
 #include "kerf/graph.h"
 #include "node_cases.h"
@@ -17,7 +17,7 @@ struct Row {
   std::vector<std::uint32_t> to;
   std::vector<std::uint16_t> bits;
   std::vector<float> paths;
-  RowView view() const { return {to, bits, paths}; }
+  AdjacencyRow view() const { return {to, bits, paths}; }
 };
 
 Row random_row(Random& random, std::uint32_t most) {
@@ -26,7 +26,7 @@ Row random_row(Random& random, std::uint32_t most) {
   for (std::uint32_t k = 0, at = 0; k < count; ++k) {
     row.to.push_back(at += 1 + random.below(9));
     row.bits.push_back(static_cast<std::uint16_t>(random.below(65536)));
-    if (RowStore::has_path(row.bits.back())) row.paths.push_back(static_cast<float>(random.uniform()));
+    if (AdjacencyRow::has_path(row.bits.back())) row.paths.push_back(static_cast<float>(random.uniform()));
   }
   return row;
 }
@@ -37,7 +37,7 @@ TEST_CASE("rows come back as they were put in, however often they grow and shrin
   for (int seed = 1; seed <= cases(8); ++seed) {
     CAPTURE(seed);
     Random random(static_cast<std::uint64_t>(seed));
-    RowStore store;
+    AdjacencyStore store;
     std::map<std::size_t, Row> model;
     std::size_t rows = 40, live = 0;
     store.resize(rows);
@@ -48,8 +48,8 @@ TEST_CASE("rows come back as they were put in, however often they grow and shrin
       store.set(i, row.view());
       model[i] = row;
       if (step == 2000) {
-        const RowStore copy = store;
-        store = RowStore();
+        const AdjacencyStore copy = store;
+        store = AdjacencyStore();
         store = copy;
       }
       const std::size_t j = random.below(static_cast<std::uint32_t>(rows));
@@ -65,10 +65,10 @@ TEST_CASE("rows come back as they were put in, however often they grow and shrin
 }
 
 TEST_CASE("a row that is too long is refused") {
-  RowStore store;
+  AdjacencyStore store;
   store.resize(1);
   Row row;
-  row.to.resize(RowStore::most_entries + 1), row.bits.resize(row.to.size());
+  row.to.resize(AdjacencyStore::max_entries + 1), row.bits.resize(row.to.size());
   CHECK_THROWS_AS(store.set(0, row.view()), InputError);
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("edges added and removed are those of a map") {
       const auto i = random.below(n), j = random.below(n);
       if (i == j) continue;
       const bool there = model[{i, j}];
-      REQUIRE(graph.has(NodeId(i), NodeId(j)) == there);
+      REQUIRE(graph.has_edge(NodeId(i), NodeId(j)) == there);
       const bool wanted = random.below(2);
       REQUIRE((wanted ? graph.add(nodes, NodeId(i), NodeId(j)) : graph.remove(NodeId(i), NodeId(j))) ==
               (wanted != there));
@@ -115,19 +115,19 @@ TEST_CASE("rows survive a trip through flat arrays, and damaged arrays are refus
   std::vector<std::uint32_t> counts;
   Row flat;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const RowView row = graph.rows().row(i);
+    const AdjacencyRow row = graph.storage().rows().row(i);
     flat.to.insert(flat.to.end(), row.to.begin(), row.to.end());
     flat.bits.insert(flat.bits.end(), row.bits.begin(), row.bits.end());
     flat.paths.insert(flat.paths.end(), row.paths.begin(), row.paths.end());
     counts.push_back(static_cast<std::uint32_t>(row.to.size()));
   }
   const auto read = [&] {
-    return VisibilityGraph::from_rows(nodes, graph.plain_unit(), counts, flat.to, flat.bits, flat.paths);
+    return GraphStorage::from_arrays(nodes, graph.storage().plain_unit(), {counts, flat.to, flat.bits, flat.paths});
   };
   const auto again = read();
   CHECK(again == graph);
   CHECK(again.edge_count() == graph.edge_count());
-  CHECK(again.reach() == graph.reach());
+  CHECK(again.longest_edge() == graph.storage().longest_edge());
   for (int damage = 0; damage < 500; ++damage) {
     CAPTURE(damage);
     const Row kept = flat;

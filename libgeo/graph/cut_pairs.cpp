@@ -1,13 +1,13 @@
-#include "graph/severed.h"
+#include "graph/cut_pairs.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "geometry/bvh.h"
-#include "graph/id_flags.h"
-#include "graph/id_pages.h"
-#include "graph/near_faces.h"
+#include "graph/id_set.h"
+#include "graph/id_numbering.h"
+#include "graph/cut_candidates.h"
 
 namespace geo {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::size_t guides_in(const RowView& row) {
+std::size_t guides_in(const AdjacencyRow& row) {
   std::size_t count = 0;
-  while (count < row.to.size() && VisibilityGraph::is_guide(row.to[row.to.size() - 1 - count])) ++count;
+  while (count < row.to.size() && GraphStorage::is_guide(row.to[row.to.size() - 1 - count])) ++count;
   return count;
 }
 
@@ -28,8 +28,8 @@ struct Pair {
 
 // Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other end, rows ascending:
 // these are the same rows, but in order.
-Severed rows_of(std::span<const Pair> pairs, IdPages& ids, const std::vector<bool>& above) {
-  Severed severed;
+CutPairs rows_of(std::span<const Pair> pairs, IdNumbering& ids, const std::vector<bool>& above) {
+  CutPairs severed;
   std::vector<std::uint32_t> next(ids.size(), 0);  // how many entries, then where the next one goes
   for (const Pair& p : pairs) ++next[p.a], ++next[p.b];
   std::uint32_t sum = 0;
@@ -38,7 +38,7 @@ Severed rows_of(std::span<const Pair> pairs, IdPages& ids, const std::vector<boo
     severed.rows.push_back({id, sum, sum + count, above[k]});
     sum += count;
   });
-  std::vector<Severed::Entry> mixed(sum);
+  std::vector<CutPairs::Entry> mixed(sum);
   auto next_mixed = next;
   for (const Pair& p : pairs) mixed[next_mixed[p.a]++] = {p.b, p.bits}, mixed[next_mixed[p.b]++] = {p.a, p.bits};
   severed.entries.resize(sum);
@@ -49,13 +49,13 @@ Severed rows_of(std::span<const Pair> pairs, IdPages& ids, const std::vector<boo
 
 }  // namespace
 
-Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
                      std::span<const Corners> faces) {
   const TriangleBvh tree(faces);
-  const Near near = near_faces(nodes, graph, grid, first_new, faces, tree);
+  const Near near = find_cut_candidates(nodes, graph, grid, first_new, faces, tree);
   if (near.ids.empty()) return {};
-  thread_local IdFlags has_asked;
-  thread_local IdPages number;  // of those that lose something
+  thread_local IdSet has_asked;
+  thread_local IdNumbering number;  // of those that lose something
   has_asked.clear();
   number.clear();
   std::vector<Pair> pairs;
@@ -66,9 +66,9 @@ Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const N
   for (std::uint32_t at = 0; at < near.ids.size(); ++at) {
     constexpr std::size_t ahead = 4;
     if (at + 2 * ahead < near.ids.size())
-      graph.store(near.ids[at + 2 * ahead]).prefetch_place(VisibilityGraph::place(near.ids[at + 2 * ahead]));
+      graph.store(near.ids[at + 2 * ahead]).prefetch_location(GraphStorage::index_of(near.ids[at + 2 * ahead]));
     if (at + ahead < near.ids.size())
-      graph.store(near.ids[at + ahead]).prefetch(VisibilityGraph::place(near.ids[at + ahead]));
+      graph.store(near.ids[at + ahead]).prefetch(GraphStorage::index_of(near.ids[at + ahead]));
     const auto i = near.ids[at];
     const auto row = graph.entries(i);
     // What is not beyond the slab on the same side.

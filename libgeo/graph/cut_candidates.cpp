@@ -1,4 +1,4 @@
-#include "graph/near_faces.h"
+#include "graph/cut_candidates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,20 +57,20 @@ struct Surroundings {
 
 class Search {
  public:
-  Search(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const Corners> faces, const TriangleBvh& tree)
+  Search(const NodeSet& nodes, const GraphStorage& graph, std::span<const Corners> faces, const TriangleBvh& tree)
       : nodes_(nodes),
         graph_(graph),
         faces_(faces),
         tree_(tree),
-        reach_(graph.reach() * (1 + 1e-6)),
-        support_(std::min(graph.support() * (1 + 1e-6), reach_)) {
+        reach_(graph.longest_edge() * (1 + 1e-6)),
+        support_(std::min(graph.largest_support() * (1 + 1e-6), reach_)) {
     // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
     for (const Corners& face : faces) around_.emplace_back(face, 0.5 * reach_);
   }
   Near run(const NodeGrid& grid, NodeId first_new) {
     if (!(reach_ > 0)) return {};  // no edge yet
     walk(grid, 0, first_new.value);
-    walk(graph_.guides().grid(), VisibilityGraph::first_guide, ~0u);
+    walk(graph_.guides().grid(), GraphStorage::guide_id(0), ~0u);
     return std::move(near_);
   }
 
@@ -148,13 +148,13 @@ class Search {
       // Only few nodes have edges longer than the support.
       const bool is_near = within(support_);
       if (!is_near && !(reach_ > support_ && within(reach_))) continue;
-      graph_.store(suspect.id).prefetch_place(VisibilityGraph::place(suspect.id));
+      graph_.store(suspect.id).prefetch_location(GraphStorage::index_of(suspect.id));
       in_doubt_.push_back(!is_near);
       suspects_[count++] = suspect;
     }
     for (std::size_t k = 0; k < count; ++k) {
       const auto id = suspects_[k].id;
-      if (in_doubt_[k] && !graph_.store(id).has_bare_edges(VisibilityGraph::place(id))) continue;
+      if (in_doubt_[k] && !graph_.store(id).has_edge_only_entries(GraphStorage::index_of(id))) continue;
       near_.ids.push_back(id), near_.slabs.push_back(regions_[cubes_[suspects_[k].cube].region].slab);
     }
     suspects_.clear(), cubes_.clear(), cube_faces_.clear();
@@ -174,7 +174,7 @@ class Search {
   static constexpr double region_size = 1;   // half its edge at most, in supports
   static constexpr std::size_t batch = 256;  // suspects: enough for what is known of them to be fetched meanwhile
   const NodeSet& nodes_;
-  const VisibilityGraph& graph_;
+  const GraphStorage& graph_;
   std::span<const Corners> faces_;
   const TriangleBvh& tree_;
   double reach_, support_;
@@ -207,7 +207,7 @@ Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, 
   length = normal.norm() * (1 + 1e-12);
 }
 
-Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+Near find_cut_candidates(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
                 std::span<const Corners> faces, const TriangleBvh& tree) {
   return Search(nodes, graph, faces, tree).run(grid, first_new);
 }

@@ -1,6 +1,6 @@
 // Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "graph/lane_search.cpp"
+#define HWY_TARGET_INCLUDE "graph/batched_search.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "graph/lane_search.h"
+#include "graph/batched_search.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,10 +26,10 @@ void Lengths(const double* squared, const double* radius, std::size_t count, std
   }
 }
 
-// Of the entries of which `part` of the bits is not `refused`. Whole vectors only: the last of them begins so early
-// that it ends with the row, without the entries that were taken.
-std::size_t LeadOn(const RowView& row, std::uint32_t part, std::uint32_t refused, std::uint32_t reach,
-                   std::uint32_t* targets, std::uint32_t* lengths) {
+// The entries whose bits in `mask` are not `refused` and that end within the support radius. Whole vectors
+// only: the last one begins so early that it ends with the row, and skips the entries already handled.
+std::size_t WithinSupport(const AdjacencyRow& row, std::uint32_t mask, std::uint32_t refused, std::uint32_t distance,
+                          std::uint32_t* targets, std::uint32_t* distances) {
   const std::uint32_t* const to = row.to.data();
   const std::uint16_t* const bits = row.bits.data();
   const std::size_t count = row.to.size();
@@ -37,53 +37,53 @@ std::size_t LeadOn(const RowView& row, std::uint32_t part, std::uint32_t refused
   const hn::Rebind<std::uint16_t, decltype(d)> dh;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t found = 0;
-  const auto take = [&](std::size_t k) {
-    const auto next = reach + VisibilityGraph::bound(bits[k]);
-    targets[found] = to[k], lengths[found] = next;
-    found += ((bits[k] & part) != refused) & (next < unit_radius);
-  };
   if (count < lanes) {
-    for (std::size_t k = 0; k < count; ++k) take(k);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto next = distance + AdjacencyRow::bound(bits[k]);
+      targets[found] = to[k], distances[found] = next;
+      found += ((bits[k] & mask) != refused) & (next < unit_radius);
+    }
     return found;
   }
-  const auto asked = hn::Set(d, part), not_these = hn::Set(d, refused),
-             bound = hn::Set(d, std::uint32_t(VisibilityGraph::bound_bits));
-  const auto from = hn::Set(d, reach), radius = hn::Set(d, unit_radius);
+  const auto kind = hn::Set(d, mask), refused_kind = hn::Set(d, refused),
+             bound = hn::Set(d, std::uint32_t(AdjacencyRow::bound_bits));
+  const auto from = hn::Set(d, distance), radius = hn::Set(d, unit_radius);
   for (std::size_t k = 0; k < count; k += lanes) {
     const auto at = std::min(k, count - lanes);
     const auto entry = hn::PromoteTo(d, hn::LoadU(dh, bits + at));
     const auto next = hn::Add(from, hn::ShiftLeft<10>(hn::And(entry, bound)));
-    auto leads = hn::And(hn::Ne(hn::And(entry, asked), not_these), hn::Lt(next, radius));
-    if (at < k) leads = hn::AndNot(hn::FirstN(d, k - at), leads);
-    hn::StoreU(hn::Compress(next, leads), d, lengths + found);  // CompressStore() is slow on some processors
-    hn::StoreU(hn::Compress(hn::LoadU(d, to + at), leads), d, targets + found);
-    found += hn::CountTrue(d, leads);
+    auto within = hn::And(hn::Ne(hn::And(entry, kind), refused_kind), hn::Lt(next, radius));
+    if (at < k) within = hn::AndNot(hn::FirstN(d, k - at), within);
+    hn::StoreU(hn::Compress(next, within), d, distances + found);  // CompressStore() is slow on some processors
+    hn::StoreU(hn::Compress(hn::LoadU(d, to + at), within), d, targets + found);
+    found += hn::CountTrue(d, within);
   }
   return found;
 }
 
-void Search(const LocalGraph& graph, LaneSearch::Work& w) {
-  using Tag = hn::CappedTag<std::int32_t, LaneSearch::lanes>;
+// The queue's loop: relaxes the edges of each node in the queue, for all sources at once.
+void Search(const LocalGraph& graph, BatchedSearch::Scratch& s) {
+  using Tag = hn::CappedTag<std::int32_t, BatchedSearch::lanes>;
   const Tag d;
-  constexpr std::size_t step = hn::MaxLanes(Tag()), parts = LaneSearch::lanes / step;
-  const auto zero = hn::Zero(d), far = hn::Set(d, std::int32_t(LaneSearch::far));
-  LaneSearch::Lanes* const distances = w.distances.data();
+  constexpr std::size_t step = hn::MaxLanes(Tag()), vectors = BatchedSearch::lanes / step;
+  const auto zero = hn::Zero(d), far = hn::Set(d, std::int32_t(BatchedSearch::far));
+  BatchedSearch::Lanes* const distances = s.distances.data();
   const auto lanes_of = [=](std::uint32_t node) { return reinterpret_cast<std::int32_t*>(distances[node].distance); };
   const std::uint32_t* const limits = graph.limits().data();
-  std::uint8_t* const touched = w.touched.data();
-  const std::uint32_t mask = static_cast<std::uint32_t>(w.queue.size() - 1);
-  std::uint8_t* const queued = w.queued.data();
-  std::uint32_t* const queue = w.queue.data();
-  std::uint32_t tail = w.tail;
+  std::uint8_t* const touched = s.touched.data();
+  const std::uint32_t mask = static_cast<std::uint32_t>(s.queue.size() - 1);
+  std::uint8_t* const queued = s.queued.data();
+  std::uint32_t* const queue = s.queue.data();
+  std::uint32_t tail = s.tail;
   for (std::uint32_t head = 0; head != tail; ++head) {
     const auto u = queue[head & mask];
     queued[u] = 0;
-    hn::Vec<Tag> from[parts];
+    hn::Vec<Tag> from[vectors];
     auto least = far;
-    for (std::size_t p = 0; p < parts; ++p) {
-      from[p] = hn::Load(d, lanes_of(u) + p * step);
-      // A source's own edges have been followed.
-      least = hn::Min(least, hn::IfThenElse(hn::Eq(from[p], zero), far, from[p]));
+    for (std::size_t v = 0; v < vectors; ++v) {
+      from[v] = hn::Load(d, lanes_of(u) + v * step);
+      // A source's own edges are relaxed before the loop.
+      least = hn::Min(least, hn::IfThenElse(hn::Eq(from[v], zero), far, from[v]));
     }
     const auto nearest = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(d, least)));
     const std::uint32_t end = LocalGraph::end_of_classes(nearest);
@@ -91,13 +91,13 @@ void Search(const LocalGraph& graph, LaneSearch::Work& w) {
       if (edge.length >= end) break;
       const auto length = hn::Set(d, std::int32_t(edge.length)), limit = hn::Set(d, std::int32_t(limits[edge.to]));
       auto* const to = lanes_of(edge.to);
-      bool leads_on = false;
-      for (std::size_t p = 0; p < parts; ++p) {
-        const auto next = hn::Add(from[p], length), known = hn::Load(d, to + p * step);
-        leads_on |= !hn::AllFalse(d, hn::Lt(next, hn::Min(known, limit)));
-        hn::Store(hn::Min(next, known), d, to + p * step);
+      bool falls = false;
+      for (std::size_t v = 0; v < vectors; ++v) {
+        const auto next = hn::Add(from[v], length), known = hn::Load(d, to + v * step);
+        falls |= !hn::AllFalse(d, hn::Lt(next, hn::Min(known, limit)));
+        hn::Store(hn::Min(next, known), d, to + v * step);
       }
-      const std::uint8_t enters = leads_on & (queued[edge.to] ^ 1);
+      const std::uint8_t enters = falls & (queued[edge.to] ^ 1);
       touched[edge.to] = 1;
       queued[edge.to] |= enters;
       queue[tail & mask] = edge.to;
@@ -107,7 +107,7 @@ void Search(const LocalGraph& graph, LaneSearch::Work& w) {
 }
 
 #if HWY_TARGET <= HWY_AVX3
-// Rows become columns: of sixteen vectors of sixteen.
+// Transposes a matrix of sixteen vectors of sixteen.
 template <class D, class V>
 void Transpose(D d, V* v) {
   const hn::Repartition<std::uint64_t, D> dw;
@@ -136,18 +136,18 @@ void Transpose(D d, V* v) {
 }
 #endif
 
-// Appends each touched node to the rows of the lanes that reach it, and forgets its distances.
-void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
-  constexpr std::size_t all = LaneSearch::lanes;
+// Appends each node reached to the lists of the sources that reach it, and resets its distances.
+void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
+  constexpr std::size_t all = BatchedSearch::lanes;
   std::uint32_t *node_end[all], *id_end[all], *distance_end[all];
   for (std::size_t k = 0; k < all; ++k)
-    node_end[k] = w.rows[k].node.data(), id_end[k] = w.rows[k].id.data(), distance_end[k] = w.rows[k].distance.data();
-  // The queue is empty, so that there is room for a list.
-  std::uint32_t* const nodes = w.queue.data();
+    node_end[k] = s.found[k].node.data(), id_end[k] = s.found[k].id.data(), distance_end[k] = s.found[k].distance.data();
+  // The queue is empty: its memory holds the list of nodes reached.
+  std::uint32_t* const nodes = s.queue.data();
   std::size_t count = 0;
-  std::uint8_t* const touched = w.touched.data();
+  std::uint8_t* const touched = s.touched.data();
   const hn::CappedTag<std::uint8_t, 64> bytes;
-  for (std::size_t first = 0; first < w.touched.size(); first += 64) {
+  for (std::size_t first = 0; first < s.touched.size(); first += 64) {
     bool any = false;
     for (std::size_t k = 0; k < 64; k += hn::Lanes(bytes))
       any |= !hn::AllTrue(bytes, hn::Eq(hn::LoadU(bytes, touched + first + k), hn::Zero(bytes)));
@@ -160,18 +160,18 @@ void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
     }
     std::memset(touched + first, 0, 64);
   }
-  const auto distances_of = [&](std::uint32_t node) { return w.distances[node].distance; };
+  const auto distances_of = [&](std::uint32_t node) { return s.distances[node].distance; };
 #if HWY_TARGET <= HWY_AVX3
   const hn::FixedTag<std::uint32_t, all> d;
-  const auto zero = hn::Zero(d), far = hn::Set(d, LaneSearch::far), radius = hn::Set(d, unit_radius);
+  const auto zero = hn::Zero(d), far = hn::Set(d, BatchedSearch::far), radius = hn::Set(d, unit_radius);
   for (std::size_t first = 0; first < count; first += all) {
     alignas(64) std::uint32_t ids[all] = {}, joined[all] = {};
     hn::Vec<decltype(d)> distance[all];
     const std::size_t here = std::min(all, count - first);
     for (std::size_t n = 0; n < here; ++n) {
       const auto node = nodes[first + n];
-      ids[n] = graph.id(node), joined[n] = w.joined[node];
-      w.joined[node] = 0;
+      ids[n] = graph.id(node), joined[n] = s.joined[node];
+      s.joined[node] = 0;
       distance[n] = hn::Load(d, distances_of(node));
       hn::Store(far, d, distances_of(node));
     }
@@ -180,7 +180,7 @@ void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
     const auto node = hn::LoadU(d, nodes + first), id = hn::Load(d, ids), joins = hn::Load(d, joined);
     for (std::size_t k = 0; k < all; ++k) {
       const auto reached = hn::And(hn::Lt(distance[k], radius), hn::Gt(distance[k], zero));
-      const auto edge = hn::And(hn::ShiftLeftSame(joins, static_cast<int>(31 - k)), hn::Set(d, LaneSearch::edge_bit));
+      const auto edge = hn::And(hn::ShiftLeftSame(joins, static_cast<int>(31 - k)), hn::Set(d, BatchedSearch::edge_bit));
       hn::StoreU(hn::Compress(node, reached), d, node_end[k]);
       hn::StoreU(hn::Compress(id, reached), d, id_end[k]);
       hn::StoreU(hn::Compress(hn::Or(distance[k], edge), reached), d, distance_end[k]);
@@ -191,17 +191,17 @@ void Collect(const LocalGraph& graph, LaneSearch::Work& w) {
 #else
   for (std::size_t n = 0; n < count; ++n) {
     const auto node = nodes[n], id = graph.id(node);
-    const std::uint32_t joined = std::exchange(w.joined[node], std::uint16_t(0));
+    const std::uint32_t joined = std::exchange(s.joined[node], std::uint16_t(0));
     auto* const distance = distances_of(node);
     for (std::size_t k = 0; k < all; ++k) {
-      const auto known = std::exchange(distance[k], LaneSearch::far);
+      const auto known = std::exchange(distance[k], BatchedSearch::far);
       *node_end[k] = node, *id_end[k] = id, *distance_end[k] = known | (joined >> k & 1) << 31;
       const bool reached = (known < unit_radius) & (known > 0);
       node_end[k] += reached, id_end[k] += reached, distance_end[k] += reached;
     }
   }
 #endif
-  for (std::size_t k = 0; k < all; ++k) w.counts[k] = static_cast<std::uint32_t>(node_end[k] - w.rows[k].node.data());
+  for (std::size_t k = 0; k < all; ++k) s.counts[k] = static_cast<std::uint32_t>(node_end[k] - s.found[k].node.data());
 }
 
 }  // namespace geo::HWY_NAMESPACE
@@ -210,7 +210,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace geo {
 HWY_EXPORT(Lengths);
-HWY_EXPORT(LeadOn);
+HWY_EXPORT(WithinSupport);
 HWY_EXPORT(Search);
 HWY_EXPORT(Collect);
 
@@ -218,34 +218,35 @@ void warped_lengths(const double* squared, const double* radius, std::size_t cou
   HWY_DYNAMIC_DISPATCH(Lengths)(squared, radius, count, lengths);
 }
 
-std::size_t edges_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets,
-                               std::uint32_t* lengths) {
-  return HWY_DYNAMIC_DISPATCH(LeadOn)(row, VisibilityGraph::edge_bit, 0, reach, targets, lengths);
+std::size_t edges_within_support(const AdjacencyRow& row, std::uint32_t distance, std::uint32_t* targets,
+                                 std::uint32_t* distances) {
+  return HWY_DYNAMIC_DISPATCH(WithinSupport)(row, AdjacencyRow::edge_bit, 0, distance, targets, distances);
 }
 
-std::size_t neighbors_that_lead_on(const RowView& row, std::uint32_t reach, std::uint32_t* targets,
-                                   std::uint32_t* lengths) {
-  constexpr std::uint32_t bare = VisibilityGraph::edge_bit | VisibilityGraph::path_bit;
-  return HWY_DYNAMIC_DISPATCH(LeadOn)(row, bare, bare, reach, targets, lengths);
+std::size_t neighbors_within_support(const AdjacencyRow& row, std::uint32_t distance, std::uint32_t* targets,
+                                     std::uint32_t* distances) {
+  constexpr std::uint32_t edge_only = AdjacencyRow::edge_bit | AdjacencyRow::path_bit;
+  return HWY_DYNAMIC_DISPATCH(WithinSupport)(row, edge_only, edge_only, distance, targets, distances);
 }
 
-void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sources) {
+void BatchedSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sources) {
   const std::size_t n = graph.size();
-  if (work_.distances.size() < n) {
-    Lanes nothing;
-    std::fill(std::begin(nothing.distance), std::end(nothing.distance), far);
-    work_.distances.resize(n, nothing);
-    work_.queued.resize(n, 0);
-    work_.queue.resize(std::bit_ceil(n + lanes));
-    work_.joined.resize(n, 0);
-    for (auto& row : work_.rows) row.node.resize(n + lanes), row.id.resize(n + lanes), row.distance.resize(n + lanes);
+  if (scratch_.distances.size() < n) {
+    Lanes unreached;
+    std::fill(std::begin(unreached.distance), std::end(unreached.distance), far);
+    scratch_.distances.resize(n, unreached);
+    scratch_.queued.resize(n, 0);
+    scratch_.queue.resize(std::bit_ceil(n + lanes));
+    scratch_.joined.resize(n, 0);
+    for (auto& found : scratch_.found)
+      found.node.resize(n + lanes), found.id.resize(n + lanes), found.distance.resize(n + lanes);
   }
-  work_.touched.resize((n + 63) / 64 * 64, 0);
-  Lanes* const distances = work_.distances.data();
-  std::uint8_t* const touched = work_.touched.data();
-  std::uint8_t* const queued = work_.queued.data();
-  std::uint16_t* const joined = work_.joined.data();
-  std::uint32_t* const queue = work_.queue.data();
+  scratch_.touched.resize((n + 63) / 64 * 64, 0);
+  Lanes* const distances = scratch_.distances.data();
+  std::uint8_t* const touched = scratch_.touched.data();
+  std::uint8_t* const queued = scratch_.queued.data();
+  std::uint16_t* const joined = scratch_.joined.data();
+  std::uint32_t* const queue = scratch_.queue.data();
   const std::uint32_t* const limits = graph.limits().data();
   std::uint32_t tail = 0;
   for (std::size_t k = 0; k < sources.size(); ++k) {
@@ -261,9 +262,9 @@ void LaneSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> sou
       tail += enters;
     }
   }
-  work_.tail = tail;
-  HWY_DYNAMIC_DISPATCH(Search)(graph, work_);
-  HWY_DYNAMIC_DISPATCH(Collect)(graph, work_);
+  scratch_.tail = tail;
+  HWY_DYNAMIC_DISPATCH(Search)(graph, scratch_);
+  HWY_DYNAMIC_DISPATCH(Collect)(graph, scratch_);
 }
 
 std::vector<std::string> vector_targets() {

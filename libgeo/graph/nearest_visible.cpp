@@ -1,4 +1,4 @@
-#include "graph/nearest_seen.h"
+#include "graph/nearest_visible.h"
 
 #include <algorithm>
 #include <numeric>
@@ -34,7 +34,7 @@ void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all,
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> nearest_seen(
+std::vector<std::vector<std::uint32_t>> nearest_visible(
     const NodeSet& nodes, const NodeGrid& grid, std::span<const std::uint32_t> ids, int k,
     const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near,
     const Progress& progress) {

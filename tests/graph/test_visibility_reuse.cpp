@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
-#include "graph/old_sight.h"
+#include "graph/visibility_reuse.h"
 #include "kerf/graph.h"
 #include "vectors.h"
 
@@ -14,7 +14,7 @@ namespace {
 struct Row {
   std::vector<std::uint32_t> to;
   std::vector<std::uint16_t> bits;
-  RowView view() const { return {to, bits, {}}; }
+  AdjacencyRow view() const { return {to, bits, {}}; }
 };
 
 // Ids below `most`, each with a chance; bits with edges and paths.
@@ -23,8 +23,8 @@ Row random_row(Random& random, std::uint32_t most, double chance) {
   for (std::uint32_t i = 0; i < most; ++i) {
     if (random.uniform() >= chance) continue;
     row.to.push_back(i);
-    row.bits.push_back(static_cast<std::uint16_t>((random.below(3) ? 0 : VisibilityGraph::edge_bit) |
-                                                  (random.below(6) ? 0 : VisibilityGraph::path_bit) |
+    row.bits.push_back(static_cast<std::uint16_t>((random.below(3) ? 0 : AdjacencyRow::edge_bit) |
+                                                  (random.below(6) ? 0 : AdjacencyRow::path_bit) |
                                                   random.below(1 << 10)));
   }
   return row;
@@ -33,11 +33,11 @@ Row random_row(Random& random, std::uint32_t most, double chance) {
 std::vector<std::uint32_t> looked_up(const Row& now, const Row& old, const std::vector<std::uint32_t>& lost) {
   std::vector<std::uint32_t> unsure;
   for (std::uint32_t e = 0; e < now.to.size(); ++e) {
-    if (VisibilityGraph::is_edge(now.bits[e])) continue;
+    if (AdjacencyRow::is_edge(now.bits[e])) continue;
     const auto at = std::find(old.to.begin(), old.to.end(), now.to[e]);
-    const bool saw = at != old.to.end() && !(old.bits[std::size_t(at - old.to.begin())] & VisibilityGraph::path_bit);
+    const bool saw = at != old.to.end() && !(old.bits[std::size_t(at - old.to.begin())] & AdjacencyRow::path_bit);
     const bool is_lost = std::find(lost.begin(), lost.end(), now.to[e]) != lost.end();
-    if (!saw || is_lost) unsure.push_back(e | (saw && is_lost ? lost_bit : 0));
+    if (!saw || is_lost) unsure.push_back(e | (saw && is_lost ? hidden_bit : 0));
   }
   return unsure;
 }
@@ -57,7 +57,7 @@ TEST_CASE("What was seen and is still is told from rows of any kind, whatever th
       now = {};
       for (const auto i : old.to)
         if (random.uniform() < stays)
-          now.to.push_back(i), now.bits.push_back(random.below(2) ? VisibilityGraph::edge_bit : 0);
+          now.to.push_back(i), now.bits.push_back(random.below(2) ? AdjacencyRow::edge_bit : 0);
       for (const auto i : news.to)
         if (random.below(20) == 0 && !std::binary_search(now.to.begin(), now.to.end(), i)) {
           const auto at = std::lower_bound(now.to.begin(), now.to.end(), i) - now.to.begin();
@@ -70,7 +70,7 @@ TEST_CASE("What was seen and is still is told from rows of any kind, whatever th
     const auto expected = looked_up(now, old, lost);
     on_every_target([&] {
       std::vector<std::uint32_t> unsure(now.to.size());
-      unsure.resize(unsure_entries(now.to, now.bits, old.view(), lost, unsure.data()));
+      unsure.resize(entries_to_retest(now.to, now.bits, old.view(), lost, unsure.data()));
       CHECK(unsure == expected);
     });
   }

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "kerf/graph.h"
+#include "graph/graph_storage.h"
 #include "sampling/node_grid.h"
 
 namespace geo {
 
 /// Those entries of rows between whose ends a face came: each pair from both ends, as long as the graph is what it was.
-struct Severed {
+struct CutPairs {
   struct Entry {
     std::uint32_t to;    ///< node or guide
     std::uint16_t bits;  ///< as in the graph's row
@@ -27,7 +27,7 @@ struct Severed {
 };
 
 /// Looks among guides and nodes before `first_new`, at a cost that follows the faces' area. `grid` holds all nodes.
-Severed find_severed(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
                      std::span<const std::array<Vec3, 3>> faces);
 
 }  // namespace geo

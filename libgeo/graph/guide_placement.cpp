@@ -1,4 +1,4 @@
-#include "graph/place_guides.h"
+#include "graph/guide_placement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/bvh.h"
-#include "kerf/graph.h"
+#include "graph/graph_storage.h"
 #include "sampling/node_grid.h"
 
 namespace geo {
@@ -38,7 +38,7 @@ struct Near {
 };
 
 /// Looks among guides and nodes before `first_new`. `tree`: over the faces. `grid` holds all nodes.
-Near near_faces(const NodeSet& nodes, const VisibilityGraph& graph, const NodeGrid& grid, NodeId first_new,
+Near find_cut_candidates(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
                 std::span<const std::array<Vec3, 3>> faces, const TriangleBvh& tree);
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-#include "graph/reference_rows.h"
+#include "graph/reference_neighborhoods.h"
 
 #include <algorithm>
 #include <bit>
@@ -56,19 +56,19 @@ class SparseRow {
 
 }  // namespace
 
-std::vector<PathRow> edge_lengths(const NodeSet& nodes, const VisibilityGraph& graph) {
+std::vector<PathDistances> edge_lengths(const NodeSet& nodes, const GraphStorage& graph) {
   const auto n = static_cast<std::uint32_t>(graph.node_count());
-  std::vector<PathRow> rows(n + graph.guides().size());
+  std::vector<PathDistances> rows(n + graph.guides().size());
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto id =
-          i < n ? static_cast<std::uint32_t>(i) : static_cast<std::uint32_t>(i - n) + VisibilityGraph::first_guide;
+          i < n ? static_cast<std::uint32_t>(i) : GraphStorage::guide_id(static_cast<std::uint32_t>(i - n));
       const auto row = graph.entries(id);
       for (std::size_t k = 0; k < row.to.size(); ++k) {
         const auto j = row.to[k];
-        if (!VisibilityGraph::is_edge(row.bits[k])) continue;
+        if (!AdjacencyRow::is_edge(row.bits[k])) continue;
         if (const auto length = graph.warped(nodes, id, j); length < unit_radius)
-          rows[i].push_back({VisibilityGraph::is_guide(j) ? n + VisibilityGraph::place(j) : j,
+          rows[i].push_back({GraphStorage::is_guide(j) ? n + GraphStorage::index_of(j) : j,
                              PathLength(length) << 32 | plain_length(graph.position(nodes, id),
                                                                      graph.position(nodes, j), graph.plain_unit())});
       }
@@ -77,7 +77,7 @@ std::vector<PathRow> edge_lengths(const NodeSet& nodes, const VisibilityGraph& g
   return rows;
 }
 
-void BoundedDijkstra::run(std::uint32_t source, PathRow& row) {
+void BoundedDijkstra::run(std::uint32_t source, PathDistances& row) {
   row.clear();
   best_[source] = 0;
   heap_.assign(1, {0, source});
@@ -99,7 +99,7 @@ void BoundedDijkstra::run(std::uint32_t source, PathRow& row) {
   std::sort(row.begin(), row.end());
 }
 
-std::vector<PathRow> modified_floyd_warshall(const std::vector<PathRow>& edges) {
+std::vector<PathDistances> modified_floyd_warshall(const std::vector<PathDistances>& edges) {
   std::vector<SparseRow> matrix(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i)
     for (const auto& [j, length] : edges[i]) matrix[i].shorten(j, length);
@@ -114,7 +114,7 @@ std::vector<PathRow> modified_floyd_warshall(const std::vector<PathRow>& edges) 
         if (i != j) matrix[i].shorten(j, di + dj);
       }
   }
-  std::vector<PathRow> rows(edges.size());
+  std::vector<PathDistances> rows(edges.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     matrix[i].each([&](std::uint32_t j, PathLength length) { rows[i].push_back({j, length}); });
     std::sort(rows[i].begin(), rows[i].end());

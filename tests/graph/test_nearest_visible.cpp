@@ -4,7 +4,7 @@
 #include "cases.h"
 #include "clouds.h"
 #include "geometry/predicates.h"
-#include "graph/nearest_seen.h"
+#include "graph/nearest_visible.h"
 #include "kerf/parallel.h"
 
 using namespace geo;
@@ -37,7 +37,7 @@ TEST_CASE("the nearest seen nodes are those of every triangle asked for every pa
     const int k = 1 + static_cast<int>(random.below(40));
     for (const int thread_count : {1, 2}) {
       set_threads(thread_count);
-      const auto found = nearest_seen(nodes, grid, ids, k, near);
+      const auto found = nearest_visible(nodes, grid, ids, k, near);
       REQUIRE(found.size() == ids.size());
       for (std::size_t n = 0; n < ids.size(); ++n) {
         std::vector<std::uint32_t> expected;
@@ -60,5 +60,5 @@ TEST_CASE("the nearest seen nodes are those of every triangle asked for every pa
 }
 
 TEST_CASE("no nodes see none") {
-  CHECK(nearest_seen({}, NodeGrid(), {}, 26, [](const auto&, auto&) {}).empty());
+  CHECK(nearest_visible({}, NodeGrid(), {}, 26, [](const auto&, auto&) {}).empty());
 }

@@ -1,40 +1,40 @@
 // Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "graph/old_sight.cpp"
+#define HWY_TARGET_INCLUDE "graph/visibility_reuse.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>
 #include <cstring>
 
-#include "graph/old_sight.h"
+#include "graph/visibility_reuse.h"
 #include "hwy/highway.h"
-#include "kerf/graph.h"
+#include "graph/graph_storage.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const RowView& old,
+std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const AdjacencyRow& old,
                    std::span<const std::uint32_t> lost, std::uint32_t* unsure) {
   const hn::CappedTag<std::uint32_t, 16> d;
   const hn::Rebind<std::uint16_t, decltype(d)> dh;
   const std::size_t lanes = hn::Lanes(d), count = to.size(), old_count = old.to.size();
   std::size_t found = 0;
   const auto take = [&](std::size_t e) {
-    if (VisibilityGraph::is_edge(bits[e])) return;
+    if (AdjacencyRow::is_edge(bits[e])) return;
     const auto at = std::lower_bound(old.to.begin(), old.to.end(), to[e]);
     const bool saw = at != old.to.end() && *at == to[e] &&
-                     !(old.bits[static_cast<std::size_t>(at - old.to.begin())] & VisibilityGraph::path_bit);
+                     !(old.bits[static_cast<std::size_t>(at - old.to.begin())] & AdjacencyRow::path_bit);
     const bool is_lost = saw && std::binary_search(lost.begin(), lost.end(), to[e]);
-    if (!saw || is_lost) unsure[found++] = static_cast<std::uint32_t>(e) | (is_lost ? lost_bit : 0);
+    if (!saw || is_lost) unsure[found++] = static_cast<std::uint32_t>(e) | (is_lost ? hidden_bit : 0);
   };
   if (count < lanes || old_count < lanes) {
     for (std::size_t e = 0; e < count; ++e) take(e);
     return found;
   }
-  const auto edge = hn::Set(d, std::uint32_t(VisibilityGraph::edge_bit)),
-             path = hn::Set(d, std::uint32_t(VisibilityGraph::path_bit));
+  const auto edge = hn::Set(d, std::uint32_t(AdjacencyRow::edge_bit)),
+             path = hn::Set(d, std::uint32_t(AdjacencyRow::path_bit));
   const auto zero = hn::Zero(d);
   const auto nothing = hn::Ne(zero, zero);
   std::size_t gone = 0;  // entries of the old row that the new one has left out so far
@@ -81,7 +81,7 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Unsure);
 
-std::size_t unsure_entries(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const RowView& old,
+std::size_t entries_to_retest(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const AdjacencyRow& old,
                            std::span<const std::uint32_t> lost, std::uint32_t* unsure) {
   return HWY_DYNAMIC_DISPATCH(Unsure)(to, bits, old, lost, unsure);
 }

@@ -12,7 +12,7 @@ namespace geo {
 AdjacencyStore::AdjacencyStore(const AdjacencyStore& o)
     : locations_(o.locations_), released_(o.released_), open_(o.open_) {
   for (const auto& block : o.blocks_) {
-    FreshArray<std::byte> copied(block.size());
+    UninitializedArray<std::byte> copied(block.size());
     std::copy(block.begin(), block.end(), copied.begin());
     blocks_.push_back(std::move(copied));
   }

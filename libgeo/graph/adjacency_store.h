@@ -7,13 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "base/fresh_array.h"
+#include "base/uninitialized_array.h"
 #include "kerf/graph.h"
 
 namespace geo {
 
-/// Adjacency rows in blocks of a megabyte. Memory that a row releases is kept by size and used again. Offsets are 32-bit
-/// counts of 8-byte words, so a store holds up to 32 GiB. Not safe to change from several threads, except by Writers.
+/// Adjacency rows in blocks of a megabyte. Memory that a row releases is kept by size and used again. Offsets are
+/// 32-bit counts of 8-byte words, so a store holds up to 32 GiB. Not safe to change from several threads, except by
+/// Writers.
 class AdjacencyStore {
  public:
   /// Entries that one row may have: 16 bits count its words.
@@ -118,10 +119,10 @@ class AdjacencyStore {
   FreeWords find_free_words(std::uint32_t words);
 
   std::vector<Location> locations_;
-  std::vector<FreshArray<std::byte>> blocks_;
+  std::vector<UninitializedArray<std::byte>> blocks_;
   std::vector<std::vector<std::uint32_t>> released_;  // offsets by number of words
   std::vector<FreeWords> open_;                       // blocks that are not full
-  std::vector<FreshArray<std::byte>> spare_;          // blocks given to this store, not used yet
+  std::vector<UninitializedArray<std::byte>> spare_;  // blocks given to this store, not used yet
   std::mutex mutex_;                                  // guards blocks_, released_, open_, spare_ between Writers
 };
 

@@ -141,7 +141,8 @@ void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
   constexpr std::size_t all = BatchedSearch::lanes;
   std::uint32_t *node_end[all], *id_end[all], *distance_end[all];
   for (std::size_t k = 0; k < all; ++k)
-    node_end[k] = s.found[k].node.data(), id_end[k] = s.found[k].id.data(), distance_end[k] = s.found[k].distance.data();
+    node_end[k] = s.found[k].node.data(), id_end[k] = s.found[k].id.data(),
+    distance_end[k] = s.found[k].distance.data();
   // The queue is empty: its memory holds the list of nodes reached.
   std::uint32_t* const nodes = s.queue.data();
   std::size_t count = 0;
@@ -180,7 +181,8 @@ void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
     const auto node = hn::LoadU(d, nodes + first), id = hn::Load(d, ids), joins = hn::Load(d, joined);
     for (std::size_t k = 0; k < all; ++k) {
       const auto reached = hn::And(hn::Lt(distance[k], radius), hn::Gt(distance[k], zero));
-      const auto edge = hn::And(hn::ShiftLeftSame(joins, static_cast<int>(31 - k)), hn::Set(d, BatchedSearch::edge_bit));
+      const auto edge =
+          hn::And(hn::ShiftLeftSame(joins, static_cast<int>(31 - k)), hn::Set(d, BatchedSearch::edge_bit));
       hn::StoreU(hn::Compress(node, reached), d, node_end[k]);
       hn::StoreU(hn::Compress(id, reached), d, id_end[k]);
       hn::StoreU(hn::Compress(hn::Or(distance[k], edge), reached), d, distance_end[k]);

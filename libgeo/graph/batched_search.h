@@ -66,7 +66,7 @@ class BatchedSearch {
     struct Found {
       std::vector<std::uint32_t> node, id, distance;  ///< with space for sixteen more
     };
-    Found found[lanes];               ///< by source
+    Found found[lanes];                ///< by source
     std::uint32_t counts[lanes] = {};  ///< nodes found from each source
   };
 

@@ -208,7 +208,7 @@ Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, 
 }
 
 Near find_cut_candidates(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
-                std::span<const Corners> faces, const TriangleBvh& tree) {
+                         std::span<const Corners> faces, const TriangleBvh& tree) {
   return Search(nodes, graph, faces, tree).run(grid, first_new);
 }
 

@@ -39,6 +39,6 @@ struct Near {
 
 /// Looks among guides and nodes before `first_new`. `tree`: over the faces. `grid` holds all nodes.
 Near find_cut_candidates(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
-                std::span<const std::array<Vec3, 3>> faces, const TriangleBvh& tree);
+                         std::span<const std::array<Vec3, 3>> faces, const TriangleBvh& tree);
 
 }  // namespace geo

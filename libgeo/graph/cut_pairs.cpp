@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "geometry/bvh.h"
-#include "graph/id_set.h"
-#include "graph/id_numbering.h"
 #include "graph/cut_candidates.h"
+#include "graph/id_numbering.h"
+#include "graph/id_set.h"
 
 namespace geo {
 namespace {
@@ -50,7 +50,7 @@ CutPairs rows_of(std::span<const Pair> pairs, IdNumbering& ids, const std::vecto
 }  // namespace
 
 CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
-                     std::span<const Corners> faces) {
+                        std::span<const Corners> faces) {
   const TriangleBvh tree(faces);
   const Near near = find_cut_candidates(nodes, graph, grid, first_new, faces, tree);
   if (near.ids.empty()) return {};

@@ -28,6 +28,6 @@ struct CutPairs {
 
 /// Looks among guides and nodes before `first_new`, at a cost that follows the faces' area. `grid` holds all nodes.
 CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
-                     std::span<const std::array<Vec3, 3>> faces);
+                        std::span<const std::array<Vec3, 3>> faces);
 
 }  // namespace geo

@@ -56,8 +56,8 @@ class RowChecker {
       if (to_guide) {
         const auto length = graph_.warped(nodes_, static_cast<std::uint32_t>(i), to);
         require(in_.bits[e] == edge_only(length), "is not what an edge to a guide is", e);
-        longest_edge = std::max(
-            longest_edge, std::sqrt(squared_distance(nodes_.position[i], graph_.position(nodes_, to))));
+        longest_edge =
+            std::max(longest_edge, std::sqrt(squared_distance(nodes_.position[i], graph_.position(nodes_, to))));
         guide_half_edges.push_back({to, static_cast<std::uint32_t>(i)});
       } else {
         read_entry(i, e);
@@ -125,8 +125,8 @@ void GraphStorage::add_half_edge(std::uint32_t from, std::uint32_t to, std::uint
   if (k < ids.size() && ids[k] == to) {
     // The pair are neighbours: now they see each other.
     if (AdjacencyRow::has_path(bits[k]))
-      paths.erase(paths.begin() + std::count_if(bits.begin(), bits.begin() + static_cast<std::ptrdiff_t>(k),
-                                                AdjacencyRow::has_path));
+      paths.erase(paths.begin() +
+                  std::count_if(bits.begin(), bits.begin() + static_cast<std::ptrdiff_t>(k), AdjacencyRow::has_path));
     bits[k] = static_cast<std::uint16_t>(AdjacencyRow::edge_bit |
                                          std::min<std::uint16_t>(bits[k] & AdjacencyRow::bound_bits, bound));
   } else {
@@ -141,8 +141,8 @@ bool GraphStorage::add(const NodeSet& nodes, std::uint32_t i, std::uint32_t j) {
   const std::uint16_t bound = AdjacencyRow::bits_of_bound(warped(nodes, i, j));
   add_half_edge(i, j, bound), add_half_edge(j, i, bound);
   largest_support_ = std::max({largest_support_, radius(nodes, i), radius(nodes, j)});
-  longest_edge_ = std::max({longest_edge_, largest_support_,
-                            std::sqrt(squared_distance(position(nodes, i), position(nodes, j)))});
+  longest_edge_ =
+      std::max({longest_edge_, largest_support_, std::sqrt(squared_distance(position(nodes, i), position(nodes, j)))});
   edges_ += !is_guide(i) && !is_guide(j);
   return true;
 }

@@ -109,11 +109,11 @@ class GraphStorage {
 
   /// The arrays of a graph in a file, in node order.
   struct Arrays {
-    std::span<const std::uint32_t> count;                           ///< entries in each node's row
-    std::span<const std::uint32_t> to;                              ///< AdjacencyRow::to of all rows
-    std::span<const std::uint16_t> bits;                            ///< AdjacencyRow::bits of all rows
-    std::span<const float> paths;                                   ///< AdjacencyRow::paths of all rows
-    std::span<const Guide> guides = {};                             ///< in order; edges to nodes are in the nodes' rows
+    std::span<const std::uint32_t> count;  ///< entries in each node's row
+    std::span<const std::uint32_t> to;     ///< AdjacencyRow::to of all rows
+    std::span<const std::uint16_t> bits;   ///< AdjacencyRow::bits of all rows
+    std::span<const float> paths;          ///< AdjacencyRow::paths of all rows
+    std::span<const Guide> guides = {};    ///< in order; edges to nodes are in the nodes' rows
     std::span<const std::array<std::uint32_t, 2>> guide_edges = {};  ///< see guide_edges()
   };
   /// A graph from arrays. Throws InputError, which names the first entry that is out of order or range, or is not the

@@ -32,8 +32,7 @@ void ids_near_guide(const NodeSet& nodes, const NodeGrid& grid, const GraphStora
   }
 }
 
-void guides_near(const NodeSet& nodes, const GraphStorage& graph, std::uint32_t node,
-                 std::vector<std::uint32_t>& ids) {
+void guides_near(const NodeSet& nodes, const GraphStorage& graph, std::uint32_t node, std::vector<std::uint32_t>& ids) {
   const Vec3& p = nodes.position[node];
   const GuideSet& guides = graph.guides();
   std::vector<std::uint32_t> found;

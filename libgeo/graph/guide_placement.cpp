@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "geometry/predicates.h"
+#include "graph/graph_storage.h"
 #include "kerf/error.h"
 
 namespace geo {

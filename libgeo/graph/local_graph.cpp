@@ -30,7 +30,9 @@ void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_
     const Discovery& d = discoveries_[number];
     return d.reach + AdjacencyRow::bound(graph.store(d.id).lowest_bound(GraphStorage::index_of(d.id))) < unit_radius;
   };
-  const auto prefetch_location = [&](std::uint32_t id) { graph.store(id).prefetch_location(GraphStorage::index_of(id)); };
+  const auto prefetch_location = [&](std::uint32_t id) {
+    graph.store(id).prefetch_location(GraphStorage::index_of(id));
+  };
   const auto prefetch = [&](std::uint32_t id) { graph.store(id).prefetch(GraphStorage::index_of(id)); };
   for (std::size_t at = 0; at < tail; ++at) {
     const auto number = queue_[at];

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "graph/id_numbering.h"
 #include "graph/graph_storage.h"
+#include "graph/id_numbering.h"
 
 namespace geo {
 

@@ -61,8 +61,7 @@ std::vector<PathDistances> edge_lengths(const NodeSet& nodes, const GraphStorage
   std::vector<PathDistances> rows(n + graph.guides().size());
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto id =
-          i < n ? static_cast<std::uint32_t>(i) : GraphStorage::guide_id(static_cast<std::uint32_t>(i - n));
+      const auto id = i < n ? static_cast<std::uint32_t>(i) : GraphStorage::guide_id(static_cast<std::uint32_t>(i - n));
       const auto row = graph.entries(id);
       for (std::size_t k = 0; k < row.to.size(); ++k) {
         const auto j = row.to[k];

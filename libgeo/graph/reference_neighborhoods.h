@@ -20,7 +20,8 @@ std::vector<PathDistances> edge_lengths(const NodeSet& nodes, const GraphStorage
 /// Dijkstra from one node, bounded by the support; ascending by node, without the node itself.
 class BoundedDijkstra {
  public:
-  explicit BoundedDijkstra(const std::vector<PathDistances>& edges) : edges_(edges), best_(edges.size(), ~PathLength(0)) {}
+  explicit BoundedDijkstra(const std::vector<PathDistances>& edges)
+      : edges_(edges), best_(edges.size(), ~PathLength(0)) {}
   void run(std::uint32_t source, PathDistances& row);
 
  private:

@@ -177,8 +177,7 @@ class GraphUpdater {
   void join_new_nodes(PairVisibility& visibility);
   void join_new_guides(PairVisibility& visibility);
   bool is_fresh(std::uint32_t i) const {
-    return i >= in_.first_new.value ||
-           (!in_.moved.empty() && std::binary_search(fresh_.begin(), fresh_.end(), i));
+    return i >= in_.first_new.value || (!in_.moved.empty() && std::binary_search(fresh_.begin(), fresh_.end(), i));
   }
   void find_rows(std::span<const std::uint32_t> sources, const NeighborhoodSearch::Store& store) const;
 
@@ -206,8 +205,7 @@ void GraphUpdater::find_cut_edges() {
     prefetch_rows_behind(row);
     std::uint32_t shortest = unit_radius;
     for (const auto& entry : cut_.of(row))
-      shortest = std::min(shortest,
-                          AdjacencyRow::is_edge(entry.bits) ? AdjacencyRow::bound(entry.bits) : unit_radius);
+      shortest = std::min(shortest, AdjacencyRow::is_edge(entry.bits) ? AdjacencyRow::bound(entry.bits) : unit_radius);
     if (shortest < unit_radius) users.add(row.id, shortest);
   }
   detach_retired_guides(users);

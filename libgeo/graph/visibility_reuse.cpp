@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "graph/graph_storage.h"
 #include "graph/visibility_reuse.h"
 #include "hwy/highway.h"
-#include "graph/graph_storage.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
@@ -81,8 +81,8 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Unsure);
 
-std::size_t entries_to_retest(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits, const AdjacencyRow& old,
-                           std::span<const std::uint32_t> lost, std::uint32_t* unsure) {
+std::size_t entries_to_retest(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
+                              const AdjacencyRow& old, std::span<const std::uint32_t> lost, std::uint32_t* unsure) {
   return HWY_DYNAMIC_DISPATCH(Unsure)(to, bits, old, lost, unsure);
 }
 

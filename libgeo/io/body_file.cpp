@@ -94,7 +94,8 @@ void add_rows(Arrays& a) {
       for (std::size_t i = 0; i < n; ++i) out.write(std::as_bytes(part(rows.row(i))));
     };
   };
-  a.add<double>("graph/plain_unit", 1, 1, [&body = a.body](KerfSink& out) { out.put(body.graph.storage().plain_unit()); });
+  a.add<double>("graph/plain_unit", 1, 1,
+                [&body = a.body](KerfSink& out) { out.put(body.graph.storage().plain_unit()); });
   a.add<std::uint32_t>("graph/count", n, 1, [&rows, n](KerfSink& out) {
     for (std::size_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(rows.entries(i).to.size()));
   });
@@ -216,13 +217,13 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
     if (ends.size() != n || ends.back() != size) in.fail("section '" + section + "' does not fit");
     return ends;
   };
-  VisibilityGraph edges;
+  GraphStorage edges;
   edges.resize(n);
   const auto edge = in.read<std::uint32_t>("graph/to");
   const auto edge_ends = ends_of("graph", edge.size());
   for (std::uint32_t i = 0; i < n; ++i)
     for (auto e = i ? edge_ends[i - 1] : 0; e < edge_ends[i]; ++e)
-      if (edge[e] >= n || edge[e] <= i || !edges.add(nodes, NodeId(i), NodeId(edge[e])))
+      if (edge[e] >= n || edge[e] <= i || !edges.add(nodes, i, edge[e]))
         in.fail("edge " + std::to_string(e) + " of the graph is out of range or there twice");
   const auto neighbor = in.read<std::uint32_t>("neighbors/to"), warped = in.read<std::uint32_t>("neighbors/warped");
   const auto distance = in.read<float>("neighbors/distance");
@@ -235,8 +236,7 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
   for (std::uint32_t i = 0; i < n; ++i) {
     std::map<std::uint32_t, std::pair<std::uint16_t, float>> row;
     for (const NodeId j : edges.edges(NodeId(i)))
-      row[j.value] = {
-          AdjacencyRow::edge_bit | AdjacencyRow::path_bit | AdjacencyRow::bits_of_bound(unit_radius), 0};
+      row[j.value] = {AdjacencyRow::edge_bit | AdjacencyRow::path_bit | AdjacencyRow::bits_of_bound(unit_radius), 0};
     for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
       if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e]))
         in.fail("neighbour " + std::to_string(e) + " is out of range");
@@ -244,9 +244,7 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
       const auto straight =
           static_cast<float>(std::sqrt(squared_distance(nodes.position[i], nodes.position[neighbor[e]])));
       const bool hidden = distance[e] > std::nextafter(straight, 2 * straight);
-      const std::uint16_t kind = row.count(neighbor[e]) ? AdjacencyRow::edge_bit
-                                 : hidden               ? AdjacencyRow::path_bit
-                                                        : 0;
+      const std::uint16_t kind = row.count(neighbor[e]) ? AdjacencyRow::edge_bit : hidden ? AdjacencyRow::path_bit : 0;
       row[neighbor[e]] = {kind | AdjacencyRow::bits_of_bound(warped[e]), distance[e]};
     }
     count.push_back(static_cast<std::uint32_t>(row.size()));
@@ -285,8 +283,7 @@ void read_rows(const KerfFile& in, Body& body) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   const auto guides = read_guides(in, edges);
   try {
-    body.graph.storage() =
-        GraphStorage::from_arrays(body.nodes, unit[0], {count, to, bits, paths, guides, edges});
+    body.graph.storage() = GraphStorage::from_arrays(body.nodes, unit[0], {count, to, bits, paths, guides, edges});
   } catch (const InputError& e) {
     in.fail(e.what());
   }

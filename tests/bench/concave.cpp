@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "graph.h"
+#include "graph/build_graph.h"
 #include "graph/concave_shapes.h"
 #include "graph/guide_edges.h"
 #include "graph/guide_placement.h"

@@ -3,7 +3,9 @@
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <cstdio>
 
+#include "geometry/bvh.h"
 #include "graph.h"
+#include "graph/build_graph.h"
 #include "graph/reference_neighborhoods.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
@@ -115,7 +117,7 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
   double mfw = 0;
   if (n <= 200000) {
     // As ours from the graph, which keeps no lengths; but to rows that are not packed and put away yet.
-    mfw = least([] {}, [&] { geo::modified_floyd_warshall(geo::edge_lengths(c.nodes, edges)); }, 3);
+    mfw = least([] {}, [&] { geo::modified_floyd_warshall(geo::edge_lengths(c.nodes, edges.storage())); }, 3);
   }
 
   const double speedup = threads_speedup([&] { geo::build_neighborhoods(c.nodes, graph, nothing); }, reset);

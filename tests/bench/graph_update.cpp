@@ -2,7 +2,9 @@
 #include <chrono>
 #include <cstdio>
 
+#include "geometry/bvh.h"
 #include "graph.h"
+#include "graph/build_graph.h"
 #include "graph/update.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
@@ -49,12 +51,12 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
   const auto step = [&](const Soup& faces) {
     const double start = cpu_seconds();
     const auto update = geo::update_graph({.nodes = c.nodes,
-                                            .grid = grid,
-                                            .first_new = geo::NodeId(c.nodes.size()),
-                                            .k = 26,
-                                            .triangles_near = near,
-                                            .new_faces = faces},
-                                           graph);
+                                           .grid = grid,
+                                           .first_new = geo::NodeId(c.nodes.size()),
+                                           .k = 26,
+                                           .triangles_near = near,
+                                           .new_faces = faces},
+                                          graph);
     const double seconds = cpu_seconds() - start;
     cut += update.cut_edges.size(), updated += update.updated_nodes.size();
     return seconds;

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "body/locate.h"
+#include "graph/graph_storage.h"
 #include "invariants/cut_bodies.h"
 #include "kerf/body.h"
 #include "kerf/error.h"
@@ -103,7 +104,8 @@ TEST_CASE("Random cuts keep a pumpkin's body and its guides in step", "[body]") 
       model, 6, 32452843, [](const Body& body) { CHECK(check_body(body).first_problem == ""); },
       [&](const Body& body) {
         placed += body.graph.storage().guides().size() - model.graph.storage().guides().size();
-        for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g) retired += body.graph.storage().guides().retired(g);
+        for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g)
+          retired += body.graph.storage().guides().retired(g);
       });
   CHECK(placed > 100);
   CHECK(retired > 50);

@@ -7,6 +7,7 @@
 #include "body/nodes.h"
 #include "cases.h"
 #include "geometry/bvh.h"
+#include "graph/build_graph.h"
 #include "invariants/cut_bodies.h"
 #include "kerf/body.h"
 #include "kerf/error.h"

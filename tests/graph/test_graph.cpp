@@ -4,7 +4,9 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "geometry/bvh.h"
 #include "geometry/predicates.h"
+#include "graph/build_graph.h"
 #include "kerf/graph.h"
 #include "kerf/nodes.h"
 #include "kerf/parallel.h"

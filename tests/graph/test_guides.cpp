@@ -5,8 +5,9 @@
 
 #include "cases.h"
 #include "concave_shapes.h"
-#include "graph/guide_edges.h"
 #include "graph/batched_search.h"
+#include "graph/build_graph.h"
+#include "graph/guide_edges.h"
 #include "graph/guide_placement.h"
 #include "kerf/error.h"
 #include "kerf/graph.h"

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "cases.h"
+#include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "graph/batched_search.h"
+#include "graph/build_graph.h"
 #include "graph/neighborhood_search.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
@@ -35,7 +37,7 @@ TEST_CASE("every method gives the same rows, with cracks and graded supports") {
     REQUIRE(rows == with_rows(nodes, graph, tree, NeighborMethod::mfw));
     REQUIRE(rows == with_rows(nodes, rows, tree));  // rows of an earlier build change nothing
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-      const auto row = rows.rows().row(i);
+      const auto row = rows.row(NodeId(i));
       for (std::size_t k = 0; k < row.to.size(); ++k) {
         hidden += AdjacencyRow::has_path(row.bits[k]);
         long_edges += !AdjacencyRow::is_neighbor(row.bits[k]);
@@ -102,9 +104,9 @@ TEST_CASE("a search from scattered nodes finds their rows of a build") {
       if (random.uniform() < std::exp(random.uniform(-6, 0))) sources.push_back(i);
     NeighborhoodSearch search;
     std::size_t next = 0;
-    search.run(nodes, rows, sources, {}, [&](std::uint32_t i, const AdjacencyRow& row) {
+    search.run(nodes, rows.storage(), sources, {}, [&](std::uint32_t i, const AdjacencyRow& row) {
       REQUIRE(i == sources[next++]);
-      REQUIRE(row == rows.rows().row(i));
+      REQUIRE(row == rows.row(NodeId(i)));
     });
     CHECK(next == sources.size());
   }

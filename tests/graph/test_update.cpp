@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cases.h"
+#include "graph/build_graph.h"
 #include "graph/guide_edges.h"
 #include "graph/update.h"
 #include "kerf/graph.h"
@@ -63,10 +64,11 @@ VisibilityGraph edges_alone(const NodeSet& nodes, const VisibilityGraph& graph) 
   bare.storage().set_plain_unit(graph.storage().plain_unit());
   for (std::uint32_t i = 0; i < nodes.size(); ++i)
     for (const NodeId j : graph.edges(NodeId(i)))
-      if (i < j.value) bare.add(nodes, NodeId(i), j);
+      if (i < j.value) bare.storage().add(nodes, i, j.value);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_guides;
   for (std::uint32_t g = 0; g < graph.storage().guides().size(); ++g) {
-    const auto id = bare.storage().add_guide({graph.storage().guides().position(g), graph.storage().guides().radius(g)});
+    const auto id =
+        bare.storage().add_guide({graph.storage().guides().position(g), graph.storage().guides().radius(g)});
     if (graph.storage().guides().retired(g)) bare.storage().retire_guide(id);
     for (const auto other : graph.storage().entries(id).to) {
       of_guides.push_back({id, other});
@@ -117,12 +119,13 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
   build_neighborhoods(cut.nodes, scratch, tree);
   for (std::uint32_t g = 0; g < cut.graph.storage().guides().size(); ++g) {
     CAPTURE(g);
-    REQUIRE(cut.graph.storage().entries(VisibilityGraph::first_guide + g) == scratch.storage().entries(VisibilityGraph::first_guide + g));
+    REQUIRE(cut.graph.storage().entries(VisibilityGraph::first_guide + g) ==
+            scratch.storage().entries(VisibilityGraph::first_guide + g));
   }
   for (std::size_t i = 0; i < cut.nodes.size(); ++i, ++rows_compared) {
     CAPTURE(i);
-    REQUIRE(cut.graph.storage().rows().row(i) == scratch.storage().rows().row(i));
-    const bool same = i < before.node_count() && before.storage().rows().row(i) == cut.graph.storage().rows().row(i);
+    REQUIRE(cut.graph.row(NodeId(i)) == scratch.row(NodeId(i)));
+    const bool same = i < before.node_count() && before.row(NodeId(i)) == cut.graph.row(NodeId(i));
     const bool listed = std::binary_search(update.updated_nodes.begin(), update.updated_nodes.end(), NodeId(i));
     REQUIRE((same || listed));
   }
@@ -267,7 +270,8 @@ TEST_CASE("updates where a face cuts hardly more than one edge of a guide") {
       const auto row = body.graph.storage().entries(g);
       if (row.to.empty()) continue;
       const Vec3 p = body.graph.storage().position(body.nodes, g),
-                 q = body.graph.storage().position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
+                 q = body.graph.storage().position(body.nodes,
+                                                   row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
       const Vec3 at = p + random.uniform(0.2, 0.8) * (q - p), u = (q - p).unitOrthogonal(),
                  v = u.cross((q - p).normalized());
       const VisibilityGraph before = body.graph;

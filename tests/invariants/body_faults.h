@@ -11,6 +11,9 @@
 #include "body/locate.h"
 #include "body/nodes.h"
 #include "body/upkeep.h"
+#include "geometry/bvh.h"
+#include "graph/build_graph.h"
+#include "graph/graph_storage.h"
 #include "kerf/check.h"
 #include "kerf/pieces.h"
 
@@ -104,7 +107,8 @@ inline std::string fault_of(const Body& body, double volume) {
   for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g) {
     const auto id = VisibilityGraph::first_guide + g;
     for (const auto to : body.graph.storage().entries(id).to)
-      if (to < id && faces.blocks(body.graph.storage().position(body.nodes, to), body.graph.storage().guides().position(g)))
+      if (to < id &&
+          faces.blocks(body.graph.storage().position(body.nodes, to), body.graph.storage().guides().position(g)))
         return "an edge of guide " + name(g) + " crosses a face";
   }
 
@@ -117,7 +121,7 @@ inline std::string fault_of(const Body& body, double volume) {
   VisibilityGraph scratch = body.graph;
   build_neighborhoods(body.nodes, scratch, faces);
   for (std::uint32_t i = 0; i < x.size(); ++i) {
-    const AdjacencyRow a = scratch.storage().rows().row(i), b = body.graph.storage().rows().row(i);
+    const AdjacencyRow a = scratch.row(NodeId(i)), b = body.graph.row(NodeId(i));
     if (a == b) continue;
     const auto [at, other] = std::mismatch(a.to.begin(), a.to.end(), b.to.begin(), b.to.end());
     const auto tell = [](const AdjacencyRow& row, auto n) { return n == row.to.end() ? "none" : std::to_string(*n); };
@@ -171,7 +175,8 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
   std::vector<std::pair<double, std::uint32_t>> near;
   const auto sees = [&](std::uint32_t i, std::uint32_t j) {
     const auto [low, high] = std::minmax(i, j);
-    return !faces.blocks(body.graph.storage().position(body.nodes, low), body.graph.storage().position(body.nodes, high));
+    return !faces.blocks(body.graph.storage().position(body.nodes, low),
+                         body.graph.storage().position(body.nodes, high));
   };
   const auto is_moved = [&](std::uint32_t i) {
     return std::binary_search(delta.moved_nodes.begin(), delta.moved_nodes.end(), NodeId(i));
@@ -200,9 +205,10 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
       const bool edge = body.graph.has_edge(NodeId(id), NodeId(other)),
                  had = g < old.size() && before.graph.has_edge(NodeId(id), NodeId(other));
       if (g < old.size() && !fresh && !had) return edge;
-      return edge != (reach > 0 &&
-                      squared_distance(body.graph.storage().position(body.nodes, other), guides.position(g)) <= reach * reach &&
-                      sees(id, other));
+      return edge !=
+             (reach > 0 &&
+              squared_distance(body.graph.storage().position(body.nodes, other), guides.position(g)) <= reach * reach &&
+              sees(id, other));
     };
     for (std::uint32_t i = 0; i < n; ++i)
       if (wrong(i, guides.radius(g), i >= first || is_moved(i)))
@@ -235,7 +241,7 @@ inline std::string fault_of(const Body& before, const Body& body, const BodyDelt
           !faces.blocks(x[i], x[j.index()]))
         return "edge " + std::to_string(i) + "-" + std::to_string(j.value) + " was removed for nothing";
     const bool updated = std::binary_search(delta.updated_nodes.begin(), delta.updated_nodes.end(), NodeId(i));
-    if (!updated && !(before.graph.storage().rows().row(i) == body.graph.storage().rows().row(i)))
+    if (!updated && !(before.graph.row(NodeId(i)) == body.graph.row(NodeId(i))))
       return "row " + std::to_string(i) + " changed unsaid";
   }
   std::vector<SurfaceVertexId> rebound;

@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "graph/graph_storage.h"
 #include "io/kerf_layout.h"
 #include "io/kerf_sections.h"
 #include "kerf/body.h"

@@ -33,7 +33,8 @@ Count edges_missing(const geo::Body& a, const geo::Body& b) {
   Count gone;
   for (std::uint32_t i = 0; i < a.nodes.size(); ++i)
     for (const geo::NodeId j : a.graph.edges(geo::NodeId(i)))
-      if (j.value > i && (j.index() >= b.nodes.size() || !b.graph.has_edge(geo::NodeId(i), j))) gone.add(pair(i, j.value));
+      if (j.value > i && (j.index() >= b.nodes.size() || !b.graph.has_edge(geo::NodeId(i), j)))
+        gone.add(pair(i, j.value));
   return gone;
 }
 

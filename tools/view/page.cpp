@@ -197,8 +197,8 @@ class Writer {
         const std::uint32_t j = row.to[e];
         if (geo::VisibilityGraph::is_guide(j) || j < i) continue;
         to.push_back(j);
-        bits.push_back(geo::AdjacencyRow::is_edge(row.bits[e]) |
-                       geo::AdjacencyRow::is_neighbor(row.bits[e]) << 1 | behind << 2);
+        bits.push_back(geo::AdjacencyRow::is_edge(row.bits[e]) | geo::AdjacencyRow::is_neighbor(row.bits[e]) << 1 |
+                       behind << 2);
         distance.push_back((behind ? double(length) : (body.nodes.position[i] - body.nodes.position[j]).norm()) /
                            std::max(0.5 * box_.diagonal(), 1e-300));
       }

@@ -6,6 +6,8 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "graph/build_graph.h"
+#include "graph/graph_storage.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
@@ -124,7 +126,7 @@ TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its pen
   for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0.1, 0)})
     nodes.position.push_back(x), nodes.radius.push_back(1.9), nodes.spacing.push_back(1), nodes.volume.push_back(1);
   graph.storage().resize(2);
-  graph.add(nodes, NodeId(1u), NodeId(0u));
+  graph.storage().add(nodes, 1u, 0u);
   build_neighborhoods(nodes, graph, TriangleBvh());
   for (const double young : {1e4, 1e7, 1e10}) {
     const Solid solid(nodes, graph, stiff(young, 0.3));

@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
+#include "graph/build_graph.h"
+#include "graph/graph_storage.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
@@ -31,8 +33,7 @@ Bar bar(int nx, int ny, int nz, double jitter, std::uint64_t seed = 1) {
   b.graph.storage().resize(b.nodes.size());
   for (std::uint32_t i = 0; i < b.nodes.size(); ++i)
     for (std::uint32_t j = 0; j < i; ++j)
-      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i])
-        b.graph.add(b.nodes, NodeId(i), NodeId(j));
+      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i]) b.graph.storage().add(b.nodes, i, j);
   build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   return b;
 }
@@ -171,7 +172,7 @@ TEST_CASE("momentum is conserved through insertion") {
   b.nodes.radius.push_back(b.nodes.radius[5]), b.nodes.spacing.push_back(0.2),
       b.nodes.volume.push_back(b.nodes.volume[5]);
   b.graph.storage().resize(b.nodes.size());
-  b.graph.add(b.nodes, NodeId(5u), NodeId(64u));
+  b.graph.storage().add(b.nodes, 5u, 64u);
   build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   const std::vector<NodeId> donors{NodeId(5u)}, updated{NodeId(64u)};
   solid.update(b.nodes, b.graph, NodeId(64u), donors, updated, state);

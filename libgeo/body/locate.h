@@ -1,4 +1,5 @@
-// Where a point is with respect to the complex: what is in its way, before which side it stands, in which piece it is.
+// Where a point is with respect to the complex: what is in its way, before which side it stands, in
+// which piece it is.
 #pragma once
 
 #include <functional>
@@ -15,10 +16,12 @@ std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)> triangles_ne
 /// True when the face touches the closed segment pq: exact.
 bool touches(const Complex& complex, FaceId f, const Vec3& p, const Vec3& q);
 
-/// True when a face, other than `except`, touches the closed segment pq: exact, through the complex's index.
+/// True when a face, other than `except`, touches the closed segment pq: exact, through the
+/// complex's index.
 bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId except = {});
 
-/// The same for many segments within a box: its faces are read once. For few segments, or near each other.
+/// The same for many segments within a box: its faces are read once. For few segments, or near each
+/// other.
 class SightIn {
  public:
   SightIn(const Complex& complex, const Box3& box);
@@ -29,14 +32,15 @@ class SightIn {
   std::vector<Box3> boxes_;
 };
 
-/// True when p is on the given side of the face and nothing else touches the segment from there to `base` on the face:
-/// then p is in the material before that side. The face itself is left out because its own point is rounded.
+/// True when p is on the given side of the face and nothing else touches the segment from there to
+/// `base` on the face: then p is in the material before that side. The face itself is left out
+/// because its own point is rounded.
 bool stands_before(const Complex& complex, Side s, const Vec3& base, const Vec3& p);
 
-/// The piece that p is in, −1: none. `piece` numbers the sides with material. Decided by topology: p is where a piece's
-/// whole boundary winds around it, counted along a line from p out of the complex by exact predicates, with ties broken
-/// symbolically. So a crumb whose sheets rounding has exchanged holds no point, and hides from none which piece it is
-/// in.
+/// The piece that p is in, −1: none. `piece` numbers the sides with material. Decided by topology:
+/// p is where a piece's whole boundary winds around it, counted along a line from p out of the
+/// complex by exact predicates, with ties broken symbolically. So a crumb whose sheets rounding has
+/// exchanged holds no point, and hides from none which piece it is in.
 std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::function<std::int32_t(Side)>& piece);
 
 /// True when p is strictly inside the material.

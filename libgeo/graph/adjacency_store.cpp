@@ -96,7 +96,8 @@ void AdjacencyStore::release(std::uint32_t offset, std::uint32_t words) {
   released_[words].push_back(offset);
 }
 
-// The offset of free words for a row, up to a third more than requested; `words` becomes their number.
+// The offset of free words for a row, up to a third more than requested; `words` becomes their
+// number.
 std::uint32_t AdjacencyStore::allocate(std::uint32_t& words) {
   const auto largest = std::min<std::size_t>({words + words / 3, std::size_t(0xffff), released_.size() - 1});
   for (std::uint32_t w = words; !released_.empty() && w <= largest; ++w)

@@ -12,9 +12,9 @@
 
 namespace geo {
 
-/// Adjacency rows in blocks of a megabyte. Memory that a row releases is kept by size and used again. Offsets are
-/// 32-bit counts of 8-byte words, so a store holds up to 32 GiB. Not safe to change from several threads, except by
-/// Writers.
+/// Adjacency rows in blocks of a megabyte. Memory that a row releases is kept by size and used
+/// again. Offsets are 32-bit counts of 8-byte words, so a store holds up to 32 GiB. Not safe to
+/// change from several threads, except by Writers.
 class AdjacencyStore {
  public:
   /// Entries that one row may have: 16 bits count its words.
@@ -66,14 +66,16 @@ class AdjacencyStore {
   std::span<std::uint16_t> bits(std::size_t i);
   /// Sets the bound of an entry of row i.
   void set_bound(std::size_t i, std::size_t entry, std::uint16_t bound);
-  /// Replaces row i. Precondition: `row` does not lie in this store. Throws InputError for more than max_entries.
+  /// Replaces row i. Precondition: `row` does not lie in this store. Throws InputError for more
+  /// than max_entries.
   void set(std::size_t i, const AdjacencyRow& row);
 
   /// The block that holds row i, numbered from 0. Precondition: the row is not empty.
   std::uint32_t block_of(std::size_t i) const { return locations_[i].offset >> block_shift; }
   /// Number of blocks.
   std::size_t block_count() const { return blocks_.size(); }
-  /// Moves the memory of a block to a store that is being filled. Rows in the block must not be read again.
+  /// Moves the memory of a block to a store that is being filled. Rows in the block must not be
+  /// read again.
   void give_block(std::uint32_t block, AdjacencyStore& to);
   /// Frees blocks that were given to this store and not used.
   void drop_spare() { spare_.clear(); }

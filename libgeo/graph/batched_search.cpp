@@ -1,4 +1,5 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector.
+// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind
+// of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/batched_search.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -26,8 +27,9 @@ void Lengths(const double* squared, const double* radius, std::size_t count, std
   }
 }
 
-// The entries whose bits in `mask` are not `refused` and that end within the support radius. Whole vectors
-// only: the last one begins so early that it ends with the row, and skips the entries already handled.
+// The entries whose bits in `mask` are not `refused` and that end within the support radius. Whole
+// vectors only: the last one begins so early that it ends with the row, and skips the entries
+// already handled.
 std::size_t WithinSupport(const AdjacencyRow& row, std::uint32_t mask, std::uint32_t refused, std::uint32_t distance,
                           std::uint32_t* targets, std::uint32_t* distances) {
   const std::uint32_t* const to = row.to.data();

@@ -10,13 +10,13 @@
 
 namespace geo {
 
-/// warped_length() of `count` edges, from squared Euclidean lengths and the larger radius of each edge's ends. All
-/// arrays are read and written up to a multiple of 8.
+/// warped_length() of `count` edges, from squared Euclidean lengths and the larger radius of each
+/// edge's ends. All arrays are read and written up to a multiple of 8.
 void warped_lengths(const double* squared, const double* radius, std::size_t count, std::uint32_t* lengths);
 
-/// The edges of a row whose other ends may be within the support radius of something at distance `distance` from the
-/// row's node. Writes the other ends and lower bounds of their distances; up to 16 numbers behind the last are
-/// overwritten. Returns the number of edges found.
+/// The edges of a row whose other ends may be within the support radius of something at distance
+/// `distance` from the row's node. Writes the other ends and lower bounds of their distances; up to
+/// 16 numbers behind the last are overwritten. Returns the number of edges found.
 std::size_t edges_within_support(const AdjacencyRow& row, std::uint32_t distance, std::uint32_t* targets,
                                  std::uint32_t* distances);
 
@@ -24,8 +24,8 @@ std::size_t edges_within_support(const AdjacencyRow& row, std::uint32_t distance
 std::size_t neighbors_within_support(const AdjacencyRow& row, std::uint32_t distance, std::uint32_t* targets,
                                      std::uint32_t* distances);
 
-/// A bounded label-correcting search from up to sixteen sources: a queue of nodes whose distances fell, one distance a
-/// lane. The result does not depend on the order of the queue.
+/// A bounded label-correcting search from up to sixteen sources: a queue of nodes whose distances
+/// fell, one distance a lane. The result does not depend on the order of the queue.
 class BatchedSearch {
  public:
   /// Sources of one search.
@@ -35,7 +35,7 @@ class BatchedSearch {
     std::span<const std::uint32_t> node;      ///< local nodes
     std::span<const std::uint32_t> id;        ///< their ids in the whole graph
     std::span<const std::uint32_t> distance;  ///< warped, 0 < distance < unit_radius; edge_bit marks nodes
-                                              ///< joined to the source by an edge
+                                              // /< joined to the source by an edge
   };
   /// Set in Distances::distance.
   static constexpr std::uint32_t edge_bit = 1u << 31;
@@ -76,7 +76,8 @@ class BatchedSearch {
 
 /// Names of the vector instruction sets that this processor can use, best first. For tests.
 std::vector<std::string> vector_targets();
-/// Chooses one of vector_targets(), or the best for "". All give equal results. Must not run beside a search.
+/// Chooses one of vector_targets(), or the best for "". All give equal results. Must not run beside
+/// a search.
 void use_vector_target(const std::string& name);
 
 }  // namespace geo

@@ -7,8 +7,8 @@ namespace geo {
 BlockRelease::BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run, AdjacencyStore& to)
     : graph_(graph), to_(to) {
   const std::size_t n = nodes.size();
-  // A search goes by bounds of edges, which are low by less than 2¹⁰: by a share of the least of them at most. Where
-  // that is nothing it may go anywhere, and all blocks are kept.
+  // A search goes by bounds of edges, which are low by less than 2¹⁰: by a share of the least of
+  // them at most. Where that is nothing it may go anywhere, and all blocks are kept.
   std::uint32_t least = unit_radius;
   for (std::uint32_t i = 0; i < n; ++i) least = std::min(least, AdjacencyRow::bound(graph.rows().lowest_bound(i)));
   const GraphStorage& all = graph;

@@ -10,8 +10,8 @@
 
 namespace geo {
 
-/// Which blocks of a graph's rows the searches from runs of nodes may read, by boxes: when the last run that may read a
-/// block is done, its memory is given to the store that is being filled.
+/// Which blocks of a graph's rows the searches from runs of nodes may read, by boxes: when the last
+/// run that may read a block is done, its memory is given to the store that is being filled.
 class BlockRelease {
  public:
   /// Run c is of the nodes from c · `run` on, `run` of them or those that are left.

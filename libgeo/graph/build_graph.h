@@ -1,4 +1,5 @@
-// The graph and its neighbourhoods over obstacles that are already in a tree: what kerf/graph.h declares for triangles.
+// The graph and its neighbourhoods over obstacles that are already in a tree: what kerf/graph.h
+// declares for triangles.
 #pragma once
 
 #include "geometry/bvh.h"

@@ -17,8 +17,8 @@ class Plane {
     const Vec3 u = t[1] - t[0], v = t[2] - t[0];
     normal_ = u.cross(v);
     length_ = normal_.norm();
-    // A height takes a dozen operations on products of these sizes, each with an error of 2⁻⁵³: 2⁻⁴⁸ is more than
-    // enough.
+    // A height takes a dozen operations on products of these sizes, each with an error of 2⁻⁵³:
+    // 2⁻⁴⁸ is more than enough.
     rounding_ = 0x1p-48 * u.lpNorm<1>() * v.lpNorm<1>();
   }
   /// False only when x is farther from the plane than `distance`.
@@ -64,7 +64,8 @@ class Search {
         tree_(tree),
         reach_(graph.longest_edge() * (1 + 1e-6)),
         support_(std::min(graph.largest_support() * (1 + 1e-6), reach_)) {
-    // What a face cuts has one end within half its length. A millionth more covers the rounding of these distances.
+    // What a face cuts has one end within half its length. A millionth more covers the rounding of
+    // these distances.
     for (const Corners& face : faces) around_.emplace_back(face, 0.5 * reach_);
   }
   Near run(const NodeGrid& grid, NodeId first_new) {

@@ -13,10 +13,11 @@
 
 namespace geo {
 
-/// The stretch that some faces cover along one's normal, from `origin`, and some more: a segment beyond it touches
-/// none.
+/// The stretch that some faces cover along one's normal, from `origin`, and some more: a segment
+/// beyond it touches none.
 struct Slab {
-  /// Of the faces in `rows`; heights are asked of points at most `reach` from the origin along each axis.
+  /// Of the faces in `rows`; heights are asked of points at most `reach` from the origin along each
+  /// axis.
   Slab(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> rows, const Vec3& origin,
        double reach);
   double height(const Vec3& x) const {

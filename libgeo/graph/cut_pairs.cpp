@@ -26,8 +26,8 @@ struct Pair {
   std::uint16_t bits;
 };
 
-// Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other end, rows ascending:
-// these are the same rows, but in order.
+// Pairs are put in rows from both ends, in any order. Then each entry goes to the row of its other
+// end, rows ascending: these are the same rows, but in order.
 CutPairs rows_of(std::span<const Pair> pairs, IdNumbering& ids, const std::vector<bool>& above) {
   CutPairs severed;
   std::vector<std::uint32_t> next(ids.size(), 0);  // how many entries, then where the next one goes

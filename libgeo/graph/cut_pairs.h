@@ -11,7 +11,8 @@
 
 namespace geo {
 
-/// Those entries of rows between whose ends a face came: each pair from both ends, as long as the graph is what it was.
+/// Those entries of rows between whose ends a face came: each pair from both ends, as long as the
+/// graph is what it was.
 struct CutPairs {
   struct Entry {
     std::uint32_t to;    ///< node or guide
@@ -26,7 +27,8 @@ struct CutPairs {
   std::span<const Entry> of(const Row& row) const { return {entries.data() + row.begin, entries.data() + row.end}; }
 };
 
-/// Looks among guides and nodes before `first_new`, at a cost that follows the faces' area. `grid` holds all nodes.
+/// Looks among guides and nodes before `first_new`, at a cost that follows the faces' area. `grid`
+/// holds all nodes.
 CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
                         std::span<const std::array<Vec3, 3>> faces);
 

@@ -35,7 +35,8 @@ HalfEdges half_edges_between(const GuideSet& guides, std::span<const std::array<
   return half_edges;
 }
 
-// Checks the rows of a file one after another: each entry must be possible, and the same from both ends.
+// Checks the rows of a file one after another: each entry must be possible, and the same from both
+// ends.
 class RowChecker {
  public:
   RowChecker(const NodeSet& nodes, const GraphStorage& graph, const GraphStorage::Arrays& arrays)

@@ -14,9 +14,10 @@
 
 namespace geo {
 
-/// The representation behind VisibilityGraph, with inline access for hot loops. Nodes and guides share one space of
-/// ids; those of guides begin at VisibilityGraph::first_guide. A guide's row holds its edges only. Lengths of edges and
-/// distances of pairs that see each other are not stored: they are functions of the nodes.
+/// The representation behind VisibilityGraph, with inline access for hot loops. Nodes and guides
+/// share one space of ids; those of guides begin at VisibilityGraph::first_guide. A guide's row
+/// holds its edges only. Lengths of edges and distances of pairs that see each other are not
+/// stored: they are functions of the nodes.
 class GraphStorage {
  public:
   /// Is this the id of a guide?
@@ -42,14 +43,16 @@ class GraphStorage {
   /// Does the edge between two nodes or guides exist?
   bool has(std::uint32_t i, std::uint32_t j) const;
 
-  /// Adds the edge between two nodes or guides, in both rows. False when it exists. Neighbours do not change.
+  /// Adds the edge between two nodes or guides, in both rows. False when it exists. Neighbours do
+  /// not change.
   bool add(const NodeSet& nodes, std::uint32_t i, std::uint32_t j);
   /// Removes the edge from both rows. False when it does not exist. Neighbours do not change.
   bool remove(std::uint32_t i, std::uint32_t j);
-  /// Removes edges to `others` (ascending), which exist, from the row of `id` only. The caller removes them from the
-  /// rows of the other ends.
+  /// Removes edges to `others` (ascending), which exist, from the row of `id` only. The caller
+  /// removes them from the rows of the other ends.
   void drop(std::uint32_t id, std::span<const std::uint32_t> others);
-  /// Lowers the bounds of a node's edges after its radius has changed. Edges and neighbours do not change.
+  /// Lowers the bounds of a node's edges after its radius has changed. Edges and neighbours do not
+  /// change.
   void lower_bounds(const NodeSet& nodes, NodeId i);
 
   /// The guides.
@@ -58,8 +61,8 @@ class GraphStorage {
   std::uint32_t add_guide(const Guide& guide);
   /// Marks a guide as retired. Precondition: it has no edges.
   void retire_guide(std::uint32_t id) { guides_.retire(index_of(id)); }
-  /// Appends edges to rows of guides and others: pairs (row, other end), from both ends, ascending. Precondition: each
-  /// other end lies behind all that its row holds.
+  /// Appends edges to rows of guides and others: pairs (row, other end), from both ends, ascending.
+  /// Precondition: each other end lies behind all that its row holds.
   void append_guide_edges(const NodeSet& nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges);
   /// Pairs of guides joined by an edge, numbered from 0, the greater first, ascending.
   std::vector<std::array<std::uint32_t, 2>> guide_edges() const;
@@ -96,7 +99,8 @@ class GraphStorage {
   void set_plain_unit(double unit) { plain_unit_ = unit; }
   /// No edge is longer than this and no two neighbours are farther apart. Model units.
   double longest_edge() const { return longest_edge_; }
-  /// No edge that joins neighbours is longer than this and no two neighbours are farther apart. Model units.
+  /// No edge that joins neighbours is longer than this and no two neighbours are farther apart.
+  /// Model units.
   double largest_support() const { return largest_support_; }
 
   /// See VisibilityGraph::components().
@@ -116,8 +120,8 @@ class GraphStorage {
     std::span<const Guide> guides = {};    ///< in order; edges to nodes are in the nodes' rows
     std::span<const std::array<std::uint32_t, 2>> guide_edges = {};  ///< see guide_edges()
   };
-  /// A graph from arrays. Throws InputError, which names the first entry that is out of order or range, or is not the
-  /// same from both ends.
+  /// A graph from arrays. Throws InputError, which names the first entry that is out of order or
+  /// range, or is not the same from both ends.
   static GraphStorage from_arrays(const NodeSet& nodes, double plain_unit, const Arrays& arrays);
 
   /// The same edges, neighbours and guides, to the last bit.

@@ -11,21 +11,22 @@
 
 namespace geo {
 
-/// Adds guides to a graph that has no neighbours yet. Each guide gets an edge to every node that it sees within its
-/// radius, and to every guide that it sees if one of the two is within the other's radius. `grid` is over
-/// nodes.position.
+/// Adds guides to a graph that has no neighbours yet. Each guide gets an edge to every node that it
+/// sees within its radius, and to every guide that it sees if one of the two is within the other's
+/// radius. `grid` is over nodes.position.
 void add_guides(const NodeSet& nodes, const NodeGrid& grid, const TriangleBvh& obstacles, std::span<const Guide> guides,
                 VisibilityGraph& graph);
 
 // ---- Shared by build and update.
 
-/// Appends the ids of the nodes, and of the guides with lower ids, that a guide has an edge to if it sees them.
+/// Appends the ids of the nodes, and of the guides with lower ids, that a guide has an edge to if
+/// it sees them.
 void ids_near_guide(const NodeSet& nodes, const NodeGrid& grid, const GraphStorage& graph, std::uint32_t guide,
                     std::vector<std::uint32_t>& ids);
 /// Appends the ids of the guides that a node has an edge to if it sees them.
 void guides_near(const NodeSet& nodes, const GraphStorage& graph, std::uint32_t node, std::vector<std::uint32_t>& ids);
-/// Adds the edges of the last visible.size() guides, which have none yet: from the k-th of them to visible[k], which
-/// are those of ids_near_guide() that it sees.
+/// Adds the edges of the last visible.size() guides, which have none yet: from the k-th of them to
+/// visible[k], which are those of ids_near_guide() that it sees.
 void add_guide_edges(const NodeSet& nodes, std::span<const std::vector<std::uint32_t>> visible, GraphStorage& graph);
 
 }  // namespace geo

@@ -14,15 +14,16 @@ namespace {
 
 constexpr double beside = 1.0 / 64;  // of the nodes' spacing: how far guides stand from their edges
 
-// Of unit length, halves the material around an edge, unless that spans less than 180 degrees and `bend`, in radians,
-// more.
+// Of unit length, halves the material around an edge, unless that spans less than 180 degrees and
+// `bend`, in radians, more.
 std::optional<Vec3> way_into(const SurfaceEdge& e, double bend) {
   const Vec3 along = (e.b - e.a).normalized();
   const auto across = [&](const Vec3& p) -> Vec3 { return ((p - e.a) - (p - e.a).dot(along) * along).normalized(); };
   const Vec3 u = across(e.c), v = across(e.d);
   const int above = orient3d(e.a, e.b, e.c, e.d);
   if (above < 0) return std::nullopt;
-  // Triangles in a plane either go on or, at the front of a crack, lie on each other with the material all around.
+  // Triangles in a plane either go on or, at the front of a crack, lie on each other with the
+  // material all around.
   if (above == 0 && u.dot(v) <= 0) return std::nullopt;
   const double air = std::acos(std::clamp(u.dot(v), -1.0, 1.0));
   if (above > 0 && std::numbers::pi - air < bend) return std::nullopt;

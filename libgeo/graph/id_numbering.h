@@ -11,8 +11,8 @@
 
 namespace geo {
 
-/// Faster than a hash table where ids are near each other. Memory is a kilobyte for each run of 256 ids of which one
-/// came, and four bytes for each run of the graph.
+/// Faster than a hash table where ids are near each other. Memory is a kilobyte for each run of 256
+/// ids of which one came, and four bytes for each run of the graph.
 class IdNumbering {
  public:
   /// Forgets all ids.

@@ -8,8 +8,8 @@
 
 namespace geo {
 
-/// Looks an id up faster than a hash table. Memory is a bit a node of the graph, kept from one use to the next; what it
-/// takes to begin anew follows what was added.
+/// Looks an id up faster than a hash table. Memory is a bit a node of the graph, kept from one use
+/// to the next; what it takes to begin anew follows what was added.
 class IdSet {
  public:
   void clear() {

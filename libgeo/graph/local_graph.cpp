@@ -16,7 +16,8 @@ inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
   return number;
 }
 
-// Which nodes and edges: a search from all sources at once, with bounds from below in place of lengths.
+// Which nodes and edges: a search from all sources at once, with bounds from below in place of
+// lengths.
 void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_t> sources) {
   const auto count = static_cast<std::uint32_t>(sources.size());
   numbers_.clear();

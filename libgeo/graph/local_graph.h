@@ -1,4 +1,5 @@
-// The part of the visibility graph that some sources' neighbourhoods can depend on, dense and with lengths.
+// The part of the visibility graph that some sources' neighbourhoods can depend on, dense and with
+// lengths.
 #pragma once
 
 #include <array>
@@ -34,7 +35,8 @@ class LocalGraph {
   /// Of the k-th source.
   std::uint32_t source(std::size_t k) const { return place_[k]; }
   Vec3 position(std::uint32_t local) const { return {places_[local].x, places_[local].y, places_[local].z}; }
-  /// Has the k-th source edges that join no neighbours: as long as the support, which are not here, or to guides?
+  /// Has the k-th source edges that join no neighbours: as long as the support, which are not here,
+  /// or to guides?
   bool has_edge_only_entries(std::size_t k) const { return bare_edges_[k]; }
   /// By class of length. A node has those edges only that lead to a neighbour of a source.
   std::span<const Edge> edges(std::uint32_t local) const {

@@ -12,7 +12,8 @@ namespace geo {
 void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& take) {
   if (k < 0) throw InputError("nearest nodes: k is " + std::to_string(k) + ", give zero or more");
   if (tree.size() == 0) return;
-  // Nodes that search together: as many as make up for gathering candidates, as few as have most candidates in common.
+  // Nodes that search together: as many as make up for gathering candidates, as few as have most
+  // candidates in common.
   constexpr std::uint32_t company = 48;
   const auto cells = tree.cells();
   // Along the Morton curve, so that each group can learn from the one before how far to look.

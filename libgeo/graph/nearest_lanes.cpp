@@ -1,7 +1,8 @@
-// Nodes of a small cell search together. Candidates within `reach` of its box are gathered once, as floats relative
-// to it; each node then takes those within reach of itself, ranks them by counting, and puts the first k in their exact
-// order by doubles. A row holds when its last node is within reach, since all nodes that were left out are farther
-// (NodeTree::Cell::gap). The vectors' width decides how fast that goes, never what comes out.
+// Nodes of a small cell search together. Candidates within `reach` of its box are gathered once, as
+// floats relative to it; each node then takes those within reach of itself, ranks them by counting,
+// and puts the first k in their exact order by doubles. A row holds when its last node is within
+// reach, since all nodes that were left out are farther (NodeTree::Cell::gap). The vectors' width
+// decides how fast that goes, never what comes out.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/nearest_lanes.cpp"
 #include <hwy/foreach_target.h>
@@ -21,13 +22,13 @@ namespace {
 
 using TakeRow = std::function<void(NodeId, std::span<const NodeId>)>;
 
-// Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within 2⁻²⁴ (1 + 2⁻²⁸) of
-// the exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at most. For a distance d ≤ 1 the sum of
-// squares is then off by 2 η √3 d + 3 η² from the coordinates and by 4 · 2⁻²⁴ d² from its own rounding: below 18 ·
-// 2⁻²⁴.
+// Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within
+// 2⁻²⁴ (1 + 2⁻²⁸) of the exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at
+// most. For a distance d ≤ 1 the sum of squares is then off by 2 η √3 d + 3 η² from the coordinates
+// and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
 constexpr double float_error = 0x1p-19;
-// Candidates are told apart by the low bits of their squares, whose place is then the candidate's: that takes away a
-// share of key_error at most.
+// Candidates are told apart by the low bits of their squares, whose place is then the candidate's:
+// that takes away a share of key_error at most.
 constexpr std::uint32_t most_keyed = 2048, most_ranked = 255;
 constexpr double key_error = 0x1p-12;
 
@@ -68,7 +69,8 @@ class GroupSearch {
   void operator()(std::uint32_t group) {
     const auto cells = tree_.cells();
     const NodeTree::Cell& home = cells[group];
-    // A cell around with enough nodes bounds how far the last of them can be, and tells about how far it will be.
+    // A cell around with enough nodes bounds how far the last of them can be, and tells about how
+    // far it will be.
     std::uint32_t around = group;
     while (cells[around].count() < wanted_) around = cells[around].parent;
     const double farthest = cells[around].diagonal();
@@ -206,8 +208,8 @@ class GroupSearch {
     return true;
   }
 
-  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put behind them, in
-  // order.
+  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put
+  // behind them, in order.
   template <class ToExact>
   void rank(std::uint32_t count, const ToExact& exact) {
     const hn::ScalableTag<std::uint32_t> du;

@@ -11,7 +11,8 @@ namespace {
 
 using Group = std::span<std::uint32_t>;  // places in `ids`
 
-// Into groups so small that what is near one of them is mostly near the others, too: a support across.
+// Into groups so small that what is near one of them is mostly near the others, too: a support
+// across.
 void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all, std::vector<Group>& groups) {
   Box3 box;
   double support = 0;

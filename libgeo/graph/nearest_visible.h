@@ -13,8 +13,9 @@
 
 namespace geo {
 
-/// For each of `ids` the k nearest nodes that it sees, nearest first, or those of its 3 k nearest. `grid` holds all
-/// nodes; `obstacle_near` appends the triangles whose boxes meet a box, and is asked from several threads.
+/// For each of `ids` the k nearest nodes that it sees, nearest first, or those of its 3 k nearest.
+/// `grid` holds all nodes; `obstacle_near` appends the triangles whose boxes meet a box, and is
+/// asked from several threads.
 std::vector<std::vector<std::uint32_t>> nearest_visible(
     const NodeSet& nodes, const NodeGrid& grid, std::span<const std::uint32_t> ids, int k,
     const std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>& obstacle_near,

@@ -8,8 +8,8 @@
 namespace geo {
 namespace {
 
-// Sources that share one local graph: enough that most nodes near a source are near others, too; few
-// enough that the local graph fits into a core's cache.
+// Sources that share one local graph: enough that most nodes near a source are near others, too;
+// few enough that the local graph fits into a core's cache.
 constexpr std::size_t sources_per_graph = 4096;
 
 }  // namespace
@@ -40,14 +40,15 @@ class NeighborhoodSearch::Scratch {
   std::uint64_t plain_length_to(std::uint32_t node, double unit);
 
   std::vector<std::uint32_t> to_;  // ids of a row with edges that join no neighbours
-  // By local node, for one source: the warped distance, 0 where there is none; the head of its list of
-  // last edges; its plain length or `unknown`.
+  // By local node, for one source: the warped distance, 0 where there is none; the head of its list
+  // of last edges; its plain length or `unknown`.
   std::vector<std::uint32_t> distance_, first_edge_;
   std::vector<std::uint64_t> plain_;
   std::vector<LastEdge> last_edges_;  // [0] ends each list
 };
 
-// The edges that end shortest paths from a source: those that account for the distance of their end.
+// The edges that end shortest paths from a source: those that account for the distance of their
+// end.
 void NeighborhoodSearch::Scratch::find_last_edges(std::uint32_t source, const BatchedSearch::Distances& found) {
   distance_.resize(std::max<std::size_t>(distance_.size(), local.size()), 0);
   plain_.resize(distance_.size()), first_edge_.resize(distance_.size());

@@ -11,8 +11,8 @@
 
 namespace geo {
 
-/// Finds the neighbours of nodes by shortest paths along the graph, bounded by the support radius. One object for each
-/// thread; it keeps its memory from one run to the next.
+/// Finds the neighbours of nodes by shortest paths along the graph, bounded by the support radius.
+/// One object for each thread; it keeps its memory from one run to the next.
 class NeighborhoodSearch {
  public:
   /// Sets path_bit of each pair (i, to[k]) that a face hides. Entries with edge_bit see each other.
@@ -24,9 +24,9 @@ class NeighborhoodSearch {
   /// A search without memory yet.
   NeighborhoodSearch();
   ~NeighborhoodSearch();
-  /// Finds the rows of `sources` (ascending; nodes or guides) along all edges of the graph, and calls `store` for each,
-  /// in order. With an empty `mark_hidden` all pairs see each other. `store` may change the graph's neighbours but not
-  /// its edges.
+  /// Finds the rows of `sources` (ascending; nodes or guides) along all edges of the graph, and
+  /// calls `store` for each, in order. With an empty `mark_hidden` all pairs see each other.
+  /// `store` may change the graph's neighbours but not its edges.
   void run(const NodeSet& nodes, const GraphStorage& graph, std::span<const std::uint32_t> sources,
            const MarkHidden& mark_hidden, const Store& store);
 
@@ -35,8 +35,8 @@ class NeighborhoodSearch {
   std::unique_ptr<Scratch> scratch_;
 };
 
-/// Inserts into the row of node i (ids and bits) its edges that join no neighbours: those as long as the support, and
-/// those to guides.
+/// Inserts into the row of node i (ids and bits) its edges that join no neighbours: those as long
+/// as the support, and those to guides.
 void insert_edge_only_entries(const NodeSet& nodes, const GraphStorage& graph, std::uint32_t i,
                               std::vector<std::uint32_t>& to, std::vector<std::uint16_t>& bits);
 

@@ -1,4 +1,5 @@
-// Nodes in Morton order under a tree of tight boxes: what nearest nodes and the spanning tree search in.
+// Nodes in Morton order under a tree of tight boxes: what nearest nodes and the spanning tree
+// search in.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@ namespace geo {
 /// The square of a vector's length, rounded as squared_distance() is.
 inline double square_of(double x, double y, double z) { return (x * x + y * y) + z * z; }
 
-/// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot tell nodes apart,
-/// they are coded anew within their own box. So any distribution gives small leaves, and O(n) time but for one sort of
-/// digits. About 45 bytes a node.
+/// A binary tree over nodes, split at bits of their Morton codes; where the codes of one box cannot
+/// tell nodes apart, they are coded anew within their own box. So any distribution gives small
+/// leaves, and O(n) time but for one sort of digits. About 45 bytes a node.
 class NodeTree {
  public:
   /// A leaf has at most this many nodes, or any number of nodes at one place.
@@ -27,9 +28,10 @@ class NodeTree {
     std::uint32_t children = 0;  ///< the first of two in a row; 0: a leaf
     bool leaf() const { return children == 0; }
     std::uint32_t count() const { return end - begin; }
-    /// The square of the gap to another box (or point: twice the same), and of the diagonal. Both are rounded as
-    /// squared distances of points are, and rounding is monotone: a computed squared distance between nodes of two
-    /// cells is never less than their gap, and within a cell never more than its diagonal.
+    /// The square of the gap to another box (or point: twice the same), and of the diagonal. Both
+    /// are rounded as squared distances of points are, and rounding is monotone: a computed squared
+    /// distance between nodes of two cells is never less than their gap, and within a cell never
+    /// more than its diagonal.
     double gap(const double* from, const double* to) const {
       return square_of(apart(0, from, to), apart(1, from, to), apart(2, from, to));
     }

@@ -1,4 +1,5 @@
-// Rows of neighbours by textbook methods, one source or one node at a time: what faster ones are held to.
+// Rows of neighbours by textbook methods, one source or one node at a time: what faster ones are
+// held to.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,9 @@
 
 namespace geo {
 
-/// A distance as one number, warped length in the high half and plain length in the low one: the smallest is the
-/// shortest warped path and, among equals, the plainly shortest. They add without rounding.
+/// A distance as one number, warped length in the high half and plain length in the low one: the
+/// smallest is the shortest warped path and, among equals, the plainly shortest. They add without
+/// rounding.
 using PathLength = std::uint64_t;
 using PathDistances = std::vector<std::pair<std::uint32_t, PathLength>>;
 
@@ -30,7 +32,8 @@ class BoundedDijkstra {
   std::vector<std::pair<PathLength, std::uint32_t>> heap_;
 };
 
-/// § 6.2: the modified Floyd-Warshall on sparse rows; a path longer than the support is never stored.
+/// § 6.2: the modified Floyd-Warshall on sparse rows; a path longer than the support is never
+/// stored.
 std::vector<PathDistances> modified_floyd_warshall(const std::vector<PathDistances>& edges);
 
 }  // namespace geo

@@ -27,8 +27,8 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// Visibility of pairs of which most share one node: triangles around that node are read once, within a
-// distance that adapts to their number.
+// Visibility of pairs of which most share one node: triangles around that node are read once,
+// within a distance that adapts to their number.
 class PairVisibility {
  public:
   PairVisibility(const NodeSet& nodes, const GraphStorage& graph, const TrianglesNear& near)
@@ -337,9 +337,9 @@ void GraphUpdater::add_users_of_new_edges() {
   });
 }
 
-// Finds the rows of some nodes of P_update (ascending). A pair that saw each other still does, unless a
-// new face came between. A pair that did not is tested again: divided faces have rounded corners, and a
-// segment that barely touched one may pass now.
+// Finds the rows of some nodes of P_update (ascending). A pair that saw each other still does,
+// unless a new face came between. A pair that did not is tested again: divided faces have rounded
+// corners, and a segment that barely touched one may pass now.
 void GraphUpdater::find_rows(std::span<const std::uint32_t> sources, const NeighborhoodSearch::Store& store) const {
   const GraphStorage& graph = graph_;
   PairVisibility visibility(nodes_, graph, in_.triangles_near);

@@ -1,4 +1,5 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind of vector.
+// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind
+// of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/visibility_reuse.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
@@ -42,8 +43,8 @@ std::size_t Unsure(std::span<const std::uint32_t> to, std::span<const std::uint1
   for (std::size_t e = 0; e < count; e += lanes) {
     const auto at = std::min(e, count - lanes);
     const auto now = hn::LoadU(d, to.data() + at);
-    // Old rows have nearly all that new ones have: what is sought is as many places on as entries have gone, or a few
-    // more.
+    // Old rows have nearly all that new ones have: what is sought is as many places on as entries
+    // have gone, or a few more.
     auto same = nothing, seen = nothing;
     for (std::size_t k = at + gone; k <= old_count - lanes; ++k) {
       const auto equal = hn::Eq(now, hn::LoadU(d, old.to.data() + k));

@@ -1,4 +1,5 @@
-// Distances around concave edges, with guides and without, beside the shortest paths; and what guides cost (§ 8).
+// Distances around concave edges, with guides and without, beside the shortest paths; and what
+// guides cost (§ 8).
 #include <cstdio>
 
 #include "graph.h"
@@ -20,7 +21,8 @@ using Soup = std::vector<std::array<geo::Vec3, 3>>;
 ConcaveErrors errors_of(const Prism& prism, const geo::NodeSet& nodes, const std::vector<geo::Guide>& guides) {
   const geo::TriangleBvh tree(geo::corners_of(walls_of(prism)));
   const PrismPaths paths(prism);
-  // Supports of twice the size: rows tell distances of those, too, that ought to be neighbours and are not.
+  // Supports of twice the size: rows tell distances of those, too, that ought to be neighbours and
+  // are not.
   geo::NodeSet wide = nodes;
   for (double& r : wide.radius) r *= 2;
   auto graph = geo::build_visibility_graph(wide, tree, 26);

@@ -30,9 +30,9 @@ struct Bounded : boost::default_dijkstra_visitor {
   }
 };
 
-// CPU seconds a pair of Boost's Dijkstra from some of the nodes, maps kept from one to the next. Its function of that
-// name fills a map of the heap's places with zeros for each source; `own_heap` keeps that map as well, and calls what
-// the function calls.
+// CPU seconds a pair of Boost's Dijkstra from some of the nodes, maps kept from one to the next.
+// Its function of that name fills a map of the heap's places with zeros for each source; `own_heap`
+// keeps that map as well, and calls what the function calls.
 double boost_seconds(const Peer& graph, std::size_t nodes, bool own_heap) {
   const auto index = boost::get(boost::vertex_index, graph);
   const auto weight = boost::get(boost::edge_weight, graph);
@@ -97,7 +97,8 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
         reset, [&] { geo::build_neighborhoods(c.nodes, graph, obstacles); }, 7);
   };
 
-  // All methods ask the same question, who sees whom, of pairs without an edge: the search is compared without it.
+  // All methods ask the same question, who sees whom, of pairs without an edge: the search is
+  // compared without it.
   const double seen = build(surface);
   std::size_t pairs = 0;
   for (std::size_t i = 0; i < n; ++i) pairs += graph.neighbor_count(NodeId(i));
@@ -116,7 +117,8 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
   const double boost = boost_seconds(peer, n, false), boost_own = boost_seconds(peer, n, true);
   double mfw = 0;
   if (n <= 200000) {
-    // As ours from the graph, which keeps no lengths; but to rows that are not packed and put away yet.
+    // As ours from the graph, which keeps no lengths; but to rows that are not packed and put away
+    // yet.
     mfw = least([] {}, [&] { geo::modified_floyd_warshall(geo::edge_lengths(c.nodes, edges.storage())); }, 3);
   }
 

@@ -14,8 +14,8 @@ namespace {
 
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
 
-// A strip of a plane through the middle of the body, from share `from` to share `to` of the way across: `columns`
-// quads.
+// A strip of a plane through the middle of the body, from share `from` to share `to` of the way
+// across: `columns` quads.
 Soup strip(const geo::Vec3& at, double width, double from, double to, int columns) {
   const geo::Vec3 normal = geo::Vec3(0.96, 0.25, 0.12).normalized(), u = normal.cross(geo::Vec3(0, 0, 1)).normalized(),
                   v = normal.cross(u);
@@ -62,8 +62,8 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
     return seconds;
   };
 
-  // In twelve steps through all of it; builds in turn with them, so that both meet a moment in which the machine does
-  // nothing else.
+  // In twelve steps through all of it; builds in turn with them, so that both meet a moment in
+  // which the machine does nothing else.
   constexpr int steps = 12;
   double rebuild = 1e300;
   std::vector<double> least_of(steps, 1e300);

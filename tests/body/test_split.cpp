@@ -189,7 +189,8 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
   for (std::size_t i = before.size(); i < all; ++i) {
     const Vec3& x = body.nodes.position[i];
     const double spacing = body.nodes.spacing[i];
-    // Of those that were there before: at least half as far apart as the closest ones, no farther than the farthest.
+    // Of those that were there before: at least half as far apart as the closest ones, no farther
+    // than the farthest.
     double least = coarsest, most = 0;
     for (std::size_t j = 0; j < before.size(); ++j)
       if ((before.position[j] - x).norm() < 2 * coarsest)

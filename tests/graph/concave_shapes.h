@@ -1,4 +1,5 @@
-// Prisms in which shortest paths are known: as long as a path in the polygon below and the height climbed demand.
+// Prisms in which shortest paths are known: as long as a path in the polygon below and the height
+// climbed demand.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,8 @@
 
 using Point2 = std::array<double, 2>;
 
-/// The walls over a polygon, counter-clockwise, of height 1; a crack is a pair of walls in one place.
+/// The walls over a polygon, counter-clockwise, of height 1; a crack is a pair of walls in one
+/// place.
 struct Prism {
   std::string name;
   std::vector<Point2> polygon;
@@ -64,7 +66,8 @@ inline std::vector<geo::SurfaceEdge> edges_of(const geo::TriangleMesh& mesh) {
 class PrismPaths {
  public:
   explicit PrismPaths(const Prism& prism) : prism_(prism) {}
-  /// Whether no wall lies across the way between two points, which are in the polygon or are its corners.
+  /// Whether no wall lies across the way between two points, which are in the polygon or are its
+  /// corners.
   bool clear(const Point2& p, const Point2& q) const {
     const auto& c = prism_.polygon;
     for (std::size_t k = 0; k < c.size(); ++k) {
@@ -118,8 +121,8 @@ struct ConcaveErrors {
   }
 };
 
-/// Jittered nodes in a prism, `across` of them a unit, a sixth of their spacing or more off its walls; supports of 2.4
-/// spacings.
+/// Jittered nodes in a prism, `across` of them a unit, a sixth of their spacing or more off its
+/// walls; supports of 2.4 spacings.
 inline geo::NodeSet nodes_in(const Prism& prism, int across, std::uint64_t seed) {
   geo::Random random(seed);
   const PrismPaths paths(prism);

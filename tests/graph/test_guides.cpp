@@ -131,7 +131,8 @@ TEST_CASE("with guides, distances of nodes that do not see each other are near t
       const auto mesh = walls_of(prism);
       const TriangleBvh tree(corners_of(mesh));
       const NodeSet nodes = nodes_in(prism, 10, static_cast<std::uint64_t>(seed));
-      // With supports of twice the size rows tell distances of those, too, that ought to be neighbours and are not.
+      // With supports of twice the size rows tell distances of those, too, that ought to be
+      // neighbours and are not.
       NodeSet wide = nodes;
       for (double& r : wide.radius) r *= 2;
       const auto bare = guided(wide, tree, {}),

@@ -1,4 +1,5 @@
-// What does not hold of a body after a step: everything is found again from scratch, as slowly as it takes.
+// What does not hold of a body after a step: everything is found again from scratch, as slowly as
+// it takes.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +30,9 @@ inline NodeId carrier(const Body& body, std::size_t v) {
   return v < b.master.size() && b.master[v].valid() ? b.master_node[b.master[v].index()] : NodeId();
 }
 
-/// Components of G against pieces of material: one for each, but for crumbs that have no room for a node in doubles. A
-/// point is in a piece when a ray from it crosses the piece's boundary an odd number of times. No edge crosses a face.
+/// Components of G against pieces of material: one for each, but for crumbs that have no room for a
+/// node in doubles. A point is in a piece when a ray from it crosses the piece's boundary an odd
+/// number of times. No edge crosses a face.
 inline std::string fault_of_components(const Body& body, const Pieces& pieces,
                                        const std::vector<std::uint32_t>& component, std::size_t components) {
   const Complex& k = body.surface;
@@ -69,8 +71,8 @@ inline std::string fault_of_components(const Body& body, const Pieces& pieces,
       };
       const double u = random.uniform(), v = random.uniform(), w = random.uniform();
       const Vec3 q = (1 - u) * corner() + u * ((1 - v) * corner() + v * ((1 - w) * corner() + w * corner()));
-      // Room is what is clear of the boundary by a few last places. In a crumb whose sheets rounding has exchanged, a
-      // point is less than outside.
+      // Room is what is clear of the boundary by a few last places. In a crumb whose sheets
+      // rounding has exchanged, a point is less than outside.
       if (boundary[p].inside(q) && boundary[p].closest(q).distance > 0x1p-48 * k.extent().diagonal() &&
           piece_around(k, q, [&](Side s) {
             return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
@@ -165,8 +167,9 @@ inline std::string fault_of(const Body& body, double volume) {
   return {};
 }
 
-/// Nodes that are new or moved have edges to the nearest that they see, guides to all that they see. `mended`: how many
-/// of the new nodes came last, to join what was apart; what came after a node need not have an edge to it.
+/// Nodes that are new or moved have edges to the nearest that they see, guides to all that they
+/// see. `mended`: how many of the new nodes came last, to join what was apart; what came after a
+/// node need not have an edge to it.
 inline std::string fault_of_new_edges(const Body& before, const Body& body, const BodyDelta& delta, std::size_t mended,
                                       const TriangleBvh& faces) {
   const auto& x = body.nodes.position;

@@ -35,7 +35,8 @@ class Writer {
  public:
   Writer(const geo::Box3& box, const Budget& budget) : box_(box), budget_(budget) {}
 
-  // One frame, or the surface of a still; `most`: triangles. Returns true when its rows are those of the mesh.
+  // One frame, or the surface of a still; `most`: triangles. Returns true when its rows are those
+  // of the mesh.
   bool add_surface(const geo::TriangleMesh& mesh, const std::string& label, double most) {
     PieceMap pieces = pieces_of(mesh);
     const bool coarse = double(mesh.triangles.size()) > most;
@@ -91,7 +92,8 @@ class Writer {
     }
   }
 
-  // Nodes with all that is known of them; `rest`: the surface in material coordinates, `whole`: with all of its rows.
+  // Nodes with all that is known of them; `rest`: the surface in material coordinates, `whole`:
+  // with all of its rows.
   void add_nodes(const Subject& subject, int rest, bool whole, const geo::Body* before,
                  const MovingNodes& moving = {}) {
     const geo::NodeSet& nodes = subject.nodes;

@@ -24,16 +24,17 @@ constexpr std::uint32_t unit_radius = 1u << 24;
 struct Neighbor {
   NodeId to;                 ///< the neighbour
   std::uint32_t warped = 0;  ///< graph distance in 2⁻²⁴ support radii, below unit_radius, rounded
-                             ///< down to 2⁻¹⁴ of a radius (§ 6.4)
+                             // /< down to 2⁻¹⁴ of a radius (§ 6.4)
   float distance = 0;        ///< argument of the kernel, model units: Euclidean where the pair sees each
-                             ///< other, else the length of the shortest path
+                             // /< other, else the length of the shortest path
   bool hidden = false;       ///< a face lies between the pair; an edge never joins such a pair
 };
 
-/// A view of one adjacency row: an entry for each node that is joined to the row's node by an edge, or is its
-/// neighbour, or both. A row may also have entries for edges to guides (§ 8); their ids are above all nodes' ids.
-/// Each entry has 16 bits: edge_bit, path_bit, and in the lower 14 bits a lower bound of the warped distance. Both
-/// upper bits together mark an edge that joins no neighbours: it is as long as the support radius, or leads to a guide.
+/// A view of one adjacency row: an entry for each node that is joined to the row's node by an edge,
+/// or is its neighbour, or both. A row may also have entries for edges to guides (§ 8); their ids
+/// are above all nodes' ids. Each entry has 16 bits: edge_bit, path_bit, and in the lower 14 bits a
+/// lower bound of the warped distance. Both upper bits together mark an edge that joins no
+/// neighbours: it is as long as the support radius, or leads to a guide.
 struct AdjacencyRow {
   std::span<const std::uint32_t> to;    ///< ids at the other ends, ascending
   std::span<const std::uint16_t> bits;  ///< one for each entry
@@ -54,7 +55,8 @@ struct AdjacencyRow {
   }
   /// Is the entry a neighbour hidden by a face, with the length of its path in `paths`?
   static constexpr bool has_path(std::uint16_t bits) { return bits >> 14 == 1; }
-  /// At most the warped distance of the pair; for an edge that joins no neighbours, at most its length.
+  /// At most the warped distance of the pair; for an edge that joins no neighbours, at most its
+  /// length.
   static constexpr std::uint32_t bound(std::uint16_t bits) { return std::uint32_t(bits & bound_bits) << 10; }
   /// The bits that hold the bound of a warped distance; both upper bits are 0.
   static constexpr std::uint16_t bits_of_bound(std::uint32_t warped) {
@@ -65,10 +67,11 @@ struct AdjacencyRow {
 /// Equal ids, bits and paths.
 bool operator==(const AdjacencyRow& a, const AdjacencyRow& b);
 
-/// An undirected graph over nodes with the neighbours of each node. Edges persist however long they are: connectivity
-/// does not depend on support radii. Neighbours are symmetric. build_neighborhoods() finds them, update_graph() keeps
-/// them. Besides nodes the graph may have guides (§ 8): Steiner points that shortest paths pass through. Edges,
-/// neighbours, components and counts leave guides out.
+/// An undirected graph over nodes with the neighbours of each node. Edges persist however long they
+/// are: connectivity does not depend on support radii. Neighbours are symmetric.
+/// build_neighborhoods() finds them, update_graph() keeps them. Besides nodes the graph may have
+/// guides (§ 8): Steiner points that shortest paths pass through. Edges, neighbours, components and
+/// counts leave guides out.
 class VisibilityGraph {
  public:
   /// A graph without nodes.
@@ -85,8 +88,8 @@ class VisibilityGraph {
   class Neighbors;
   /// The nodes at the other ends of i's edges, ascending: a range of NodeId.
   Edges edges(NodeId i) const;
-  /// i's neighbours, ascending, without i itself: a range of Neighbor. `nodes` must be the graph's nodes and outlive
-  /// the range.
+  /// i's neighbours, ascending, without i itself: a range of Neighbor. `nodes` must be the graph's
+  /// nodes and outlive the range.
   Neighbors neighbors(const NodeSet& nodes, NodeId i) const;
   /// Number of i's neighbours.
   std::size_t neighbor_count(NodeId i) const;
@@ -117,9 +120,9 @@ class VisibilityGraph {
 /// The same edges, neighbours and guides, to the last bit.
 bool operator==(const VisibilityGraph& a, const VisibilityGraph& b);
 
-/// The graph of § 6.1: the Euclidean minimum spanning tree and each node's k nearest nodes, without every edge that
-/// touches a triangle of `obstacles` (closed semantics, exact). Neighbours are not yet found. Throws InputError for a
-/// negative k.
+/// The graph of § 6.1: the Euclidean minimum spanning tree and each node's k nearest nodes, without
+/// every edge that touches a triangle of `obstacles` (closed semantics, exact). Neighbours are not
+/// yet found. Throws InputError for a negative k.
 VisibilityGraph build_visibility_graph(const NodeSet& nodes, std::span<const std::array<Vec3, 3>> obstacles, int k,
                                        const Progress& progress = {});
 
@@ -132,15 +135,17 @@ enum class NeighborMethod {
   mfw         ///< the paper's modified Floyd–Warshall
 };
 
-/// Finds all neighbours of all nodes. The result does not depend on the number of threads or the vector width. Reuses
-/// the memory of the edges' rows while it runs: if it throws, the graph is lost.
+/// Finds all neighbours of all nodes. The result does not depend on the number of threads or the
+/// vector width. Reuses the memory of the edges' rows while it runs: if it throws, the graph is
+/// lost.
 void build_neighborhoods(const NodeSet& nodes, VisibilityGraph& graph, std::span<const std::array<Vec3, 3>> obstacles,
                          NeighborMethod method = NeighborMethod::automatic, const Progress& progress = {});
 
 // ---- The graph as arrays, for other programs.
 
-/// A relation between nodes in compressed sparse row format, as SciPy's csr_matrix: indices[indptr[i]] up to, not
-/// including, indices[indptr[i + 1]] are the nodes related to node i, ascending.
+/// A relation between nodes in compressed sparse row format, as SciPy's csr_matrix:
+/// indices[indptr[i]] up to, not including, indices[indptr[i + 1]] are the nodes related to node i,
+/// ascending.
 struct CsrArrays {
   std::vector<std::uint64_t> indptr;   ///< node_count + 1 offsets; the first is 0
   std::vector<std::uint32_t> indices;  ///< node ids; each pair appears in both rows
@@ -149,7 +154,8 @@ struct CsrArrays {
 
 /// The edges of the graph with their Euclidean lengths. `nodes` must be the graph's nodes.
 CsrArrays edge_arrays(const NodeSet& nodes, const VisibilityGraph& graph);
-/// The neighbours in the graph with their distances as in Neighbor. `nodes` must be the graph's nodes.
+/// The neighbours in the graph with their distances as in Neighbor. `nodes` must be the graph's
+/// nodes.
 CsrArrays neighbor_arrays(const NodeSet& nodes, const VisibilityGraph& graph);
 
 // ---- Ranges.
@@ -198,7 +204,8 @@ class VisibilityGraph::Neighbors {
   /// A forward iterator over Neighbor.
   class Iterator {
    public:
-    /// Starts at entry `at` of node i's row or the first neighbour behind it; `at` is 0 or the row's size.
+    /// Starts at entry `at` of node i's row or the first neighbour behind it; `at` is 0 or the
+    /// row's size.
     Iterator(const AdjacencyRow& row, const NodeSet& nodes, std::size_t i, std::size_t at)
         : row_(row), nodes_(&nodes), i_(i), at_(at) {
       skip();

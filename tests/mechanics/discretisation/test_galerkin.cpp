@@ -1,4 +1,5 @@
-// The Galerkin discretisation: exact for linear fields, cracks or not; follows cuts as if built anew.
+// The Galerkin discretisation: exact for linear fields, cracks or not; follows cuts as if built
+// anew.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <numeric>

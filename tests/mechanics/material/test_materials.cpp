@@ -40,7 +40,8 @@ Body bars(double gap, std::span<const int> which, double spacing = 0.1) {
 
 Body both(double gap) { return bars(gap, std::array{0, 1}); }
 
-// So far apart, and so fine, that no block of points has both: what one begins from is nothing to the other.
+// So far apart, and so fine, that no block of points has both: what one begins from is nothing to
+// the other.
 Body far_apart() { return bars(1, std::array{0, 1}, 0.07); }
 
 bool is_second(const Body& body, std::size_t node) { return body.nodes.position[node].y() > 0.4; }

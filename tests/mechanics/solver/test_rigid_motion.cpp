@@ -1,4 +1,5 @@
-// Pieces that move as a whole: found out of their nodes' ways, and kept by time steps however stiff they are.
+// Pieces that move as a whole: found out of their nodes' ways, and kept by time steps however stiff
+// they are.
 #include "mechanics/solver/rigid_motion.h"
 
 #include <Eigen/Geometry>
@@ -74,8 +75,8 @@ TEST_CASE("rigid motions are found, whatever else the nodes do, and by any numbe
     for (std::size_t i = 0; i < n; ++i)
       CHECK((found[nodes.piece[i]].displacement(nodes.place[i]) - nodes.way[i]).norm() < 1e-9 * size);
 
-    // Of any ways: what is left beside straight() has neither momentum. bend() is what a turn of that axis and angle
-    // adds.
+    // Of any ways: what is left beside straight() has neither momentum. bend() is what a turn of
+    // that axis and angle adds.
     for (Vec3& way : nodes.way) way = 0.3 * size * random.direction();
     const auto mean = nodes.motions(all);
     std::vector<Vec3> linear(pieces, Vec3::Zero()), angular = linear;
@@ -93,8 +94,8 @@ TEST_CASE("rigid motions are found, whatever else the nodes do, and by any numbe
       CHECK(angular[p].norm() < 1e-9 * size * size * double(n));
     }
 
-    // A piece without freedom has no motion, one that only goes does not turn; others are as they were, with one
-    // thread, too.
+    // A piece without freedom has no motion, one that only goes does not turn; others are as they
+    // were, with one thread, too.
     std::vector<Freedom> some(all);
     some[0] = k % 2 ? Freedom::none : Freedom::way;
     set_threads(1);

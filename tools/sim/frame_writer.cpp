@@ -14,11 +14,10 @@
 namespace sim {
 namespace {
 
-// What goes on in this thread gives way to all else, so that frames to come do not wait for those
-// that are done.
-void give_way() {
+// Lowers the priority of this thread: computing the next frames comes first.
+void lower_priority() {
 #ifdef __linux__
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // without it, it is only slower
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // a failure only costs time
 #endif
 }
 
@@ -36,28 +35,28 @@ FrameWriter::~FrameWriter() {
   thread_.join();
 }
 
-void FrameWriter::wait_until_waiting(std::unique_lock<std::mutex>& lock, std::size_t most) {
-  changed_.wait(lock, [&] { return error_ || waiting_.size() + (busy_ ? 1 : 0) <= most; });
+void FrameWriter::wait_for_queue(std::unique_lock<std::mutex>& lock, std::size_t length) {
+  changed_.wait(lock, [&] { return error_ || waiting_.size() + (busy_ ? 1 : 0) <= length; });
   if (error_) std::rethrow_exception(error_);
 }
 
 void FrameWriter::add(Frame frame) {
   std::unique_lock lock(mutex_);
-  wait_until_waiting(lock, most_waiting);
+  wait_for_queue(lock, queue_length);
   waiting_.push_back(std::move(frame));
   changed_.notify_all();
 }
 
 const std::string& FrameWriter::log() {
   std::unique_lock lock(mutex_);
-  wait_until_waiting(lock, 0);
+  wait_for_queue(lock, 0);
   geo::flush_to_disk(written_);
   written_.clear();
   return log_;
 }
 
 void FrameWriter::run() {
-  give_way();
+  lower_priority();
   const geo::SerialScope serial;
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -80,8 +79,8 @@ void FrameWriter::run() {
   }
 }
 
-void FrameWriter::write(const std::string& path, const std::function<void(std::ostream&)>& how) {
-  geo::write_all(path, how, geo::Sync::by_system);
+void FrameWriter::write(const std::string& path, const std::function<void(std::ostream&)>& content) {
+  geo::write_all(path, content, geo::Sync::by_system);
   written_.push_back(path);
 }
 
@@ -91,10 +90,10 @@ void FrameWriter::write(const Frame& frame) {
   if (!frame.obstacles.triangles.empty())
     write(folder_.obstacles(i), [&](std::ostream& out) { geo::write_ply(out, frame.obstacles); });
   write(folder_.frame(i), [&](std::ostream& out) { geo::write_ply(out, frame.surface); });
-  if (i == 0) return;  // nothing has happened yet
+  if (i == 0) return;  // the initial state has no statistics
   const std::string line = line_of(frame.outcome, crossings_.count(frame.surface));
   log_ += line + "}\n";
-  if (json_) std::cout << line << ",\"seconds\":" << seconds(frame.outcome.work) << "}\n" << std::flush;
+  if (json_) std::cout << line << ",\"seconds\":" << seconds(frame.outcome.stats) << "}\n" << std::flush;
 }
 
 }  // namespace sim

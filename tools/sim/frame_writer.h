@@ -1,4 +1,4 @@
-// Frames go to the disk while the next ones are worked out.
+// Writes frames in a thread of its own, while the next ones are computed.
 #pragma once
 
 #include <condition_variable>
@@ -27,29 +27,31 @@ struct Frame {
 
 class FrameWriter {
  public:
-  /// `log`: lines of frames before. `json`: each frame's line goes to standard output, too, with its seconds.
+  /// `log`: lines of the frames before. `json`: lines also go to standard output, with their
+  /// seconds.
   FrameWriter(const RunFolder& folder, std::string log, bool json);
-  /// Writes what it was given, as far as it can.
+  /// Writes the frames that wait, unless one failed.
   ~FrameWriter();
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// Waits while many frames are waiting. Throws what went wrong with an earlier one, OutputError as a rule.
+  /// Takes a frame; blocks while several wait. Throws the error of an earlier frame, in general
+  /// OutputError.
   void add(Frame frame);
-  /// Waits until all are written, and on the disk; then the log's text has their lines. Throws as add() does.
+  /// Waits until all frames are on the disk, and returns the log with their lines. Throws as add().
   const std::string& log();
 
  private:
   void run();
   void write(const Frame& frame);
-  void write(const std::string& path, const std::function<void(std::ostream&)>& how);
-  void wait_until_waiting(std::unique_lock<std::mutex>& lock, std::size_t most);
+  void write(const std::string& path, const std::function<void(std::ostream&)>& content);
+  void wait_for_queue(std::unique_lock<std::mutex>& lock, std::size_t length);
 
-  static constexpr std::size_t most_waiting = 4;
+  static constexpr std::size_t queue_length = 4;
   RunFolder folder_;
   std::string log_;
   std::vector<std::string> written_;  // since log() was called
-  geo::CrossingCounter crossings_;    // of frames in their order
+  geo::CrossingCounter crossings_;    // of the frames in order
   bool json_, busy_ = false, ended_ = false;
   std::deque<Frame> waiting_;
   std::exception_ptr error_;

@@ -75,7 +75,7 @@ class Mover {
     FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
     std::optional<FallbackMotion> carried;
     const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
-      return carried && carried->keep_apart(s, t, distance);
+      return carried && carried->keeps_apart(s, t, distance);
     };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int growth = 0;; ++growth) {
@@ -89,7 +89,7 @@ class Mover {
         break;
       }
       const std::vector<Vec3> before = next;
-      carried->place(next);
+      carried->apply(next);
       mark(before, next, changed);
       cover(start, next, &changed);
     }

@@ -9,68 +9,73 @@
 namespace geo {
 namespace {
 
-constexpr double steepest = 0.6;  // below 1, where a motion need not be one-to-one
+// Largest slope of the scaled field. Below 1, x + field(x) is one-to-one; the distance of two points
+// shrinks at most to 1 − steepest of itself.
+constexpr double steepest = 0.6;
+// Cell of the field's grid, in mean edges: a few vertices in each, so that their mean is smooth.
+constexpr double cell_in_edges = 4;
+
+double longest_edge(const Triangle& t, const std::vector<Vec3>& at) {
+  const auto& [i, j, k] = t;
+  return std::sqrt(
+      std::max({(at[j] - at[i]).squaredNorm(), (at[k] - at[j]).squaredNorm(), (at[i] - at[k]).squaredNorm()}));
+}
 
 }  // namespace
 
-FallbackMotion::FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
+FallbackMotion::FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> vertices,
                                const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge)
     : triangles_(triangles),
-      rows_(rows),
+      vertices_(vertices),
       start_(start),
-      field_(start),
+      end_(start),
       deviation_(triangles.size()),
-      carried_(start.size(), 0),
+      follows_(start.size(), 0),
       zones_(start.size()) {
-  std::vector<Vec3> by(start.size(), Vec3::Zero());
-  for (const auto v : rows) by[v] = to[v] - start[v];
-  const SmoothField field(start, by, rows, 4 * edge);
+  std::vector<Vec3> motion(start.size(), Vec3::Zero());
+  for (const auto v : vertices) motion[v] = to[v] - start[v];
+  const SmoothField field(start, motion, vertices, cell_in_edges * edge);
   share_ = std::min(1.0, steepest / std::max(1e-300, field.slope()));
-  parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) field_[rows[i]] += share_ * field(start[rows[i]]);
+  parallel_for(vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) end_[vertices[i]] += share_ * field(start[vertices[i]]);
   });
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& [i, j, k] = triangles[t];
-    deviation_[t] =
-        share_ *
-        field.deviation(std::sqrt(std::max({(start[j] - start[i]).squaredNorm(), (start[k] - start[j]).squaredNorm(),
-                                            (start[i] - start[k]).squaredNorm()})));
-  }
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    deviation_[t] = share_ * field.deviation(longest_edge(triangles[t], start));
 }
 
 bool FallbackMotion::add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs) {
-  const std::vector<std::uint8_t> before = carried_;
-  bool grown = false;
+  const std::vector<std::uint8_t> before = follows_;
+  bool changed = false;
   for (const auto& [s, t] : pairs) {
     bool all = true;
-    for (const auto of : {s, t})
-      for (const auto v : triangles_[of]) all &= before[v] != 0;
+    for (const auto triangle : {s, t})
+      for (const auto v : triangles_[triangle]) all &= before[v] != 0;
     if (all)
-      grown |= zones_.join(triangles_[s], triangles_[t]);
+      changed |= zones_.merge(triangles_[s], triangles_[t]);
     else
-      for (const auto of : {s, t})
-        for (const auto v : triangles_[of]) grown |= !carried_[v], carried_[v] = 1;
+      for (const auto triangle : {s, t})
+        for (const auto v : triangles_[triangle]) changed |= !follows_[v], follows_[v] = 1;
   }
-  return grown;
+  return changed;
 }
 
 bool FallbackMotion::add_all() {
-  bool grown = false;
-  for (const auto v : rows_) grown |= !carried_[v], carried_[v] = 1;
-  return grown;
+  bool changed = false;
+  for (const auto v : vertices_) changed |= !follows_[v], follows_[v] = 1;
+  return changed;
 }
 
-void FallbackMotion::place(std::vector<Vec3>& next) const {
-  for (const auto v : rows_)
-    if (carried_[v]) next[v] = field_[v];
-  for (const auto& rows : zones_.members()) apply_rigid_fit(rows, start_, field_, next);
+void FallbackMotion::apply(std::vector<Vec3>& next) const {
+  for (const auto v : vertices_)
+    if (follows_[v]) next[v] = end_[v];
+  for (const auto& zone : zones_.zones()) apply_rigid_fit(zone, start_, end_, next);
 }
 
-bool FallbackMotion::keep_apart(std::uint32_t s, std::uint32_t t, double distance) const {
-  const auto carried = [&](std::uint32_t v) { return carried_[v] != 0; };
-  for (const auto of : {s, t})
-    if (!std::all_of(triangles_[of].begin(), triangles_[of].end(), carried)) return false;
-  return distance > (deviation_[s] + deviation_[t]) / (1 - steepest) || zones_.have(triangles_[s], triangles_[t]);
+bool FallbackMotion::keeps_apart(std::uint32_t s, std::uint32_t t, double distance) const {
+  const auto follows = [&](std::uint32_t v) { return follows_[v] != 0; };
+  for (const auto triangle : {s, t})
+    if (!std::all_of(triangles_[triangle].begin(), triangles_[triangle].end(), follows)) return false;
+  return distance > (deviation_[s] + deviation_[t]) / (1 - steepest) || zones_.contain(triangles_[s], triangles_[t]);
 }
 
 }  // namespace geo

@@ -1,5 +1,5 @@
-// What cannot go straight: carried along by a smooth field of what all want, and where that does not do, as rigid
-// zones.
+// Fallback for vertices whose straight motion would cross something: they follow a smooth field of the
+// motion that all vertices want, and where that is not enough they move in rigid impact zones.
 #pragma once
 
 #include <cstdint>
@@ -11,36 +11,40 @@
 
 namespace geo {
 
+/// The set of vertices that follow the field, which grows until nothing crosses.
 class FallbackMotion {
  public:
-  /// The field of `rows` that want to go from start to `to`, no further than it is one-to-one all the way. `edge`: that
-  /// of the surface, model units. Refers to all of them; nothing is carried yet.
-  FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> rows,
+  /// The field of the motion from `start` to `to`, per vertex, of the vertices in `vertices`, scaled down
+  /// so that it is one-to-one at all times. `edge`: mean edge of the surface, model units. No vertex
+  /// follows it yet. Refers to everything.
+  FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> vertices,
                  const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge);
 
-  /// Carries all corners of these pairs of triangles; as a rigid zone those of a pair that were carried before. True
-  /// when that is new.
+  /// Lets the vertices of these pairs of triangles follow the field; pairs that did so before are merged
+  /// into rigid zones. Returns whether that changed anything.
   bool add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs);
-  /// Carries everything, by the field where it is in no zone. True when that is new.
+  /// Lets all vertices follow the field, except those in zones. Returns whether that changed anything.
   bool add_all();
-  /// Puts what is carried where it comes to.
-  void place(std::vector<Vec3>& next) const;
+  /// Writes the end positions of the vertices that follow to `next`.
+  void apply(std::vector<Vec3>& next) const;
 
-  /// Whether two triangles, which share no corner and are so far from each other where the motion begins, cannot pass
-  /// each other since the field or a zone carries both: only flat triangles in a field that is not may cross.
-  bool keep_apart(std::uint32_t s, std::uint32_t t, double distance) const;
-  /// How far the field carries, of what all want.
+  /// Whether field or zones keep triangles s and t from passing each other. They share no vertex and start
+  /// at the given distance, model units. Triangles are flat and the field bends them, so near ones may
+  /// cross in it.
+  bool keeps_apart(std::uint32_t s, std::uint32_t t, double distance) const;
+  /// The scale of the field, at most 1: share of the wanted motion.
   double share() const { return share_; }
-  std::size_t in_zones() const { return zones_.size(); }
+  /// Number of vertices in rigid zones.
+  std::size_t in_zones() const { return zones_.vertex_count(); }
 
  private:
   const std::vector<Triangle>& triangles_;
-  std::span<const std::uint32_t> rows_;
+  std::span<const std::uint32_t> vertices_;
   const std::vector<Vec3>& start_;
   double share_ = 1;
-  std::vector<Vec3> field_;        // where it carries each row
-  std::vector<double> deviation_;  // per triangle, of its inside
-  std::vector<std::uint8_t> carried_;
+  std::vector<Vec3> end_;          // per vertex, of the field
+  std::vector<double> deviation_;  // per triangle: how far the field bends its inside off the plane, at most
+  std::vector<std::uint8_t> follows_;
   RigidZones zones_;
 };
 

@@ -1,4 +1,5 @@
-// Rows of points that move as one because nothing else is known to keep them from crossing (Provot 1997).
+// Rigid impact zones: groups of vertices that move as one rigid body, since nothing else is known to
+// keep their triangles from crossing (Provot 1997; Bridson, Fedkiw, Anderson 2002).
 #pragma once
 
 #include <cstdint>
@@ -9,22 +10,24 @@
 
 namespace geo {
 
+/// Disjoint zones of vertices.
 class RigidZones {
  public:
-  explicit RigidZones(std::size_t rows) : joined_(rows), in_zone_(rows, 0) {}
+  /// No zones yet, of `vertices` vertices.
+  explicit RigidZones(std::size_t vertices) : sets_(vertices), in_zone_(vertices, 0) {}
 
-  /// Puts the corners of both into one zone, with all zones that they were in. True when that is new.
-  bool join(const Triangle& s, const Triangle& t);
-  /// Whether one zone has all corners of both.
-  bool have(const Triangle& s, const Triangle& t) const;
-  /// Rows of all zones.
-  std::size_t size() const;
-
-  /// The rows of each zone, ascending; zones by their first rows.
-  std::vector<std::vector<std::uint32_t>> members() const;
+  /// Puts the vertices of both triangles into one zone, and merges it with the zones that they were in.
+  /// Returns whether that changed anything.
+  bool merge(const Triangle& s, const Triangle& t);
+  /// Whether one zone contains all vertices of both triangles.
+  bool contain(const Triangle& s, const Triangle& t) const;
+  /// Number of vertices in zones.
+  std::size_t vertex_count() const;
+  /// The vertices of each zone, ascending; zones in the order of their first vertices.
+  std::vector<std::vector<std::uint32_t>> zones() const;
 
  private:
-  UnionFind joined_;
+  UnionFind sets_;
   std::vector<std::uint8_t> in_zone_;
 };
 

@@ -51,7 +51,7 @@ void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Ve
 
 bool SeparationProjection::bind(std::span<const Pair> pairs) {
   bool is_new = false;
-  for (const auto& [s, t] : pairs) is_new |= zones_.join(triangles_[s], triangles_[t]);
+  for (const auto& [s, t] : pairs) is_new |= zones_.merge(triangles_[s], triangles_[t]);
   return is_new;
 }
 
@@ -68,7 +68,7 @@ void SeparationProjection::push(std::vector<Vec3>& at) const {
   std::vector<std::uint32_t> of(first.back()), end(first.begin(), first.end() - 1);
   for (std::uint32_t i = 0; i < couples_.size(); ++i)
     each_corner(couples_[i], [&](std::uint32_t v) { of[end[v]++] = i; });
-  const auto zones = zones_.members();
+  const auto zones = zones_.zones();
   // Only couples are looked at again of which something has moved.
   std::vector<std::uint32_t> asked(couples_.size()), moved;
   std::iota(asked.begin(), asked.end(), 0u);

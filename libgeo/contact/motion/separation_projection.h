@@ -28,8 +28,8 @@ class SeparationProjection {
   /// From now on these pairs, and all that were bound to one of them, move as one rigid zone. True when that is new.
   bool bind(std::span<const Pair> pairs);
   /// Whether two triangles are in one zone: what does not change its shape cannot pass itself.
-  bool bound(std::uint32_t s, std::uint32_t t) const { return zones_.have(triangles_[s], triangles_[t]); }
-  std::size_t in_zones() const { return zones_.size(); }
+  bool bound(std::uint32_t s, std::uint32_t t) const { return zones_.contain(triangles_[s], triangles_[t]); }
+  std::size_t in_zones() const { return zones_.vertex_count(); }
 
   /// Moves the end of the motion until all couples are parted by their directions, or for many sweeps: each in turn the
   /// least it takes, half by half (position based dynamics, Müller et al. 2007), in the order in which they were added;

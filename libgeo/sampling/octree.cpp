@@ -69,7 +69,7 @@ std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& 
       const double limit = (across - 1) * edge;
       const auto closest =
           tree.tree().closest(region.probe, std::max(cell.level > shape.regular ? edge : 0.0, 0.5 * limit));
-      if (closest.row == ~0u) return false;
+      if (closest.triangle == ~0u) return false;
       divide = cell.level > shape.regular && closest.distance < edge;
       if (!divide && across > 0) wall = wall_around(tree, region.probe, closest, limit);
     }

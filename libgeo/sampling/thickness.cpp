@@ -8,10 +8,9 @@ namespace {
 constexpr double facing = 0.9;
 constexpr double none = std::numeric_limits<double>::infinity();
 
-/// Where the ray from p leaves the material, `from` being the row it starts on; infinite where it does not within
-/// `length`, or not through a face across its way.
-/// Looks for triangles in boxes about so many parts of the ray: the one box of a slanting ray holds most of what is
-/// near.
+/// Where the ray from p leaves the material, `from` being the row it starts on; infinite where it
+/// does not within `length`, or not through a face across its way. Looks for triangles in boxes
+/// about so many parts of the ray: the one box of a slanting ray holds most of what is near.
 double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from,
                int parts) {
   std::vector<std::uint32_t> rows;
@@ -40,8 +39,8 @@ double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, dou
   return none;
 }
 
-/// The middle of the corners of the part of a triangle that is in a box, and that part's area; false where there is
-/// none.
+/// The middle of the corners of the part of a triangle that is in a box, and that part's area;
+/// false where there is none.
 bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, double& area) {
   Vec3 polygon[2][10];  // each of six planes adds one corner at most
   int n = 3, now = 0;
@@ -74,7 +73,8 @@ bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, do
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit) {
   Wall wall;
   const Box3 box = lattice.box(cut.cell);
-  // Of very many small triangles some: a wall worth cells of its own is made of more than a few of them.
+  // Of very many small triangles some: a wall worth cells of its own is made of more than a few of
+  // them.
   const std::size_t step = 1 + cut.rows.size() / 64;
   const int parts = cut.rows.size() < 8 ? 1 : 8;
   for (std::size_t i = 0; i < cut.rows.size(); i += step) {
@@ -92,8 +92,8 @@ Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region&
 Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Closest& closest, double limit) {
   if (!(closest.distance > 0)) return {};
   const Vec3 direction = (p - closest.point) / closest.distance;
-  if (tree.normal(closest.row).dot(direction) > -facing) return {};
-  const double rest = way_out(tree, p, direction, limit - closest.distance, closest.row, 2);
+  if (tree.normal(closest.triangle).dot(direction) > -facing) return {};
+  const double rest = way_out(tree, p, direction, limit - closest.distance, closest.triangle, 2);
   if (!(rest < none)) return {};
   return {closest.distance + rest, p + 0.5 * (rest - closest.distance) * direction, 0};
 }

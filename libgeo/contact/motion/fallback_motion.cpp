@@ -9,8 +9,8 @@
 namespace geo {
 namespace {
 
-// Largest slope of the scaled field. Below 1, x + field(x) is one-to-one; the distance of two points
-// shrinks at most to 1 − steepest of itself.
+// Largest slope of the scaled field. Below 1, x + field(x) is one-to-one; the distance of two
+// points shrinks at most to 1 − steepest of itself.
 constexpr double steepest = 0.6;
 // Cell of the field's grid, in mean edges: a few vertices in each, so that their mean is smooth.
 constexpr double cell_in_edges = 4;

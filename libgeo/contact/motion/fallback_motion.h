@@ -1,5 +1,5 @@
-// Fallback for vertices whose straight motion would cross something: they follow a smooth field of the
-// motion that all vertices want, and where that is not enough they move in rigid impact zones.
+// Fallback for vertices whose straight motion would cross something: they follow a smooth field of
+// the motion that all vertices want, and where that is not enough they move in rigid impact zones.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,24 @@ namespace geo {
 /// The set of vertices that follow the field, which grows until nothing crosses.
 class FallbackMotion {
  public:
-  /// The field of the motion from `start` to `to`, per vertex, of the vertices in `vertices`, scaled down
-  /// so that it is one-to-one at all times. `edge`: mean edge of the surface, model units. No vertex
-  /// follows it yet. Refers to everything.
+  /// The field of the motion from `start` to `to`, per vertex, of the vertices in `vertices`,
+  /// scaled down so that it is one-to-one at all times. `edge`: mean edge of the surface, model
+  /// units. No vertex follows it yet. Refers to everything.
   FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> vertices,
                  const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge);
 
-  /// Lets the vertices of these pairs of triangles follow the field; pairs that did so before are merged
-  /// into rigid zones. Returns whether that changed anything.
+  /// Lets the vertices of these pairs of triangles follow the field; pairs that did so before are
+  /// merged into rigid zones. Returns whether that changed anything.
   bool add(std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs);
-  /// Lets all vertices follow the field, except those in zones. Returns whether that changed anything.
+  /// Lets all vertices follow the field, except those in zones. Returns whether that changed
+  /// anything.
   bool add_all();
   /// Writes the end positions of the vertices that follow to `next`.
   void apply(std::vector<Vec3>& next) const;
 
-  /// Whether field or zones keep triangles s and t from passing each other. They share no vertex and start
-  /// at the given distance, model units. Triangles are flat and the field bends them, so near ones may
-  /// cross in it.
+  /// Whether field or zones keep triangles s and t from passing each other. They share no vertex
+  /// and start at the given distance, model units. Triangles are flat and the field bends them, so
+  /// near ones may cross in it.
   bool keeps_apart(std::uint32_t s, std::uint32_t t, double distance) const;
   /// The scale of the field, at most 1: share of the wanted motion.
   double share() const { return share_; }

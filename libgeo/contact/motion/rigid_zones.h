@@ -1,5 +1,5 @@
-// Rigid impact zones: groups of vertices that move as one rigid body, since nothing else is known to
-// keep their triangles from crossing (Provot 1997; Bridson, Fedkiw, Anderson 2002).
+// Rigid impact zones: groups of vertices that move as one rigid body, since nothing else is known
+// to keep their triangles from crossing (Provot 1997; Bridson, Fedkiw, Anderson 2002).
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ class RigidZones {
   /// No zones yet, of `vertices` vertices.
   explicit RigidZones(std::size_t vertices) : sets_(vertices), in_zone_(vertices, 0) {}
 
-  /// Puts the vertices of both triangles into one zone, and merges it with the zones that they were in.
-  /// Returns whether that changed anything.
+  /// Puts the vertices of both triangles into one zone, and merges it with the zones that they were
+  /// in. Returns whether that changed anything.
   bool merge(const Triangle& s, const Triangle& t);
   /// Whether one zone contains all vertices of both triangles.
   bool contain(const Triangle& s, const Triangle& t) const;

@@ -1,4 +1,5 @@
-// Triangles that would pass through each other give way: where they are to go is mended, before anything goes there.
+// Triangles that would pass through each other give way: where they are to go is mended, before
+// anything goes there.
 #pragma once
 
 #include <span>
@@ -12,8 +13,8 @@
 
 namespace geo {
 
-/// Couples of triangles, or of what they do not share (parts_apart()), each with a direction that parts them where a
-/// straight motion begins.
+/// Couples of triangles, or of what they do not share (parts_apart()), each with a direction that
+/// parts them where a straight motion begins.
 class SeparationProjection {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
@@ -21,19 +22,21 @@ class SeparationProjection {
   SeparationProjection(const std::vector<Triangle>& triangles, const std::vector<Vec3>& start, double gap)
       : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
 
-  /// Pairs that the motion from start to `next` does not keep apart: of some directions that part one about as well as
-  /// any does at the beginning, the one that parts it most at the end; anew where a pair was added before. Pairs so
-  /// near each other that rounding hides all directions are bound.
+  /// Pairs that the motion from start to `next` does not keep apart: of some directions that part
+  /// one about as well as any does at the beginning, the one that parts it most at the end; anew
+  /// where a pair was added before. Pairs so near each other that rounding hides all directions are
+  /// bound.
   void add(std::span<const Pair> pairs, const std::vector<Vec3>& next);
-  /// From now on these pairs, and all that were bound to one of them, move as one rigid zone. True when that is new.
+  /// From now on these pairs, and all that were bound to one of them, move as one rigid zone. True
+  /// when that is new.
   bool bind(std::span<const Pair> pairs);
   /// Whether two triangles are in one zone: what does not change its shape cannot pass itself.
   bool bound(std::uint32_t s, std::uint32_t t) const { return zones_.contain(triangles_[s], triangles_[t]); }
   std::size_t in_zones() const { return zones_.vertex_count(); }
 
-  /// Moves the end of the motion until all couples are parted by their directions, or for many sweeps: each in turn the
-  /// least it takes, half by half (position based dynamics, Müller et al. 2007), in the order in which they were added;
-  /// zones after each sweep.
+  /// Moves the end of the motion until all couples are parted by their directions, or for many
+  /// sweeps: each in turn the least it takes, half by half (position based dynamics, Müller et al.
+  /// 2007), in the order in which they were added; zones after each sweep.
   void push(std::vector<Vec3>& next) const;
 
  private:

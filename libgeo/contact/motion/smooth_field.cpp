@@ -95,8 +95,8 @@ void SmoothField::bound_derivatives(const std::vector<std::uint8_t>& filled) {
   }
   double longest = 0;
   for (const Vec3& v : value_) longest = std::max(longest, v.norm());
-  // Points with an unfilled grid point between them are more than two cells apart: their motions differ
-  // by at most twice the longest.
+  // Points with an unfilled grid point between them are more than two cells apart: their motions
+  // differ by at most twice the longest.
   slope_ = std::max(std::sqrt(first), longest) / cell_;
   bend_ = 3 * std::sqrt(second) / (cell_ * cell_);  // a 3 × 3 matrix' norm is at most 3 times its largest entry
 }

@@ -1,5 +1,5 @@
-// A smooth vector field that approximates given motions of points: points near each other in space move
-// alike, whatever part of a surface they are on.
+// A smooth vector field that approximates given motions of points: points near each other in space
+// move alike, whatever part of a surface they are on.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace geo {
 
-/// Quadratic B-splines on a regular grid. The value at a grid point is the weighted mean of the motions of
-/// the points about it, with the same splines as weights (particle-in-cell transfer, Harlow 1964). The
-/// field is a function of place alone; so in the motion x + s field(x) no two points meet while
-/// s · slope() < 1.
+/// Quadratic B-splines on a regular grid. The value at a grid point is the weighted mean of the
+/// motions of the points about it, with the same splines as weights (particle-in-cell transfer,
+/// Harlow 1964). The field is a function of place alone; so in the motion x + s field(x) no two
+/// points meet while s · slope() < 1.
 class SmoothField {
  public:
-  /// The field of points `at` with motions `motion`, of which only those in `points` count. `cell`: of the
-  /// grid, model units; enlarged where the grid would have many more points than there are points.
+  /// The field of points `at` with motions `motion`, of which only those in `points` count. `cell`:
+  /// of the grid, model units; enlarged where the grid would have many more points than there are
+  /// points.
   SmoothField(const std::vector<Vec3>& at, const std::vector<Vec3>& motion, std::span<const std::uint32_t> points,
               double cell);
 
@@ -26,8 +27,9 @@ class SmoothField {
   Vec3 operator()(const Vec3& p) const;
   /// Upper bound of the norm of the derivative, between the given points.
   double slope() const { return slope_; }
-  /// Upper bound of the distance between the image of a triangle under the field and the flat triangle of
-  /// the images of its corners. `edge`: its longest edge, model units. Infinite for edges longer than a cell.
+  /// Upper bound of the distance between the image of a triangle under the field and the flat
+  /// triangle of the images of its corners. `edge`: its longest edge, model units. Infinite for
+  /// edges longer than a cell.
   double deviation(double edge) const {
     return edge <= cell_ ? bend_ * edge * edge / 6 : std::numeric_limits<double>::infinity();
   }

@@ -55,7 +55,7 @@ void read_material(TomlTable& t, Material& m, bool own = false) {
   t.get("mode_penalty", m.mode_penalty, 0, 100);
   t.get("yield", m.yield, 0, 1e6);
   t.get("creep", m.creep, 0, 1e9);
-  t.get("most_plastic", m.most_plastic, 0, 1e6);
+  t.get("most_plastic", m.max_plastic, 0, 1e6);
   require_material(m);
 }
 

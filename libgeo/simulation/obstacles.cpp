@@ -67,7 +67,7 @@ ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
   std::vector<double> density(materials.count(), 0), count(density);
   ContactScale scale;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto m = materials.number(i);
+    const auto m = materials.index(i);
     density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]), ++count[m];
     scale.spacing += nodes.spacing[i];
   }
@@ -76,7 +76,7 @@ ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
   if (density.size() == 1)
     scale.areal_density = density[0];
   else
-    for (std::size_t i = 0; i < n; ++i) scale.pressure_factor.push_back(density[materials.number(i)]);
+    for (std::size_t i = 0; i < n; ++i) scale.pressure_factor.push_back(density[materials.index(i)]);
   for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
   scale.fall = step.dt * gravity.norm();
   return scale;

@@ -185,7 +185,7 @@ void Simulation::Impl::cut_at(std::size_t b, double time, FrameStats& stats) {
   const Pose pose = blade.motion.at(time);
   Box3 about;
   for (const Vec3& p : blade.points) about.add(pose * p);
-  const NodeGradients gradient = solid.gradients_when_asked(state.motion.displacement);
+  const LazyNodalGradients gradient = solid.gradients_when_asked(state.motion.displacement);
   const PointMap map(body, state.motion.displacement, gradient, about);
   std::vector<std::vector<EdgePoint>> runs;
   if (blade.closed) {

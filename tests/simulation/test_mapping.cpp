@@ -21,7 +21,7 @@ struct Bent {
   Body body = block();
   Solid solid{body.nodes, body.graph, {}};
   std::vector<Vec3> u;
-  NodeGradients gradient = solid.gradients_when_asked(u);
+  LazyNodalGradients gradient = solid.gradients_when_asked(u);
   Bent() {
     for (const Vec3& x : body.nodes.position) {
       const double a = 0.6 * x.z(), r = 1 / 0.6 - x.x();
@@ -99,7 +99,7 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
     set_threads(0);
     std::size_t within = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const NodeGradients fresh = b.solid.gradients_when_asked(b.u);
+      const LazyNodalGradients fresh = b.solid.gradients_when_asked(b.u);
       const PointMap::Place alone = PointMap(b.body, b.u, fresh, all).material(points[i]);
       CHECK(found[i].material == alone.material);
       CHECK(found[i].anchor == alone.anchor);

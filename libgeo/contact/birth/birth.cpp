@@ -317,7 +317,7 @@ class Midwife {
   const ContactSurface& before_;
   const std::vector<Vec3>& old_;
   const Complex& k_;
-  NodeGradients gradient_;
+  LazyNodalGradients gradient_;
   Birth birth_;
   std::vector<SurfaceVertexId> like_;  // the old vertex whose nodes say how the material about a vertex moves
   std::vector<std::uint8_t> placed_;

@@ -27,7 +27,7 @@ class BodyContactFinder {
     const auto& index = in_.body_index;
     const std::uint32_t bodies = index.empty() ? 0 : *std::max_element(index.begin(), index.end()) + 1;
     if (bodies < 2) return contacts_;
-    const NodeGradients gradient = in_.solid.gradients_when_asked(in_.displacement);
+    const LazyNodalGradients gradient = in_.solid.gradients_when_asked(in_.displacement);
     std::vector<Box3> box(bodies);
     for (std::uint32_t v = 0; v < complex().surface_vertex_count(); ++v) {
       const SurfaceVertexId id(v);
@@ -60,7 +60,7 @@ class BodyContactFinder {
   }
 
   // Adds contacts of vertices of other bodies in body b, whose deformed surface has this box.
-  void add_contacts_inside(std::uint32_t b, const Box3& box, const NodeGradients& gradient) {
+  void add_contacts_inside(std::uint32_t b, const Box3& box, const LazyNodalGradients& gradient) {
     std::vector<Vertex> near;
     Box3 near_box;
     for (const Vertex& v : vertices_)

@@ -102,7 +102,7 @@ class PenaltyAssembly {
   }
   double stiffness_at(const SurfacePoint& p) const {
     const auto node = in_.weights.heaviest()[p.vertex[0]];
-    return stiffness_[node == ~0u ? 0 : in_.solid.materials().number(node)];
+    return stiffness_[node == ~0u ? 0 : in_.solid.materials().index(node)];
   }
 
   const PenaltyInput& in_;

@@ -1,4 +1,4 @@
-// Hyperelastic energies: density, stress, and its derivative, made positive for Newton's method.
+// Materials of a deforming solid: parameters, hyperelastic energy density and stress.
 #pragma once
 
 #include <algorithm>
@@ -11,88 +11,84 @@
 
 namespace geo {
 
+/// The hyperelastic energy: Saint-Venant–Kirchhoff, or the stable neo-Hookean one of Smith, de Goes
+/// and Kim (2018).
 enum class ElasticModel { saint_venant_kirchhoff, neo_hookean };
 
-/// Where strain energy is summed. `galerkin`: at quadrature points, with the full derivative of the shape functions;
-/// `mueller04`: at nodes, with moving least squares' own (diffuse) one, softer by a fifth or more (docs/validation.md).
+/// Where strain energy is integrated. `galerkin`: at quadrature points, with the full derivative of
+/// the shape functions (Belytschko, Lu and Gu 1994). `mueller04`: at nodes, with the diffuse
+/// derivative of moving least squares (Müller et al. 2004); softer by a fifth or more
+/// (docs/validation.md).
 enum class Discretisation { galerkin, mueller04 };
 
+/// Parameters of one material. Model units are metres.
 struct Material {
   Discretisation discretisation = Discretisation::galerkin;
   ElasticModel model = ElasticModel::neo_hookean;
-  double young = 1e5;          ///< Pa (model units: m)
-  double poisson = 0.3;        ///< −1 < ν < 0.5
-  double density = 1000;       ///< kg/m³
+  double young = 1e5;          ///< Young's modulus E, Pa
+  double poisson = 0.3;        ///< Poisson's ratio, −1 < ν < 0.5
+  double density = 1000;       ///< ρ, kg/m³
   double volume_term = 0;      ///< k_v of ½ k_v (det F − 1)², Pa; keeps Saint-Venant–Kirchhoff from collapsing
-  double damping = 0.5;        ///< mass-proportional, 1/s
-  double viscosity = 0;        ///< η of ½ η |Ė|², E the Green strain, Pa·s: resists changes of shape, not motion
-  double mode_penalty = 0.05;  ///< of mueller04: α of the penalty on modes that nodal strains do not see
-  double yield = 0;            ///< norm of the elastic strain beyond which material flows; 0: never (plasticity.h)
-  double creep = 1;            ///< the share of the elastic strain that flows in a second
-  double most_plastic = 1;     ///< norm that the plastic strain cannot pass
-  double lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
-  double mu() const { return young / (2 * (1 + poisson)); }
+  double damping = 0.5;        ///< mass-proportional damping, 1/s
+  double viscosity = 0;        ///< η of ½ η |Ė|², E the Green strain, Pa·s: resists deformation, not rigid motion
+  double mode_penalty = 0.05;  ///< mueller04 only: α of the penalty on zero-energy modes of nodal strains
+  double yield = 0;            ///< norm of the elastic strain above which material flows; 0: never
+  double creep = 1;            ///< fraction of the elastic strain that flows per second
+  double max_plastic = 1;      ///< upper bound of the plastic strain's norm
+
+  double lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  ///< Lamé's λ, Pa
+  double mu() const { return young / (2 * (1 + poisson)); }                                ///< shear modulus μ, Pa
+  /// True if all parameters are equal.
   friend bool operator==(const Material&, const Material&) = default;
 };
 
-/// Throws InputError unless E > 0, −1 < ν < 0.5, ρ > 0 and the rest is not negative.
+/// Throws InputError unless E > 0, −1 < ν < 0.5, ρ > 0 and all other parameters are non-negative.
 void require_material(const Material& material);
 
-/// Energy density at deformation gradient F, J/m³; zero at rotations.
+/// Energy density Ψ at deformation gradient F, J/m³; zero at rotations.
 double energy_density(const Material& material, const Mat3& f);
+
 /// First Piola–Kirchhoff stress ∂Ψ/∂F, Pa.
 Mat3 stress(const Material& material, const Mat3& f);
-/// What stiffness needs of a material (stiffness_lanes.h): μ, λ and α of the stable neo-Hookean energy are its own.
-struct StiffnessConstants {
-  bool neo_hookean = true;
-  float mu = 0, lambda = 0, alpha = 1, volume = 0;
-  float viscous = 0;  ///< η/Δt on the symmetric part of the gradient: what viscosity has at small strain
-};
-StiffnessConstants stiffness_constants(const Material& material);
-using Mat9 = Eigen::Matrix<double, 9, 9>;
-/// ∂²Ψ/∂F², column-major vectorised.
-Mat9 stress_derivative(const Material& material, const Mat3& f);
-/// The same with negative eigenvalues set to zero.
-Mat9 projected_derivative(const Material& material, const Mat3& f);
 
-// ---- What a solid is made of: one material, or several, of which each node has one. What no path in the material
-// joins may differ.
-
+/// The materials of a solid: one for all nodes, or a table and an index per node. Nodes of one
+/// component of the visibility graph must share a material.
 class Materials {
  public:
-  /// One for all. Throws InputError for an impossible one.
+  /// One material for all nodes. Throws InputError if it is invalid (require_material).
   Materials(const Material& all = {}) : Materials(std::vector<Material>{all}, {}) {}
-  /// `of_node`: numbers in the table. Nodes that share a graph's component have the same. Throws InputError for an
-  /// impossible material, for numbers that are not in the table, and where discretisations differ.
-  Materials(std::vector<Material> table, std::vector<std::uint16_t> of_node);
+  /// A table, and per node an index into it. Throws InputError if a material is invalid, an index
+  /// is out of range or discretisations differ.
+  Materials(std::vector<Material> table, std::vector<std::uint16_t> index_of_node);
 
+  /// The number of materials in the table.
   std::size_t count() const { return table_.size(); }
-  const Material& operator[](std::size_t number) const { return table_[number]; }
+  /// The material at an index of the table.
+  const Material& operator[](std::size_t index) const { return table_[index]; }
+  /// The table.
   std::span<const Material> all() const { return table_; }
-  std::uint16_t number(std::size_t node) const { return count() > 1 ? of_node_[node] : std::uint16_t(0); }
-  const Material& of(std::size_t node) const { return table_[number(node)]; }
+  /// The index of a node's material.
+  std::uint16_t index(std::size_t node) const { return count() > 1 ? index_of_node_[node] : std::uint16_t(0); }
+  /// The material of a node.
+  const Material& of(std::size_t node) const { return table_[index(node)]; }
+  /// The discretisation that all materials share.
   Discretisation discretisation() const { return table_[0].discretisation; }
-  void set(Discretisation discretisation);
+  /// Sets the discretisation of all materials.
+  void set_discretisation(Discretisation discretisation);
 
-  /// A new node, the next one, has the material of another.
-  void add(std::size_t like);
-  /// True where there are fewer nodes, or more.
-  bool unfit(std::size_t nodes) const { return count() > 1 && of_node_.size() != nodes; }
-  /// Whether any of them has what `has` asks for.
-  template <class Has>
-  bool any(const Has& has) const {
-    return std::any_of(table_.begin(), table_.end(), has);
+  /// Appends a node with the material of node `donor`.
+  void add_node(std::size_t donor);
+  /// True if every one of `nodes` nodes has a material, and no others do.
+  bool fits(std::size_t nodes) const { return count() == 1 || index_of_node_.size() == nodes; }
+  /// True if `predicate` holds for any material.
+  template <class Predicate>
+  bool any(const Predicate& predicate) const {
+    return std::any_of(table_.begin(), table_.end(), predicate);
   }
 
  private:
   std::vector<Material> table_;
-  std::vector<std::uint16_t> of_node_;  // empty where there is one material
-};
-
-/// Of a small-strain stiffness, Pa.
-struct Moduli {
-  float shear = 0, bulk = 0;
-  friend bool operator==(const Moduli&, const Moduli&) = default;
+  std::vector<std::uint16_t> index_of_node_;  // empty if there is one material
 };
 
 }  // namespace geo

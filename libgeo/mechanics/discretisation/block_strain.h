@@ -1,4 +1,5 @@
-// ∇u at the points of blocks, and what their stresses pull nodes by.
+// Displacement gradients at the points of blocks, and the transposed operation: nodal forces from
+// stresses. In double precision, or faster in single precision.
 #pragma once
 
 #include <vector>
@@ -8,40 +9,43 @@
 
 namespace geo {
 
-/// In double precision; or, to a loose accuracy, in single precision from the 16 bits that products take, with half the
-/// memory to read and four points side by side. Then blocks have in double the affine motion that they had at first,
-/// and the rest is about that: what has turned has no strain from rounding, and a strain about it is off by some
-/// ten-thousandths of itself, at most. Energies are still those of the forces.
+/// The loose variant uses the 16-bit shape gradients of stiffness products and single precision:
+/// half the memory traffic, four points side by side. A block's affine motion at the start is then
+/// kept in double precision, and only the displacement relative to it is rounded. So rotations
+/// cause no spurious strain, and a relative strain has an error of at most some ten-thousandths of
+/// itself. Energies stay consistent with forces.
 class BlockStrain {
  public:
-  /// Of one thread, used block after block.
-  struct Room {
+  /// Memory of one thread, reused from block to block.
+  struct Scratch {
     std::vector<double> values;
-    std::vector<float> few;
+    std::vector<float> single;
   };
-  /// In double precision.
+  /// Double precision.
   explicit BlockStrain(const MaterialPoints& points);
-  /// Loose, about `first`, displacements at first. `position`: of nodes at rest; `component`: of each node, that of the
-  /// graph. Blocks with nodes of several of these, or with points that do not reproduce affine fields, are in double
-  /// precision still. Refers to `position`, too.
+  /// Loose, relative to each block's affine motion at the displacements `start`. `position`: nodes
+  /// at rest, kept by reference. `component`: per node, that of the visibility graph. Blocks with
+  /// nodes of several components, or with points of poor quality, use double precision.
   BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position,
-              const std::vector<std::uint32_t>& component, const std::vector<Vec3>& first);
+              const std::vector<std::uint32_t>& component, const std::vector<Vec3>& start);
 
+  /// The points, by reference.
   const MaterialPoints& points() const { return points_; }
-  /// At the points of a block, in order; what stands beside the last is zero.
-  void gradients(std::size_t block, const std::vector<Vec3>& u, Room& room, Columns<double>& out) const;
-  /// Σ stress · shape gradient, four numbers a node of the block.
-  void pull(std::size_t block, const Columns<double>& stress, Room& room, double* out) const;
+  /// ∇u at the points of a block, in order; padding is zero.
+  void gradients(std::size_t block, const std::vector<Vec3>& u, Scratch& scratch, PointMatrices<double>& out) const;
+  /// Σ stress · shape gradient: four numbers per node of the block.
+  void nodal_forces(std::size_t block, const PointMatrices<double>& stress, Scratch& scratch, double* out) const;
 
  private:
-  struct Motion {
+  struct AffineMotion {
     Mat3 gradient;
     bool known = false;
   };
-  bool loose(std::size_t block) const { return !motion_.empty() && motion_[block].known; }
+  bool is_loose(std::size_t block) const { return !motion_.empty() && motion_[block].known; }
+
   const MaterialPoints& points_;
   const std::vector<Vec3>* position_ = nullptr;
-  std::vector<Motion> motion_;  // per block, where this is loose
+  std::vector<AffineMotion> motion_;  // per block; known if the block is loose
 };
 
 }  // namespace geo

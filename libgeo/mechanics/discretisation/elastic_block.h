@@ -1,36 +1,39 @@
-// Elastic energy and forces of one block of material points.
+// Elastic energy and internal forces of one block of material points.
 #pragma once
 
 #include "mechanics/discretisation/block_strain.h"
-#include "mechanics/discretisation/elastic_lanes.h"
+#include "mechanics/material/elastic_lanes.h"
 
 namespace geo {
 
-/// A point's material decides which of the history it has.
+/// Evaluates blocks, one at a time; each thread has an evaluator and a scratch of its own.
 class ElasticBlock {
  public:
-  /// What one block leaves is room for the next. Of one thread.
-  struct Room {
-    BlockStrain::Room strain;
-    Columns<double> gradient;
+  /// Memory of one thread, reused from block to block.
+  struct Scratch {
+    BlockStrain::Scratch strain;
+    PointMatrices<double> gradient;
     std::vector<double> volume, energy;
     struct {
-      Columns<double> gradient;
+      PointMatrices<double> gradient;
       std::vector<double> energy;
-      Columns<float> deformed;
-    } aside;
+      PointMatrices<float> elastic_gradient;
+    } mixed;  ///< results of all points in ranges of mixed materials
   };
-  /// Refers to `strain` and `room`.
-  ElasticBlock(Room& room, const BlockStrain& strain, const Materials& materials, double dt = 1);
-  /// At nodal displacements u. `deformed`, where given: F of its points, less 1; `pull`, where given: Σ stress · shape
-  /// gradient, four numbers a node of the block. Returns each point's energy, J; what follows the last one's is zero.
+  /// Keeps references to `scratch` and `strain`. `dt`: the time step, s, for viscosity.
+  ElasticBlock(Scratch& scratch, const BlockStrain& strain, const Materials& materials, double dt = 1);
+  /// Evaluates a block at nodal displacements u. A point's material decides which parts of the
+  /// history it uses. `elastic_gradient`, unless null: the elastic deformation gradient of its
+  /// points, less the identity. `force`, unless null: Σ stress · shape gradient, four numbers per
+  /// node of the block. Returns each point's energy, J; padding is zero.
   const std::vector<double>& evaluate(std::size_t block, const std::vector<Vec3>& u, const PointHistory& history,
-                                      Columns<float>* deformed, double* pull);
+                                      PointMatrices<float>* elastic_gradient, double* force);
 
  private:
-  void evaluate_run(const PointBlock& block, const MaterialRun& run, const PointHistory& history,
-                    Columns<float>* deformed);
-  Room& room_;
+  void evaluate_range(const PointBlock& block, const MaterialRange& range, const PointHistory& history,
+                      PointMatrices<float>* elastic_gradient);
+
+  Scratch& scratch_;
   const BlockStrain& strain_;
   std::vector<ElasticConstants> constants_;  // per material
 };

@@ -1,5 +1,5 @@
-// The element-free Galerkin discretisation (Belytschko, Lu and Gu 1994): quadrature points, each with the nodes it
-// sees, round the fronts of cracks too, in blocks that follow cuts.
+// The element-free Galerkin discretisation (Belytschko, Lu and Gu 1994): quadrature points with the
+// nodes that they see, in blocks that are updated incrementally after cuts.
 #pragma once
 
 #include "mechanics/discretisation/material_points.h"
@@ -7,27 +7,31 @@
 
 namespace geo {
 
+/// Builds the material points of a body and keeps them up to date.
 class Galerkin {
  public:
+  /// Of no body.
   Galerkin() = default;
-  /// From scratch.
+  /// Builds `points` for a body.
   Galerkin(const Body& body, MaterialPoints& points);
-  /// Takes down what a split has changed, for settle(). `old_position`: of moved nodes, before they moved.
-  void note(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
-  /// Whether a split has been noted since.
-  bool is_due() const { return !faces_.empty() || !supports_.empty(); }
-  /// After splits: new rows for points of which the cell, a node within the support or the sight of one has changed.
-  /// The result is that of a build from scratch, bit for bit.
-  PointChanges settle(const Body& body, MaterialPoints& points);
+  /// Records what a split has changed, for rebuild_changed(). `old_position`: of moved nodes,
+  /// before they moved.
+  void mark_changed(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
+  /// True if changes have been marked since the last rebuild.
+  bool has_changes() const { return !faces_.empty() || !supports_.empty(); }
+  /// Recomputes points whose cell, support or lines of sight the marked changes touch. The result
+  /// equals that of a build from scratch, bit for bit.
+  PointChanges rebuild_changed(const Body& body, MaterialPoints& points);
 
  private:
-  std::span<const QuadratureCell> group(std::size_t b) const {
-    return {&cells_.cells()[groups_[b]], groups_[b + 1] - groups_[b]};
+  std::span<const QuadratureCell> cells_of(std::size_t block) const {
+    return {&cells_.cells()[block_begin_[block]], block_begin_[block + 1] - block_begin_[block]};
   }
+
   QuadratureCells cells_;
-  std::vector<std::size_t> groups_;
-  std::vector<std::array<Vec3, 3>> faces_;         // changed since the last settle()
-  std::vector<std::pair<Vec3, double>> supports_;  // of nodes that came, went, moved or changed their radius since
+  std::vector<std::size_t> block_begin_;           // per block its first cell; one more at the end
+  std::vector<std::array<Vec3, 3>> faces_;         // added or removed since the last rebuild
+  std::vector<std::pair<Vec3, double>> supports_;  // balls of nodes that were added, moved or resized since
 };
 
 }  // namespace geo

@@ -1,12 +1,12 @@
-// The weight of one node for another (Müller et al. 2004).
+// The smoothing kernel of Müller et al. 2004.
 #pragma once
 
 #include <numbers>
 
 namespace geo {
 
-/// ω(r, h) = 315 / (64 π h⁹) (h² − r²)³ for r < h, else 0. r: material distance, h: support radius, model units. Its
-/// integral over space is 1.
+/// ω(r, h) = 315 / (64 π h⁹) (h² − r²)³ for r < h, else 0. `r`: distance in the material; `h`:
+/// support radius, both in model units. Its integral over space is 1.
 inline double kernel(double r, double h) {
   if (r >= h) return 0;
   const double q = h * h - r * r, h3 = h * h * h;

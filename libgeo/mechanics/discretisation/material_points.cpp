@@ -12,187 +12,198 @@
 namespace geo {
 namespace {
 
-std::vector<Mat3> matrices(const Columns<double>& columns, std::size_t count) {
+std::vector<Mat3> to_matrices(const PointMatrices<double>& columns, std::size_t count) {
   std::vector<Mat3> all(count);
   for (std::size_t i = 0; i < count; ++i)
     for (int c = 0; c < 3; ++c) all[i].col(c) = Eigen::Map<const Vec3>(&columns.column[c][4 * i]);
   return all;
 }
 
-// Where four points that stand side by side come from, if they did so there.
-std::optional<PointBlock::Source> whole_four(std::span<const PointBlock::Source> sources, std::size_t four) {
-  if (4 * four + 4 > sources.size()) return {};
-  const PointBlock::Source& from = sources[4 * four];
+// The source of a quad's first point, if the quad's points come from one quad of another block.
+std::optional<PointBlock::Source> source_quad(std::span<const PointBlock::Source> sources, std::size_t quad) {
+  if (4 * quad + 4 > sources.size()) return {};
+  const PointBlock::Source& from = sources[4 * quad];
   for (std::size_t k = 0; k < 4; ++k)
-    if (const auto& s = sources[4 * four + k];
-        s.row || s.block != from.block || s.point != from.point + k || from.point % 4 != 0)
+    if (const auto& s = sources[4 * quad + k];
+        s.shape || s.block != from.block || s.point != from.point + k || from.point % 4 != 0)
       return {};
   return from;
 }
 
-std::vector<PointBlock::Source> sources_of(std::span<const ShapeRow> rows) {
+std::vector<PointBlock::Source> sources_of(std::span<const ShapeGradients> shapes) {
   std::vector<PointBlock::Source> sources;
-  for (const ShapeRow& row : rows) sources.push_back({nullptr, 0, &row});
+  for (const ShapeGradients& shape : shapes) sources.push_back({nullptr, 0, &shape});
   return sources;
 }
 
 }  // namespace
 
-PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeRow> rows)
-    : PointBlock(std::move(all), sources_of(rows)) {}
+PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeGradients> shapes)
+    : PointBlock(std::move(all), sources_of(shapes)) {}
 
 PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> sources) : points(std::move(all)) {
-  // The nodes of all rows; then places in each block's list, and in the whole one, for those here.
+  // The nodes of all points. Per source block: which of its nodes are used, then their indices in
+  // this block.
   std::size_t entries = 0;
-  std::map<const PointBlock*, std::vector<std::uint16_t>> place;
+  std::map<const PointBlock*, std::vector<std::uint16_t>> local_nodes;
   for (const Source& s : sources)
-    if (s.row) {
-      nodes.insert(nodes.end(), s.row->to.begin(), s.row->to.end()), entries += s.row->to.size();
+    if (s.shape) {
+      nodes.insert(nodes.end(), s.shape->nodes.begin(), s.shape->nodes.end()), entries += s.shape->nodes.size();
     } else {
-      auto& used = place[s.block];
+      auto& used = local_nodes[s.block];
       used.resize(s.block->nodes.size(), 0);
-      for (auto q = s.block->first[s.point]; q < s.block->first[s.point + 1]; ++q) used[s.block->to[q]] = 1;
-      entries += s.block->first[s.point + 1] - s.block->first[s.point];
+      for (auto q = s.block->entry_begin[s.point]; q < s.block->entry_begin[s.point + 1]; ++q)
+        used[s.block->entry_node[q]] = 1;
+      entries += s.block->entry_begin[s.point + 1] - s.block->entry_begin[s.point];
     }
-  for (const auto& [block, used] : place)
+  for (const auto& [block, used] : local_nodes)
     for (std::size_t k = 0; k < used.size(); ++k)
       if (used[k]) nodes.push_back(block->nodes[k]);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.size() > 65536)
     throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
-  const auto find = [&](std::uint32_t node) {
+  const auto local = [&](std::uint32_t node) {
     return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
   };
-  for (auto& [block, to_here] : place)
-    for (std::size_t k = 0; k < to_here.size(); ++k) to_here[k] = find(block->nodes[k]);
+  for (auto& [block, local_node] : local_nodes)
+    for (std::size_t k = 0; k < local_node.size(); ++k) local_node[k] = local(block->nodes[k]);
 
-  first.reserve(points.size() + 1), to.reserve(entries), gradient.reserve(3 * entries);
-  first.push_back(0);
+  entry_begin.reserve(points.size() + 1), entry_node.reserve(entries), entry_gradient.reserve(3 * entries);
+  entry_begin.push_back(0);
   for (const Source& s : sources) {
-    if (s.row) {
-      for (const auto j : s.row->to) to.push_back(find(j));
-      for (const Vec3& g : s.row->gradient) gradient.insert(gradient.end(), g.begin(), g.end());
+    if (s.shape) {
+      for (const auto j : s.shape->nodes) entry_node.push_back(local(j));
+      for (const Vec3& g : s.shape->gradient) entry_gradient.insert(entry_gradient.end(), g.begin(), g.end());
     } else {
-      const auto& to_here = place[s.block];
-      const auto begin = s.block->first[s.point], end = s.block->first[s.point + 1];
-      for (auto q = begin; q < end; ++q) to.push_back(to_here[s.block->to[q]]);
-      gradient.insert(gradient.end(), s.block->gradient.data() + 3 * begin, s.block->gradient.data() + 3 * end);
+      const auto& local_node = local_nodes[s.block];
+      const auto begin = s.block->entry_begin[s.point], end = s.block->entry_begin[s.point + 1];
+      for (auto q = begin; q < end; ++q) entry_node.push_back(local_node[s.block->entry_node[q]]);
+      entry_gradient.insert(entry_gradient.end(), s.block->entry_gradient.data() + 3 * begin,
+                            s.block->entry_gradient.data() + 3 * end);
     }
-    first.push_back(static_cast<std::uint32_t>(to.size()));
+    entry_begin.push_back(static_cast<std::uint32_t>(entry_node.size()));
   }
-  rounded.assign(gradient.begin(), gradient.end());
-  rounded.push_back(0);  // entries are read by fours
-  unit.assign((points.size() + 7) / 8 * 8, 0), four_first.assign(1, 0);
-  for (std::size_t four = 0; 4 * four < unit.size(); ++four) {
-    if (const auto from = whole_four(sources, four))
-      copy_packed(four, *from, place[from->block]);
+  entry_gradient_single.assign(entry_gradient.begin(), entry_gradient.end());
+  entry_gradient_single.push_back(0);  // vector loads of an entry read four numbers
+  quantum.assign((points.size() + 7) / 8 * 8, 0), quad_begin.assign(1, 0);
+  for (std::size_t quad = 0; 4 * quad < quantum.size(); ++quad) {
+    if (const auto from = source_quad(sources, quad))
+      copy_quad(quad, *from, local_nodes[from->block]);
     else
-      pack(four);
-    four_first.push_back(static_cast<std::uint32_t>(four_to.size()));
+      quantise(quad);
+    quad_begin.push_back(static_cast<std::uint32_t>(quad_node.size()));
   }
   for (const MaterialPoint& p : points) box.add(p.position);
 }
 
-// What rounding leaves of one entry is the next one's, so that a field that is constant has no gradient.
-void PointBlock::pack(std::size_t four) {
-  constexpr double full = 32766;
-  struct Row {
-    std::uint32_t at = 0, end = 0;
+// Error diffusion: the rounding error of a node's gradient is carried to the next node, so that the
+// integers sum to zero and a constant field has no gradient.
+void PointBlock::quantise(std::size_t quad) {
+  constexpr double largest = 32766;  // 16 bits, with a margin of one for the carried error
+  struct Cursor {
+    std::uint32_t entry = 0, end = 0;
     double scale = 0;
-    Vec3 sum = Vec3::Zero(), taken = Vec3::Zero();
+    Vec3 sum = Vec3::Zero(), emitted = Vec3::Zero();  // of scaled gradients, of integers so far
   };
-  std::array<Row, 4> rows;
-  for (std::size_t k = 0; k < 4 && 4 * four + k < points.size(); ++k) {
-    const std::size_t point = 4 * four + k;
-    double most = 0;
-    for (std::size_t q = 3 * first[point]; q < 3 * first[point + 1]; ++q) most = std::max(most, std::abs(gradient[q]));
-    if (most > 0) rows[k] = {first[point], first[point + 1], full / most}, unit[point] = float(most / full);
+  std::array<Cursor, 4> cursors;
+  for (std::size_t k = 0; k < 4 && 4 * quad + k < points.size(); ++k) {
+    const std::size_t point = 4 * quad + k;
+    double size = 0;
+    for (std::size_t q = 3 * entry_begin[point]; q < 3 * entry_begin[point + 1]; ++q)
+      size = std::max(size, std::abs(entry_gradient[q]));
+    if (size > 0)
+      cursors[k] = {entry_begin[point], entry_begin[point + 1], largest / size}, quantum[point] = float(size / largest);
   }
   constexpr std::uint32_t none = 1 << 16;
-  const auto next = [&](const Row& r) { return r.at < r.end ? std::uint32_t(to[r.at]) : none; };
-  for (std::uint32_t node; (node = std::min({next(rows[0]), next(rows[1]), next(rows[2]), next(rows[3])})) != none;) {
-    const std::size_t begin = 12 * (four_to.size() / 2 * 2) + 4 * (four_to.size() % 2);
-    four_to.push_back(static_cast<std::uint16_t>(node)), packed.resize(12 * ((four_to.size() + 1) / 2 * 2), 0);
+  const auto next = [&](const Cursor& r) { return r.entry < r.end ? std::uint32_t(entry_node[r.entry]) : none; };
+  for (std::uint32_t node;
+       (node = std::min({next(cursors[0]), next(cursors[1]), next(cursors[2]), next(cursors[3])})) != none;) {
+    const std::size_t begin = 12 * (quad_node.size() / 2 * 2) + 4 * (quad_node.size() % 2);
+    quad_node.push_back(static_cast<std::uint16_t>(node));
+    quad_gradient.resize(12 * ((quad_node.size() + 1) / 2 * 2), 0);
     for (std::size_t k = 0; k < 4; ++k) {
-      Row& r = rows[k];
+      Cursor& r = cursors[k];
       if (next(r) != node) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         const auto i = static_cast<Eigen::Index>(c);
-        r.sum[i] += r.scale * gradient[3 * r.at + c];
-        const double whole = std::nearbyint(r.sum[i]) - r.taken[i];
-        packed[begin + 8 * c + k] = static_cast<std::int16_t>(whole), r.taken[i] += whole;
+        r.sum[i] += r.scale * entry_gradient[3 * r.entry + c];
+        const double integer = std::nearbyint(r.sum[i]) - r.emitted[i];
+        quad_gradient[begin + 8 * c + k] = static_cast<std::int16_t>(integer), r.emitted[i] += integer;
       }
-      ++r.at;
+      ++r.entry;
     }
   }
-  if (four_to.size() % 2) four_to.push_back(four_to.back());
+  if (quad_node.size() % 2) quad_node.push_back(quad_node.back());
 }
 
-void PointBlock::copy_packed(std::size_t four, const Source& from, const std::vector<std::uint16_t>& to_here) {
+void PointBlock::copy_quad(std::size_t quad, const Source& from, const std::vector<std::uint16_t>& local_node) {
   const PointBlock& b = *from.block;
-  const auto begin = b.four_first[from.point / 4], end = b.four_first[from.point / 4 + 1];
-  for (auto k = begin; k < end; ++k) four_to.push_back(to_here[b.four_to[k]]);
-  packed.insert(packed.end(), b.packed.begin() + 12 * std::ptrdiff_t(begin),
-                b.packed.begin() + 12 * std::ptrdiff_t(end));
-  std::copy_n(&b.unit[from.point], 4, &unit[4 * four]);
+  const auto begin = b.quad_begin[from.point / 4], end = b.quad_begin[from.point / 4 + 1];
+  for (auto k = begin; k < end; ++k) quad_node.push_back(local_node[b.quad_node[k]]);
+  quad_gradient.insert(quad_gradient.end(), b.quad_gradient.begin() + 12 * std::ptrdiff_t(begin),
+                       b.quad_gradient.begin() + 12 * std::ptrdiff_t(end));
+  std::copy_n(&b.quantum[from.point], 4, &quantum[4 * quad]);
 }
 
-ShapeRow PointBlock::row(std::size_t point) const {
-  ShapeRow row;
-  for (std::size_t q = first[point]; q < first[point + 1]; ++q) {
-    row.to.push_back(nodes[to[q]]);
-    row.gradient.push_back(Eigen::Map<const Vec3>(&gradient[3 * q]));
+ShapeGradients PointBlock::shape_gradients(std::size_t point) const {
+  ShapeGradients shape;
+  for (std::size_t q = entry_begin[point]; q < entry_begin[point + 1]; ++q) {
+    shape.nodes.push_back(nodes[entry_node[q]]);
+    shape.gradient.push_back(Eigen::Map<const Vec3>(&entry_gradient[3 * q]));
   }
-  return row;
+  return shape;
 }
 
 void PointBlock::set_materials(const Materials& materials) {
-  const auto padded = static_cast<std::uint32_t>(unit.size());
-  runs.assign(1, {0, padded});
+  const auto padded = static_cast<std::uint32_t>(quantum.size());
+  material_ranges.assign(1, {0, padded});
   if (materials.count() == 1) return;
-  runs.clear();
-  std::vector<std::uint16_t> here;
+  material_ranges.clear();
+  std::vector<std::uint16_t> present;
   for (std::uint32_t begin = 0; begin < padded; begin += 8) {
-    here.clear();
+    present.clear();
     for (std::size_t i = begin; i < std::min<std::size_t>(begin + 8, points.size()); ++i) {
-      const bool sees = first[i] < first[i + 1];
-      points[i].material = sees ? materials.number(nodes[to[first[i]]]) : std::uint16_t(0);
-      if (sees) here.push_back(points[i].material);
+      const bool has_nodes = entry_begin[i] < entry_begin[i + 1];
+      points[i].material = has_nodes ? materials.index(nodes[entry_node[entry_begin[i]]]) : std::uint16_t(0);
+      if (has_nodes) present.push_back(points[i].material);
     }
-    std::sort(here.begin(), here.end());
-    here.erase(std::unique(here.begin(), here.end()), here.end());
-    const bool goes_on = !runs.empty() && runs.back().alone;
-    if (here.empty()) here.push_back(goes_on ? runs.back().material : std::uint16_t(0));
-    if (here.size() == 1 && goes_on && runs.back().material == here[0])
-      runs.back().end = begin + 8;
+    std::sort(present.begin(), present.end());
+    present.erase(std::unique(present.begin(), present.end()), present.end());
+    const bool extensible = !material_ranges.empty() && material_ranges.back().uniform;
+    if (present.empty()) present.push_back(extensible ? material_ranges.back().material : std::uint16_t(0));
+    if (present.size() == 1 && extensible && material_ranges.back().material == present[0])
+      material_ranges.back().end = begin + 8;
     else
-      for (const auto material : here) runs.push_back({begin, begin + 8, material, here.size() == 1});
+      for (const auto material : present) material_ranges.push_back({begin, begin + 8, material, present.size() == 1});
   }
 }
 
 bool operator==(const PointBlock& a, const PointBlock& b) {
   const auto same = [](const MaterialPoint& p, const MaterialPoint& q) {
-    return p.position == q.position && p.volume == q.volume && p.rung == q.rung && p.growth == q.growth &&
-           p.blinded == q.blinded && p.material == q.material && p.reach == q.reach && p.measured == q.measured;
+    return p.position == q.position && p.volume == q.volume && p.quality == q.quality && p.widenings == q.widenings &&
+           p.occluded == q.occluded && p.material == q.material && p.influence_radius == q.influence_radius &&
+           p.unscaled_volume == q.unscaled_volume;
   };
-  return a.nodes == b.nodes && a.first == b.first && a.to == b.to && a.gradient == b.gradient &&
-         a.four_first == b.four_first && a.four_to == b.four_to && a.packed == b.packed && a.unit == b.unit &&
+  return a.nodes == b.nodes && a.entry_begin == b.entry_begin && a.entry_node == b.entry_node &&
+         a.entry_gradient == b.entry_gradient && a.quad_begin == b.quad_begin && a.quad_node == b.quad_node &&
+         a.quad_gradient == b.quad_gradient && a.quantum == b.quantum &&
          std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }
 
-void MaterialPoints::connect(std::size_t nodes) {
-  first_.assign(1, 0), part_.assign(1, 0), begin_.assign(nodes + 1, 0);
+void MaterialPoints::number_points(std::size_t nodes) {
+  first_.assign(1, 0), scatter_begin_.assign(1, 0), slot_begin_.assign(nodes + 1, 0);
   for (const PointBlock& b : blocks) {
-    first_.push_back(first_.back() + b.points.size()), part_.push_back(part_.back() + b.nodes.size());
-    for (const auto j : b.nodes) ++begin_[j + 1];
+    first_.push_back(first_.back() + b.points.size());
+    scatter_begin_.push_back(scatter_begin_.back() + b.nodes.size());
+    for (const auto j : b.nodes) ++slot_begin_[j + 1];
   }
-  for (std::size_t j = 0; j < nodes; ++j) begin_[j + 1] += begin_[j];
-  incoming_.resize(part_.back());
-  std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
+  for (std::size_t j = 0; j < nodes; ++j) slot_begin_[j + 1] += slot_begin_[j];
+  slot_.resize(scatter_begin_.back());
+  std::vector<std::uint32_t> next(slot_begin_.begin(), slot_begin_.end() - 1);
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (std::size_t k = 0; k < blocks[b].nodes.size(); ++k)
-      incoming_[at[blocks[b].nodes[k]]++] = static_cast<std::uint32_t>(part_[b] + k);
+      slot_[next[blocks[b].nodes[k]]++] = static_cast<std::uint32_t>(scatter_begin_[b] + k);
 }
 
 void MaterialPoints::set_materials(const Materials& materials) {
@@ -201,7 +212,7 @@ void MaterialPoints::set_materials(const Materials& materials) {
   });
 }
 
-void MaterialPoints::values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {
+void MaterialPoints::gather(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {
   const auto& nodes = blocks[block].nodes;
   if (values.size() < 4 * nodes.size()) values.resize(4 * nodes.size());
   for (std::size_t k = 0; k < nodes.size(); ++k)
@@ -210,11 +221,11 @@ void MaterialPoints::values(std::size_t block, const std::vector<Vec3>& u, std::
 
 std::vector<Mat3> MaterialPoints::gradients(std::size_t block, const std::vector<Vec3>& u) const {
   const PointBlock& b = blocks[block];
-  Columns<double> columns;
-  std::vector<double> at;
-  values(block, u, at);
-  point_gradients(b, at.data(), columns);
-  return matrices(columns, b.points.size());
+  PointMatrices<double> columns;
+  std::vector<double> values;
+  gather(block, u, values);
+  point_gradients(b, values.data(), columns);
+  return to_matrices(columns, b.points.size());
 }
 
 }  // namespace geo

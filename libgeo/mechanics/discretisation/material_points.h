@@ -1,5 +1,5 @@
-// Points that carry strain, in blocks: each block has its own short list of nodes, so that what one thread works on
-// stays in its cache, and sums are made in an order that no thread or vector width changes.
+// Material points, which carry strain, in blocks. A block has its own short list of nodes: its data
+// fit a core's cache, and sums are made in an order that neither threads nor vector widths change.
 #pragma once
 
 #include <array>
@@ -14,108 +14,125 @@
 
 namespace geo {
 
+/// A point where strain energy is integrated.
 struct MaterialPoint {
   Vec3 position = Vec3::Zero();
-  double volume = 0;
-  Rung rung = Rung::rigid;
-  std::uint8_t growth = 0;     ///< how often its support was widened by a fifth
-  bool blinded = false;        ///< a face hides a node within its support
-  std::uint16_t material = 0;  ///< that of the nodes that it sees
-  double reach = 0;            ///< no node within its support is farther away, nor is any part of a way to one
-  double measured = 0;         ///< its volume before all were scaled to sum to that of the nodes
+  double volume = 0;  ///< integration weight, model units³
+  MomentQuality quality = MomentQuality::singular;
+  std::uint8_t widenings = 0;   ///< how often its supports were widened by a fifth
+  bool occluded = false;        ///< a face hides a node within its support
+  std::uint16_t material = 0;   ///< index of the material of the nodes that it sees
+  double influence_radius = 0;  ///< bounds the distance of all nodes in its support and of all paths to them
+  double unscaled_volume = 0;   ///< its volume before all were scaled to sum to that of the nodes
 };
 
-/// Points of a block with the same material, from a multiple of eight to the next or a later one. `alone`: no points of
-/// others stand among them.
-struct MaterialRun {
+/// Points of a block from `begin` up to `end`, multiples of eight, that contain points of one
+/// material. `uniform`: they contain no points of another one.
+struct MaterialRange {
   std::uint32_t begin = 0, end = 0;
   std::uint16_t material = 0;
-  bool alone = true;
+  bool uniform = true;
 };
 
-/// Points near each other and the rows of their shape functions.
+/// Neighbouring points and the gradients of their shape functions. An entry is a pair of a point
+/// and a node in its support; entries are stored by point.
 struct PointBlock {
-  std::vector<std::uint32_t> nodes;  ///< of all its points, ascending
+  std::vector<std::uint32_t> nodes;  ///< of all points, ascending
   std::vector<MaterialPoint> points;
-  std::vector<std::uint32_t> first;  ///< per point: its first entry; one more at the end
-  std::vector<std::uint16_t> to;     ///< entries: places in `nodes`
-  std::vector<double> gradient;      ///< three an entry
-  std::vector<float> rounded;        ///< the same
-  // The same for products, four points side by side: places of their nodes in `nodes`, as all of them have them, an
-  // even number; of two of these 24 numbers, x of the first for four points, x of the second, then y, then z, in
-  // multiples of the point's unit, such that they still sum to zero.
-  std::vector<std::uint32_t> four_first;  ///< per four points: the first of their nodes; one more at the end
-  std::vector<std::uint16_t> four_to;
-  std::vector<std::int16_t> packed;
-  std::vector<float> unit;        ///< per point, a multiple of eight of them
-  Box3 box;                       ///< of the points
-  std::vector<MaterialRun> runs;  ///< in order; where eight points have several materials, one run for each of these
+  std::vector<std::uint32_t> entry_begin;    ///< per point: its first entry; one more at the end
+  std::vector<std::uint16_t> entry_node;     ///< per entry: index into `nodes`
+  std::vector<double> entry_gradient;        ///< per entry: three numbers, the shape gradient
+  std::vector<float> entry_gradient_single;  ///< the same in single precision
+  // The same quantised to 16 bits, for stiffness–vector products, with points in quads (four points
+  // side by side). A quad's nodes are the union of its points' nodes, padded to an even number.
+  // Nodes come in pairs of 24 integers: x of the first node's gradient for four points, x of the
+  // second's, then y, then z. They are multiples of the point's `quantum` and rounded such that
+  // they still sum to zero over the nodes.
+  std::vector<std::uint32_t> quad_begin;       ///< per quad: its first node; one more at the end
+  std::vector<std::uint16_t> quad_node;        ///< per node of a quad: index into `nodes`
+  std::vector<std::int16_t> quad_gradient;     ///< per node of a quad: 12 integers, as above
+  std::vector<float> quantum;                  ///< per point, padded to a multiple of eight, 1/model unit
+  Box3 box;                                    ///< of the points' positions
+  std::vector<MaterialRange> material_ranges;  ///< in order; where eight points mix materials, one range for each
 
-  /// Where a point's row comes from: its own, or that of a point of another block.
+  /// Where a point's shape gradients come from: `shape`, or if that is null, a point of another
+  /// block.
   struct Source {
     const PointBlock* block = nullptr;
     std::size_t point = 0;
-    const ShapeRow* row = nullptr;
+    const ShapeGradients* shape = nullptr;
   };
 
+  /// An empty block.
   PointBlock() = default;
+  /// One source per point. Throws InputError if the block has more than 65536 nodes.
   PointBlock(std::vector<MaterialPoint> points, std::span<const Source> sources);
-  PointBlock(std::vector<MaterialPoint> points, std::span<const ShapeRow> rows);
-  /// A row that it was made of.
-  ShapeRow row(std::size_t point) const;
-  /// Gives points the materials of nodes.
+  /// Shape gradients per point.
+  PointBlock(std::vector<MaterialPoint> points, std::span<const ShapeGradients> shapes);
+  /// The shape gradients of a point, with global node indices.
+  ShapeGradients shape_gradients(std::size_t point) const;
+  /// Assigns to each point the material of its nodes, and finds the ranges of materials.
   void set_materials(const Materials& materials);
-  /// False where a point has another material than the run that it stands in. What is no point, or sees nothing, is of
-  /// any run.
-  bool is_of(const MaterialRun& run, std::size_t point) const {
-    return point >= points.size() || points[point].material == run.material || first[point] == first[point + 1];
+  /// True unless the point has another material than the range. Padding, and points without nodes,
+  /// belong to any range.
+  bool belongs_to(const MaterialRange& range, std::size_t point) const {
+    return point >= points.size() || points[point].material == range.material ||
+           entry_begin[point] == entry_begin[point + 1];
   }
+  /// True if all but boxes and material ranges are equal.
   friend bool operator==(const PointBlock& a, const PointBlock& b);
 
  private:
-  void pack(std::size_t four);
-  void copy_packed(std::size_t four, const Source& from, const std::vector<std::uint16_t>& to_here);
+  void quantise(std::size_t quad);
+  void copy_quad(std::size_t quad, const Source& from, const std::vector<std::uint16_t>& local_node);
 };
 
-/// What a cut did to points.
+/// The changes of points and blocks by a cut. ~0u stands for none.
 struct PointChanges {
-  std::vector<std::uint32_t> kept;  ///< per point there is now, its number before, or ~0u; empty where all are the same
-  std::vector<std::uint32_t> blocks;  ///< per block there was, the number of the one with the same points now, or ~0u
-  std::vector<char> nodes;  ///< per node: 1 where points with it came, went or have another row, or are in other blocks
+  std::vector<std::uint32_t> old_point;  ///< per point now: its old index; empty if points are the same
+  std::vector<std::uint32_t> new_block;  ///< per old block: the index of the block that has the same points now
+  std::vector<char> node_changed;        ///< per node: 1 if points or shape gradients with it, or their blocks, changed
 };
 
+/// All material points of a body.
 class MaterialPoints {
  public:
   std::vector<PointBlock> blocks;
 
-  /// After blocks have changed.
-  void connect(std::size_t nodes);
-  /// After connect().
+  /// Numbers points and scatter slots. Call it after blocks have changed; `nodes`: the number of
+  /// nodes of the body.
+  void number_points(std::size_t nodes);
+  /// Assigns materials to the points of all blocks. Precondition: number_points() was called.
   void set_materials(const Materials& materials);
+  /// The number of points.
   std::size_t size() const { return first_.empty() ? 0 : first_.back(); }
-  /// Number of a block's first point.
-  std::size_t first(std::size_t block) const { return first_[block]; }
+  /// The index of a block's first point.
+  std::size_t first_point(std::size_t block) const { return first_[block]; }
 
-  /// A nodal field at a block's nodes, four numbers each, from its first node's value on: differences lose nothing
-  /// where a body is far from where it was. `values` is made longer where it is too short.
-  void values(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const;
+  /// Gathers a nodal field at a block's nodes, four numbers each, relative to the value at its
+  /// first node: differences stay accurate if the body has moved far. `values` grows if it is too
+  /// short.
+  void gather(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const;
   /// ∇u at the points of a block, in order.
   std::vector<Mat3> gradients(std::size_t block, const std::vector<Vec3>& u) const;
-  /// The sum of what blocks have for a node, in their order: `width` numbers a node of a block, from width ·
-  /// part(block) on.
+
+  /// Each block scatters its nodal sums into slots of its own, one per node of the block, so that
+  /// threads do not share any. The first slot of a block:
+  std::size_t scatter_offset(std::size_t block) const { return scatter_begin_[block]; }
+  /// The number of slots of all blocks.
+  std::size_t scatter_size() const { return scatter_begin_.back(); }
+  /// The sum at a node of all its slots, in the order of blocks. `slots`: `width` numbers per slot.
   template <std::size_t width, class Number>
-  std::array<double, width> sum(const Number* parts, std::size_t node) const {
+  std::array<double, width> sum_at_node(const Number* slots, std::size_t node) const {
     std::array<double, width> sum{};
-    for (auto k = begin_[node]; k < begin_[node + 1]; ++k)
-      for (std::size_t c = 0; c < width; ++c) sum[c] += double(parts[width * incoming_[k] + c]);
+    for (auto k = slot_begin_[node]; k < slot_begin_[node + 1]; ++k)
+      for (std::size_t c = 0; c < width; ++c) sum[c] += double(slots[width * slot_[k] + c]);
     return sum;
   }
-  std::size_t part(std::size_t block) const { return part_[block]; }
-  std::size_t parts() const { return part_.back(); }
 
  private:
-  std::vector<std::size_t> first_, part_;        // per block and one more: points, nodes
-  std::vector<std::uint32_t> begin_, incoming_;  // per node: which parts of blocks are its
+  std::vector<std::size_t> first_, scatter_begin_;  // per block and one more: points, slots
+  std::vector<std::uint32_t> slot_begin_, slot_;    // per node: its slots
 };
 
 }  // namespace geo

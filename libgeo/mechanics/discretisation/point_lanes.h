@@ -1,27 +1,25 @@
-// Gradients at material points and forces from their stresses, three coordinates side by side.
+// Displacement gradients at the material points of a block, and nodal forces from their stresses,
+// in vector registers.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "mechanics/discretisation/material_points.h"
+#include "mechanics/material/point_matrices.h"
 
 namespace geo {
 
-/// Matrices of points by columns: column c of point i is at column[c] + 4 i, its fourth number is of no account.
-template <class Number>
-struct Columns {
-  std::vector<Number> column[3];
-  void resize(std::size_t points);
-};
-
-/// ∇ of a nodal field at the points of a block; `values`: four numbers a node of the block, the last of no account.
-void point_gradients(const PointBlock& block, const double* values, Columns<double>& out);
-/// Adds Σ stress · shape gradient of the block's points to four numbers a node of the block.
-void point_divergence(const PointBlock& block, const Columns<double>& stress, double* out);
-/// Adds eight numbers of each point, times a weight, to those of its nodes; nothing where the seventh is zero. The
-/// weight is the point's volume times the kernel, without its scale. `place`: of each node of the block its
-/// coordinates, from `base` on, and 1 / support².
-void point_shares(const PointBlock& block, const Vec3& base, const float* place, const float* own, float* out);
+/// ∇u at the points of a block. `values`: u at the block's nodes, four numbers each (the last is
+/// padding).
+void point_gradients(const PointBlock& block, const double* values, PointMatrices<double>& out);
+/// Adds Σ stress · shape gradient over the block's points to `out`, four numbers per node of the
+/// block.
+void point_divergence(const PointBlock& block, const PointMatrices<double>& stress, double* out);
+/// Adds eight numbers of each point, times its volume and the kernel without its scale, to those of
+/// its nodes. Points whose seventh number is zero are skipped. `place`: per node of the block its
+/// coordinates relative to `base`, and 1 / support².
+void add_kernel_weighted(const PointBlock& block, const Vec3& base, const float* place, const float* numbers,
+                         float* out);
 
 }  // namespace geo

@@ -24,7 +24,7 @@ double fade(double x, double a, double b) {
 
 }  // namespace
 
-PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const NodeGradients& gradient, const Box3& about,
+PointMap::PointMap(const Body& body, const std::vector<Vec3>& u, const LazyNodalGradients& gradient, const Box3& about,
                    std::vector<std::uint8_t> counted)
     : body_(body),
       u_(u),

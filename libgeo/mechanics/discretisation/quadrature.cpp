@@ -9,54 +9,57 @@
 namespace geo {
 namespace {
 
-constexpr int across = 6;  // samples across a cell that the surface cuts, one at random in each sub-cell
-constexpr int samples = across * across * across;
+constexpr int subcells = 6;  // per axis of a cut cell; one random sample in each (stratified sampling)
+constexpr int samples = subcells * subcells * subcells;
 
-// Every other corner of a cube, the other four in every other cell: in all directions the pattern is as long as it is
-// wide.
-Vec3 pattern(int k, bool other) {
-  const int corner = std::array{0, 3, 5, 6}[static_cast<std::size_t>(k)] ^ (other ? 7 : 0);
+// The k-th of four alternate corners of the cube [−1, 1]³, a regular tetrahedron; `mirrored`: of
+// the other four. Cells alternate between the two, like a checkerboard.
+Vec3 tetrahedron_corner(int k, bool mirrored) {
+  const int corner = std::array{0, 3, 5, 6}[static_cast<std::size_t>(k)] ^ (mirrored ? 7 : 0);
   return {corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0};
 }
 
-QuadratureCell place(const RegionTree& tree, const Lattice& lattice, const Region& region) {
+// A cell with its points; its volume is zero if no sample is inside.
+QuadratureCell make_cell(const RegionTree& tree, const Lattice& lattice, const Region& region) {
   const double edge = lattice.edge(region.cell.level);
   const auto& c = region.cell.corner;
-  const bool other = (c[0] ^ c[1] ^ c[2]) >> region.cell.level & 1;
+  const bool mirrored = (c[0] ^ c[1] ^ c[2]) >> region.cell.level & 1;
   QuadratureCell cell{region.cell, !region.cut(), edge * edge * edge, {}};
   if (cell.whole) {
     for (int k = 0; k < 4; ++k)
-      cell.point[static_cast<std::size_t>(k)] = region.probe + edge / std::sqrt(12.0) * pattern(k, other);
+      cell.point[static_cast<std::size_t>(k)] = region.probe + edge / std::sqrt(12.0) * tetrahedron_corner(k, mirrored);
     return cell;
   }
   const Box3 box = lattice.box(region.cell);
   Random random(morton(c) ^ std::uint64_t(region.cell.level) << 60);
-  std::vector<Vec3> at(samples);
-  std::vector<char> in(samples);
+  std::vector<Vec3> sample(samples);
+  std::vector<char> is_inside(samples);
   for (int i = 0; i < samples; ++i) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    at[static_cast<std::size_t>(i)] =
-        box.lo + edge / across * Vec3(i % across + x, i / across % across + y, i / (across * across) + z);
+    sample[static_cast<std::size_t>(i)] =
+        box.lo + edge / subcells * Vec3(i % subcells + x, i / subcells % subcells + y, i / (subcells * subcells) + z);
   }
-  tree.inside(region, at, in);
+  tree.inside(region, sample, is_inside);
   std::vector<Vec3> inside;
   for (std::size_t i = 0; i < samples; ++i)
-    if (in[i]) inside.push_back(at[i]);
+    if (is_inside[i]) inside.push_back(sample[i]);
   cell.volume *= double(inside.size()) / samples;
   if (inside.empty()) return cell;
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : inside) mean += p;
   mean /= double(inside.size());
-  Mat3 spread = Mat3::Zero();
-  for (const Vec3& p : inside) spread += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread / double(inside.size()));
+  Mat3 covariance = Mat3::Zero();
+  for (const Vec3& p : inside) covariance += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(covariance / double(inside.size()));
+  // Points at mean ± covariance^½ have the samples' second moments. A point outside moves towards
+  // the mean; failing that, it goes to the nearest sample.
   const Mat3 root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
                     eigen.eigenvectors().transpose();
   for (int k = 0; k < 4; ++k) {
     Vec3 p = mean;
     bool found = false;
     for (double t = 1; t > 0.2 && !found; t -= 0.25) {
-      p = mean + t * (root * pattern(k, other));
+      p = mean + t * (root * tetrahedron_corner(k, mirrored));
       found = box.meets({p, p}) && tree.inside(region, p);
     }
     if (!found)
@@ -68,8 +71,9 @@ QuadratureCell place(const RegionTree& tree, const Lattice& lattice, const Regio
   return cell;
 }
 
-// Exact, so that it does not depend on the order: node volumes are halved, never rounded, when nodes are inserted.
-double sum_of(const std::vector<double>& volumes) {
+// The exact sum of node volumes in fixed-point arithmetic, which no order of summation changes:
+// inserted nodes halve volumes, which is exact, too.
+double exact_sum(const std::vector<double>& volumes) {
   int exponent;
   std::frexp(*std::max_element(volumes.begin(), volumes.end()), &exponent);
   __extension__ typedef __int128 Wide;
@@ -78,6 +82,7 @@ double sum_of(const std::vector<double>& volumes) {
   return std::ldexp(static_cast<double>(sum), exponent - 90);
 }
 
+// The faces of the surface that are not crack faces.
 TriangleMesh skin_of(const Complex& surface) {
   TriangleMesh skin;
   for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) skin.vertices.push_back(surface.point(VertexId(v)));
@@ -90,8 +95,8 @@ TriangleMesh skin_of(const Complex& surface) {
 }  // namespace
 
 QuadratureCells::QuadratureCells(const Body& body) {
-  // As the sampler lays its cells, where that can be told: centred on the body, in units of the coarsest. The first
-  // node is always there, and so is its spacing.
+  // The lattice of the sampler, as far as the nodes tell: centred on the body, in units of the
+  // coarsest cells. The first node always exists, and so does its spacing.
   const NodeSet& nodes = body.nodes;
   const Box3& extent = body.surface.extent();
   const double spacing = nodes.spacing[0],
@@ -100,26 +105,28 @@ QuadratureCells::QuadratureCells(const Body& body) {
   Vec3 cells;
   for (int a = 0; a < 3; ++a)
     cells[a] = std::max(1.0, std::ceil((extent.hi[a] - extent.lo[a] + 0.02 * spacing) / coarse));
-  const int above = static_cast<int>(std::ceil(std::log2(cells.maxCoeff())));  // levels of the root over the coarsest
-  const int below = std::max(0, std::min(10, 20 - above));                     // and of the coarsest over the finest
-  lattice_ = {extent.center() - 0.5 * coarse * cells, std::ldexp(coarse, -below)};
-  root_ = above + below;
+  const int levels_above =
+      static_cast<int>(std::ceil(std::log2(cells.maxCoeff())));           // levels of the root over the coarsest
+  const int levels_below = std::max(0, std::min(10, 20 - levels_above));  // and of the coarsest over the finest
+  lattice_ = {extent.center() - 0.5 * coarse * cells, std::ldexp(coarse, -levels_below)};
+  root_ = levels_above + levels_below;
   divided_ = divisions(nodes);
   skin_ = std::make_shared<const RegionTree>(skin_of(body.surface));
-  for (const auto& list : walk<QuadratureCell>(*skin_, lattice_, {{0, 0, 0}, root_}, "quadrature", {}, visit()))
-    placed_.insert(placed_.end(), list.begin(), list.end());
-  share_volume(nodes);
+  for (const auto& list : walk<QuadratureCell>(*skin_, lattice_, {{0, 0, 0}, root_}, "quadrature", {}, visitor()))
+    unscaled_.insert(unscaled_.end(), list.begin(), list.end());
+  scale_volumes(nodes);
 }
 
-// Goes into cells that are divided, and places points in the others.
-std::function<bool(const Region&, std::vector<QuadratureCell>&)> QuadratureCells::visit() const {
+// Descends into divided cells, and makes quadrature cells of the others.
+std::function<bool(const Region&, std::vector<QuadratureCell>&)> QuadratureCells::visitor() const {
   return [this](const Region& region, std::vector<QuadratureCell>& found) {
     if (region.cell.level > 0 && is_divided(divided_, region.cell)) return true;
-    if (const QuadratureCell cell = place(*skin_, lattice_, region); cell.volume > 0) found.push_back(cell);
+    if (const QuadratureCell cell = make_cell(*skin_, lattice_, region); cell.volume > 0) found.push_back(cell);
     return false;
   };
 }
 
+// Per level, the Morton codes of cells that hold a node of a finer spacing.
 Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
   Divisions divided(static_cast<std::size_t>(root_) + 1);
   std::vector<std::uint64_t> last(divided.size(), ~std::uint64_t(0));
@@ -143,22 +150,22 @@ Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
   return divided;
 }
 
-// What cut cells hold is an estimate: all together have the nodes' volume.
-void QuadratureCells::share_volume(const NodeSet& nodes) {
-  cells_ = placed_;
+// Volumes of cut cells are estimates: they are scaled such that all cells have the nodes' volume.
+void QuadratureCells::scale_volumes(const NodeSet& nodes) {
+  cells_ = unscaled_;
   double whole = 0, cut = 0;
-  for (auto& c : cells_) (c.whole ? whole : cut) += c.measured = c.volume;
-  const double volume = sum_of(nodes.volume);
+  for (auto& c : cells_) (c.whole ? whole : cut) += c.unscaled_volume = c.volume;
+  const double volume = exact_sum(nodes.volume);
   const bool cut_only = cut > 0 && whole < volume;
   const double scale = cut_only ? (volume - whole) / cut : volume / (whole + cut);
   for (auto& c : cells_)
     if (!cut_only || !c.whole) c.volume *= scale;
 }
 
-bool QuadratureCells::follow(const Body& body) {
+bool QuadratureCells::update(const Body& body) {
   const Divisions before = std::exchange(divided_, divisions(body.nodes));
   if (divided_ == before) return false;
-  // The coarsest cells that are divided now and were not, or the other way round, are looked at again.
+  // The coarsest cells whose division has changed are visited again.
   std::vector<Cell> changed;
   for (int level = root_; level > 0; --level) {
     const auto l = static_cast<std::size_t>(level);
@@ -172,50 +179,50 @@ bool QuadratureCells::follow(const Body& body) {
   }
   std::sort(changed.begin(), changed.end(),
             [](const Cell& a, const Cell& b) { return morton(a.corner) < morton(b.corner); });
-  std::vector<QuadratureCell> found;
-  auto old = placed_.begin();
-  const auto up_to = [&](std::uint64_t code, bool keep) {
-    for (; old != placed_.end() && morton(old->cell.corner) < code; ++old)
-      if (keep) found.push_back(*old);
+  std::vector<QuadratureCell> merged;
+  auto old = unscaled_.begin();
+  const auto skip_to = [&](std::uint64_t code, bool keep) {
+    for (; old != unscaled_.end() && morton(old->cell.corner) < code; ++old)
+      if (keep) merged.push_back(*old);
   };
-  const auto look = visit();
+  const auto visit = visitor();
   const auto descend = [&](const auto& self, const Region& region) -> void {
-    if (look(region, found)) skin_->divide(lattice_, region, [&](Region&& part) { self(self, part); });
+    if (visit(region, merged)) skin_->divide(lattice_, region, [&](Region&& child) { self(self, child); });
   };
   for (const Cell& c : changed) {
-    up_to(morton(c.corner), true), up_to(morton(c.corner) + (std::uint64_t(1) << 3 * c.level), false);
+    skip_to(morton(c.corner), true), skip_to(morton(c.corner) + (std::uint64_t(1) << 3 * c.level), false);
     if (const Region region = skin_->at(lattice_, c); region.cut() || region.inside) descend(descend, region);
   }
-  up_to(~std::uint64_t(0), true);
-  placed_ = std::move(found);
-  share_volume(body.nodes);
+  skip_to(~std::uint64_t(0), true);
+  unscaled_ = std::move(merged);
+  scale_volumes(body.nodes);
   return true;
 }
 
-std::vector<std::size_t> QuadratureCells::groups(std::size_t most) const {
+std::vector<std::size_t> QuadratureCells::groups(std::size_t max_cells) const {
   std::vector<std::size_t> first;
   const auto code = [&](std::size_t i) { return morton(cells_[i].cell.corner); };
   const auto divide = [&](const auto& self, std::size_t begin, std::size_t end, std::uint64_t corner,
                           int level) -> void {
     if (begin == end) return;
-    if (end - begin <= most || level == 0) {
+    if (end - begin <= max_cells || level == 0) {
       first.push_back(begin);
       return;
     }
-    const std::uint64_t part = std::uint64_t(1) << 3 * (level - 1);
-    std::size_t gathered = begin;  // children from here on are not in a group yet
+    const std::uint64_t child = std::uint64_t(1) << 3 * (level - 1);
+    std::size_t pending = begin;  // first cell of the children that are in no group yet
     for (std::uint64_t k = 0; k < 8; ++k) {
       std::size_t to = begin;
       for (std::size_t step = end - begin; step > 0; step /= 2)
-        while (to + step <= end && code(to + step - 1) < corner + (k + 1) * part) to += step;
-      if (to - gathered > most) {
-        if (gathered < begin) first.push_back(gathered);
-        gathered = begin;
-        if (to - begin > most) self(self, begin, to, corner + k * part, level - 1), gathered = to;
+        while (to + step <= end && code(to + step - 1) < corner + (k + 1) * child) to += step;
+      if (to - pending > max_cells) {
+        if (pending < begin) first.push_back(pending);
+        pending = begin;
+        if (to - begin > max_cells) self(self, begin, to, corner + k * child, level - 1), pending = to;
       }
       begin = to;
     }
-    if (gathered < end) first.push_back(gathered);
+    if (pending < end) first.push_back(pending);
   };
   divide(divide, 0, cells_.size(), 0, root_);
   first.push_back(cells_.size());

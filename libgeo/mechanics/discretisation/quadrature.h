@@ -1,4 +1,5 @@
-// Where strain energy is summed: four points in each cell of an octree as fine as the nodes, clipped to the material.
+// Background quadrature of the Galerkin discretisation: four points in each cell of an octree that
+// is as fine as the nodes and clipped to the material.
 #pragma once
 
 #include <functional>
@@ -10,41 +11,46 @@
 
 namespace geo {
 
-/// A cell with its points, which share its material evenly. Where the surface cuts the cell they have the mean and the
-/// second moments of what is inside; in a whole cell that is the tetrahedral half of Gauss' 2³ rule.
+/// A cell with four points of equal weight. In a whole cell they are a tetrahedral half of the 2³
+/// Gauss rule. In a cell that the surface cuts, they have the mean and the second moments of the
+/// material inside, where possible.
 struct QuadratureCell {
   Cell cell;
   bool whole = false;
   double volume = 0;  ///< of its material, model units³
   std::array<Vec3, 4> point;
-  double measured = 0;  ///< the volume that was found, before all were scaled
+  double unscaled_volume = 0;  ///< the estimate before all volumes were scaled
 };
 
-/// The octree is told by the nodes alone: a cell that holds a node of a finer spacing is divided. Cracks change nothing
-/// but through nodes that they insert; points find out themselves which side of a crack they are on.
+/// The cells of a body. Nodes alone decide the octree: a cell that holds a node of a finer spacing
+/// is divided. Cracks change cells only through the nodes that they insert; which side of a crack a
+/// point sees is found later.
 class QuadratureCells {
  public:
+  /// No cells.
   QuadratureCells() = default;
+  /// The cells of a body.
   explicit QuadratureCells(const Body& body);
-  /// After nodes were inserted or moved. True when cells have changed.
-  bool follow(const Body& body);
+  /// Updates cells after nodes were inserted or moved. Returns true if they have changed.
+  bool update(const Body& body);
 
-  /// In Morton order; their volumes sum to that of the nodes.
+  /// The cells in Morton order. Their volumes sum to that of the nodes.
   const std::vector<QuadratureCell>& cells() const { return cells_; }
-  /// Groups of `most` cells or fewer, each of as many children of one cell of the octree, one after another, as there
-  /// is room for: the first of each, and one past the last. What a group holds depends on nothing outside of that cell.
-  std::vector<std::size_t> groups(std::size_t most) const;
+  /// Divides the cells into groups of at most `max_cells`: each is a run of children of one octree
+  /// cell, as many as fit. A group depends only on cells inside that octree cell. Returns the first
+  /// cell of each group, and cells().size().
+  std::vector<std::size_t> groups(std::size_t max_cells) const;
 
  private:
   Divisions divisions(const NodeSet& nodes) const;
-  std::function<bool(const Region&, std::vector<QuadratureCell>&)> visit() const;
-  void share_volume(const NodeSet& nodes);
+  std::function<bool(const Region&, std::vector<QuadratureCell>&)> visitor() const;
+  void scale_volumes(const NodeSet& nodes);
 
   Lattice lattice_{Vec3::Zero(), 1};
-  int root_ = 0;
+  int root_ = 0;  // level of the root cell
   Divisions divided_;
   std::shared_ptr<const RegionTree> skin_;
-  std::vector<QuadratureCell> placed_;  // with the volumes that were found in them
+  std::vector<QuadratureCell> unscaled_;  // cells_ before volumes were scaled
   std::vector<QuadratureCell> cells_;
 };
 

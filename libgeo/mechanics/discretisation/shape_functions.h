@@ -1,4 +1,6 @@
-// Moving least squares with a linear basis: gradients of shape functions at a point (Belytschko, Lu and Gu 1994).
+// Moving least squares with a linear basis: gradients of shape functions at a point (Belytschko, Lu
+// and Gu 1994). Legend: φ_j shape function and w_j weight of node j, p = (1, x) basis, M = Σ w_j
+// p_j p_jᵀ moment matrix.
 #pragma once
 
 #include <cstdint>
@@ -9,31 +11,33 @@
 
 namespace geo {
 
-/// How well the nodes around a point span space. `full`: a well-conditioned moment matrix, if need be with a wider
-/// support; `regularised`: an ill-conditioned one, or, at nodes, with a direction left out; `rigid`: none, the point
+/// The quality of the moment matrix at a point. `good`: full rank and well-conditioned, if need be
+/// with a wider support. `poor`: ill-conditioned; at nodes: of lower rank. `singular`: the point
 /// carries no strain.
-enum class Rung : std::uint8_t { full, regularised, rigid };
+enum class MomentQuality : std::uint8_t { good, poor, singular };
 
-/// The nodes of a point and the gradients of their shape functions: ∇u = Σ u_j gᵀ_j, exact where u is linear.
-struct ShapeRow {
-  std::vector<std::uint32_t> to;  ///< ascending
-  std::vector<Vec3> gradient;     ///< 1/model unit; they sum to zero
+/// Gradients of a point's shape functions: ∇u = Σ u_j gradient_jᵀ, exact where u is linear.
+struct ShapeGradients {
+  std::vector<std::uint32_t> nodes;  ///< ascending
+  std::vector<Vec3> gradient;        ///< one per node, 1/model unit; they sum to zero
 };
 
-/// A node as a point sees it, straight ahead or round the front of a crack.
-struct Sight {
-  Vec3 node;
-  double distance = 0;        ///< that its weight goes by, less than `reach`
-  Vec3 slope = Vec3::Zero();  ///< of the distance, as the point moves
-  double reach = 0;           ///< the node's support
+/// A node whose support holds a point, as the point sees it: straight ahead or round the front of a
+/// crack.
+struct SupportNode {
+  Vec3 position;
+  double distance = 0;                    ///< argument of its weight function, less than `support`
+  Vec3 distance_gradient = Vec3::Zero();  ///< derivative of `distance` by the point's position
+  double support = 0;                     ///< support radius
 };
 
-/// Straight ahead.
-Sight sight(const Vec3& x, const Vec3& node, double reach);
+/// A node seen straight ahead from x. Precondition: |x − node| < support.
+SupportNode direct_support(const Vec3& x, const Vec3& node, double support);
 
-/// Full derivatives (the weights' and the moment matrix' own included) at x of the functions φ_j = pᵀ M⁻¹ p_j w_j, with
-/// M = Σ w p pᵀ and w = 1 − 6 s² + 8 s³ − 3 s⁴, s the distance to node j over its support. Returns the condition of the
-/// scaled moment matrix, infinite when there are fewer than four nodes or they are coplanar: then `gradient` is empty.
-double shape_gradients(const Vec3& x, std::span<const Sight> nodes, std::vector<Vec3>& gradient);
+/// Full derivatives (those of weights and moment matrix included) at x of φ_j = pᵀ M⁻¹ p_j w_j,
+/// with w = 1 − 6 s² + 8 s³ − 3 s⁴ and s the distance over the support. Returns the condition
+/// number of the scaled moment matrix. It is infinite, and `gradient` empty, for fewer than four
+/// nodes or coplanar ones.
+double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::vector<Vec3>& gradient);
 
 }  // namespace geo

@@ -1,6 +1,6 @@
-// 3 × 3 matrices of several points side by side, for sources that Highway compiles once for each kind of vector: these
-// include it, after Highway.
-#if defined(KERF_MATRIX_LANES) == defined(HWY_TARGET_TOGGLE)  // once for each kind, too
+// 3×3 matrices of several points in vector registers, one lane per point. For sources that Highway
+// compiles once per vector target: they include this file after Highway.
+#if defined(KERF_MATRIX_LANES) == defined(HWY_TARGET_TOGGLE)  // an include guard per target
 #ifdef KERF_MATRIX_LANES
 #undef KERF_MATRIX_LANES
 #else
@@ -13,19 +13,23 @@ HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// At most eight lanes.
 template <class Number>
 using Lanes = hn::CappedTag<Number, 8>;
+/// A vector of Lanes.
 template <class Number>
 using V = hn::Vec<Lanes<Number>>;
+/// The number of lanes.
 template <class Number>
 constexpr std::size_t width = hn::MaxLanes(Lanes<Number>());
 
+/// One 3×3 matrix per lane.
 template <class Number>
 struct Matrix {
-  V<Number> at[3][3];  // [column][row]
+  V<Number> at[3][3];  ///< [column][row]
 };
 
-/// As in Columns, from point i on.
+/// The matrices of points i, i + 1, … from the columns of PointMatrices.
 template <class Number>
 HWY_INLINE Matrix<Number> load(const Number* const* columns, std::size_t i) {
   Matrix<Number> m;
@@ -34,6 +38,7 @@ HWY_INLINE Matrix<Number> load(const Number* const* columns, std::size_t i) {
     hn::LoadInterleaved4(Lanes<Number>(), columns[c] + 4 * i, m.at[c][0], m.at[c][1], m.at[c][2], unused);
   return m;
 }
+/// Writes the matrices of points i, i + 1, … to the columns of PointMatrices.
 template <class Number>
 HWY_INLINE void store(const Matrix<Number>& m, Number* const* columns, std::size_t i) {
   const Lanes<Number> d;
@@ -41,11 +46,12 @@ HWY_INLINE void store(const Matrix<Number>& m, Number* const* columns, std::size
     hn::StoreInterleaved4(m.at[c][0], m.at[c][1], m.at[c][2], hn::Zero(d), d, columns[c] + 4 * i);
 }
 
+/// The dot product of two 3-vectors.
 template <class Vector>
 HWY_INLINE Vector dot3(const Vector* a, const Vector* b) {
   return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
 }
-/// a · b
+/// The matrix product a · b.
 template <class Number>
 HWY_INLINE Matrix<Number> product(const Matrix<Number>& a, const Matrix<Number>& b) {
   Matrix<Number> m;
@@ -55,6 +61,7 @@ HWY_INLINE Matrix<Number> product(const Matrix<Number>& a, const Matrix<Number>&
                            hn::Mul(a.at[2][r], b.at[c][2]));
   return m;
 }
+/// The transpose.
 template <class Number>
 HWY_INLINE Matrix<Number> transposed(const Matrix<Number>& m) {
   Matrix<Number> t;

@@ -5,18 +5,18 @@
 
 namespace geo {
 
-Mat3 relaxation(const Mat3& plastic) {
+Mat3 inverse_plastic_stretch(const Mat3& plastic) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(Mat3::Identity() + 2 * plastic);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.01).cwiseSqrt().cwiseInverse().asDiagonal() *
          eigen.eigenvectors().transpose();
 }
 
-Mat3 flow(const Material& m, const Mat3& plastic, const Mat3& f, double dt) {
+Mat3 plastic_flow(const Material& m, const Mat3& plastic, const Mat3& f, double dt) {
   const Mat3 elastic = 0.5 * (f.transpose() * f - Mat3::Identity()) - plastic;
   if (!(elastic.norm() > m.yield)) return plastic;
   const Mat3 next = plastic + std::min(1.0, m.creep * dt) * elastic;
-  const double size = next.norm();
-  return size > m.most_plastic ? Mat3(m.most_plastic / size * next) : next;
+  const double norm = next.norm();
+  return norm > m.max_plastic ? Mat3(m.max_plastic / norm * next) : next;
 }
 
 }  // namespace geo

@@ -1,18 +1,19 @@
-// Plasticity (O'Brien, Bargteil and Hodgins 2002; Müller et al. 2004, § 3.7): the strain that a point does not spring
-// back from.
+// Plasticity with an additive split of the Green strain (O'Brien, Bargteil and Hodgins 2002; Müller
+// et al. 2004, § 3.7).
 #pragma once
 
 #include "kerf/material.h"
 
 namespace geo {
 
-/// (1 + 2 ε)^(−1/2), which takes the shape that a point of plastic strain ε (Green) has come to rest in back to where
-/// it was: elasticity sees F times it. Symmetric. Strains are limited, so that no direction shrinks below a tenth.
-Mat3 relaxation(const Mat3& plastic);
+/// (1 + 2 ε)^(−1/2), ε the plastic Green strain: the symmetric inverse of the plastic stretch.
+/// Elasticity sees F times it. Eigenvalues of 1 + 2 ε are bounded from below by 0.01, so that no
+/// plastic stretch is smaller than a tenth.
+Mat3 inverse_plastic_stretch(const Mat3& plastic);
 
-/// The plastic strain after a time at deformation gradient F: where the elastic part of the strain, ½ (FᵀF − 1) − ε, is
-/// larger than the yield (Frobenius norm), its share creep · dt flows (all of it at most), until the most plastic
-/// strain.
-Mat3 flow(const Material& material, const Mat3& plastic, const Mat3& f, double dt);
+/// The plastic strain after dt seconds at deformation gradient F. If the elastic strain ½ (FᵀF − 1)
+/// − ε exceeds the yield (Frobenius norm), its fraction min(1, creep · dt) becomes plastic; the
+/// result's norm is at most max_plastic.
+Mat3 plastic_flow(const Material& material, const Mat3& plastic, const Mat3& f, double dt);
 
 }  // namespace geo

@@ -1,8 +1,8 @@
-// Compiled once for each kind of vector, like point_lanes.cpp. Product and sum are one operation, where the processor
-// has it, only in the loop over pairs of slots.
+// Compiled once for each kind of vector, like point_lanes.cpp. Product and sum are one operation,
+// where the processor has it, only in the loop over pairs of slots.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/coarse_lanes.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "base/simd_targets.h"
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>
@@ -18,15 +18,16 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Eight = hn::CappedTag<float, 8>;
 constexpr std::size_t eight = hn::MaxLanes(Eight());
 
-// Of a slot: six rows of eight modes of strains and of stresses. `moment`: three times Σ arm g; `turn`: what is to go
-// with it, of each column of the rotation.
+// Of a slot: six rows of eight modes of strains and of stresses. `moment`: three times Σ arm g;
+// `turn`: what is to go with it, of each column of the rotation.
 HWY_INLINE void strain_and_stress(const float* HWY_RESTRICT moment, const float* HWY_RESTRICT turn, float w,
                                   const Moduli& moduli, float* HWY_RESTRICT strain, float* HWY_RESTRICT stress) {
   const Eight d;
   const auto twice = hn::Set(d, 2 * moduli.shear), bulk = hn::Set(d, moduli.bulk), weight = hn::Set(d, w),
              weighted = hn::Set(d, w * moduli.shear);
   for (std::size_t k = 0; k < 8; k += eight) {
-    // Row (a, b) of the gradient in the rotated frame, by modes: translations r_a g_b, rotations m_b × r_a.
+    // Row (a, b) of the gradient in the rotated frame, by modes: translations r_a g_b, rotations
+    // m_b × r_a.
     const auto row = [&](std::size_t a, std::size_t b) HWY_ATTR {
       const float *const r = turn + 16 * a + k, *const m = moment + 16 * b + k;
       return hn::Sub(hn::Mul(hn::LoadU(d, m), hn::LoadU(d, r)), hn::Mul(hn::LoadU(d, m + 8), hn::LoadU(d, r + 8)));
@@ -55,19 +56,19 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
   for (std::size_t i = 0; i < block.points.size(); i += stride) {
     // Points so far apart are not fetched by themselves.
     if (const std::size_t ahead = i + 2 * stride; ahead < block.points.size()) {
-      for (std::size_t q = 3 * block.first[ahead]; q < 3 * block.first[ahead + 1]; q += 16)
-        hwy::Prefetch(&block.rounded[q]);
-      for (std::size_t k = 0; k < 18; k += 4) hwy::Prefetch(&modes.frame[modes.number(ahead, 18) + 8 * k]);
+      for (std::size_t q = 3 * block.entry_begin[ahead]; q < 3 * block.entry_begin[ahead + 1]; q += 16)
+        hwy::Prefetch(&block.entry_gradient_single[q]);
+      for (std::size_t k = 0; k < 18; k += 4) hwy::Prefetch(&modes.frame[modes.offset(ahead, 18) + 8 * k]);
     }
     const float w = static_cast<float>(stride) * weight[i];
     if (!(w > 0)) continue;
     std::size_t count = 0;
-    const std::uint16_t* const to = block.to.data();
-    for (std::size_t q = block.first[i], last = block.first[i + 1]; q < last; ++q) {
+    const std::uint16_t* const to = block.entry_node.data();
+    for (std::size_t q = block.entry_begin[i], last = block.entry_begin[i + 1]; q < last; ++q) {
       const std::uint32_t s = slot[to[q]];
       here[count] = s, count += !among[s], among[s] = 1;
       float* const m = &moments[48 * s];
-      const float *const at = arm + 16 * to[q], *const g = &block.rounded[3 * q];
+      const float *const at = arm + 16 * to[q], *const g = &block.entry_gradient_single[3 * q];
       for (std::size_t k = 0; k < 16; k += hn::MaxLanes(d)) {
         const auto of_node = hn::LoadU(d, at + k);
         for (std::size_t c = 0; c < 3; ++c)

@@ -32,7 +32,7 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& env)
   // No wave crosses a third of the smallest neighbourhood of its material in one substep.
   std::vector<double> finest(materials_.count(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < size(); ++i)
-    finest[materials_.number(i)] = std::min(finest[materials_.number(i)], spacing_[i]);
+    finest[materials_.index(i)] = std::min(finest[materials_.index(i)], spacing_[i]);
   double limit = std::numeric_limits<double>::infinity(), stiffest = 0;
   for (std::size_t k = 0; k < finest.size(); ++k) {
     const Material& m = materials_[k];

@@ -27,7 +27,7 @@ void ImplicitStep::find_pieces() {
     Freedom& freedom = freedom_[piece_of(i)];
     if (is_fixed(env_, i))
       freedom = Freedom::none;
-    else if (freedom == Freedom::way_and_turn && !s_.galerkin_ && s_.rows_.rung(i) != Rung::full)
+    else if (freedom == Freedom::way_and_turn && !s_.galerkin_ && s_.rows_.quality(i) != MomentQuality::good)
       freedom = Freedom::way;
   }
 }

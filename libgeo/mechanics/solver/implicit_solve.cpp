@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "mechanics/discretisation/product_lanes.h"
+#include "mechanics/discretisation/stiffness_product_lanes.h"
 #include "mechanics/solver/ground.h"
 #include "mechanics/solver/implicit_step.h"
 
@@ -16,7 +16,7 @@ void ImplicitStep::linearise() {
     constants.push_back(stiffness_constants(m)), constants.back().viscous = float(m.viscosity / dt_);
   const auto blocks = parts_.blocks();
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    Columns<float> relaxed;
+    PointMatrices<float> relaxed;
     StiffnessModes aside;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t b = blocks[k];
@@ -26,14 +26,14 @@ void ImplicitStep::linearise() {
           std::copy(relaxed_[b].column[c].begin(), relaxed_[b].column[c].end(), relaxed.column[c].begin());
       }
       modes_[b].resize(weight_[b].size());
-      for (const MaterialRun& run : s_.points_.blocks[b].runs) {
-        const Columns<float>* const own =
+      for (const MaterialRange& run : s_.points_.blocks[b].material_ranges) {
+        const PointMatrices<float>* const own =
             relaxed_.empty() || !(s_.materials_[run.material].yield > 0) ? nullptr : &relaxed;
-        StiffnessModes& to = run.alone ? modes_[b] : aside;
+        StiffnessModes& to = run.uniform ? modes_[b] : aside;
         to.resize(weight_[b].size());
-        stiffness_modes(constants[run.material], run.begin, run.end, gradient_[b], own, weight_[b], to);
-        for (std::size_t i = run.begin; i < run.end && !run.alone; ++i)
-          if (s_.points_.blocks[b].is_of(run, i)) modes_[b].take(aside, i);
+        stiffness_modes(constants[run.material], {run.begin, run.end}, gradient_[b], own, weight_[b], to);
+        for (std::size_t i = run.begin; i < run.end && !run.uniform; ++i)
+          if (s_.points_.blocks[b].belongs_to(run, i)) modes_[b].copy_point(aside, i);
       }
     }
   });
@@ -84,7 +84,7 @@ void ImplicitStep::precondition() {
 // Adds nothing: writes what blocks with points of parts at work have for their nodes.
 void ImplicitStep::elastic_product(const std::vector<Vec3>& p) {
   const MaterialPoints& points = s_.points_;
-  product_.resize(4 * points.parts());
+  product_.resize(4 * points.scatter_size());
   const auto blocks = parts_.blocks();
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<float> values;
@@ -97,7 +97,7 @@ void ImplicitStep::elastic_product(const std::vector<Vec3>& p) {
         const Vec3 from = p[block.nodes[k]] - base;
         for (std::size_t c = 0; c < 3; ++c) values[4 * k + c] = float(from[static_cast<Eigen::Index>(c)]);
       }
-      float* const out = &product_[4 * points.part(b)];
+      float* const out = &product_[4 * points.scatter_offset(b)];
       std::fill(out, out + 4 * block.nodes.size(), 0.0f);
       multiply_stiffness(block, modes_[b], values.data(), out);
     }

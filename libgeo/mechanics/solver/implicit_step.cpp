@@ -61,7 +61,7 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
     target_[i] = state.displacement[i];
     load_[i] = s_.mass_[i] * env.gravity;
     if (!env.load.empty()) load_[i] += env.load[i];
-    if (!is_fixed(env, i)) target_[i] += dt * keep[s_.materials_.number(i)] * state.velocity[i];
+    if (!is_fixed(env, i)) target_[i] += dt * keep[s_.materials_.index(i)] * state.velocity[i];
   }
   find_pieces();
   // Drag along the ground: lagged, from where the step began.
@@ -72,12 +72,12 @@ ImplicitStep::ImplicitStep(const Solid& solid, const State& state, double dt, co
   const bool viscous = s_.materials_.any([](const Material& m) { return m.viscosity > 0; });
   if (viscous) before_.resize(weight_.size());
   parallel_for(weight_.size(), 4, [&](std::size_t begin, std::size_t end) {
-    BlockStrain::Room room;
+    BlockStrain::Scratch room;
     for (std::size_t b = begin; b < end; ++b) {
       const auto& points = s_.points_.blocks[b].points;
       weight_[b].assign((points.size() + 7) / 8 * 8, 0);
       for (std::size_t i = 0; i < points.size(); ++i)
-        weight_[b][i] = points[i].rung == Rung::rigid ? 0.0f : float(points[i].volume);
+        weight_[b][i] = points[i].quality == MomentQuality::singular ? 0.0f : float(points[i].volume);
       if (viscous) strain_.gradients(b, state.displacement, room, before_[b]);
     }
   });
@@ -87,17 +87,18 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   if (std::find(parts_.chosen().begin(), parts_.chosen().end(), 1) == parts_.chosen().end()) return;
   const MaterialPoints& points = s_.points_;
   const auto blocks = parts_.blocks();
-  energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.parts()),
+  energy_.resize(parts_.block_first(points.blocks.size())), pull_.resize(4 * points.scatter_size()),
       elastic_.resize(parts_.count());
   std::vector<double> elastic(parts_.count(), 0), contact(parts_.count(), 0);
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    thread_local ElasticBlock::Room room;  // a hundred bytes a point: too many to ask for, and to clear, block by block
+    thread_local ElasticBlock::Scratch
+        room;  // a hundred bytes a point: too many to ask for, and to clear, block by block
     ElasticBlock work(room, strain_, s_.materials_, dt_);
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t b = blocks[at];
       const PointHistory history{relaxed_.empty() ? nullptr : &relaxed_[b], before_.empty() ? nullptr : &before_[b]};
-      const auto& of_point =
-          work.evaluate(b, u, history, force ? &gradient_[b] : nullptr, force ? &pull_[4 * points.part(b)] : nullptr);
+      const auto& of_point = work.evaluate(b, u, history, force ? &gradient_[b] : nullptr,
+                                           force ? &pull_[4 * points.scatter_offset(b)] : nullptr);
       double* const energy = &energy_[parts_.block_first(b)];
       std::fill_n(energy, parts_.of_block(b).size(), 0.0);
       for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i)
@@ -110,7 +111,7 @@ void ImplicitStep::evaluate(const std::vector<Vec3>& u, std::vector<double>& val
   }
   if (force)
     parts_.each_node([&](std::size_t i) {
-      const auto sum = points.sum<4>(pull_.data(), i);
+      const auto sum = points.sum_at_node<4>(pull_.data(), i);
       (*force)[i] = -Vec3(sum[0], sum[1], sum[2]);
     });
   if (s_.penalty_) {
@@ -237,15 +238,15 @@ std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std
   return ImplicitStep(*this, still, 1, nothing, 1).product(u, p);
 }
 
-std::vector<Columns<double>> Solid::relaxed(const State& state) const {
+std::vector<PointMatrices<double>> Solid::relaxed(const State& state) const {
   if (!state.plastic.empty() && state.plastic.size() != points_.size())
     throw InputError("the plastic strains are not those of this solid");
-  std::vector<Columns<double>> all(flows() && !state.plastic.empty() ? points_.blocks.size() : 0);
+  std::vector<PointMatrices<double>> all(flows() && !state.plastic.empty() ? points_.blocks.size() : 0);
   parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       all[b].resize(points_.blocks[b].points.size());
       for (std::size_t i = 0; i < points_.blocks[b].points.size(); ++i) {
-        const Mat3 back = relaxation(state.plastic[points_.first(b) + i]);
+        const Mat3 back = inverse_plastic_stretch(state.plastic[points_.first_point(b) + i]);
         for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&all[b].column[c][4 * i]) = back.col(c);
       }
     }
@@ -260,10 +261,10 @@ void Solid::update_plasticity(State& state, double dt) const {
     for (std::size_t b = begin; b < end; ++b) {
       const auto gradient = points_.gradients(b, state.displacement);
       for (std::size_t i = 0; i < gradient.size(); ++i) {
-        Mat3& plastic = state.plastic[points_.first(b) + i];
+        Mat3& plastic = state.plastic[points_.first_point(b) + i];
         const Material& of = materials_[points_.blocks[b].points[i].material];
-        if (of.yield > 0 && points_.blocks[b].points[i].rung != Rung::rigid)
-          plastic = flow(of, plastic, Mat3::Identity() + gradient[i], dt);
+        if (of.yield > 0 && points_.blocks[b].points[i].quality != MomentQuality::singular)
+          plastic = plastic_flow(of, plastic, Mat3::Identity() + gradient[i], dt);
       }
     }
   });

@@ -9,7 +9,7 @@
 
 #include "kerf/solid.h"
 #include "mechanics/discretisation/block_strain.h"
-#include "mechanics/discretisation/stiffness_lanes.h"
+#include "mechanics/material/stiffness_lanes.h"
 #include "mechanics/solver/coarse_motion.h"
 #include "mechanics/solver/patch_motion.h"
 #include "mechanics/solver/rigid_motion.h"
@@ -42,7 +42,7 @@ class ImplicitStep {
   void multiply(const std::vector<Vec3>& p, std::vector<Vec3>& out, std::vector<double>& curvature);
   void elastic_product(const std::vector<Vec3>& p);
   Vec3 elastic_at(std::size_t node) const {
-    const auto sum = s_.points_.sum<4>(product_.data(), node);
+    const auto sum = s_.points_.sum_at_node<4>(product_.data(), node);
     return {sum[0], sum[1], sum[2]};
   }
   int solve(const std::vector<Vec3>& force, bool first, std::vector<Vec3>& x, const std::vector<double>& moved,
@@ -78,9 +78,9 @@ class ImplicitStep {
   std::vector<double> drag_;
   std::vector<Moduli> moduli_;  // per material, of the preconditioner
   BlockStrain strain_;
-  std::vector<Columns<double>> relaxed_;  // per block: of plastic strain, where there is any
-  std::vector<Columns<double>> before_;   // per block: ∇u at the start, where there is viscosity
-  std::vector<Columns<float>> gradient_;  // per block: ∇u of the last evaluation (of F times relaxation, less 1)
+  std::vector<PointMatrices<double>> relaxed_;  // per block: of plastic strain, where there is any
+  std::vector<PointMatrices<double>> before_;   // per block: ∇u at the start, where there is viscosity
+  std::vector<PointMatrices<float>> gradient_;  // per block: ∇u of the last evaluation (of F times relaxation, less 1)
   std::vector<StiffnessModes> modes_;
   std::vector<std::vector<float>> weight_;
   std::vector<Mat3> local_;      // what nodes have that acts on nothing else

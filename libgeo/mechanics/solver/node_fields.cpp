@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kerf/parallel.h"
-#include "mechanics/discretisation/elastic_lanes.h"
+#include "mechanics/material/elastic_lanes.h"
 #include "mechanics/material/plasticity.h"
 #include "mechanics/solver/node_sums.h"
 #include "mechanics/terms/weighted_sums.h"
@@ -17,14 +17,14 @@ std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes
   const std::vector<PaddedVec3> displacement = padded(state.displacement);
   std::vector<PaddedVec3> place = padded(nodes.position);
   for (std::size_t i = 0; i < place.size(); ++i) place[i].at[3] = 1 / (nodes.radius[i] * nodes.radius[i]);
-  const MovedNodes all{place.data(), displacement.data(), gradient.data()};
+  const AffineNodes all{place.data(), displacement.data(), gradient.data()};
   std::vector<Vec3> moved(nodes.size());
   parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> to;
     for (std::size_t i = begin; i < end; ++i) {
       to.clear();
       for (const auto& n : graph.neighbors(nodes, NodeId(i))) to.push_back(n.to.value);
-      const PaddedVec3 at = moved_by(to, all, static_cast<std::uint32_t>(i));
+      const PaddedVec3 at = blended_displacement(to, all, static_cast<std::uint32_t>(i));
       moved[i] = {at.at[0], at.at[1], at.at[2]};
     }
   });
@@ -35,25 +35,26 @@ std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, c
   const MaterialPoints& points = solid.points();
   std::vector<ElasticConstants> constants;  // per material
   for (const Material& m : solid.materials().all()) constants.push_back(elastic_constants(m));
-  const auto sums = node_sums(solid, nodes, state, [&](std::size_t b, const Columns<double>& gradient, float* own) {
-    const PointBlock& block = points.blocks[b];
-    Columns<double> relaxed;
-    if (!state.plastic.empty()) {
-      relaxed.resize(block.points.size());
-      for (std::size_t i = 0; i < block.points.size(); ++i) {
-        const Mat3 back = relaxation(state.plastic[points.first(b) + i]);
-        for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&relaxed.column[c][4 * i]) = back.col(c);
-      }
-    }
-    std::vector<float> aside(8 * ((block.points.size() + 7) / 8 * 8));
-    for (const MaterialRun& run : block.runs) {
-      float* const to = run.alone ? own : aside.data();
-      cauchy_stresses(constants[run.material], run.begin, run.end, state.plastic.empty() ? nullptr : &relaxed, gradient,
-                      to);
-      for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.alone; ++i)
-        if (block.is_of(run, i)) std::copy_n(&aside[8 * i], 8, own + 8 * i);
-    }
-  });
+  const auto sums =
+      node_sums(solid, nodes, state, [&](std::size_t b, const PointMatrices<double>& gradient, float* own) {
+        const PointBlock& block = points.blocks[b];
+        PointMatrices<double> relaxed;
+        if (!state.plastic.empty()) {
+          relaxed.resize(block.points.size());
+          for (std::size_t i = 0; i < block.points.size(); ++i) {
+            const Mat3 back = inverse_plastic_stretch(state.plastic[points.first_point(b) + i]);
+            for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&relaxed.column[c][4 * i]) = back.col(c);
+          }
+        }
+        std::vector<float> aside(8 * ((block.points.size() + 7) / 8 * 8));
+        for (const MaterialRange& run : block.material_ranges) {
+          float* const to = run.uniform ? own : aside.data();
+          cauchy_stresses(constants[run.material], {run.begin, run.end}, state.plastic.empty() ? nullptr : &relaxed,
+                          gradient, to);
+          for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.uniform; ++i)
+            if (block.belongs_to(run, i)) std::copy_n(&aside[8 * i], 8, own + 8 * i);
+        }
+      });
   std::vector<double> result(nodes.size(), 0);
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const StressSums& sum = sums[i];

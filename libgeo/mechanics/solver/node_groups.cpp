@@ -36,7 +36,7 @@ struct Boxes {
 
 }  // namespace
 
-NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows,
+NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodalGradientOperator& rows,
                        const std::vector<std::uint32_t>& part_of, std::uint32_t parts, std::size_t fewest,
                        std::size_t most_groups)
     : of(position.size(), ~0u) {
@@ -65,7 +65,7 @@ NodeGroups::NodeGroups(const std::vector<Vec3>& position, const NodeRows& rows,
       const auto j = front.back();
       front.pop_back();
       place[group].second += position[j][along[part_of[i]]], ++size[group];
-      for (const auto k : rows[j].to)
+      for (const auto k : rows[j].neighbors)
         if (of[k] == ~0u && boxes.of[k] == boxes.of[i]) of[k] = group, front.push_back(k);
     }
   }

@@ -20,8 +20,8 @@ std::size_t tiles(std::size_t nodes) { return 12 * (nodes * (nodes + 1) / 2); }
 
 using Boxes = std::vector<std::span<std::uint32_t>>;  // the nodes of each
 
-// Halves a box, one axis after another, until `most_inside` nodes are left in each part: what it comes to depends on no
-// node outside.
+// Halves a box, one axis after another, until `most_inside` nodes are left in each part: what it
+// comes to depends on no node outside.
 void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, const Vec3& middle, const Vec3& half,
             int depth, Boxes& found) {
   constexpr std::size_t many = 2048;
@@ -55,10 +55,11 @@ Boxes boxes_of(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes
   return found;
 }
 
-// What hangs together in a box, each with its neighbours. `nodes`: the box's, ascending; `box`: per node, its number;
-// `taken`: per node, 0 before, 1 then.
+// What hangs together in a box, each with its neighbours. `nodes`: the box's, ascending; `box`: per
+// node, its number; `taken`: per node, 0 before, 1 then.
 std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t> nodes,
-                                                   const std::vector<std::uint32_t>& box, const NodeRows& rows,
+                                                   const std::vector<std::uint32_t>& box,
+                                                   const NodalGradientOperator& rows,
                                                    const std::vector<double>& spacing, std::vector<char>& taken) {
   std::vector<std::vector<std::uint32_t>> patches;
   std::vector<std::uint32_t> own;
@@ -66,12 +67,12 @@ std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t
     if (taken[i]) continue;
     taken[i] = 1, own.assign(1, i);
     for (std::size_t k = 0; k < own.size(); ++k)
-      for (const auto j : rows[own[k]].to)
+      for (const auto j : rows[own[k]].neighbors)
         if (box[j] == box[i] && !std::exchange(taken[j], 1)) own.push_back(j);
     auto& patch = patches.emplace_back(own);
     for (const auto o : own)
-      for (std::size_t q = 0; q < rows[o].to.size(); ++q)
-        if (const auto j = rows[o].to[q]; rows[o].x[q].norm() < overlap * std::min(spacing[o], spacing[j]))
+      for (std::size_t q = 0; q < rows[o].neighbors.size(); ++q)
+        if (const auto j = rows[o].neighbors[q]; rows[o].offset[q].norm() < overlap * std::min(spacing[o], spacing[j]))
           patch.push_back(j);
     std::sort(patch.begin(), patch.end());
     patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
@@ -81,13 +82,13 @@ std::vector<std::vector<std::uint32_t>> patches_in(std::span<const std::uint32_t
 
 }  // namespace
 
-NodePatches::NodePatches(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
-                         const MaterialPoints& points) {
+NodePatches::NodePatches(const std::vector<Vec3>& position, const NodalGradientOperator& rows,
+                         const std::vector<double>& spacing, const MaterialPoints& points) {
   list(position, rows, spacing);
   sum_points(points, std::vector<char>(count(), 1));
 }
 
-std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position, const NodeRows& rows,
+std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position, const NodalGradientOperator& rows,
                                                const std::vector<double>& spacing, const std::vector<char>& other,
                                                const MaterialPoints& points, const PointChanges& changes) {
   NodePatches before = std::move(*this);
@@ -98,14 +99,14 @@ std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position
   for (std::size_t p = 0; p < count(); ++p) {
     const auto now = nodes(p);
     if (now[0] + 1 >= before.begin_.size() ||
-        std::any_of(now.begin(), now.end(), [&](auto i) { return changes.nodes[i]; }))
+        std::any_of(now.begin(), now.end(), [&](auto i) { return changes.node_changed[i]; }))
       continue;
     for (const Incidence& at : before.patches_of(now[0])) {
       const auto was = before.nodes(at.patch);
       if (before.outer_[at.patch].empty() || !std::equal(now.begin(), now.end(), was.begin(), was.end())) continue;
       outer_[p] = std::move(before.outer_[at.patch]), point_[p] = before.point_[at.patch], wanted[p] = 0,
       old[p] = at.patch;
-      if (point_[p].first != ~0u) point_[p].first = changes.blocks[point_[p].first];
+      if (point_[p].first != ~0u) point_[p].first = changes.new_block[point_[p].first];
       break;
     }
   }
@@ -113,8 +114,8 @@ std::vector<std::uint32_t> NodePatches::follow(const std::vector<Vec3>& position
   return old;
 }
 
-void NodePatches::list(const std::vector<Vec3>& position, const NodeRows& rows, const std::vector<double>& spacing,
-                       const NodePatches* before, const std::vector<char>* other) {
+void NodePatches::list(const std::vector<Vec3>& position, const NodalGradientOperator& rows,
+                       const std::vector<double>& spacing, const NodePatches* before, const std::vector<char>* other) {
   std::vector<std::uint32_t> all(position.size());
   std::iota(all.begin(), all.end(), 0);
   const Boxes boxes = boxes_of(position, all);

@@ -1,4 +1,5 @@
-// Inverses of patches, which are kept from step to step while nothing changes that they are made of.
+// Inverses of patches, which are kept from step to step while nothing changes that they are made
+// of.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 
 #include "base/uninitialized_array.h"
 #include "kerf/material.h"
+#include "mechanics/material/stress_derivative.h"
 #include "mechanics/solver/node_patches.h"
 
 namespace geo {
@@ -22,14 +24,15 @@ class PatchInverses {
 
   /// Room for all patches; nothing is known of any.
   void begin(const NodePatches& patches);
-  /// The same after they have changed; `was`: as NodePatches::follow() says. What is known of those that were there
-  /// stays.
+  /// The same after they have changed; `was`: as NodePatches::follow() says. What is known of those
+  /// that were there stays.
   void follow(const NodePatches& patches, std::span<const std::uint32_t> was);
   std::size_t count() const { return moduli_.size(); }
 
   /// Whether the inverse of p is known for these.
   bool knows(std::size_t p, std::span<const Besides> besides, const Moduli& moduli) const;
-  /// What is written to matrix(p) is made of these; none: of something else as well, and good for this step only.
+  /// What is written to matrix(p) is made of these; none: of something else as well, and good for
+  /// this step only.
   void tell(std::size_t p, std::span<const Besides> besides, const Moduli& moduli);
 
   /// Upper halves of numbers; three rows a node, padded() apart.

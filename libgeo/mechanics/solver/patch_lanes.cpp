@@ -1,7 +1,7 @@
 // Compiled once for each kind of vector, like point_lanes.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/patch_lanes.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "base/simd_targets.h"
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>
@@ -27,13 +27,13 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const No
   std::vector<std::uint32_t> touched;
   for (std::size_t i = 0; i < block.points.size(); ++i) {
     const MaterialPoint& point = block.points[i];
-    if (point.rung == Rung::rigid) continue;
-    const float w = static_cast<float>(point.measured);
-    for (std::size_t q = block.first[i]; q < block.first[i + 1]; ++q)
-      for (auto k = first[block.to[q]]; k < first[block.to[q] + 1]; ++k) {
+    if (point.quality == MomentQuality::singular) continue;
+    const float w = static_cast<float>(point.unscaled_volume);
+    for (std::size_t q = block.entry_begin[i]; q < block.entry_begin[i + 1]; ++q)
+      for (auto k = first[block.entry_node[q]]; k < first[block.entry_node[q] + 1]; ++k) {
         auto& list = here[places[k].patch];
         if (list.empty()) touched.push_back(places[k].patch);
-        list.push_back({places[k].slot, &block.rounded[3 * q]});
+        list.push_back({places[k].slot, &block.entry_gradient_single[3 * q]});
       }
     for (const auto p : touched) {
       auto& list = here[p];
@@ -94,8 +94,8 @@ HWY_INLINE void take_off(const Tile& a, const Tile& b, Tile& from) {
 }
 constexpr std::size_t tile_at(std::size_t a, std::size_t b) { return 72 * (a * (a + 1) / 2 + b); }
 
-// In place of Σ w g_a g_bᵀ what an isotropic stiffness makes of it: Σ w (shear (g_a · g_b) 1 + shear g_b g_aᵀ + bulk
-// g_a g_bᵀ); and blocks, turned back.
+// In place of Σ w g_a g_bᵀ what an isotropic stiffness makes of it: Σ w (shear (g_a · g_b) 1 +
+// shear g_b g_aᵀ + bulk g_a g_bᵀ); and blocks, turned back.
 HWY_INLINE void add_up(EightPatches& p, std::size_t lane) {
   const Lanes<float> d;
   const auto shear = hn::LoadU(d, &p.shear[lane]), bulk = hn::LoadU(d, &p.bulk[lane]);
@@ -134,8 +134,9 @@ HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
   return t;
 }
 
-// Node by node: K becomes −K⁻¹ of those that were taken, with what they are to the others beside it, and the others
-// keep what is left of them. Symmetric all the way, so that half of the tiles will do.
+// Node by node: K becomes −K⁻¹ of those that were taken, with what they are to the others beside
+// it, and the others keep what is left of them. Symmetric all the way, so that half of the tiles
+// will do.
 HWY_INLINE void sweep(EightPatches& p, std::size_t lane) {
   const Lanes<float> d;
   float *const tiles = p.tiles.data() + lane, *const column = p.aside.data() + lane,

@@ -1,13 +1,13 @@
-// The first level of the preconditioner: patches of nodes, each solved for on its own while all others stand still,
-// with the stiffness they have at rest turned to where they are (overlapping Schwarz; each node's share is spread over
-// its patches).
+// The first level of the preconditioner: patches of nodes, each solved for on its own while all
+// others stand still, with the stiffness they have at rest turned to where they are (overlapping
+// Schwarz; each node's share is spread over its patches).
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "mechanics/discretisation/stiffness_lanes.h"
+#include "mechanics/material/stiffness_lanes.h"
 #include "mechanics/solver/node_patches.h"
 #include "mechanics/solver/patch_inverses.h"
 #include "mechanics/solver/patch_lanes.h"
@@ -16,9 +16,9 @@ namespace geo {
 
 class PatchMotion {
  public:
-  /// `modes`: rotations of points now; `moduli`: of an isotropic stiffness, per material; `blocks`: what nodes have
-  /// besides; `fixed`: as in Environment. `inverses`: of an earlier step, of which those are left that are the same
-  /// now. Keeps all but modes, blocks and fixed.
+  /// `modes`: rotations of points now; `moduli`: of an isotropic stiffness, per material; `blocks`:
+  /// what nodes have besides; `fixed`: as in Environment. `inverses`: of an earlier step, of which
+  /// those are left that are the same now. Keeps all but modes, blocks and fixed.
   PatchMotion(const NodePatches& patches, const Materials& materials, std::span<const Moduli> moduli,
               const std::vector<StiffnessModes>& modes, const std::vector<Mat3>& blocks,
               const std::vector<std::uint8_t>& fixed, PatchInverses& inverses);
@@ -37,7 +37,7 @@ class PatchMotion {
  private:
   void besides(std::size_t patch, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed,
                std::vector<PatchInverses::Besides>& all) const;
-  const Moduli& moduli_of(std::size_t patch) const { return moduli_[materials_.number(patches_.nodes(patch)[0])]; }
+  const Moduli& moduli_of(std::size_t patch) const { return moduli_[materials_.index(patches_.nodes(patch)[0])]; }
   void put(std::size_t patch, bool plain, const std::vector<Mat3>& blocks, const std::vector<std::uint8_t>& fixed,
            std::size_t lane, EightPatches& to) const;
   void take(std::size_t patch, std::size_t lane, const EightPatches& from);

@@ -24,7 +24,7 @@ std::vector<NodeId> all_nodes(std::size_t count) {
 }  // namespace
 
 Solid::Solid(const Body& body, Materials materials) : materials_(std::move(materials)) {
-  if (materials_.unfit(body.nodes.size())) throw InputError("a solid of several materials needs one for each node");
+  if (!materials_.fits(body.nodes.size())) throw InputError("a solid of several materials needs one for each node");
   State none;
   follow_nodes(body.nodes, body.graph, NodeId(body.nodes.size()), {}, all_nodes(body.nodes.size()), none);
   if (materials_.discretisation() == Discretisation::galerkin) {
@@ -38,8 +38,8 @@ Solid::Solid(const Body& body, Materials materials) : materials_(std::move(mater
 
 Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials)
     : materials_(std::move(materials)) {
-  if (materials_.unfit(nodes.size())) throw InputError("a solid of several materials needs one for each node");
-  materials_.set(Discretisation::mueller04);
+  if (!materials_.fits(nodes.size())) throw InputError("a solid of several materials needs one for each node");
+  materials_.set_discretisation(Discretisation::mueller04);
   State none;
   update(nodes, graph, NodeId(nodes.size()), {}, all_nodes(nodes.size()), none);
 }
@@ -56,22 +56,22 @@ void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
   follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state,
                !delta.parted.empty());
   if (!galerkin_) return nodal_points(delta.updated_nodes);
-  galerkin_->note(body, delta, before);
+  galerkin_->mark_changed(body, delta, before);
   other_.resize(size(), 0);
   for (const NodeId i : delta.updated_nodes) other_[i.index()] = 1;
 }
 
 void Solid::settle(const Body& body, State& state) {
-  if (!galerkin_ || !galerkin_->is_due()) return;
+  if (!galerkin_ || !galerkin_->has_changes()) return;
   PointChanges changes;
   parallel_invoke([&] { groups_ = NodeGroups(position_, rows_, part_, parts_); },
                   [&] {
-                    changes = galerkin_->settle(body, points_);
+                    changes = galerkin_->rebuild_changed(body, points_);
                     points_.set_materials(materials_);
                     inverses_.follow(patches_, patches_.follow(position_, rows_, spacing_, other_, points_, changes));
                   });
   other_.clear();
-  const auto& kept = changes.kept;
+  const auto& kept = changes.old_point;
   if (state.plastic.empty() || kept.empty()) return;
   std::vector<Mat3> plastic(points_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < plastic.size(); ++i)
@@ -87,10 +87,11 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       std::vector<MaterialPoint> points;
-      std::vector<ShapeRow> rows;
+      std::vector<ShapeGradients> rows;
       for (std::size_t i = b * nodes_a_block; i < std::min(n, (b + 1) * nodes_a_block); ++i) {
-        points.push_back({position_[i], volume_[i], rows_.rung(i), 0, false, 0, 0, volume_[i]});
-        if (stale[b] || b >= before) rows.push_back(rows_.rung(i) == Rung::rigid ? ShapeRow{} : rows_.row(i));
+        points.push_back({position_[i], volume_[i], rows_.quality(i), 0, false, 0, 0, volume_[i]});
+        if (stale[b] || b >= before)
+          rows.push_back(rows_.quality(i) == MomentQuality::singular ? ShapeGradients{} : rows_.shape_gradients(i));
       }
       if (stale[b] || b >= before)
         points_.blocks[b] = PointBlock(std::move(points), rows);
@@ -98,7 +99,7 @@ void Solid::nodal_points(std::span<const NodeId> updated) {
         points_.blocks[b].points = std::move(points);  // volumes are halved without a change of neighbours
     }
   });
-  points_.connect(n);
+  points_.number_points(n);
   points_.set_materials(materials_);
   group_nodes();
   std::vector<double> penalty;
@@ -112,31 +113,31 @@ void Solid::group_nodes() {
   patches_ = NodePatches(position_, rows_, spacing_, points_), inverses_ = {};
 }
 
-RungCounts Solid::rungs() const {
-  RungCounts counts;
-  for (std::size_t i = 0; i < rows_.size(); ++i) ++counts.nodes[static_cast<std::size_t>(rows_.rung(i))];
+MomentQualityCounts Solid::moment_quality_counts() const {
+  MomentQualityCounts counts;
+  for (std::size_t i = 0; i < rows_.size(); ++i) ++counts.nodes[static_cast<std::size_t>(rows_.quality(i))];
   for (const PointBlock& b : points_.blocks)
     for (const MaterialPoint& p : b.points)
-      ++counts.points[static_cast<std::size_t>(p.rung)], counts.widened += p.growth > 0;
+      ++counts.points[static_cast<std::size_t>(p.quality)], counts.widened += p.widenings > 0;
   return counts;
 }
 
 void Solid::gradient_row(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) const {
-  const auto& row = rows_[i.index()];
-  for (std::size_t q = 0; q < row.to.size(); ++q) out.push_back({NodeId(row.to[q]), row.g[q]});
-  out.push_back({i, row.g_self});
+  const auto& node = rows_[i.index()];
+  for (std::size_t q = 0; q < node.neighbors.size(); ++q) out.push_back({NodeId(node.neighbors[q]), node.gradient[q]});
+  out.push_back({i, node.own_gradient});
 }
 
 double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force,
-                            const std::vector<Columns<double>>& relaxed) const {
-  std::vector<double> energy(points_.blocks.size(), 0), pull(force ? 4 * points_.parts() : 0);
+                            const std::vector<PointMatrices<double>>& relaxed) const {
+  std::vector<double> energy(points_.blocks.size(), 0), pull(force ? 4 * points_.scatter_size() : 0);
   const BlockStrain strain(points_);
   parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
-    ElasticBlock::Room room;
+    ElasticBlock::Scratch room;
     ElasticBlock work(room, strain, materials_);
     for (std::size_t b = begin; b < end; ++b) {
       const auto& of_point = work.evaluate(b, u, {relaxed.empty() ? nullptr : &relaxed[b], nullptr}, nullptr,
-                                           force ? &pull[4 * points_.part(b)] : nullptr);
+                                           force ? &pull[4 * points_.scatter_offset(b)] : nullptr);
       energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
     }
   });
@@ -144,7 +145,7 @@ double Solid::elastic_force(const std::vector<Vec3>& u, std::vector<Vec3>* force
     force->resize(size());
     parallel_for(size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j) {
-        const auto sum = points_.sum<4>(pull.data(), j);
+        const auto sum = points_.sum_at_node<4>(pull.data(), j);
         (*force)[j] = {sum[0], sum[1], sum[2]};
       }
     });
@@ -175,10 +176,10 @@ Mat3 Solid::stress_at(const State& state, const Vec3& x, double radius,
     for (std::size_t i = 0; i < block.points.size(); ++i) {
       const MaterialPoint& p = block.points[i];
       const double w = p.volume * kernel((p.position - x).norm() / radius, 1.0);
-      if (!(w > 0) || p.rung == Rung::rigid || (sees && !sees(p.position))) continue;
+      if (!(w > 0) || p.quality == MomentQuality::singular || (sees && !sees(p.position))) continue;
       if (gradient.empty()) gradient = points_.gradients(b, state.displacement);
       Mat3 f = Mat3::Identity() + gradient[i];
-      if (!state.plastic.empty()) f = f * relaxation(state.plastic[points_.first(b) + i]);
+      if (!state.plastic.empty()) f = f * inverse_plastic_stretch(state.plastic[points_.first_point(b) + i]);
       const double j = f.determinant();
       if (!(j > 0)) continue;  // turned inside out: it has no Cauchy stress
       const Mat3 cauchy = stress(materials_[p.material], f) * f.transpose() / j;

@@ -27,8 +27,8 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches,
     const PointBlock& block = points.blocks[b];
     if (of_one[b]) continue;
     for (std::size_t i = 0; i < block.points.size(); ++i)
-      for (auto q = block.first[i] + 1; q < block.first[i + 1]; ++q)
-        joined.unite(component[block.nodes[block.to[q - 1]]], component[block.nodes[block.to[q]]]);
+      for (auto q = block.entry_begin[i] + 1; q < block.entry_begin[i + 1]; ++q)
+        joined.unite(component[block.nodes[block.entry_node[q - 1]]], component[block.nodes[block.entry_node[q]]]);
   }
   // Of each node, the number of what it is joined to, in the order of their first components.
   std::vector<std::uint32_t> number(components, 0);
@@ -62,9 +62,10 @@ StepParts::StepParts(const MaterialPoints& points, const NodePatches& patches,
 
 std::size_t StepParts::slot(std::size_t block, const PointBlock& points, std::size_t point) const {
   const auto parts = of_block(block);
-  if (parts.size() < 2 || points.first[point] == points.first[point + 1]) return 0;
+  if (parts.size() < 2 || points.entry_begin[point] == points.entry_begin[point + 1]) return 0;
   return static_cast<std::size_t>(
-      std::lower_bound(parts.begin(), parts.end(), of_[points.nodes[points.to[points.first[point]]]]) - parts.begin());
+      std::lower_bound(parts.begin(), parts.end(), of_[points.nodes[points.entry_node[points.entry_begin[point]]]]) -
+      parts.begin());
 }
 
 void StepParts::choose(const std::vector<char>& chosen) {

@@ -24,9 +24,10 @@ struct RigidMotion {
   Vec3 middle, velocity, spin;
 };
 
-// The rigid motion that brings a part's momenta from `now` to what they were: the linear one, and the angular one about
-// its centre of mass. (About a fixed point it may change, for mass is shared out anew: were that made good, a part that
-// only travels would begin to turn.) A part on a line or point has no inertia about it, and can have no such momentum.
+// The rigid motion that brings a part's momenta from `now` to what they were: the linear one, and
+// the angular one about its centre of mass. (About a fixed point it may change, for mass is shared
+// out anew: were that made good, a part that only travels would begin to turn.) A part on a line or
+// point has no inertia about it, and can have no such momentum.
 RigidMotion correction(const PartMotion& was, const PartMotion& now) {
   const Vec3 c = now.middle / now.mass, linear = was.linear - now.linear;
   const Vec3 turning = was.angular - (was.middle / was.mass).cross(was.linear) - now.angular + c.cross(now.linear);
@@ -41,8 +42,8 @@ RigidMotion correction(const PartMotion& was, const PartMotion& now) {
 
 }  // namespace
 
-// Where nothing came off: new nodes are of the part of those that they see. The lowest node of each part decides its
-// number, so all stay.
+// Where nothing came off: new nodes are of the part of those that they see. The lowest node of each
+// part decides its number, so all stay.
 void Solid::number_parts(const VisibilityGraph& graph, std::size_t first_new) {
   for (std::size_t i = first_new; i < graph.node_count(); ++i) {
     std::uint32_t part = ~0u;
@@ -87,7 +88,7 @@ void Solid::follow_nodes(const NodeSet& nodes, const VisibilityGraph& graph, Nod
   }
   volume_ = nodes.volume, spacing_ = nodes.spacing, position_ = nodes.position;
   mass_.resize(n);
-  for (std::size_t i = old; i < n; ++i) materials_.add(donors[i - old].index());
+  for (std::size_t i = old; i < n; ++i) materials_.add_node(donors[i - old].index());
   for (std::size_t i = 0; i < n; ++i) mass_[i] = materials_.of(i).density * volume_[i];
   parallel_invoke([&] { rows_.update(nodes, graph, updated); },
                   [&] {

@@ -2,7 +2,7 @@
 // targets give the same bits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/terms/weighted_sum_lanes.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "base/simd_targets.h"
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>

@@ -64,7 +64,7 @@ Material other(Discretisation discretisation) {
   m.model = ElasticModel::saint_venant_kirchhoff, m.discretisation = discretisation;
   m.young = 6e5, m.poisson = 0.1, m.density = 2000, m.volume_term = 1e5, m.damping = 4, m.viscosity = 300,
   m.mode_penalty = 0.2;
-  m.yield = 0.001, m.creep = 5, m.most_plastic = 0.3;
+  m.yield = 0.001, m.creep = 5, m.max_plastic = 0.3;
   return m;
 }
 
@@ -90,7 +90,7 @@ TEST_CASE(
         uniform[2] = {Solid(body, first), Solid(body, second)};
     std::size_t among = 0;
     for (const PointBlock& b : mixed.points().blocks)
-      for (const MaterialRun& run : b.runs) among += !run.alone;
+      for (const MaterialRange& run : b.material_ranges) among += !run.uniform;
     CHECK(among > 0);
     Random random(3);
     std::vector<Vec3> u(body.nodes.size()), p(u.size()),
@@ -204,7 +204,7 @@ TEST_CASE("materials follow a cut through bodies as if they had been built of it
     double mass[2] = {0, 0};
     for (std::size_t i = 0; i < body.nodes.size(); ++i) {
       REQUIRE(solid.mass(NodeId(i)) == scratch.mass(NodeId(i)));
-      REQUIRE(solid.materials().number(i) == scratch.materials().number(i));
+      REQUIRE(solid.materials().index(i) == scratch.materials().index(i));
       mass[is_second(body, i)] += solid.mass(NodeId(i));
     }
     CHECK(mass[0] == Approx(0.16 * 300).epsilon(1e-12));

@@ -42,7 +42,7 @@ Case any_case(Random& random) {
     c.slot.push_back(static_cast<std::uint16_t>(random.below(slots))), c.free.push_back(random.below(6) > 0);
     c.arm.push_back(Vec3::NullaryExpr([&] { return random.uniform(-1, 1); }));
   }
-  c.modes.resize((points + 7) / 8 * 8), c.block.first.assign(1, 0);
+  c.modes.resize((points + 7) / 8 * 8), c.block.entry_begin.assign(1, 0);
   for (std::size_t i = 0; i < points; ++i) {
     MaterialPoint point{};
     point.material = static_cast<decltype(point.material)>(random.below(2));
@@ -50,29 +50,29 @@ Case any_case(Random& random) {
     c.weight.push_back(random.below(5) ? static_cast<float>(random.uniform(0.1, 1)) : 0);
     for (std::size_t j = 0; j < nodes; ++j)
       if (random.below(2)) {
-        c.block.to.push_back(static_cast<std::uint16_t>(j));
-        for (int k = 0; k < 3; ++k) c.block.rounded.push_back(static_cast<float>(random.uniform(-1, 1)));
+        c.block.entry_node.push_back(static_cast<std::uint16_t>(j));
+        for (int k = 0; k < 3; ++k) c.block.entry_gradient_single.push_back(static_cast<float>(random.uniform(-1, 1)));
       }
-    c.block.first.push_back(static_cast<std::uint32_t>(c.block.to.size()));
+    c.block.entry_begin.push_back(static_cast<std::uint32_t>(c.block.entry_node.size()));
     for (const std::size_t from : {0, 9}) {
       const Eigen::Matrix3d turn = any_turn(random);
       for (std::size_t k = 0; k < 9; ++k)
-        c.modes.frame[StiffnessModes::number(i, 18) + 8 * (from + k)] =
-            static_cast<std::int16_t>(std::lround(StiffnessModes::full * turn.data()[k]));
+        c.modes.frame[StiffnessModes::offset(i, 18) + 8 * (from + k)] =
+            static_cast<std::int16_t>(std::lround(StiffnessModes::frame_scale * turn.data()[k]));
     }
   }
   return c;
 }
 
-// Rows of the strain in the rotated frame, the last three √2 as long; six motions of each slot as columns; then the
-// trace.
+// Rows of the strain in the rotated frame, the last three √2 as long; six motions of each slot as
+// columns; then the trace.
 Matrix strains(const Case& c, std::size_t point, Eigen::Index slots) {
   Matrix all = Matrix::Zero(10, 6 * slots);
   const Eigen::Matrix3d turn = c.modes.rotation(point).cast<double>();
-  for (auto q = c.block.first[point]; q < c.block.first[point + 1]; ++q) {
-    const auto j = c.block.to[q];
+  for (auto q = c.block.entry_begin[point]; q < c.block.entry_begin[point + 1]; ++q) {
+    const auto j = c.block.entry_node[q];
     if (!c.free[j]) continue;
-    const Vec3 g = Eigen::Map<const Eigen::Vector3f>(&c.block.rounded[3 * q]).cast<double>();
+    const Vec3 g = Eigen::Map<const Eigen::Vector3f>(&c.block.entry_gradient_single[3 * q]).cast<double>();
     for (int m = 0; m < 6; ++m) {
       const Vec3 moves = m < 3 ? Vec3(Vec3::Unit(m)) : Vec3(Vec3::Unit(m - 3).cross(c.arm[j]));
       const Eigen::Matrix3d gradient = turn.transpose() * moves * g.transpose(),

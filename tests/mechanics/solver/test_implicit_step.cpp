@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
-#include "mechanics/discretisation/elastic_lanes.h"
+#include "mechanics/material/elastic_lanes.h"
 
 using namespace geo;
 
@@ -139,7 +139,7 @@ TEST_CASE("points side by side have the energy and the stress of one point's for
     Random random(9);
     for (const double size : {1e-7, 1e-3, 0.3, 1.5, 20.0}) {
       constexpr std::size_t count = 24;
-      Columns<double> gradient;
+      PointMatrices<double> gradient;
       gradient.resize(count);
       std::vector<double> volume(count, 0), energy;
       std::vector<Mat3> f(count, Mat3::Identity());
@@ -151,10 +151,10 @@ TEST_CASE("points side by side have the energy and the stress of one point's for
             gradient.column[c][4 * i + static_cast<std::size_t>(r)] = g, f[i](r, c) += g;
           }
       }
-      Columns<float> deformed;
+      PointMatrices<float> deformed;
       deformed.resize(count);
       energy.resize(count);
-      elastic_points(elastic_constants(m), 0, count, volume, {}, gradient, energy, &deformed);
+      elastic_response(elastic_constants(m), {0, count}, volume, {}, gradient, energy, &deformed);
       for (std::size_t i = 0; i < count; ++i) {
         CHECK(energy[i] ==
               Approx(volume[i] * energy_density(m, f[i])).epsilon(1e-8).margin(1e-14 * m.young * size * size));

@@ -1,25 +1,26 @@
-// Compiled once for each kind of vector, like point_lanes.cpp, and with the same numbers for all.
+// Compiled once per vector target, like point_lanes.cpp. All targets give the same bits.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "mechanics/discretisation/stiffness_lanes.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#define HWY_TARGET_INCLUDE "mechanics/material/stiffness_lanes.cpp"
+#include "base/simd_targets.h"
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>
 #include <array>
 
 #include "hwy/highway.h"
-#include "mechanics/discretisation/stiffness_lanes.h"
 #include "mechanics/material/matrix_lanes.h"
+#include "mechanics/material/stiffness_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 
 using Vector = V<float>;
 
-// Cyclic Jacobi on symmetric matrices, a[j][i] = a[i][j]: eigenvalues on the diagonal, eigenvectors as columns of v. A
-// rotation is left out where what it would take away is less than rounding of the diagonal, so that a sweep in which
-// all are is the last. Numbers' squares are to be finite. Two sets of matrices by turns: each rotation waits for the
-// one before, and one set's roots and quotients for nothing that the other's need.
+// Cyclic Jacobi on symmetric matrices, a[j][i] = a[i][j]: eigenvalues end on the diagonal,
+// eigenvectors are the columns of `vectors`. A rotation is skipped if its off-diagonal entry is
+// below the rounding of the diagonal; a sweep that skips all is the last. Precondition: squares of
+// the entries are finite. Two sets of matrices alternate, because each rotation waits for the one
+// before: one set's square roots and divisions hide the other's latency.
 constexpr int sets = 2;
 HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[sets]) {
   const Lanes<float> d;
@@ -33,25 +34,26 @@ HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[
     done = true;
     for (int k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2, r = 3 - p - q;
-      const auto is_due = [&](const Vector(&a)[3][3]) HWY_ATTR {
+      const auto is_needed = [&](const Vector(&a)[3][3]) HWY_ATTR {
         return hn::Gt(hn::Abs(a[p][q]), hn::Max(hn::Mul(rounding, hn::Max(hn::Abs(a[p][p]), hn::Abs(a[q][q]))), tiny));
       };
-      const hn::Mask<Lanes<float>> due[sets] = {is_due(all[0]), is_due(all[1])};
-      if (hn::AllFalse(d, hn::Or(due[0], due[1]))) continue;
+      const hn::Mask<Lanes<float>> needed[sets] = {is_needed(all[0]), is_needed(all[1])};
+      if (hn::AllFalse(d, hn::Or(needed[0], needed[1]))) continue;
       done = false;
       Vector c[sets], s[sets];
       for (int m = 0; m < sets; ++m) {
         auto& a = all[m];
-        const auto turns = due[m];
-        const auto apq = a[p][q], twice = hn::Mul(two, apq), apart = hn::Sub(a[q][q], a[p][p]);
+        const auto rotates = needed[m];
+        const auto apq = a[p][q], twice = hn::Mul(two, apq), difference = hn::Sub(a[q][q], a[p][p]);
         // tan of the angle: the smaller root of t² + (a_qq − a_pp) / a_pq t − 1 = 0.
-        const auto root = hn::Sqrt(hn::Add(hn::Mul(apart, apart), hn::Mul(twice, twice)));
-        const auto t = hn::IfThenElseZero(turns, hn::Div(hn::CopySign(twice, hn::Xor(twice, apart)),
-                                                         hn::IfThenElse(turns, hn::Add(hn::Abs(apart), root), one)));
+        const auto root = hn::Sqrt(hn::Add(hn::Mul(difference, difference), hn::Mul(twice, twice)));
+        const auto t =
+            hn::IfThenElseZero(rotates, hn::Div(hn::CopySign(twice, hn::Xor(twice, difference)),
+                                                hn::IfThenElse(rotates, hn::Add(hn::Abs(difference), root), one)));
         const auto step = hn::Mul(t, apq);
         c[m] = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s[m] = hn::Mul(t, c[m]);
         a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
-        a[p][q] = a[q][p] = hn::IfThenElse(turns, zero, apq);
+        a[p][q] = a[q][p] = hn::IfThenElse(rotates, zero, apq);
       }
       for (int m = 0; m < sets; ++m) {
         auto& a = all[m];
@@ -68,13 +70,14 @@ HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[
   }
 }
 
-HWY_INLINE void squares(const Matrix<float>& f, Vector (&s)[3][3]) {
+// s = FᵀF.
+HWY_INLINE void right_cauchy_green(const Matrix<float>& f, Vector (&s)[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) s[i][j] = dot3(f.at[i], f.at[j]);
 }
 
-// F = U Σ Vᵀ with rotations U and V, |σ₀| ≥ |σ₁| ≥ |σ₂|, σ₂ negative where F turns space inside out; v and s as FᵀF
-// diagonalised leaves them.
+// F = U Σ Vᵀ with rotations U and V and |σ₀| ≥ |σ₁| ≥ |σ₂|; σ₂ is negative where det F is. In: the
+// diagonalised FᵀF `s` and its eigenvectors `v`; out, reordered, `v`.
 HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<float>& u, Vector (&sigma)[3],
                           Matrix<float>& v) {
   const Lanes<float> d;
@@ -95,31 +98,34 @@ HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<floa
       b[c][r] = hn::Add(hn::Add(hn::Mul(f.at[0][r], v.at[c][0]), hn::Mul(f.at[1][r], v.at[c][1])),
                         hn::Mul(f.at[2][r], v.at[c][2]));
   const auto length = hn::Sqrt(dot3(b[0], b[0]));
-  const auto gone = hn::Lt(length, tiny);
-  const auto inverse = hn::Div(one, hn::IfThenElse(gone, one, length));
-  for (int r = 0; r < 3; ++r) u.at[0][r] = hn::IfThenElse(gone, r == 0 ? one : zero, hn::Mul(b[0][r], inverse));
-  const auto along = dot3(u.at[0], b[1]);
-  for (int r = 0; r < 3; ++r) b[1][r] = hn::Sub(b[1][r], hn::Mul(along, u.at[0][r]));
-  // Where the second column is lost, any direction across the first one.
+  const auto is_zero = hn::Lt(length, tiny);
+  const auto inverse = hn::Div(one, hn::IfThenElse(is_zero, one, length));
+  for (int r = 0; r < 3; ++r) u.at[0][r] = hn::IfThenElse(is_zero, r == 0 ? one : zero, hn::Mul(b[0][r], inverse));
+  const auto component = dot3(u.at[0], b[1]);
+  for (int r = 0; r < 3; ++r) b[1][r] = hn::Sub(b[1][r], hn::Mul(component, u.at[0][r]));
+  // A vanishing second column: any direction normal to the first one.
   const auto second = dot3(b[1], b[1]);
-  const auto lost = hn::Lt(second, hn::Max(hn::Mul(hn::Set(d, 1e-12f), hn::Mul(length, length)), tiny));
-  const auto flat = hn::Lt(hn::Abs(u.at[0][0]), hn::Set(d, 0.7f));
-  const Vector across[3] = {hn::IfThenElse(flat, zero, hn::Neg(u.at[0][2])), hn::IfThenElse(flat, u.at[0][2], zero),
-                            hn::IfThenElse(flat, hn::Neg(u.at[0][1]), u.at[0][0])};
-  for (int r = 0; r < 3; ++r) b[1][r] = hn::IfThenElse(lost, across[r], b[1][r]);
+  const auto vanishes = hn::Lt(second, hn::Max(hn::Mul(hn::Set(d, 1e-12f), hn::Mul(length, length)), tiny));
+  const auto x_is_small = hn::Lt(hn::Abs(u.at[0][0]), hn::Set(d, 0.7f));
+  const Vector normal[3] = {hn::IfThenElse(x_is_small, zero, hn::Neg(u.at[0][2])),
+                            hn::IfThenElse(x_is_small, u.at[0][2], zero),
+                            hn::IfThenElse(x_is_small, hn::Neg(u.at[0][1]), u.at[0][0])};
+  for (int r = 0; r < 3; ++r) b[1][r] = hn::IfThenElse(vanishes, normal[r], b[1][r]);
   const auto unit = hn::Div(one, hn::Sqrt(dot3(b[1], b[1])));
   for (int r = 0; r < 3; ++r) u.at[1][r] = hn::Mul(b[1][r], unit);
   for (int r = 0; r < 3; ++r) {
     const int i = (r + 1) % 3, j = (r + 2) % 3;
     u.at[2][r] = hn::Sub(hn::Mul(u.at[0][i], u.at[1][j]), hn::Mul(u.at[0][j], u.at[1][i]));
   }
-  sigma[0] = length, sigma[1] = hn::IfThenElse(lost, zero, hn::Sqrt(second)), sigma[2] = dot3(u.at[2], b[2]);
+  sigma[0] = length, sigma[1] = hn::IfThenElse(vanishes, zero, hn::Sqrt(second)), sigma[2] = dot3(u.at[2], b[2]);
 }
 
-// What the energies have in common: ∂Ψ/∂σᵢ, its derivatives, and divided differences without a division.
+// Stiffness in the principal frame, as functions of the singular values σ. ψᵢ = ∂Ψ/∂σᵢ. The divided
+// differences of the 2×2 blocks are expanded, so that equal singular values need no division.
 struct Principal {
-  Vector a[3][3];
-  Vector same[3], turned[3];  // of pairs 01, 02, 12: (ψᵢ − ψⱼ)/(σᵢ − σⱼ), (ψᵢ + ψⱼ)/(σᵢ + σⱼ)
+  Vector a[3][3];     // ∂²Ψ/∂σᵢ∂σⱼ
+  Vector stretch[3];  // per pair 01, 02, 12: (ψᵢ − ψⱼ)/(σᵢ − σⱼ), eigenvalue of the symmetric mode
+  Vector twist[3];    // (ψᵢ + ψⱼ)/(σᵢ + σⱼ), eigenvalue of the antisymmetric mode
 };
 
 HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]) {
@@ -153,36 +159,49 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]
     }
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 1 : 0, l = k == 0 ? 1 : 2;
-    const auto turn = hn::Mul(pressure, s[3 - i - l]);
-    auto same = shear, turned = shear;
+    const auto pressure_term = hn::Mul(pressure, s[3 - i - l]);
+    auto stretch = shear, twist = shear;
     if (!m.neo_hookean) {
       const auto squares = hn::Add(hn::Mul(s[i], s[i]), hn::Mul(s[l], s[l])), both = hn::Mul(s[i], s[l]);
-      same = hn::Add(green, hn::Mul(mu, hn::Add(squares, both))),
-      turned = hn::Add(green, hn::Mul(mu, hn::Sub(squares, both)));
+      stretch = hn::Add(green, hn::Mul(mu, hn::Add(squares, both))),
+      twist = hn::Add(green, hn::Mul(mu, hn::Sub(squares, both)));
     }
-    p.same[k] = hn::Max(hn::Sub(same, turn), hn::Zero(d));
-    p.turned[k] = hn::Max(hn::Add(turned, turn), hn::Zero(d));
+    p.stretch[k] = hn::Max(hn::Sub(stretch, pressure_term), hn::Zero(d));
+    p.twist[k] = hn::Max(hn::Add(twist, pressure_term), hn::Zero(d));
   }
   return p;
 }
 
-// What is written of points from i on. `relaxed`: columns, or null.
-HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_t i, const Matrix<float>& u,
-                      Matrix<float>& v, const Principal& p, const Matrix<float>& e, const float* const* relaxed,
-                      const float* weight, StiffnessModes& out) {
+// The stiffness of points in their principal frame.
+struct PrincipalFrame {
+  const Matrix<float>& u;             // F = U Σ Vᵀ
+  Matrix<float>& v;                   // write() applies plastic strain to it
+  const Principal& stiffness;         // on the diagonal of its 3×3 matrix: eigenvalues over `scale`
+  const Matrix<float>& eigenvectors;  // of that matrix
+  float scale;
+};
+
+// Writes the modes of points from i on. `inverse_stretch`: the columns of inverse plastic
+// stretches, or null.
+HWY_INLINE void write(const StiffnessConstants& material, std::size_t i, const PrincipalFrame& principal_frame,
+                      const float* const* inverse_stretch, const float* weight, StiffnessModes& out) {
+  const Matrix<float>&u = principal_frame.u, &e = principal_frame.eigenvectors;
+  Matrix<float>& v = principal_frame.v;
+  const Principal& p = principal_frame.stiffness;
   const Lanes<float> d;
   const hn::Rebind<std::int32_t, Lanes<float>> d32;
   const hn::Rebind<std::int16_t, Lanes<float>> d16;
-  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::full),
-             firmness = hn::Set(d, firm);
-  // Where plastic strain has made V no rotation, what its numbers are too long by is the stiffness'.
+  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), full = hn::Set(d, StiffnessModes::frame_scale),
+             stiffness_scale = hn::Set(d, principal_frame.scale);
+  // With plastic strain V is no rotation. Its entries are scaled to at most 1, and the stiffness by
+  // the square.
   Vector longest = one;
-  if (relaxed) {
-    v = product(load(relaxed, i), v);
+  if (inverse_stretch) {
+    v = product(load(inverse_stretch, i), v);
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) longest = hn::Max(longest, hn::Abs(v.at[c][r]));
   }
-  std::int16_t* const frame = &out.frame[out.number(i, 18)];
+  std::int16_t* const frame = &out.frame[out.offset(i, 18)];
   const auto put = [&](std::size_t k, Vector x) HWY_ATTR {
     hn::StoreU(hn::DemoteTo(d16, hn::ConvertTo(d32, hn::Add(x, hn::CopySign(half, x)))), d16, frame + 8 * k);
   };
@@ -191,9 +210,9 @@ HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_
     for (std::size_t r = 0; r < 3; ++r)
       put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
   const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
-  float* const to = &out.stiffness[out.number(i, 12)];
+  float* const to = &out.stiffness[out.offset(i, 12)];
   Vector kept[3];
-  for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(hn::Mul(w, firmness), hn::Max(p.a[k][k], hn::Zero(d)));
+  for (int k = 0; k < 3; ++k) kept[k] = hn::Mul(hn::Mul(w, stiffness_scale), hn::Max(p.a[k][k], hn::Zero(d)));
   const auto viscous = hn::Mul(w, hn::Set(d, material.viscous));
   constexpr int rows[6] = {0, 1, 2, 0, 0, 1}, cols[6] = {0, 1, 2, 1, 2, 2};
   for (std::size_t k = 0; k < 6; ++k) {
@@ -203,29 +222,28 @@ HWY_INLINE void write(const StiffnessConstants& material, float firm, std::size_
     hn::StoreU(k < 3 ? hn::Add(sum, viscous) : sum, d, to + 8 * k);
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Add(p.same[k], p.turned[k])), viscous)), d, to + 8 * (6 + 2 * k));
-    hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Sub(p.same[k], p.turned[k])), viscous)), d, to + 8 * (7 + 2 * k));
+    hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Add(p.stretch[k], p.twist[k])), viscous)), d, to + 8 * (6 + 2 * k));
+    hn::StoreU(hn::Mul(half, hn::Add(hn::Mul(w, hn::Sub(p.stretch[k], p.twist[k])), viscous)), d, to + 8 * (7 + 2 * k));
   }
 }
 
-void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t end, const Columns<float>& gradient,
-           const Columns<float>* relaxed, const float* weight, StiffnessModes& out) {
+void Modes(const StiffnessConstants& material, PointRange range, const PointMatrices<float>& gradient,
+           const PointMatrices<float>* inverse_stretch, const float* weight, StiffnessModes& out) {
   const Lanes<float> d;
-  const auto columns_of = [](const Columns<float>& c) {
+  const auto columns_of = [](const PointMatrices<float>& c) {
     return std::array{c.column[0].data(), c.column[1].data(), c.column[2].data()};
   };
-  const auto columns = columns_of(gradient), of_relaxed = relaxed ? columns_of(*relaxed) : columns;
-  const float firm = material.mu + material.lambda + material.volume;
-  const auto one = hn::Set(d, 1.0f), one_over_firmness = hn::Set(d, 1 / firm);
-  for (std::size_t i = begin; i < end; i += sets * width<float>) {
-    const std::size_t at[sets] = {
-        i, std::min(i + width<float>, end - width<float>)};  // the last one twice, where they are odd
+  const auto columns = columns_of(gradient), stretch_columns = inverse_stretch ? columns_of(*inverse_stretch) : columns;
+  const float scale = material.mu + material.lambda + material.volume;
+  const auto one = hn::Set(d, 1.0f), one_over_scale = hn::Set(d, 1 / scale);
+  for (std::size_t i = range.begin; i < range.end; i += sets * width<float>) {
+    const std::size_t at[sets] = {i, std::min(i + width<float>, range.end - width<float>)};  // an odd last one twice
     Matrix<float> f[sets], u[sets], v[sets], e[sets];
     Vector sigma[3], s[sets][3][3], a[sets][3][3];
     for (int m = 0; m < sets; ++m) {
       f[m] = load(columns.data(), at[m]);
       for (int c = 0; c < 3; ++c) f[m].at[c][c] = hn::Add(f[m].at[c][c], one);
-      squares(f[m], s[m]);
+      right_cauchy_green(f[m], s[m]);
     }
     diagonalise(s, v);
     Principal p[sets];
@@ -233,12 +251,13 @@ void Modes(const StiffnessConstants& material, std::size_t begin, std::size_t en
       decompose(f[m], s[m], u[m], sigma, v[m]);
       p[m] = principal(material, sigma);
       for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) a[m][r][c] = hn::Mul(p[m].a[r][c], one_over_firmness);
+        for (int c = 0; c < 3; ++c) a[m][r][c] = hn::Mul(p[m].a[r][c], one_over_scale);
     }
     diagonalise(a, e);
     for (int m = 0; m < sets; ++m) {
       for (int k = 0; k < 3; ++k) p[m].a[k][k] = a[m][k][k];
-      write(material, firm, at[m], u[m], v[m], p[m], e[m], relaxed ? of_relaxed.data() : nullptr, weight, out);
+      write(material, at[m], {u[m], v[m], p[m], e[m], scale}, inverse_stretch ? stretch_columns.data() : nullptr,
+            weight, out);
     }
   }
 }
@@ -250,22 +269,22 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(Modes);
 
-void stiffness_modes(const StiffnessConstants& constants, std::size_t begin, std::size_t end,
-                     const Columns<float>& gradient, const Columns<float>* relaxed, const std::vector<float>& weight,
-                     StiffnessModes& out) {
-  HWY_DYNAMIC_DISPATCH(Modes)(constants, begin, end, gradient, relaxed, weight.data(), out);
+void stiffness_modes(const StiffnessConstants& constants, PointRange range,
+                     const PointMatrices<float>& elastic_gradient, const PointMatrices<float>* inverse_plastic_stretch,
+                     const std::vector<float>& weight, StiffnessModes& out) {
+  HWY_DYNAMIC_DISPATCH(Modes)(constants, range, elastic_gradient, inverse_plastic_stretch, weight.data(), out);
 }
 
-void StiffnessModes::take(const StiffnessModes& from, std::size_t point) {
-  for (std::size_t k = 0; k < 18; ++k) frame[number(point, 18) + 8 * k] = from.frame[number(point, 18) + 8 * k];
-  for (std::size_t k = 0; k < 12; ++k) stiffness[number(point, 12) + 8 * k] = from.stiffness[number(point, 12) + 8 * k];
+void StiffnessModes::copy_point(const StiffnessModes& from, std::size_t point) {
+  for (std::size_t k = 0; k < 18; ++k) frame[offset(point, 18) + 8 * k] = from.frame[offset(point, 18) + 8 * k];
+  for (std::size_t k = 0; k < 12; ++k) stiffness[offset(point, 12) + 8 * k] = from.stiffness[offset(point, 12) + 8 * k];
 }
 
 Eigen::Matrix3f StiffnessModes::rotation(std::size_t point) const {
   Eigen::Matrix3f u, v;
-  const std::int16_t* const from = &frame[number(point, 18)];
+  const std::int16_t* const from = &frame[offset(point, 18)];
   for (std::size_t k = 0; k < 9; ++k) u.data()[k] = from[8 * k], v.data()[k] = from[8 * (9 + k)];
-  return u * v.transpose() / (full * full);
+  return u * v.transpose() / (frame_scale * frame_scale);
 }
 
 }  // namespace geo

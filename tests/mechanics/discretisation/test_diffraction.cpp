@@ -1,9 +1,9 @@
-// Ways round the fronts of cracks.
+// Visibility round the fronts of cracks.
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
 #include "mechanics/bodies.h"
-#include "mechanics/discretisation/bent_paths.h"
+#include "mechanics/discretisation/diffraction.h"
 
 using namespace geo;
 
@@ -15,7 +15,8 @@ struct Cracked {
   std::vector<FrontEdge> edges;
 };
 
-// A block with a cut in the plane x = 0.5 from above, down to z = 0.5 after two steps, through it after five.
+// A block with a cut in the plane x = 0.5 from above, down to z = 0.5 after two steps, through it
+// after five.
 Cracked cracked(int steps) {
   Cracked c{block_body({1, 1, 1}, 0.2), {}, {}};
   auto front = begin_front(blade_at({0.5, -0.2, 1.1}, {0.5, 1.2, 1.1}, {0, 0, -0.3}, 0, 5), false, 1);
@@ -45,48 +46,51 @@ TEST_CASE("a crack's front is where one of its faces ends in material") {
   CHECK(cracked(5).edges.empty());
 }
 
-TEST_CASE("a node behind a crack is as far as the way round its front says") {
+TEST_CASE("a node behind a crack has the diffraction distance of the shortest path round the front") {
   const Cracked c = cracked(2);
-  // Unfolded about the front at z = 0.5, 0.04 and 0.03 away on either side of the crack and 0.06 apart along it.
+  // Unfolded about the front at z = 0.5, 0.04 and 0.03 away on either side of the crack and 0.06
+  // apart along it.
   const Vec3 x(0.46, 0.47, 0.5), node(0.53, 0.53, 0.5 + 1e-9);
-  const double straight = (node - x).norm(), way = std::hypot(0.07, 0.06);
+  const double straight = (node - x).norm(), length = std::hypot(0.07, 0.06);
   const Vec3 high(0.46, 0.47, 0.53), over(0.53, 0.53, 0.54);
-  const double reach = 0.4, bent = std::hypot(0.05 + 0.05, 0.06), apart = (over - high).norm();
-  const auto level = sight_round(x, node, reach, c.edges, c.faces),
-             found = sight_round(high, over, reach, c.edges, c.faces);
+  const double support = 0.4, bent_length = std::hypot(0.05 + 0.05, 0.06), high_straight = (over - high).norm();
+  const auto level = diffracted_support(x, node, support, c.edges, c.faces),
+             found = diffracted_support(high, over, support, c.edges, c.faces);
   REQUIRE(level);
-  CHECK(level->distance == Approx(std::pow(way / straight, 4) * straight).epsilon(0.02));
+  CHECK(level->distance == Approx(std::pow(length / straight, 4) * straight).epsilon(0.02));
   REQUIRE(found);
-  CHECK(found->distance ==
-        Approx(std::pow(bent / apart, 4) * apart).epsilon(0.05));  // it bends a little ahead of the front
-  CHECK_FALSE(sight_round(high, over, 0.99 * found->distance, c.edges, c.faces));
-  CHECK_FALSE(sight_round({0.46, 0.47, 0.8}, {0.53, 0.53, 0.8}, reach, c.edges, c.faces));
-  for (const FrontEdge& e : c.edges) CHECK_FALSE(sight_round(high, over, reach, std::span(&e, 1), cracked(5).faces));
+  CHECK(found->distance == Approx(std::pow(bent_length / high_straight, 4) * high_straight)
+                               .epsilon(0.05));  // it bends a little ahead of the front
+  CHECK_FALSE(diffracted_support(high, over, 0.99 * found->distance, c.edges, c.faces));
+  CHECK_FALSE(diffracted_support({0.46, 0.47, 0.8}, {0.53, 0.53, 0.8}, support, c.edges, c.faces));
+  for (const FrontEdge& e : c.edges)
+    CHECK_FALSE(diffracted_support(high, over, support, std::span(&e, 1), cracked(5).faces));
 }
 
-TEST_CASE("distances round a front slope as differences say, and are no less than straight") {
+TEST_CASE(
+    "the gradient of a diffraction distance matches differences, and the distance is no less than the straight one") {
   const Cracked c = cracked(2);
-  const auto [first, count] = std::pair(std::uint64_t(1), 200);
+  constexpr std::uint64_t first = 1, count = 200;
   int seen = 0;
-  for (std::uint64_t seed = first; seed < first + std::uint64_t(count); ++seed) {
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
     Random random(seed);
     const auto side = [&](double sign) {
       return Vec3(0.5 + sign * random.uniform(0.01, 0.2), random.uniform(0.3, 0.7), random.uniform(0.45, 0.65));
     };
     const Vec3 x = side(-1), node = side(1);
-    const double reach = 0.6, step = 1e-7;
+    const double support = 0.6, step = 1e-7;
     if (!c.faces.blocks(x, node)) continue;
-    const auto here = sight_round(x, node, reach, c.edges, c.faces);
+    const auto here = diffracted_support(x, node, support, c.edges, c.faces);
     if (!here) continue;
     INFO("seed " << seed);
     ++seen;
     CHECK(here->distance >= (node - x).norm());
     const Vec3 d = step * random.direction();
-    const auto forward = sight_round(x + d, node, reach, c.edges, c.faces),
-               back = sight_round(x - d, node, reach, c.edges, c.faces);
+    const auto forward = diffracted_support(x + d, node, support, c.edges, c.faces),
+               back = diffracted_support(x - d, node, support, c.edges, c.faces);
     if (forward && back)
       CHECK(forward->distance - back->distance ==
-            Approx(2 * here->slope.dot(d)).margin(1e-4 * step * here->slope.norm()));
+            Approx(2 * here->distance_gradient.dot(d)).margin(1e-4 * step * here->distance_gradient.norm()));
   }
   CHECK(seen > 50);
 }

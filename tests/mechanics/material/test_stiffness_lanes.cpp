@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "mechanics/discretisation/stiffness_lanes.h"
+#include "mechanics/material/stiffness_lanes.h"
 #include "vectors.h"
 
 using namespace geo;
@@ -19,7 +19,7 @@ TEST_CASE("Points turn as the singular value decomposition says, and alike which
     const std::size_t points = 8 * (1 + random.below(6)),
                       begin = 8 * random.below(static_cast<std::uint32_t>(points / 8));
     const double far = random.uniform() < 0.3 ? 0 : random.uniform(0, 1.5);  // from the rest
-    Columns<float> gradient;
+    PointMatrices<float> gradient;
     gradient.resize(points);
     for (auto& column : gradient.column)
       for (std::size_t k = 0; k < 4 * points; ++k) column[k] = static_cast<float>(far * random.uniform(-1, 1));
@@ -29,15 +29,15 @@ TEST_CASE("Points turn as the singular value decomposition says, and alike which
     on_every_target([&] {
       StiffnessModes all;
       all.resize(points);
-      stiffness_modes(constants, begin, points, gradient, nullptr, weight, all);
+      stiffness_modes(constants, {begin, points}, gradient, nullptr, weight, all);
       for (std::size_t at = begin; at < points; at += 8) {
         StiffnessModes alone;
         alone.resize(points);
-        stiffness_modes(constants, at, at + 8, gradient, nullptr, weight, alone);
+        stiffness_modes(constants, {at, at + 8}, gradient, nullptr, weight, alone);
         for (std::size_t k = 0; k < 144; ++k) CHECK(alone.frame[18 * at + k] == all.frame[18 * at + k]);
         for (std::size_t k = 0; k < 96; ++k) CHECK(alone.stiffness[12 * at + k] == all.stiffness[12 * at + k]);
       }
-      for (std::size_t at = 0; at < begin; ++at) CHECK(all.frame[StiffnessModes::number(at, 18)] == 0);
+      for (std::size_t at = 0; at < begin; ++at) CHECK(all.frame[StiffnessModes::offset(at, 18)] == 0);
       for (std::size_t at = begin; at < points; ++at) {
         Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
         for (std::size_t c = 0; c < 3; ++c)

@@ -1,0 +1,33 @@
+// Visibility round the fronts of cracks: the diffraction criterion for meshless shape functions
+// (Organ, Fleming, Terry and Belytschko 1996).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/bvh.h"
+#include "kerf/complex.h"
+#include "mechanics/discretisation/shape_functions.h"
+
+namespace geo {
+
+/// An edge ab of a crack's front: material surrounds it except for one crack face. `ahead`: unit
+/// vector in the plane of that face, normal to the edge, away from the face.
+struct FrontEdge {
+  Vec3 a, b, ahead;
+};
+
+/// The front edges of the crack faces among `faces`, in the order of faces and their corners.
+std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceId> faces);
+
+/// A node that `faces` hide from x, as x sees it round one of the edges. With s the straight
+/// distance and L the length of the shortest path round an edge, its distance is (L / s)⁴ s. None
+/// if that is `support` or more, or if there is no path. Powers of 1 and 2, as in the original
+/// criterion, weld a crack behind its front at supports of 1.8 spacings (docs/validation.md). A
+/// path bends `support` / 1024 ahead of an edge; both of its segments are clear of faces (exact),
+/// so no path crosses a crack that has no front. `edges`: all edges within `support` of x.
+std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
+                                              std::span<const FrontEdge> edges, const TriangleBvh& faces);
+
+}  // namespace geo

@@ -1,0 +1,109 @@
+// Displacement gradients at nodes by moving least squares over the visibility graph (Müller et al.
+// 2004). Surface and blades follow them; in the discretisation `mueller04`, strain energy is summed
+// at nodes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kerf/graph.h"
+#include "kerf/material.h"
+#include "kerf/nodes.h"
+#include "mechanics/discretisation/nodal_gradient_lanes.h"
+#include "mechanics/discretisation/shape_functions.h"
+
+namespace geo {
+
+/// ∇u_i = Σ_j (u_j − u_i) g_ijᵀ with g_ij = w_ij A_i⁻¹ x_ij and the moment matrix A_i = Σ_j w_ij
+/// x_ij x_ijᵀ, over the neighbours j of node i; x_ij = x_j − x_i.
+class NodalGradientOperator {
+ public:
+  /// Rebuilds the nodes `updated`; there may be more nodes than before.
+  void update(const NodeSet& nodes, const VisibilityGraph& graph, std::span<const NodeId> updated);
+  /// The number of nodes.
+  std::size_t size() const { return nodes_.size(); }
+  /// The quality of a node's moment matrix.
+  MomentQuality quality(std::size_t i) const { return nodes_[i].quality; }
+  /// ∇u at node i.
+  Mat3 gradient(std::size_t i, const std::vector<Vec3>& u) const;
+  /// ∇u at all nodes, in parallel.
+  std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
+  /// gradients(), padded.
+  std::vector<PaddedMat3> padded_gradients(const std::vector<Vec3>& u) const;
+  /// Shape gradients at node i, the node itself included.
+  ShapeGradients shape_gradients(std::size_t i) const;
+
+  /// The gradient operator at one node. Arrays have one element per neighbour.
+  struct Node {
+    std::vector<std::uint32_t> neighbors;
+    std::vector<Vec3> gradient;             ///< g_ij, 1/model unit
+    std::vector<Vec3> offset;               ///< x_ij, model units
+    std::vector<double> normalised_weight;  ///< w_ij / Σ w_ij / |x_ij|²
+    Vec3 own_gradient = Vec3::Zero();       ///< −Σ g_ij
+    MomentQuality quality = MomentQuality::singular;
+  };
+  /// The gradient operator at node i.
+  const Node& operator[](std::size_t i) const { return nodes_[i]; }
+
+ private:
+  std::vector<Node> nodes_;
+};
+
+/// Gradients at nodes, computed at first use: for queries that concern few nodes of a large body.
+/// Threads may read the same object at the same time. Keeps references to the operator and the
+/// displacements.
+class LazyNodalGradients {
+ public:
+  /// Computes nothing yet.
+  LazyNodalGradients(const NodalGradientOperator& gradients, const std::vector<Vec3>& u)
+      : operator_(&gradients),
+        u_(&u),
+        gradient_(gradients.size()),
+        state_(std::make_unique<std::atomic<State>[]>(gradients.size())) {}
+  /// ∇u at node i.
+  Mat3 operator[](std::size_t i) const {
+    if (state_[i].load(std::memory_order_acquire) == State::known) return gradient_[i];
+    const Mat3 gradient = operator_->gradient(i, *u_);
+    // Several threads may have computed it: the first to claim the entry writes it, the others use
+    // their own copy.
+    if (State unknown = State::unknown; state_[i].compare_exchange_strong(unknown, State::claimed))
+      gradient_[i] = gradient, state_[i].store(State::known, std::memory_order_release);
+    return gradient;
+  }
+
+ private:
+  enum class State : std::uint8_t { unknown, claimed, known };
+  const NodalGradientOperator* operator_;
+  const std::vector<Vec3>* u_;
+  // Thread-safe cache: entry i is written once, by the thread that moves state_[i] from unknown to
+  // claimed, and is read only after its state has become known (release/acquire).
+  mutable std::vector<Mat3> gradient_;
+  std::unique_ptr<std::atomic<State>[]> state_;
+};
+
+/// Penalty on zero-energy modes, which nodal strains do not see: the quadratic form
+/// ½ α E V_i Σ_j ŵ_ij |u_j − u_i − ∇u_i x_ij|² / |x_ij|², ŵ_ij the normalised weights.
+class ModePenalty {
+ public:
+  /// No penalty.
+  ModePenalty() = default;
+  /// `weight`: per node, α E V.
+  ModePenalty(const NodalGradientOperator& gradients, std::vector<double> weight);
+  /// Returns the energy; adds its derivative by u to `derivative`, unless null.
+  double add(const NodalGradientOperator& gradients, const std::vector<Vec3>& u, std::vector<Vec3>* derivative) const;
+  /// Adds the diagonal of the form's matrix, the same for all three coordinates.
+  void add_diagonal(const NodalGradientOperator& gradients, std::vector<double>& diagonal) const;
+
+ private:
+  struct Occurrence {
+    std::uint32_t node, neighbor;  // index of the node, and of the neighbour in its arrays
+  };
+  std::vector<double> weight_;                        // per node: α E V
+  std::vector<std::vector<Occurrence>> occurrences_;  // per node: where it is a neighbour
+};
+
+}  // namespace geo

@@ -1,0 +1,187 @@
+#include "mechanics/discretisation/point_supports.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/predicates.h"
+#include "kerf/parallel.h"
+
+namespace geo {
+namespace {
+
+constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its support: a linear basis needs 4
+constexpr double ill_conditioned = 500;  // and so does one with a larger condition number of the moment matrix
+constexpr double without_strain = 1e7;   // above it, linear fields would be off by 1e-9 of their size
+constexpr std::size_t tasks_per_batch = 32;
+
+bool is_on_face(const Complex& surface, const Vec3& p) {
+  std::vector<FaceId> near;
+  surface.faces_near({p, p}, near);
+  return std::any_of(near.begin(), near.end(), [&](FaceId f) {
+    const auto [a, b, c] = surface.corners(f);
+    return segment_meets_triangle(p, p, a, b, c);
+  });
+}
+
+// Tasks of neighbouring points, with the nodes and fronts that they share.
+struct Batch {
+  std::span<const SupportTask> tasks;
+  std::vector<std::uint32_t> nodes;  // ascending
+  std::vector<FrontEdge> fronts;
+  Box3 influence;                      // holds all lines of sight, bent ones included
+  std::vector<SupportTask> deficient;  // points that see too few nodes at the largest factor tried
+
+  void find_nodes(const Body& body, double factor, double largest_radius) {
+    const auto& position = body.nodes.position;
+    const auto& radius = body.nodes.radius;
+    Box3 box;
+    for (const SupportTask& task : tasks) box.add(task.point->position);
+    body.grid.within(position, box.center(), 0.5 * (box.hi - box.lo).norm() + factor * largest_radius, nodes);
+    std::erase_if(nodes, [&](auto j) { return !box.grown(factor * radius[j]).meets({position[j], position[j]}); });
+    double largest = 0;
+    for (const auto j : nodes) largest = std::max(largest, radius[j]);
+    influence = box.grown(factor * largest);
+  }
+
+  void compute(const Body& body, std::span<const double> factors, const Occluders& occluders) {
+    for (const FrontEdge& e : occluders.fronts)
+      if (const Vec3 middle = 0.5 * (e.a + e.b); influence.grown((e.b - e.a).norm()).meets({middle, middle}))
+        fronts.push_back(e);
+    Scratch scratch;
+    for (const SupportTask& task : tasks)
+      if (std::none_of(factors.begin(), factors.end(),
+                       [&](double factor) { return compute(body, task, factor, occluders.faces, scratch); }))
+        deficient.push_back(task);
+  }
+
+ private:
+  struct Scratch {
+    std::vector<std::uint32_t> nodes;
+    std::vector<Vec3> positions;
+    std::vector<std::uint8_t> hidden;
+    std::vector<SupportNode> seen;
+  };
+  // True if the point sees enough nodes.
+  bool compute(const Body& body, const SupportTask& task, double factor, const TriangleBvh& faces,
+               Scratch& scratch) const {
+    MaterialPoint& point = *task.point;
+    ShapeGradients& shape = *task.shape;
+    const Vec3& x = point.position;
+    scratch.nodes.clear(), scratch.positions.clear(), scratch.seen.clear(), shape.nodes.clear();
+    for (const auto j : nodes)
+      if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < factor * body.nodes.radius[j])
+        scratch.nodes.push_back(j), scratch.positions.push_back(y);
+    scratch.hidden.assign(scratch.positions.size(), 0);
+    if (!faces.empty()) faces.blocks(x, scratch.positions, scratch.hidden.data());
+    point.widenings = static_cast<std::uint8_t>(std::find(support_factors.begin(), support_factors.end(), factor) -
+                                                support_factors.begin());
+    point.occluded = std::find(scratch.hidden.begin(), scratch.hidden.end(), 1) != scratch.hidden.end();
+    for (std::size_t q = 0; q < scratch.nodes.size(); ++q) {
+      const Vec3& y = scratch.positions[q];
+      const double support = factor * body.nodes.radius[scratch.nodes[q]], straight = (y - x).norm();
+      // A path to the node that is shorter than its support stays within half of the sum of both
+      // lengths.
+      point.influence_radius =
+          std::max(point.influence_radius, scratch.hidden[q] ? 0.5 * (straight + support) : straight);
+      const auto node =
+          scratch.hidden[q] ? diffracted_support(x, y, support, fronts, faces) : direct_support(x, y, support);
+      if (node) shape.nodes.push_back(scratch.nodes[q]), scratch.seen.push_back(*node);
+    }
+    const double condition = shape_gradients(x, scratch.seen, shape.gradient);
+    point.quality = condition <= ill_conditioned  ? MomentQuality::good
+                    : condition <= without_strain ? MomentQuality::poor
+                                                  : MomentQuality::singular;
+    const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good;
+    if (point.quality == MomentQuality::singular) shape.nodes.clear(), shape.gradient.clear();
+    return enough;
+  }
+};
+
+// Consecutive tasks whose points are closer than `distance` to the first one's.
+std::vector<Batch> batches_of(std::span<const SupportTask> tasks, double distance) {
+  std::vector<Batch> batches;
+  for (std::size_t begin = 0, end; begin < tasks.size(); begin = end) {
+    const Vec3& first = tasks[begin].point->position;
+    for (end = begin + 1; end < std::min(begin + tasks_per_batch, tasks.size()) &&
+                          (tasks[end].point->position - first).norm() < distance;)
+      ++end;
+    batches.emplace_back().tasks = tasks.subspan(begin, end - begin);
+  }
+  return batches;
+}
+
+double volume(const Box3& box) { return (box.hi - box.lo).prod(); }
+
+Occluders near_occluders(const Complex& surface, std::span<const Batch> batches) {
+  // Boxes are merged while their union is no larger than their sum: overlapping queries become one.
+  std::vector<Box3> boxes;
+  for (const Batch& batch : batches) {
+    boxes.push_back(batch.influence);
+    while (boxes.size() > 1) {
+      Box3 both = boxes.end()[-2];
+      both.add(boxes.back());
+      if (volume(both) > volume(boxes.back()) + volume(boxes.end()[-2])) break;
+      boxes.pop_back(), boxes.back() = both;
+    }
+  }
+  std::vector<std::vector<FaceId>> near(boxes.size());
+  parallel_for(boxes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) surface.faces_near(boxes[b], near[b]);
+  });
+  std::vector<FaceId> ids;
+  std::vector<char> found(surface.face_count(), 0);
+  for (const auto& of_box : near)
+    for (const FaceId f : of_box)
+      if (!std::exchange(found[f.index()], 1)) ids.push_back(f);
+  return {surface, ids};
+}
+
+}  // namespace
+
+Occluders::Occluders(const Complex& surface, std::span<const FaceId> ids) {
+  parallel_invoke([&] { fronts = front_edges(surface, ids); },
+                  [&] {
+                    std::vector<std::array<Vec3, 3>> corners;
+                    for (const FaceId f : ids) corners.push_back(surface.corners(f));
+                    faces = TriangleBvh(corners);
+                  });
+}
+
+Occluders all_occluders(const Complex& surface) {
+  std::vector<FaceId> ids;
+  for (std::uint32_t f = 0; f < surface.face_count(); ++f)
+    if (surface.alive(FaceId(f))) ids.push_back(FaceId(f));
+  return {surface, ids};
+}
+
+Vec3 moved_off_faces(const Body& body, const Vec3& p) {
+  if (!is_on_face(body.surface, p)) return p;
+  const auto near = body.grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; })[0];
+  const Vec3 to_node = body.nodes.position[near] - p;
+  if (!(to_node.norm() < support_factors.back() * body.nodes.radius[near])) return p;
+  for (double step = 1e-3; step < 0.5; step *= 4)
+    if (const Vec3 moved = p + step * to_node; !is_on_face(body.surface, moved)) return moved;
+  return p;
+}
+
+void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders) {
+  const double largest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
+  // Two passes: most points need no wider support, so the first pass queries small neighbourhoods.
+  const std::span all(support_factors);
+  for (const auto factors : {all.first(1), all.subspan(1)}) {
+    std::vector<Batch> batches = batches_of(tasks, largest_radius);
+    parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) batches[b].find_nodes(body, factors.back(), largest_radius);
+    });
+    const Occluders near = occluders ? Occluders() : near_occluders(body.surface, batches);
+    parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) batches[b].compute(body, factors, occluders ? *occluders : near);
+    });
+    std::vector<SupportTask> deficient;
+    for (const Batch& batch : batches)
+      deficient.insert(deficient.end(), batch.deficient.begin(), batch.deficient.end());
+    tasks.swap(deficient);
+  }
+}
+
+}  // namespace geo

@@ -48,7 +48,7 @@ bool bodies_may_meet(const ObjectContactStep& step, double fall) {
   return false;
 }
 
-// What scales penalties and search distances of a step.
+// Scales of penalties and search distances in a step.
 struct ContactScale {
   double areal_density = 1;             // kg / model unit², of the only material; 1 where there are several
   std::vector<double> pressure_factor;  // per node: its material's areal density; empty where there is one

@@ -35,7 +35,7 @@ class SmoothField {
   }
 
  private:
-  // Of the 3 × 3 × 3 splines about a point: index of the first and weights, per axis.
+  // The 3 × 3 × 3 splines about a point: per axis the index of the first, and three weights.
   struct Weights {
     std::size_t first[3];
     double w[3][3];

@@ -42,9 +42,9 @@ class BladePenalty : public Potential {
   std::size_t size() const override { return contacts_.size(); }
   /// The node.
   Stencil stencil(std::size_t k) const override { return {&contacts_[k].node, 1}; }
-  /// Of the penalty, J.
+  /// Energy of the penalty, J.
   double energy(std::size_t k, const Vec3& d) const override;
-  /// Of the penalty.
+  /// Derivatives of the penalty.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
   /// Force of the material on each of `blades` blades at displacements u, N.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
@@ -56,6 +56,7 @@ class BladePenalty : public Potential {
     Vec3 normal;       // out of the blade
     double stiffness;  // N/m
     double offset;     // depth = offset − normal · u
+    /// Depth of the node's surface beyond the plane, at displacement u of the node; 0 outside.
     double depth(const Vec3& u) const { return std::max(0.0, offset - normal.dot(u)); }
   };
   std::vector<Contact> contacts_;

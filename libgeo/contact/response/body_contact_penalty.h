@@ -35,9 +35,9 @@ class BodyContactPenalty : public Potential {
   std::size_t size() const override { return contacts_.size(); }
   /// Nodes of a contact's vertex and point.
   Stencil stencil(std::size_t k) const override { return contacts_[k].stencil; }
-  /// Of penalty and friction, J.
+  /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
-  /// Of penalty and friction.
+  /// Derivatives of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
@@ -56,7 +56,9 @@ class BodyContactPenalty : public Potential {
     double stiffness;
     double friction_bound = 0;  // N, of the current substep
     Vec3 start = Vec3::Zero();  // relative displacement at its beginning
+    /// Depth at relative displacement d; 0 outside.
     double depth(const Vec3& d) const { return std::max(0.0, -normal.dot(offset + d)); }
+    /// Part of v across the normal.
     Vec3 tangential(const Vec3& v) const { return v - normal.dot(v) * normal; }
   };
   LaggedFriction friction(const Contact& c) const { return {c.friction_bound, slip_regularisation_}; }

@@ -18,7 +18,7 @@ void ObstaclePenalty::for_each_displacement(const std::vector<Vec3>& u, const Us
       contacts_.size(), u, [&](std::size_t k) { return contacts_[k].weights; }, use);
 }
 
-// Of the obstacle at a share of the step.
+// Pose of the obstacle at a share of the step.
 Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   if (share <= 0) return from_;
   if (share >= 1) return to_;

@@ -57,9 +57,9 @@ class ObstaclePenalty : public Potential {
   bool within_components() const override { return true; }
   /// Distance of a vertex less the obstacle's motion, over the norm of the vertex' weights.
   double activation_distance(std::size_t k) const override { return contacts_[k].activation_distance; }
-  /// Of penalty and friction, J.
+  /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
-  /// Of penalty and friction.
+  /// Derivatives of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override { return derivatives(contacts_[k], d); }
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
@@ -68,7 +68,7 @@ class ObstaclePenalty : public Potential {
   void apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
                      std::vector<Vec3>& velocity) override;
 
-  /// What acts on the obstacle.
+  /// Mean force and torque on the obstacle.
   struct Reaction {
     Vec3 force = Vec3::Zero();   ///< N
     Vec3 torque = Vec3::Zero();  ///< N m, about the obstacle's origin

@@ -9,8 +9,8 @@
 namespace geo {
 namespace {
 
-// Separation that the penalty keeps beyond the gap, in mean edges: room for the penetration that
-// carries the load, so that the surface can follow its targets.
+// Separation that the penalty keeps beyond the gap, in mean edges. The penetration that carries a
+// load uses it up, and the surface can still follow its targets.
 constexpr double clearance = 0.02;
 // Distance below which pairs are contact candidates, in mean edges: more than the clearance, since
 // the prediction leaves out the forces of the step.
@@ -81,8 +81,8 @@ class PenaltyAssembly {
     }
   }
 
-  // How far the two points are apart along the normal in the undeformed body. What was modelled
-  // nearer than the separation to be kept stays so.
+  // Distance of the two points along the normal in the undeformed body: points that were modelled
+  // nearer than the separation to be kept stay so.
   double separation_at_rest(const ContactConstraint& c) const {
     const auto rest = [&](const SurfacePoint& p) {
       Vec3 sum = Vec3::Zero();

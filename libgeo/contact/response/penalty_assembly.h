@@ -11,7 +11,7 @@
 
 namespace geo {
 
-/// What the nodes would do in a time step if only inertia and gravity acted.
+/// Motion of the nodes in a time step if only inertia and gravity acted.
 struct FreeMotion {
   std::vector<double> inverse_mass;  ///< per node, 1/kg; fixed nodes included
   std::vector<Vec3> displacement;    ///< per node, at the end of the step

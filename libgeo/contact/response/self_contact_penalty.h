@@ -49,9 +49,9 @@ class SelfContactPenalty : public Potential {
   void begin_substep(const std::vector<Vec3>&, double from, double) override { at_start_ = from <= 0; }
   /// Distance of a contact over the norm of its weights.
   double activation_distance(std::size_t k) const override { return at_start_ ? contacts_[k].activation_distance : 0; }
-  /// Of penalty and friction, J.
+  /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
-  /// Of penalty and friction.
+  /// Derivatives of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
 
  private:

@@ -35,7 +35,8 @@ struct Soup {
   }
 };
 
-// Two uneven sheets, a little apart, meshed differently, that are to be pressed into each other while they slide.
+// Two uneven sheets with different meshes, a little apart. They are pressed into each other and
+// slide.
 struct Sheets : Soup {
   static constexpr int n = 12;
   static constexpr double edge = 1.0 / n;
@@ -68,7 +69,7 @@ struct Sheets : Soup {
 
 }  // namespace
 
-TEST_CASE("whatever a motion wants, nothing crosses at its end", "[campaign]") {
+TEST_CASE("nothing crosses at the end of a motion, whatever its targets are", "[campaign]") {
   const auto [first, count] = seeds(150);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -94,7 +95,7 @@ TEST_CASE("whatever a motion wants, nothing crosses at its end", "[campaign]") {
   }
 }
 
-TEST_CASE("a guess where nothing fails is the end, and one where something does is mended", "[campaign]") {
+TEST_CASE("a guess that is certified is the end of the motion, and another one is projected", "[campaign]") {
   const auto [first, count] = seeds(40);
   std::size_t held = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
@@ -111,10 +112,10 @@ TEST_CASE("a guess where nothing fails is the end, and one where something does 
     CHECK(s.crossings(again(worse)) == 0);
   }
   CHECK(held > static_cast<std::size_t>(count) * 9 /
-                   10);  // where all gave way; what was carried along did not end as it was mended
+                   10);  // the exceptions took the fallback, which does not end at its own result
 }
 
-TEST_CASE("what is clear of everything goes where it wants to, to the bit") {
+TEST_CASE("a surface that is clear of everything reaches its targets, to the bit") {
   Soup s;
   s.add(make_sphere(2), {0, 0, 0}, 1);
   s.add(make_sphere(2), {4, 0, 0}, 1);
@@ -125,14 +126,14 @@ TEST_CASE("what is clear of everything goes where it wants to, to the bit") {
   CHECK(report.in_zones == 0);
 }
 
-TEST_CASE("each goes straight on where nothing is in its way, and nothing goes through") {
+TEST_CASE("straight motion reaches free targets, and passes through nothing") {
   Soup s;
   s.add(make_block({1, 1, 1}, 0.5), {0, 0, 0}, 1);
   const std::size_t second = s.from.size();
   s.add(make_block({1, 1, 1}, 0.5), {1.25, 0.013, 0.017}, 1);
   const std::size_t third = s.from.size();
   s.add(make_block({1, 1, 1}, 0.5), {0, 0, 3}, 1);
-  // The first wants to be beyond the second, which stays; the third is free.
+  // The first block's targets are beyond the second, which stays; the third is free.
   for (std::size_t v = 0; v < s.from.size(); ++v)
     s.to.push_back(s.from[v] + (v < second ? Vec3(2.6, 0, 0) : v < third ? Vec3(0, 0, 0) : Vec3(0.3, 0.1, 0.7)));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -145,7 +146,7 @@ TEST_CASE("each goes straight on where nothing is in its way, and nothing goes t
   double farthest = 0;
   for (std::size_t v = 0; v < second; ++v) farthest = std::max(farthest, at[v].x());
   CHECK(farthest < 1.25);
-  // A quarter of a way that ends before it is gone.
+  // Targets inside the second block: a quarter of the way ends before it.
   for (std::size_t v = 0; v < second; ++v) s.to[v] = s.from[v] + Vec3(0.4, 0, 0);
   at = s.from;
   move_straight(s.triangles, pairs, s.to, 1e-4, at);
@@ -155,7 +156,7 @@ TEST_CASE("each goes straight on where nothing is in its way, and nothing goes t
   CHECK(way >= 0.1);
 }
 
-TEST_CASE("nothing gets out of a shell however fast it is, nor through a triangle in its own plane") {
+TEST_CASE("nothing leaves a shell at any speed, nor passes a triangle in its own plane") {
   const auto times_around = [](const Soup& s, const std::vector<Vec3>& at, std::size_t shell,
                                const Vec3& p) {  // van Oosterom and Strackee 1983
     double angle = 0;
@@ -184,7 +185,7 @@ TEST_CASE("nothing gets out of a shell however fast it is, nor through a triangl
       for (std::size_t v = first; v < end.size(); ++v)
         CHECK(times_around(s, end, shell, end[v]) == Approx(1).margin(1e-6));
     }
-    // Side by side in one plane, one wants to be inside the other.
+    // Two coplanar triangles side by side: the targets of one are inside the other.
     Soup s;
     s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.together = {0, 1, 2, 3, 4, 5};
     s.from = {{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}, {6, 0, 0}, {7, 0, 0}, {6, 1, 0}};
@@ -195,7 +196,7 @@ TEST_CASE("nothing gets out of a shell however fast it is, nor through a triangl
   }
 }
 
-TEST_CASE("parts that a fixed direction parts at both ends do not meet in between") {
+TEST_CASE("triangles that a fixed axis separates at both ends do not meet in between") {
   // Against a slow oracle: the motion in 2,000 steps, exactly.
   const auto [first, count] = seeds(300);
   std::size_t parted_both = 0, met = 0;
@@ -211,7 +212,7 @@ TEST_CASE("parts that a fixed direction parts at both ends do not meet in betwee
       s.to.push_back(s.from[static_cast<std::size_t>(v)] + (v < 3 ? closer : Vec3(-closer)) +
                      random.uniform(0, 0.3) * random.direction());
     if (s.crossings(s.from) > 0) continue;
-    Soup held = s;  // what stands still about them, so that the surface as a whole does not move
+    Soup held = s;  // a fixed sphere around them, so that the surface as a whole does not move
     held.add(make_sphere(2), {0, 0, 0}, 100);
     held.to.insert(held.to.end(), held.from.begin() + 6, held.from.end());
     NearPairs near;
@@ -224,7 +225,7 @@ TEST_CASE("parts that a fixed direction parts at both ends do not meet in betwee
     }
     if (meets) {
       ++met;
-      CHECK_FALSE(watched.empty());  // nothing that meets goes unwatched
+      CHECK_FALSE(watched.empty());  // all that meet are candidates
     } else if (watched.empty()) {
       ++parted_both;
     }
@@ -233,7 +234,7 @@ TEST_CASE("parts that a fixed direction parts at both ends do not meet in betwee
   CHECK(parted_both > 20);
 }
 
-TEST_CASE("what touches does not depend on what the list of near pairs was used for before") {
+TEST_CASE("contact constraints do not depend on what the broad phase was used for before") {
   const auto [first, count] = seeds(20);
   std::size_t found = 0, in_another_order = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
@@ -243,7 +244,7 @@ TEST_CASE("what touches does not depend on what the list of near pairs was used 
     std::vector<std::uint32_t> owner;
     for (std::size_t v = 0; v < soup.from.size(); ++v) owner.push_back(static_cast<std::uint32_t>(v / 7));
     NearPairs fresh, used;
-    // The same triangles were elsewhere.
+    // The broad phase has seen the same triangles elsewhere.
     std::vector<Vec3> elsewhere;
     for (const Vec3& p : soup.from) elsewhere.push_back({p.y(), random.uniform(), -p.x()});
     used.cover(
@@ -275,7 +276,8 @@ TEST_CASE("what touches does not depend on what the list of near pairs was used 
   CHECK(in_another_order > 200);
 }
 
-TEST_CASE("sheets that are pressed into each other while they slide give way by what they lack, without zones") {
+TEST_CASE(
+    "targets of sheets that are pressed together while they slide are projected by their deficit, without zones") {
   const auto [first, count] = seeds(20);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -292,7 +294,7 @@ TEST_CASE("sheets that are pressed into each other while they slide give way by 
   }
 }
 
-TEST_CASE("places so near each other that no direction is seen to part them are bound, and nothing else is") {
+TEST_CASE("triangles so near that rounding hides every separating axis become rigid, and no others") {
   const auto [first, count] = seeds(20);
   std::size_t bound = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
@@ -300,8 +302,7 @@ TEST_CASE("places so near each other that no direction is seen to part them are 
     Random random(seed);
     Sheets soup(random);
     const std::vector<Vec3> otherwise = soup.move();
-    // A vertex of the upper sheet comes down on a triangle of the lower one, all but a few times what rounding would
-    // hide of it.
+    // A vertex of the upper sheet is put on a triangle of the lower one, above it by a few ulps.
     const auto v = soup.half() + (Sheets::n + 1) * (4 + random.below(5)) + 4 + random.below(5);
     double low = -1, high = soup.from[v].z();
     for (double middle; low < (middle = 0.5 * (low + high)) && middle < high;) {

@@ -50,7 +50,7 @@ TEST_CASE("a smooth field changes between points no faster than its slope, and b
       const Vec3 p = any(), q = any();
       if (p == q) continue;
       steepest = std::max(steepest, (field(p) - field(q)).norm() / (p - q).norm());
-      // A triangle with corners that the field is given at: p and two near it, inside the cloud's box.
+      // A small triangle inside the cloud's box.
       const double size = random.uniform(0, 0.1);
       const auto near = [&] { return Vec3((p + size * random.direction()).cwiseMax(0.05).cwiseMin(0.95)); };
       const Vec3 a = near(), b = near(), c = near();

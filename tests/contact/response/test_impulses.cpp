@@ -22,7 +22,7 @@ Vec3 momentum(const Solid& solid, const std::vector<Vec3>& v) {
   return sum;
 }
 
-// A unit block with what impulses on it need; every surface vertex stands for itself.
+// A unit block and the input of impulses on it; no surface vertices coincide.
 struct StruckBlock {
   Body body;
   Solid solid;
@@ -47,9 +47,9 @@ struct StruckBlock {
 
 }  // namespace
 
-TEST_CASE("impulses keep momentum, stop what approaches, and take energy") {
+TEST_CASE("impulses conserve momentum, stop approaching points, and do not add energy") {
   const StruckBlock block(0.25, 0.2);
-  // Eq. 1 as it is, weights that sum to one, and linear motions kept exactly.
+  // Weights of Eq. 1 sum to one and reproduce linear motions.
   for (std::size_t v = 0; v < block.weights.size(); ++v) {
     double sum = 0;
     Vec3 x = Vec3::Zero();
@@ -79,7 +79,7 @@ TEST_CASE("impulses keep momentum, stop what approaches, and take energy") {
     options.softness = 0;
     apply_impulses(block.weights, touching, block.alone, block.inverse_mass, options, velocity);
     CHECK((momentum(block.solid, velocity) - momentum(block.solid, before)).norm() <
-          1e-12 * 1000);  // of a mass of 1000 at 1 m/s
+          1e-12 * 1000);  // mass 1000, speed 1
     CHECK(kinetic(block.solid, velocity) <= kinetic(block.solid, before) * (1 + 1e-12));
     if (options.friction > 0) continue;
     for (const auto& t : touching) {
@@ -90,9 +90,9 @@ TEST_CASE("impulses keep momentum, stop what approaches, and take energy") {
   }
 }
 
-TEST_CASE("friction stops a slow slide and slows a fast one") {
+TEST_CASE("friction stops slow slip and slows fast slip") {
   const StruckBlock block(0.5, 0.3);
-  // Two far corners of the block: the motion below brings them together at 1, and past each other at `slide`.
+  // Two opposite corners of the block approach at speed 1 and slip at speed `slide`.
   std::uint32_t a = 0, b = 0;
   const auto at = [&](std::uint32_t v) {
     return block.body.surface.point(block.body.surface.site(SurfaceVertexId(v)));

@@ -34,7 +34,7 @@ struct Block {
 
 }  // namespace
 
-TEST_CASE("the field of a mesh: distance and side of random points, its derivatives") {
+TEST_CASE("the distance field of a mesh against brute force: distance, side, derivatives") {
   const auto [first, count] = seeds(6);
   const std::vector<TriangleMesh> models{make_block({1, 0.6, 0.1}, 0.5), make_apple(4), make_letter('K', 0.3, 12),
                                          make_pumpkin(5)};
@@ -70,7 +70,7 @@ TEST_CASE("the field of a mesh: distance and side of random points, its derivati
   }
 }
 
-TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature that of the force") {
+TEST_CASE("an obstacle's force is minus its energy's derivative, and its Hessian bounds the force's") {
   const Block block(0.3);
   Random random(3);
   const std::size_t n = block.solid.size();
@@ -108,13 +108,13 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, its curvature t
       CHECK(-along(force) == Approx(slope).epsilon(1e-4));
       if (plane)
         CHECK(along(turned) >=
-              -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's is bounded from above
+              -(along(behind) - along(before)) / (2 * h) * (1 - 1e-5));  // friction's Hessian is an upper bound
       CHECK(along(turned) > 0);
     }
   }
 }
 
-TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
+TEST_CASE("an obstacle's reaction is opposite to force and torque on the body") {
   const Block block(0.3);
   const std::size_t n = block.solid.size();
   const std::vector<std::uint8_t> all(n, 1);
@@ -134,8 +134,7 @@ TEST_CASE("what an obstacle feels is what the body gets, force and torque") {
   CHECK((reaction.torque + torque).norm() < 1e-9 * sum.norm());  // weights are exact for linear fields
 }
 
-TEST_CASE(
-    "rows that are left out while nodes have not gone far do nothing there: energy and force are those of all rows") {
+TEST_CASE("contacts within their activation distance are zero: energy and force are those of all contacts") {
   const Block block(0.3);
   const auto [first, count] = seeds(40);
   const std::size_t n = block.solid.size();
@@ -162,7 +161,7 @@ TEST_CASE(
                                random.uniform(-1, 1)});
       touch.add(row, random.direction(), random.uniform(-0.3, 0.1), random.uniform(1, 5), u);
     }
-    // Of a step's first part, and of one that begins later, where nodes have gone on since.
+    // In the first substep, and in a later one, before which nodes have moved.
     for (const bool later : {false, true}) {
       std::vector<Vec3> begun = u;
       for (Vec3& x : begun) x += later ? Vec3(0.05 * random.direction()) : Vec3(Vec3::Zero());
@@ -185,7 +184,7 @@ TEST_CASE(
           acted += wanted > 0;
           for (std::size_t r = 0; r < p->size(); ++r) skipped += p->activation_distance(r) > far;
         }
-        // Nor where all of a row's nodes go as far as it says, each the way that counts.
+        // The energy is zero when all nodes move by the activation distance in the worst direction.
         for (std::size_t r = 0; r < p->size(); ++r) {
           if (!(p->activation_distance(r) > 0)) continue;
           double most = 0;

@@ -20,7 +20,7 @@ using namespace geo;
 
 namespace {
 
-// A row of these nodes with random weights that sum to zero.
+// A stencil of these nodes with random weights that sum to zero.
 RelativeStencil row_of(const std::vector<std::uint32_t>& nodes, Random& random) {
   RelativeStencil row;
   double left = 0;
@@ -33,7 +33,7 @@ RelativeStencil row_of(const std::vector<std::uint32_t>& nodes, Random& random) 
 
 }  // namespace
 
-TEST_CASE("the touch penalty's force is the energy's slope, its product the force's, and it moves no middle") {
+TEST_CASE("the self-contact penalty's force is the energy's slope, and forces sum to zero") {
   const auto [first, count] = seeds(20);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -73,7 +73,7 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
     const double step = 1e-6;
     CHECK((assembled.energy(moved(step)) - assembled.energy(moved(-step))) / (2 * step) ==
           Approx(-along(force)).epsilon(1e-4).margin(1e-5));
-    CHECK(along(product) >= 0);  // a convex part of the curvature: friction's own bend is left out
+    CHECK(along(product) >= 0);  // the secant Hessian is positive semidefinite
     std::vector<Mat3> blocks(n, Mat3::Zero());
     assembled.sum().add_diagonal_blocks(blocks);
     for (std::size_t i = 0; i < n; ++i) {
@@ -88,8 +88,7 @@ TEST_CASE("the touch penalty's force is the energy's slope, its product the forc
 }
 
 TEST_CASE(
-    "nodes that a penalty makes depend on each other hang together by the pairs that it tells, and each part has its "
-    "own energy") {
+    "nodes that a penalty couples are in one island by the pairs it reports, and each island has its own energy") {
   const auto [first, count] = seeds(50);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -155,8 +154,7 @@ struct SwitchedSprings : Potential {
 }  // namespace
 
 TEST_CASE(
-    "rows that come to act in the middle of a step, or cease to, are in forces and products like those that did from "
-    "the first") {
+    "contacts that become active in the middle of a step, or cease to be, are in forces and products like others") {
   const auto [first, count] = seeds(30);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -199,7 +197,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what a triangle's plane parts at both ends does not meet in between") {
+TEST_CASE("triangles that the plane of one separates at both ends do not meet in between") {
   // Against a slow oracle: the motion in 500 steps, exactly.
   const auto [first, count] = seeds(300);
   std::size_t parted = 0, met = 0;
@@ -229,7 +227,7 @@ TEST_CASE("what a triangle's plane parts at both ends does not meet in between")
   CHECK(parted > 20);
 }
 
-TEST_CASE("what lies on a cut presses on it and does not sink in") {
+TEST_CASE("the upper half of a cut block presses on the lower one and does not sink in") {
   const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
   SampleOptions sampling;
   sampling.spacing = 0.25;

@@ -27,7 +27,8 @@ TEST_CASE("the penalty's force and Hessian are derivatives of its energy behind 
   }
 }
 
-TEST_CASE("friction's force is the derivative of its energy, at most the bound, and its Hessian no less than the true one") {
+TEST_CASE(
+    "friction's force is the derivative of its energy, at most the bound, and its Hessian no less than the true one") {
   Random random(2);
   for (int i = 0; i < 200; ++i) {
     INFO(i);

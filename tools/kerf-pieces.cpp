@@ -40,7 +40,7 @@ std::string name_of(std::size_t piece, const char* end) {
 
 // Written aside as a whole folder, then renamed.
 void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk>& chunks,
-                  const std::vector<geo::Bond>& bonds, geo::ChunkNotes notes) {
+                  const std::vector<geo::Bond>& bonds, geo::ChunkLabels labels) {
   if (folder.filename().empty()) folder = folder.parent_path();
   std::error_code error;
   const fs::path aside = folder.string() + "." + std::to_string(::getpid()) + ".tmp";
@@ -53,8 +53,8 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
                    [&](std::ostream& out) { w.obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
   };
   for (std::size_t p = 0; p < chunks.size(); ++p) {
-    notes.names.push_back(name_of(p, end));
-    write(notes.names.back(), chunks[p].mesh);
+    labels.names.push_back(name_of(p, end));
+    write(labels.names.back(), chunks[p].mesh);
     if (!w.hulls) continue;
     const auto hulls = geo::convex_decomposition(chunks[p].mesh, static_cast<std::size_t>(w.hull_parts),
                                                  static_cast<std::size_t>(w.hull_corners));
@@ -62,7 +62,7 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
       write("hull_" + name_of(p, "").substr(6) + geo::hull_suffix(h, hulls.size()) + end, hulls[h]);
   }
   geo::write_all((aside / "pieces.json").string(),
-                 [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
+                 [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, labels); });
   unfinished.commit(folder.string());  // over the empty folder, if there is one
 }
 
@@ -106,18 +106,18 @@ int main(int argc, char** argv) {
     const auto bonds = geo::find_bonds(complex, found, subject.moved);
     const auto chunks =
         geo::make_chunks(complex, found, subject.mesh, w.tile * complex.extent().diagonal(), subject.moved);
-    geo::ChunkNotes notes{glb ? "node" : "file", {}, w.strength};
+    geo::ChunkLabels labels{glb ? "node" : "file", {}, w.strength};
     if (!glb) {
-      write_folder(t.output_path, w, chunks, bonds, notes);
+      write_folder(t.output_path, w, chunks, bonds, labels);
     } else {
-      for (std::size_t p = 0; p < chunks.size(); ++p) notes.names.push_back(name_of(p, ""));
+      for (std::size_t p = 0; p < chunks.size(); ++p) labels.names.push_back(name_of(p, ""));
       geo::write_all(t.output_path, [&](std::ostream& out) {
-        geo::write_glb(out, chunks, bonds, notes,
+        geo::write_glb(out, chunks, bonds, labels,
                        {w.hulls ? static_cast<std::size_t>(w.hull_corners) : 0, static_cast<std::size_t>(w.hull_parts),
                         w.up == "z"});
       });
       if (!w.bonds.empty())
-        geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, notes); });
+        geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, labels); });
     }
     if (t.json) std::printf("{\"pieces\":%u,\"bonds\":%zu}\n", found.count, bonds.size());
     if (t.verbose)

@@ -13,8 +13,7 @@
 namespace geo {
 namespace {
 
-// ---- Writing: each part of a body as arrays, which refer to the body and to what is kept beside
-// them.
+// ---- Writing: the arrays of each part of a body. They refer to the body and to members of Arrays.
 
 std::span<const double> flat(const std::vector<Vec3>& points) {
   return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
@@ -62,7 +61,7 @@ void add_nodes(Arrays& a) {
   a.add("nodes/debris", a.body.debris);
 }
 
-// Only where there are some; their edges to nodes are in the nodes' rows.
+// Guides, where there are any. Their edges to nodes are in the adjacency of the nodes.
 void add_guides(Arrays& a) {
   const GuideSet& guides = a.body.graph.storage().guides();
   if (guides.size() == 0) return;
@@ -80,7 +79,8 @@ void add_guides(Arrays& a) {
         2);
 }
 
-// Edges and neighbours. Rows are given by their lengths: what changes in one row changes no other.
+// Edges and neighbours. Lengths of rows, not offsets: a change in one row leaves the others as they
+// are.
 void add_rows(Arrays& a) {
   const AdjacencyStore& rows = a.body.graph.storage().rows();
   const std::size_t n = rows.size();
@@ -150,7 +150,7 @@ void add_all(Arrays& a) {
   add_about(a);
 }
 
-// ---- Reading: each part, checked before the next one refers to it.
+// ---- Reading: each part is checked before the next one refers to it.
 
 std::vector<Vec3> points(const KerfFile& in, const std::string& section) {
   const auto values = in.read<double>(section, 3);
@@ -202,8 +202,8 @@ void read_nodes(const KerfFile& in, Body& body) {
               " has a radius, spacing or volume that is not positive or of no sensible size");
 }
 
-// Version 1, and early files of version 2, had the edges i < j and the neighbours apart, with all
-// distances.
+// Files of version 1, and early ones of version 2, have edges i < j and neighbours in separate
+// sections, with all distances.
 void read_old_rows(const KerfFile& in, Body& body, double unit) {
   const NodeSet& nodes = body.nodes;
   const std::size_t n = nodes.size();
@@ -240,7 +240,7 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
     for (auto e = i ? ends[i - 1] : 0; e < ends[i]; ++e) {
       if (neighbor[e] >= n || warped[e] >= unit_radius || !(distance[e] >= 0) || !std::isfinite(distance[e]))
         in.fail("neighbour " + std::to_string(e) + " is out of range");
-      // Who does not see the other has a longer path than the straight one.
+      // A pair without sight of each other has a path longer than the straight line.
       const auto straight =
           static_cast<float>(std::sqrt(squared_distance(nodes.position[i], nodes.position[neighbor[e]])));
       const bool hidden = distance[e] > std::nextafter(straight, 2 * straight);
@@ -309,7 +309,7 @@ void read_binding(const KerfFile& in, Body& body) {
 
 void read_about(const KerfFile& in, Body& body) {
   const auto about = nlohmann::json::parse(in.text("about"), nullptr, false);
-  double cell = 0, widest = 0;  // 0: that of the nodes as they are
+  double cell = 0, widest = 0;  // 0: derived from the nodes
   try {
     body.k = json_integer<int>(about.at("k")), body.updates = json_integer<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();

@@ -24,7 +24,7 @@ std::vector<Vec3> points(const KerfFile& file, const std::string& section) {
   return result;
 }
 
-// The counts of a run so far, by name.
+// Calls each(name, count) for the counts of a run.
 template <class Work, class Each>
 void counts(Work& w, const Each& each) {
   each("steps", w.steps), each("newton", w.newton), each("cg", w.cg), each("fronts", w.fronts),
@@ -48,7 +48,7 @@ nlohmann::ordered_json about_front(const FrontState& f, std::vector<Vec3>& place
   return {{"name", f.name}, {"closed", f.closed}, {"crack", f.crack}, {"step", f.step}, {"segments", segments}};
 }
 
-// Takes numbers one after another; a file that has too few is refused.
+// Hands out values in order. Throws InputError where the file has too few.
 template <class T>
 class Supply {
  public:
@@ -100,7 +100,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
       at.insert(at.end(), edge.at.begin(), edge.at.end());
     }
   }
-  // Of fracture's fronts: a normal a point, and (owed, ended, the front's length).
+  // Fronts of fracture have a normal for each point, and (owed, ended, length of the front).
   about["cracks"] = state.fracture.cracks;
   about["growing"] = nlohmann::ordered_json::array();
   std::vector<Vec3> normals, owed;

@@ -1,4 +1,5 @@
-// VTKHDF 1.0, which ParaView 5.11 opens: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
+// VTKHDF 1.0, which ParaView 5.11 opens:
+// https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 #include <hdf5.h>
 
 #include <cstdint>
@@ -17,7 +18,7 @@ void require(std::int64_t result) {
   if (result < 0) throw OutputError("the HDF5 library has no memory for this body; export another format");
 }
 
-// A handle of the library's, closed in the end.
+// An HDF5 handle, closed by the destructor.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) { require(id); }
@@ -36,15 +37,15 @@ void write_attribute(hid_t object, const char* name, hid_t type, const Handle& s
   require(H5Awrite(attribute, type, value));
 }
 
-// A data set of `rows` × `columns` values, which `fill` puts.
+// Writes a data set of `rows` × `columns` values, which `fill` puts.
 void write_set(hid_t group, const char* name, hid_t type, hsize_t rows, hsize_t columns,
                const std::function<void(KerfSink&)>& fill) {
   const hsize_t shape[] = {rows, columns};
   const Handle space(H5Screate_simple(columns > 1 ? 2 : 1, shape, nullptr), H5Sclose),
       properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  require(H5Pset_obj_track_times(properties, false));  // the same body, the same bytes
+  require(H5Pset_obj_track_times(properties, false));  // else the bytes depend on the time
   const Handle set(H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
-  // Row by row of the shape, however its rows lie in the blocks.
+  // Blocks need not end at the end of a row.
   const hsize_t width = columns * H5Tget_size(type);
   std::vector<std::byte> rest;
   hsize_t at = 0;
@@ -87,7 +88,7 @@ void write_vtkhdf(std::ostream& out, const Body& body) {
   const auto edges = static_cast<std::int64_t>(body.graph.edge_count());
   std::vector<std::uint32_t> component;
   body.graph.components(component);
-  require(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));  // it prints by itself otherwise
+  require(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr));  // else the library prints errors
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   require(H5Pset_fapl_core(access, 1 << 24, false));
   require(H5Pset_obj_track_times(creation, false));

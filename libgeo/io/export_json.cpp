@@ -14,7 +14,7 @@ void write_rows(std::ostream& out, const KerfFile& file, const std::string& name
   std::uint64_t count = 0;
   std::string text = "[";
   KerfSink sink([&](std::span<const std::byte> block) {
-    // Blocks are a multiple of every number's size.
+    // No number lies in two blocks: their size is a multiple of every type's.
     for (std::size_t at = 0; at < block.size(); at += sizeof(T), ++count) {
       T x;
       std::memcpy(&x, block.data() + at, sizeof x);

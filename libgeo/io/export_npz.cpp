@@ -38,7 +38,7 @@ class Fields {
   }
 };
 
-// What stands before the numbers of an array: padded with spaces to a multiple of 64.
+// Header of a .npy array, padded with spaces to a multiple of 64.
 std::string npy_header(const KerfFile::Section& s) {
   std::string shape;
   for (const auto d : s.shape) shape += std::to_string(d) + ",";
@@ -61,7 +61,7 @@ void write_npz(std::ostream& out, const KerfFile& file) {
     if (kerf::size_of(section.dtype) == 0) continue;
     const bool json = section.dtype == "json";
     const std::string name = key + (json ? ".json" : ".npy"), header = json ? std::string() : npy_header(section);
-    // The checksum stands before the bytes, so that they are read twice.
+    // The checksum precedes the bytes, so they are read twice.
     std::uint32_t crc = ~0u;
     const auto sum = [&](std::span<const std::byte> bytes) {
       for (const std::byte b : bytes) crc = crc_table[(crc ^ static_cast<std::uint32_t>(b)) & 255] ^ (crc >> 8);

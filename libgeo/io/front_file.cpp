@@ -25,7 +25,7 @@ void check(const Front& front, const std::string& name, std::size_t least_steps)
   }
 }
 
-// OBJ polylines: each object is a time step, in the order of their names.
+// OBJ polylines: each object is a time step, in the order of its name.
 std::vector<Front> from_obj(const std::string& bytes, const std::string& name, std::size_t least_steps) {
   LineReader lines(bytes, name);
   std::vector<std::string_view> words;
@@ -66,7 +66,7 @@ std::vector<Front> parse(const std::string& bytes, const std::string& name, std:
   LineReader lines(bytes, name);
   std::vector<std::string_view> words;
   std::vector<Front> fronts;
-  bool sheet = false;  // the last one is
+  bool sheet = false;  // whether the current entry is one
   const auto point = [&](std::size_t first) {
     if (words.size() != first + 3) lines.fail("a point is three numbers");
     return Vec3(lines.real(words[first]), lines.real(words[first + 1]), lines.real(words[first + 2]));

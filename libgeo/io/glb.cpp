@@ -13,10 +13,10 @@ using Json = nlohmann::ordered_json;
 
 Json row(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkNotes& notes) {
+Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkLabels& labels) {
   Json pieces = Json::array(), held = Json::array();
   for (std::size_t p = 0; p < chunks.size(); ++p)
-    pieces.push_back({{notes.kind, notes.names[p]},
+    pieces.push_back({{labels.kind, labels.names[p]},
                       {"volume", chunks[p].volume},
                       {"centroid", row(chunks[p].centroid)},
                       {"triangles", chunks[p].mesh.triangles.size()}});
@@ -26,12 +26,12 @@ Json bonds_json(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds
                     {"area", b.area},
                     {"normal", row(b.normal)},
                     {"centroid", row(b.centroid)},
-                    {"strength", notes.strength * b.area}});
+                    {"strength", labels.strength * b.area}});
   return {{"pieces", pieces}, {"bonds", held}};
 }
 
-// Unit normals at the corners: of the triangles there, weighed by their areas, that are of the same
-// kind and bent less than 45°.
+// Unit normals at the corners: the mean, weighted by area, of the triangles around the vertex that
+// are of the same kind and differ by less than 45°.
 std::vector<std::array<Vec3, 3>> smooth_normals(const TriangleMesh& mesh) {
   std::vector<Vec3> normal(mesh.triangles.size());
   std::vector<std::vector<std::uint32_t>> at(mesh.vertices.size());
@@ -121,7 +121,7 @@ class Glb {
   std::string bytes_;
 };
 
-// The triangles of one group, corners with equal values joined.
+// The triangles of one group. Corners with equal values are merged.
 Json primitive(Glb& glb, const Chunk& chunk, const std::vector<std::array<Vec3, 3>>& normals, std::int32_t group,
                std::size_t material) {
   const TriangleMesh& mesh = chunk.mesh;
@@ -142,7 +142,7 @@ Json primitive(Glb& glb, const Chunk& chunk, const std::vector<std::array<Vec3, 
       const Vec3 p = mesh.vertices[mesh.triangles[t][k]] - chunk.centroid;
       for (int i = 0; i < 3; ++i)
         corner.at[std::size_t(i)] = float(p[i]), corner.at[std::size_t(3 + i)] = float(normals[t][k][i]);
-      corner.at[6] = float(a.uv[t][k].x()), corner.at[7] = float(1 - a.uv[t][k].y());  // glTF counts from the top
+      corner.at[6] = float(a.uv[t][k].x()), corner.at[7] = float(1 - a.uv[t][k].y());  // in glTF v points downwards
       if (!a.color.empty())
         for (int i = 0; i < 4; ++i)
           corner.color[std::size_t(i)] = static_cast<std::uint16_t>(
@@ -179,8 +179,8 @@ Json hull_primitive(Glb& glb, const TriangleMesh& hull, const Vec3& origin) {
 }  // namespace
 
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
-                 const ChunkNotes& notes) {
-  out << bonds_json(chunks, bonds, notes).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+                 const ChunkLabels& labels) {
+  out << bonds_json(chunks, bonds, labels).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 std::string hull_suffix(std::size_t part, std::size_t parts) {
@@ -189,7 +189,7 @@ std::string hull_suffix(std::size_t part, std::size_t parts) {
 }
 
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
-               const ChunkNotes& notes, const GlbOptions& options) {
+               const ChunkLabels& labels, const GlbOptions& options) {
   Glb glb;
   glb.json = {{"asset", {{"version", "2.0"}, {"generator", "kerf-pieces"}}},
               {"scene", 0},
@@ -220,14 +220,14 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
     for (std::int32_t g = 0; g < std::int32_t(a.group_names.size()); ++g)
       if (std::find(a.group.begin(), a.group.end(), g) != a.group.end())
         primitives.push_back(primitive(glb, chunk, normals, g, material(a.group_names[std::size_t(g)])));
-    Json node = {{"name", notes.names[p]},
+    Json node = {{"name", labels.names[p]},
                  {"translation", row(chunk.centroid)},
-                 {"mesh", glb.mesh(primitives, notes.names[p])},
+                 {"mesh", glb.mesh(primitives, labels.names[p])},
                  {"extras", {{"volume", chunk.volume}}}};
     if (options.hull_corners > 0) {
       const auto hulls = convex_decomposition(chunk.mesh, options.hull_parts, options.hull_corners);
       for (std::size_t h = 0; h < hulls.size(); ++h) {
-        const std::string name = "UCX_" + notes.names[p] + hull_suffix(h, hulls.size());
+        const std::string name = "UCX_" + labels.names[p] + hull_suffix(h, hulls.size());
         const Json shape = Json::array({hull_primitive(glb, hulls[h], chunk.centroid)});
         node["children"].push_back(glb.node({{"name", name}, {"mesh", glb.mesh(shape, name)}}));
       }
@@ -238,7 +238,7 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
   const double half = std::sqrt(0.5);
   if (options.z_up) root["rotation"] = Json::array({-half, 0.0, 0.0, half});
   const std::size_t top = glb.node(std::move(root));
-  glb.json["scenes"].push_back({{"nodes", Json::array({top})}, {"extras", bonds_json(chunks, bonds, notes)}});
+  glb.json["scenes"].push_back({{"nodes", Json::array({top})}, {"extras", bonds_json(chunks, bonds, labels)}});
   glb.write(out);
 }
 

@@ -1,4 +1,4 @@
-// What every export of the graph shares.
+// Edges of the visibility graph in the order in which exports write them.
 #pragma once
 
 #include "kerf/body.h"

@@ -1,4 +1,4 @@
-// Integers in JSON: nlohmann's conversion lets a number out of range through.
+// Integers in JSON, checked: the conversion of nlohmann/json accepts numbers out of range.
 #pragma once
 
 #include <limits>
@@ -7,7 +7,8 @@
 
 namespace geo {
 
-/// The integer that a value is. Throws std::out_of_range when it is none, or none that T holds.
+/// The integer that a value holds. Throws std::out_of_range where it is no integer, or out of the
+/// range of T.
 template <class T>
 T json_integer(const nlohmann::json& value) {
   bool fits = false;

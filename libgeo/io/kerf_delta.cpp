@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::size_t window_bytes = 256;
 
-// The blocks of an array by hash, each found while it lies at or behind a place that only moves forward.
+// The blocks of an array by hash. Queries ascend: a block is found while it begins at or after
+// `least`.
 class Blocks {
  public:
   explicit Blocks(std::span<const std::byte> bytes, std::size_t size) : bytes_(bytes), size_(size) {
@@ -20,11 +21,12 @@ class Blocks {
       next_[b] = std::exchange(first, static_cast<std::uint32_t>(b));
     }
   }
-  // The first byte of a block that is equal to the one at `wanted` and begins at `least` or later; or the end.
+  // First byte of a block equal to the one at `wanted` that begins at `least` or later; else the
+  // end.
   std::size_t find(const std::byte* wanted, std::size_t least) {
     auto& first = first_[bucket(wanted)];
     while (first != none && first * size_ < least) first = next_[first];
-    int tries = 8;  // of those that share a bucket: arrays of few values have many equal blocks
+    int tries = 8;  // in a bucket: arrays with few values have many equal blocks
     for (auto b = first; b != none && tries-- > 0; b = next_[b])
       if (std::memcmp(bytes_.data() + b * size_, wanted, size_) == 0) return b * size_;
     return bytes_.size();
@@ -38,10 +40,10 @@ class Blocks {
   std::vector<std::uint32_t> first_, next_;
 };
 
-std::size_t common_bytes(const std::byte* a, const std::byte* b, std::size_t most) {
+std::size_t common_bytes(const std::byte* a, const std::byte* b, std::size_t limit) {
   std::size_t n = 0;
   for (const std::size_t step : {std::size_t(4096), std::size_t(64), std::size_t(1)})
-    while (n + step <= most && std::memcmp(a + n, b + n, step) == 0) n += step;
+    while (n + step <= limit && std::memcmp(a + n, b + n, step) == 0) n += step;
   return n;
 }
 
@@ -50,16 +52,16 @@ std::size_t common_bytes(const std::byte* a, const std::byte* b, std::size_t mos
 std::vector<Run> difference(std::span<const std::byte> before, std::span<const std::byte> after, std::size_t width) {
   const std::size_t rows = std::max<std::size_t>(1, window_bytes / width), window = rows * width;
   std::vector<Run> runs;
-  const auto give = [&](std::size_t bytes) {
+  const auto add_literal = [&](std::size_t bytes) {
     if (bytes > 0) runs.push_back({literal, bytes / width});
   };
   const auto same = [&](std::size_t i, std::size_t j) {
     return std::memcmp(after.data() + i, before.data() + j, width) == 0;
   };
-  std::vector<Blocks> moved;       // made when first wanted
-  std::size_t done = 0, used = 0;  // bytes of `after` that are told, of `before` that may not be copied any more
+  std::vector<Blocks> moved;       // built on first use
+  std::size_t done = 0, used = 0;  // bytes of `after` covered by runs; of `before` that are copied or passed
   while (done < after.size()) {
-    // The next window that is the same in place, or, once that takes long, anywhere.
+    // The next window that is equal at its own place, or, after two windows, anywhere.
     std::size_t i = done, j = before.size(), in_place = 0;
     for (; i + width <= after.size(); i += width) {
       const std::size_t opposite = used + (i - done);
@@ -78,11 +80,11 @@ std::vector<Run> difference(std::span<const std::byte> before, std::span<const s
     const std::size_t length =
         common_bytes(after.data() + i, before.data() + j, std::min(after.size() - i, before.size() - j)) / width *
         width;
-    give(i - done);
+    add_literal(i - done);
     runs.push_back({j / width, length / width});
     done = i + length, used = j + length;
   }
-  give(after.size() - done);
+  add_literal(after.size() - done);
   return runs;
 }
 

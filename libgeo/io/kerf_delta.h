@@ -1,13 +1,18 @@
-// What changed from one array to another, whatever they mean.
+// Difference of two arrays of rows, for updates of `.kerf` files.
 #pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include "io/kerf_layout.h"
 
 namespace geo::kerf {
 
-/// The runs that make `after` from `before`, both arrays of rows of `width` bytes; rows that are copied ascend. Finds
-/// what moved because rows were inserted or removed before it, as well as what stayed in place; stretches below 512
-/// bytes between two changes may be given instead of copied. Linear in practice.
+/// Runs that make `after` from `before`: rows copied from `before`, ascending, and literal rows.
+/// Rows have `width` bytes. Finds rows that stayed in place and rows that moved because others were
+/// inserted or removed. Equal stretches below 512 bytes between two changes may be literal. Linear
+/// time in practice.
 std::vector<Run> difference(std::span<const std::byte> before, std::span<const std::byte> after, std::size_t width);
 
 }  // namespace geo::kerf

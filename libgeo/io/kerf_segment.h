@@ -1,4 +1,4 @@
-// One segment of a `.kerf` file as it is written: a whole file has one, each update appends one.
+// Writing one segment of a `.kerf` file. A new file has one segment, and each update appends one.
 #pragma once
 
 #include "io/kerf_layout.h"
@@ -6,7 +6,7 @@
 
 namespace geo::kerf {
 
-/// An array, or the runs that make it from the array of that name before.
+/// An array, or the runs that make it from the array of that name in the segments before.
 struct Stored {
   KerfArray array;
   std::vector<Run> runs;           ///< none: the array is stored whole
@@ -14,14 +14,15 @@ struct Stored {
   std::uint64_t hash = 0;          ///< with runs: of the array that results
 };
 
-/// Bytes of a row of an array.
+/// Size of a row of an array in bytes.
 std::uint64_t row_bytes(const std::string& dtype, const std::vector<std::uint64_t>& shape);
 
-/// Writes a segment that begins at `start`, up to its commit record, which it returns: that comes next.
+/// Writes a segment that begins at `start`, without its commit record. Returns the record, which
+/// the caller writes once the segment is on the disk. `previous`: hash of the commit record before.
 Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous,
                      const std::vector<Stored>& sections);
 
-/// How long a segment that begins at `start` will be, commit record included.
+/// Size in bytes of a segment that begins at `start`, with its commit record.
 std::uint64_t segment_size(std::uint64_t start, const std::vector<Stored>& sections);
 
 }  // namespace geo::kerf

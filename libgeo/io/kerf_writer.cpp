@@ -48,10 +48,11 @@ void write_kerf(std::ostream& out, const std::vector<KerfArray>& arrays) {
 namespace geo::kerf {
 namespace {
 
+// Layout of a segment: offset, length and hash of each section, and the offset of the table.
 struct Plan {
   std::vector<std::uint64_t> offsets, lengths, hashes;
   std::uint64_t table = 0;
-  // Hashes are written with all their digits, so that the table's length is known before they are.
+  // The table as JSON. Hashes have all their digits, so its length does not depend on them.
   std::string text(const std::vector<Stored>& sections) const {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < sections.size(); ++i) {

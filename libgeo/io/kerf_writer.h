@@ -1,4 +1,4 @@
-// Writing `.kerf` files: arrays one after another, each from where it is, never the whole file in memory.
+// Writing `.kerf` files array by array, without the whole file in memory.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,13 @@
 
 namespace geo {
 
-/// Takes the bytes of one array in order and passes them on in blocks.
+/// Collects the bytes of one array in order, and passes them on in blocks.
 class KerfSink {
  public:
   using Take = std::function<void(std::span<const std::byte>)>;
-  /// `take` gets blocks of one size, the last one shorter.
+  /// `take` receives blocks of equal size, the last one shorter.
   explicit KerfSink(Take take);
+  /// Appends the bytes of a value.
   template <class T>
   void put(T value) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -25,8 +26,9 @@ class KerfSink {
     std::memcpy(block_.data() + used_, &value, sizeof value);
     used_ += sizeof value;
   }
+  /// Appends bytes.
   void write(std::span<const std::byte> bytes);
-  /// Passes on what is left. Bytes taken in all.
+  /// Passes on the last block. Returns the number of bytes in all.
   std::uint64_t finish();
 
  private:
@@ -36,14 +38,15 @@ class KerfSink {
   std::uint64_t taken_ = 0;
 };
 
-/// One array to be written: dtype f8, f4, u8, u4, i4, u2, u1 or json, and its shape; rows are the first dimension.
-/// `fill` puts exactly the bytes that these make, each time it is called.
+/// An array to write: type f8, f4, u8, u4, i4, u2, u1 or json, and shape; rows are the first
+/// dimension. `fill` puts exactly the bytes of that shape, each time it is called.
 struct KerfArray {
   std::string name, dtype;
   std::vector<std::uint64_t> shape;
   std::function<void(KerfSink&)> fill;
 };
 
+/// Name of a type in the file.
 template <class T>
 constexpr const char* kerf_dtype() {
   if constexpr (std::is_same_v<T, double>)
@@ -64,20 +67,22 @@ constexpr const char* kerf_dtype() {
   }
 }
 
-/// An array of `rows` × `columns` numbers of type T that `fill` puts, or that are in memory until they are written.
+/// An array of `rows` × `columns` numbers of type T, which `fill` puts.
 template <class T>
 KerfArray kerf_array(std::string name, std::uint64_t rows, std::uint64_t columns, std::function<void(KerfSink&)> fill) {
   KerfArray a{std::move(name), kerf_dtype<T>(), {rows}, std::move(fill)};
   if (columns > 1) a.shape.push_back(columns);
   return a;
 }
+/// An array of the given values, which must outlive it.
 template <class T>
 KerfArray kerf_array(std::string name, std::span<const T> values, std::uint64_t columns = 1) {
   return kerf_array<T>(std::move(name), values.size() / columns, columns,
                        [values](KerfSink& sink) { sink.write(std::as_bytes(values)); });
 }
 
-/// A whole file, in one pass, to a pipe as well. Deterministic. Memory: one block, whatever the size.
+/// Writes a new file in one pass, to any stream. The same arrays give the same bytes. Memory: one
+/// block.
 void write_kerf(std::ostream& out, const std::vector<KerfArray>& arrays);
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// Reading text formats: lines, words and numbers with their line number in every complaint.
+// Reading text formats: lines, words and numbers, with the line number in every error.
 #pragma once
 
 #include <charconv>
@@ -11,23 +11,25 @@
 
 namespace geo {
 
-/// What a file says, as a message may show it: without control characters, and not at length.
-inline std::string shown(std::string_view text, std::size_t most = 60) {
-  for (int i = 0; i < 3 && most < text.size() && (text[most] & 0xc0) == 0x80; ++i)
-    --most;  // UTF-8 is not cut within a character
-  std::string out(text.substr(0, most));
+/// Text of a file as an error message shows it: at most `limit` bytes, without control characters.
+inline std::string shown(std::string_view text, std::size_t limit = 60) {
+  for (int i = 0; i < 3 && limit < text.size() && (text[limit] & 0xc0) == 0x80; ++i)
+    --limit;  // not within a UTF-8 character
+  std::string out(text.substr(0, limit));
   for (char& c : out)
     if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-  return text.size() > most ? out + "..." : out;
+  return text.size() > limit ? out + "..." : out;
 }
 
-/// Walks over the lines of a text, dropping what follows `comment` (0: nothing) and empty lines.
+/// Iterates over the lines of a text, without empty ones and comments.
 class LineReader {
  public:
+  /// `comment`: begins a comment up to the end of the line; 0: none does. `text` must outlive the
+  /// reader.
   LineReader(std::string_view text, std::string name, char comment = '#')
       : text_(text), name_(std::move(name)), comment_(comment) {}
 
-  /// The words of the next line that has any; false at the end.
+  /// Splits the next line that is not empty into words; false at the end.
   bool next(std::vector<std::string_view>& words) {
     while (at_ < text_.size()) {
       const auto end = std::min(text_.find('\n', at_), text_.size());
@@ -50,11 +52,14 @@ class LineReader {
     }
     return false;
   }
+  /// Throws InputError: name, line number, `what`.
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(name_ + ":" + std::to_string(number_) + ": " + what);
   }
+  /// Bytes up to the end of the current line.
   std::size_t position() const { return std::min(at_, text_.size()); }
 
+  /// A finite number. Throws InputError.
   double real(std::string_view word) const {
     double value = 0;
     const char* begin = word.data() + (!word.empty() && word[0] == '+');
@@ -63,6 +68,7 @@ class LineReader {
     if (!std::isfinite(value)) fail("'" + shown(word) + "' is not a finite number; repair the file");
     return value;
   }
+  /// An integer. Throws InputError.
   long long integer(std::string_view word) const {
     long long value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

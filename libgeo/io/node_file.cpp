@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* fields[] = {"x", "y", "z", "radius", "spacing", "volume"};
 
-NodeSet with_room(std::size_t count) {
+NodeSet with_capacity(std::size_t count) {
   NodeSet nodes;
   nodes.position.reserve(count), nodes.radius.reserve(count), nodes.spacing.reserve(count), nodes.volume.reserve(count);
   return nodes;
@@ -43,7 +43,7 @@ NodeSet from_ply(const std::string& bytes, const std::string& name) {
     if (!columns[i] || columns[i]->count_type)
       throw InputError(name + ": has no field '" + fields[i] + "'; nodes come from kerf-sample");
   }
-  NodeSet nodes = with_room(vertex->count);
+  NodeSet nodes = with_capacity(vertex->count);
   for (std::size_t i = 0; i < vertex->count; ++i) {
     double v[6];
     for (int k = 0; k < 6; ++k) v[k] = columns[k]->values[i];
@@ -52,104 +52,136 @@ NodeSet from_ply(const std::string& bytes, const std::string& name) {
   return nodes;
 }
 
-NodeSet from_pcd(const std::string& bytes, const std::string& name) {
-  LineReader header(bytes, name);
+// The header of a PCD file.
+struct PcdHeader {
+  std::vector<std::string> names, sizes, types, counts;  // per field
+  std::size_t points = 0;
+  bool binary = false;
+};
+
+// Where the six columns of nodes are in a point.
+struct PcdColumns {
+  std::size_t word[6], offset[6];    // number of values, and of bytes, before the column
+  bool single[6];                    // in single precision
+  std::size_t words = 0, bytes = 0;  // of a point
+};
+
+PcdHeader read_pcd_header(LineReader& lines, const std::string& bytes, const std::string& name) {
+  PcdHeader h;
   std::vector<std::string_view> words;
-  std::vector<std::string> names, sizes, types, counts;
   long long width = -1, height = 1, points = -1;
-  int data = -1;
-  while (data < 0 && header.next(words)) {
+  bool ended = false;
+  while (!ended && lines.next(words)) {
     const auto rest = [&] { return std::vector<std::string>(words.begin() + 1, words.end()); };
     if (words[0] == "FIELDS")
-      names = rest();
+      h.names = rest();
     else if (words[0] == "SIZE")
-      sizes = rest();
+      h.sizes = rest();
     else if (words[0] == "TYPE")
-      types = rest();
+      h.types = rest();
     else if (words[0] == "COUNT")
-      counts = rest();
+      h.counts = rest();
     else if (words[0] == "WIDTH" && words.size() == 2)
-      width = header.integer(words[1]);
+      width = lines.integer(words[1]);
     else if (words[0] == "HEIGHT" && words.size() == 2)
-      height = header.integer(words[1]);
+      height = lines.integer(words[1]);
     else if (words[0] == "POINTS" && words.size() == 2)
-      points = header.integer(words[1]);
+      points = lines.integer(words[1]);
     else if (words[0] == "DATA" && words.size() == 2) {
-      data = words[1] == "ascii" ? 0 : words[1] == "binary" ? 1 : 2;
-      if (data == 2) header.fail("PCD data '" + shown(words[1]) + "' is not read here; write ascii or binary");
+      if (words[1] != "ascii" && words[1] != "binary")
+        lines.fail("PCD data '" + shown(words[1]) + "' is not read here; write ascii or binary");
+      h.binary = words[1] == "binary", ended = true;
     } else if (words[0] != "VERSION" && words[0] != "VIEWPOINT")
-      header.fail("'" + shown(words[0]) + "' is not expected in a PCD header");
+      lines.fail("'" + shown(words[0]) + "' is not expected in a PCD header");
   }
-  if (data < 0) throw InputError(name + ": the PCD header is not complete; the file is truncated");
-  if (names.empty() || sizes.size() != names.size() || types.size() != names.size() ||
-      (!counts.empty() && counts.size() != names.size()))
+  if (!ended) throw InputError(name + ": the PCD header is not complete; the file is truncated");
+  if (h.names.empty() || h.sizes.size() != h.names.size() || h.types.size() != h.names.size() ||
+      (!h.counts.empty() && h.counts.size() != h.names.size()))
     throw InputError(name + ": FIELDS, SIZE, TYPE and COUNT of the PCD header do not agree");
   if (points < 0) points = width * height;
   if (width < 0 || height < 0 || points != width * height || static_cast<std::size_t>(points) > bytes.size())
     throw InputError(name + ": the file is too short for " + std::to_string(points) +
                      " points; it is truncated or damaged");
-  std::size_t column[6], offset[6], stride = 0, total = 0;
-  bool single[6];
-  std::fill(std::begin(column), std::end(column), ~std::size_t(0));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto size = header.integer(sizes[i]), count = counts.empty() ? 1 : header.integer(counts[i]);
+  h.points = static_cast<std::size_t>(points);
+  return h;
+}
+
+PcdColumns find_pcd_columns(const PcdHeader& h, const LineReader& lines, const std::string& name) {
+  PcdColumns c;
+  std::fill(std::begin(c.word), std::end(c.word), ~std::size_t(0));
+  for (std::size_t i = 0; i < h.names.size(); ++i) {
+    const auto size = lines.integer(h.sizes[i]), count = h.counts.empty() ? 1 : lines.integer(h.counts[i]);
     if ((size != 1 && size != 2 && size != 4 && size != 8) || count < 1 || count > 4096)
       throw InputError(name + ": the PCD header has a field of impossible size");
     for (int k = 0; k < 6; ++k)
-      if (names[i] == fields[k]) {
-        if (types[i] != "F" || (size != 4 && size != 8) || count != 1)
-          throw InputError(name + ": field '" + names[i] + "' is not one floating-point number");
-        column[k] = total, offset[k] = stride, single[k] = size == 4;
+      if (h.names[i] == fields[k]) {
+        if (h.types[i] != "F" || (size != 4 && size != 8) || count != 1)
+          throw InputError(name + ": field '" + h.names[i] + "' is not one floating-point number");
+        c.word[k] = c.words, c.offset[k] = c.bytes, c.single[k] = size == 4;
       }
-    stride += static_cast<std::size_t>(size * count);
-    total += static_cast<std::size_t>(count);
+    c.bytes += static_cast<std::size_t>(size * count);
+    c.words += static_cast<std::size_t>(count);
   }
   for (int k = 0; k < 6; ++k)
-    if (column[k] == ~std::size_t(0))
+    if (c.word[k] == ~std::size_t(0))
       throw InputError(name + ": has no field '" + fields[k] + "'; nodes come from kerf-sample");
-  NodeSet nodes = with_room(static_cast<std::size_t>(points));  // the file has a byte for each at least
-  const std::size_t at = header.position();
-  if (data == 1) {
-    if (bytes.size() - at != stride * static_cast<std::size_t>(points))
-      throw InputError(name + ": holds " + std::to_string(bytes.size() - at) + " bytes of points instead of " +
-                       std::to_string(stride * static_cast<std::size_t>(points)) + "; it is truncated or damaged");
-    for (long long i = 0; i < points; ++i) {
-      double v[6];
-      for (int k = 0; k < 6; ++k) {
-        const char* p = bytes.data() + at + static_cast<std::size_t>(i) * stride + offset[k];
-        if (single[k]) {
-          float f;
-          std::memcpy(&f, p, 4);
-          v[k] = f;
-        } else {
-          std::memcpy(&v[k], p, 8);
-        }
-      }
-      add(nodes, v, name);
-    }
-    return nodes;
-  }
-  LineReader rows(std::string_view(bytes).substr(at), name);
-  for (long long i = 0; i < points; ++i) {
-    if (!rows.next(words))
-      throw InputError(name + ": ends after " + std::to_string(i) + " of " + std::to_string(points) +
-                       " points; it is truncated");
-    if (words.size() != total)
-      rows.fail("a point has " + std::to_string(words.size()) + " numbers instead of " + std::to_string(total));
+  return c;
+}
+
+void read_binary_points(std::string_view bytes, std::size_t points, const PcdColumns& c, const std::string& name,
+                        NodeSet& nodes) {
+  if (bytes.size() != c.bytes * points)
+    throw InputError(name + ": holds " + std::to_string(bytes.size()) + " bytes of points instead of " +
+                     std::to_string(c.bytes * points) + "; it is truncated or damaged");
+  for (std::size_t i = 0; i < points; ++i) {
     double v[6];
-    for (int k = 0; k < 6; ++k) v[k] = rows.real(words[column[k]]);
+    for (int k = 0; k < 6; ++k) {
+      const char* p = bytes.data() + i * c.bytes + c.offset[k];
+      if (c.single[k]) {
+        float f;
+        std::memcpy(&f, p, 4);
+        v[k] = f;
+      } else {
+        std::memcpy(&v[k], p, 8);
+      }
+    }
     add(nodes, v, name);
   }
-  if (rows.next(words)) rows.fail("has lines after its last point");
+}
+
+void read_ascii_points(std::string_view bytes, std::size_t points, const PcdColumns& c, const std::string& name,
+                       NodeSet& nodes) {
+  LineReader lines(bytes, name);
+  std::vector<std::string_view> words;
+  for (std::size_t i = 0; i < points; ++i) {
+    if (!lines.next(words))
+      throw InputError(name + ": ends after " + std::to_string(i) + " of " + std::to_string(points) +
+                       " points; it is truncated");
+    if (words.size() != c.words)
+      lines.fail("a point has " + std::to_string(words.size()) + " numbers instead of " + std::to_string(c.words));
+    double v[6];
+    for (int k = 0; k < 6; ++k) v[k] = lines.real(words[c.word[k]]);
+    add(nodes, v, name);
+  }
+  if (lines.next(words)) lines.fail("has lines after its last point");
+}
+
+NodeSet from_pcd(const std::string& bytes, const std::string& name) {
+  LineReader lines(bytes, name);
+  const PcdHeader header = read_pcd_header(lines, bytes, name);
+  const PcdColumns columns = find_pcd_columns(header, lines, name);
+  NodeSet nodes = with_capacity(header.points);  // bounded by the size of the file
+  const auto rest = std::string_view(bytes).substr(lines.position());
+  (header.binary ? read_binary_points : read_ascii_points)(rest, header.points, columns, name, nodes);
   return nodes;
 }
 
 void put_rows(std::ostream& out, const NodeSet& nodes) {
-  constexpr std::size_t share = 4096;  // rows in one go
+  constexpr std::size_t block = 4096;  // rows written at once
   std::vector<std::array<double, 6>> rows;
-  for (std::size_t first = 0; first < nodes.size(); first += share) {
+  for (std::size_t first = 0; first < nodes.size(); first += block) {
     rows.clear();
-    for (std::size_t i = first; i < std::min(first + share, nodes.size()); ++i)
+    for (std::size_t i = first; i < std::min(first + block, nodes.size()); ++i)
       rows.push_back({nodes.position[i].x(), nodes.position[i].y(), nodes.position[i].z(), nodes.radius[i],
                       nodes.spacing[i], nodes.volume[i]});
     out.write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof rows[0]));

@@ -1,6 +1,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 #include "io/line_reader.h"
@@ -53,7 +54,8 @@ double decode(const char* bytes, char type, bool swap) {
   }
 }
 
-// Numbers that stand at equal distances, `each` of them in a place; false where one is not finite.
+// Reads `each` consecutive numbers at each of `places`, `apart` bytes from one to the next. False
+// where a number is not finite.
 template <class T>
 bool fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each,
           bool swap) {
@@ -93,7 +95,7 @@ bool fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t plac
   }
 }
 
-// Whether some bytes are the same in all places, at equal distances.
+// True where `size` bytes are the same at all places, `apart` bytes from one to the next.
 bool repeats(const char* first, std::size_t size, std::size_t apart, std::size_t places) {
   for (std::size_t i = 1; i < places; ++i)
     for (std::size_t k = 0; k < size; ++k)
@@ -101,8 +103,8 @@ bool repeats(const char* first, std::size_t size, std::size_t apart, std::size_t
   return true;
 }
 
-// Reads a binary element whose rows are all as long as the first, as they are in most files, a property at a time.
-// False, with nothing read, where they are not or anything else is wrong.
+// Reads a binary element whose rows have equal lengths, property by property: the common case, and
+// much faster. False, with nothing read, for any other element.
 bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyElement& element) {
   std::string_view rest = bytes.substr(at);
   std::vector<std::size_t> first, each;  // of the numbers of a property in a row
@@ -151,92 +153,133 @@ const PlyElement* Ply::find(std::string_view element) const {
   return nullptr;
 }
 
-Ply parse_ply(std::string_view bytes, const std::string& name) {
-  static_assert(std::endian::native == std::endian::little);
-  Ply ply;
-  LineReader header(bytes, name, 0);
+namespace {
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+
+PlyFormat format_of(const LineReader& lines, std::string_view word) {
+  if (word == "ascii") return PlyFormat::ascii;
+  if (word == "binary_little_endian") return PlyFormat::little_endian;
+  if (word == "binary_big_endian") return PlyFormat::big_endian;
+  lines.fail("unknown PLY format '" + shown(word) + "'");
+}
+
+PlyProperty property_of(const LineReader& lines, const std::vector<std::string_view>& words) {
+  const bool list = words.size() == 5;
+  PlyProperty p;
+  p.name = std::string(words.back());
+  p.type = type_of(words[words.size() - 2]);
+  if (list) p.count_type = type_of(words[2]);
+  if (p.type == 0 || (list && (p.count_type == 0 || p.count_type == 'f' || p.count_type == 'd')))
+    lines.fail("unknown property type");
+  return p;
+}
+
+// Reads the header: elements with their properties, without values.
+PlyFormat read_header(LineReader& lines, std::string_view bytes, const std::string& name, Ply& ply) {
   std::vector<std::string_view> words;
-  int format = -1;  // 0 ASCII, 1 little, 2 big
+  std::optional<PlyFormat> format;
   bool ended = false;
-  if (!header.next(words) || words[0] != "ply") throw InputError(name + ": does not begin with 'ply'");
-  while (!ended && header.next(words)) {
+  if (!lines.next(words) || words[0] != "ply") throw InputError(name + ": does not begin with 'ply'");
+  while (!ended && lines.next(words)) {
     if (words[0] == "end_header") {
       ended = true;
     } else if (words[0] == "format" && words.size() >= 2) {
-      format = words[1] == "ascii"                  ? 0
-               : words[1] == "binary_little_endian" ? 1
-               : words[1] == "binary_big_endian"    ? 2
-                                                    : -1;
-      if (format < 0) header.fail("unknown PLY format '" + shown(words[1]) + "'");
+      format = format_of(lines, words[1]);
     } else if (words[0] == "comment" || words[0] == "obj_info") {
       std::string line;
       for (std::size_t i = 1; i < words.size(); ++i) line += (i > 1 ? " " : "") + std::string(words[i]);
       ply.comments.push_back(line);
     } else if (words[0] == "element" && words.size() == 3) {
-      const auto count = header.integer(words[2]);
-      // No row is smaller than a byte, so the file bounds every count before anything is allocated.
+      const auto count = lines.integer(words[2]);
+      // A row has at least one byte, so the file bounds every count before memory is allocated.
       if (count < 0 || static_cast<std::size_t>(count) > bytes.size())
-        header.fail("the file is too short for " + shown(words[2]) + " rows of '" + shown(words[1]) +
-                    "'; it is truncated or damaged");
+        lines.fail("the file is too short for " + shown(words[2]) + " rows of '" + shown(words[1]) +
+                   "'; it is truncated or damaged");
       ply.elements.push_back({std::string(words[1]), static_cast<std::size_t>(count), {}});
     } else if (words[0] == "property" && !ply.elements.empty() &&
                (words.size() == 3 || (words.size() == 5 && words[1] == "list"))) {
-      PlyProperty p;
-      p.name = std::string(words.back());
-      p.type = type_of(words[words.size() - 2]);
-      if (words.size() == 5) p.count_type = type_of(words[2]);
-      if (p.type == 0 || (words.size() == 5 && (p.count_type == 0 || p.count_type == 'f' || p.count_type == 'd')))
-        header.fail("unknown property type");
-      ply.elements.back().properties.push_back(std::move(p));
+      ply.elements.back().properties.push_back(property_of(lines, words));
     } else {
-      header.fail("'" + shown(words[0]) + "' is not expected in a PLY header");
+      lines.fail("'" + shown(words[0]) + "' is not expected in a PLY header");
     }
   }
-  if (!ended || format < 0) throw InputError(name + ": the PLY header is not complete; the file is truncated");
+  if (!ended || !format) throw InputError(name + ": the PLY header is not complete; the file is truncated");
+  return *format;
+}
 
-  std::size_t at = header.position();
-  LineReader rows(bytes.substr(at), name, 0);
-  const auto truncated = [&](const std::string& element) -> void {
-    throw InputError(name + ": ends within element '" + shown(element) + "'; the file is truncated");
-  };
+// Reads rows number by number, from text or bytes.
+class RowReader {
+ public:
+  RowReader(std::string_view bytes, std::size_t at, PlyFormat format, const std::string& name)
+      : bytes_(bytes), at_(at), format_(format), name_(name), lines_(bytes.substr(at), name, 0) {}
+
+  void read(PlyElement& element) {
+    if (ascii() || element.count == 0 || !read_even_rows(bytes_, format_ == PlyFormat::big_endian, at_, element))
+      for (std::size_t row = 0; row < element.count; ++row) read_row(element, row);
+  }
+  // True where bytes or lines are left.
+  bool more() { return ascii() ? lines_.next(words_) : at_ != bytes_.size(); }
+
+ private:
+  bool ascii() const { return format_ == PlyFormat::ascii; }
+  [[noreturn]] void truncated(const PlyElement& element) const {
+    throw InputError(name_ + ": ends within element '" + shown(element.name) + "'; the file is truncated");
+  }
+  double next(char type, const PlyElement& element, std::size_t row) {
+    double value = 0;
+    if (ascii()) {
+      if (word_ >= words_.size()) lines_.fail("too few numbers for a row of '" + shown(element.name) + "'");
+      value = lines_.real(words_[word_++]);
+    } else {
+      if (bytes_.size() - at_ < size_of(type)) truncated(element);
+      value = decode(bytes_.data() + at_, type, format_ == PlyFormat::big_endian);
+      at_ += size_of(type);
+    }
+    if (!std::isfinite(value))
+      throw InputError(name_ + ": row " + std::to_string(row) + " of '" + shown(element.name) +
+                       "' holds a value that is not a finite number; repair the file");
+    return value;
+  }
+  void read_row(PlyElement& element, std::size_t row) {
+    word_ = 0;
+    if (ascii() && !lines_.next(words_)) truncated(element);
+    for (auto& p : element.properties) {
+      if (p.count_type == 0) {
+        p.values.push_back(next(p.type, element, row));
+        continue;
+      }
+      const double count = next(p.count_type, element, row);
+      if (!(count >= 0) || count > static_cast<double>(bytes_.size()) || count != std::floor(count)) truncated(element);
+      for (double i = 0; i < count; ++i) p.values.push_back(next(p.type, element, row));
+      p.ends.push_back(static_cast<std::uint32_t>(p.values.size()));
+    }
+    if (ascii() && word_ != words_.size()) lines_.fail("too many numbers for a row of '" + shown(element.name) + "'");
+  }
+
+  std::string_view bytes_;
+  std::size_t at_;
+  PlyFormat format_;
+  const std::string& name_;
+  LineReader lines_;
+  std::vector<std::string_view> words_;
+  std::size_t word_ = 0;
+};
+
+}  // namespace
+
+Ply parse_ply(std::string_view bytes, const std::string& name) {
+  static_assert(std::endian::native == std::endian::little);
+  Ply ply;
+  LineReader header(bytes, name, 0);
+  const PlyFormat format = read_header(header, bytes, name, ply);
+  RowReader rows(bytes, header.position(), format, name);
   for (auto& element : ply.elements) {
     if (element.properties.empty() && element.count > 0)
       throw InputError(name + ": element '" + shown(element.name) + "' has rows but no properties");
-    if (format != 0 && element.count > 0 && read_even_rows(bytes, format == 2, at, element)) continue;
-    for (std::size_t row = 0; row < element.count; ++row) {
-      std::size_t word = 0;
-      if (format == 0 && !rows.next(words)) truncated(element.name);
-      const auto take = [&](char type) {
-        double value = 0;
-        if (format == 0) {
-          if (word >= words.size()) rows.fail("too few numbers for a row of '" + shown(element.name) + "'");
-          value = rows.real(words[word++]);
-        } else {
-          if (bytes.size() - at < size_of(type)) truncated(element.name);
-          value = decode(bytes.data() + at, type, format == 2);
-          at += size_of(type);
-        }
-        if (!std::isfinite(value))
-          throw InputError(name + ": row " + std::to_string(row) + " of '" + shown(element.name) +
-                           "' holds a value that is not a finite number; repair the file");
-        return value;
-      };
-      for (auto& p : element.properties) {
-        if (p.count_type == 0) {
-          p.values.push_back(take(p.type));
-          continue;
-        }
-        const double count = take(p.count_type);
-        if (!(count >= 0) || count > static_cast<double>(bytes.size()) || count != std::floor(count))
-          truncated(element.name);
-        for (double i = 0; i < count; ++i) p.values.push_back(take(p.type));
-        p.ends.push_back(static_cast<std::uint32_t>(p.values.size()));
-      }
-      if (format == 0 && word != words.size()) rows.fail("too many numbers for a row of '" + shown(element.name) + "'");
-    }
+    rows.read(element);
   }
-  if (format == 0 ? rows.next(words) : at != bytes.size())
-    throw InputError(name + ": has bytes after its last element; the file is damaged");
+  if (rows.more()) throw InputError(name + ": has bytes after its last element; the file is damaged");
   return ply;
 }
 

@@ -1,4 +1,4 @@
-// PLY as a table of elements and properties, whatever they are; used by surface and node files.
+// PLY files as elements with properties, whatever their meaning; for surface and node files.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,18 @@ struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<PlyProperty> properties;
+  /// The property of that name; null where there is none.
   const PlyProperty* find(std::string_view property) const;
 };
 struct Ply {
   std::vector<PlyElement> elements;
   std::vector<std::string> comments;
+  /// The element of that name; null where there is none.
   const PlyElement* find(std::string_view element) const;
 };
 
-/// ASCII or binary of either byte order. Throws InputError (name first) on anything malformed, numbers that are not
-/// finite, counts that the bytes cannot hold, and bytes left over.
+/// Reads ASCII or binary PLY of either byte order. Throws InputError, with `name` first, for
+/// malformed files, numbers that are not finite, counts larger than the file, and trailing bytes.
 Ply parse_ply(std::string_view bytes, const std::string& name);
 
 }  // namespace geo

@@ -14,7 +14,7 @@
 namespace geo {
 namespace {
 
-// A file that a scene names, and its content for the scene's fingerprint.
+// Reads the files that a scene names, and collects their hashes for the scene's fingerprint.
 struct Files {
   std::filesystem::path folder;
   std::string contents;
@@ -26,14 +26,14 @@ struct Files {
   }
 };
 
-// What one body cannot have of its own.
+// Throws for keys that a single body must not set.
 void refuse_shared(TomlTable& t, const std::string& table, std::initializer_list<const char*> keys) {
   for (const std::string key : keys)
     if (const auto* node = t.find(key))
       t.fail(*node, "'" + t.path() + key + "' is the same for all bodies: write it in the scene's [" + table + "]");
 }
 
-// Of the scene, or, where `own`, of one body: what the scene's has goes for what is left out.
+// Material of the scene; with `own` that of one body, whose missing keys keep the scene's values.
 void read_material(TomlTable& t, Material& m, bool own = false) {
   std::string model = m.model == ElasticModel::saint_venant_kirchhoff ? "stvk" : "neo-hookean";
   t.get("model", model);
@@ -66,7 +66,7 @@ void read_strength(TomlTable& t, Strength& s) {
   t.get("grain", s.grain, 0, 1e12);
 }
 
-// [ax, ay, az, degrees].
+// Reads a rotation [ax, ay, az, degrees].
 void read_rotation(TomlTable& t, Pose& place, const std::string& what) {
   const auto* node = t.find("rotation");
   if (!node) return;
@@ -110,7 +110,7 @@ void read_body_table(TomlTable& t, Scene& s) {
   s.bodies.push_back(std::move(body));
 }
 
-// Rows [time, x, y, z, ax, ay, az, degrees], here or in a file.
+// Reads keyframes [time, x, y, z, ax, ay, az, degrees], in the scene or in a file.
 Motion read_motion(TomlTable& t, Files& files) {
   Motion motion;
   for (const auto& v : t.rows("keys", 8)) motion.keys.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, v[7]});
@@ -132,7 +132,7 @@ void read_blade(TomlTable& t, Scene& s, Files& files) {
     t.fail("'blade.points' must be a list of two points at least, three when closed");
   blade.motion = read_motion(t, files);
   if (blade.motion.keys.size() < 2) t.fail("a blade needs two 'keys' at least, or a 'motion' file of them");
-  // The edge is divided finely enough to follow what the body does to it.
+  // Divides the edge, so that the map into the deformed body bends it.
   std::vector<Vec3> fine;
   int divide = 1;
   t.get("divide", divide, 1, 10000);
@@ -215,7 +215,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     top.section("body", [&](TomlTable& t) { read_body_table(t, s); });
   else
     top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
-  // Where all are as the scene says, there is nothing to look up.
+  // Without differences a look-up for each node is not needed.
   if (std::all_of(s.fracture.per_body.begin(), s.fracture.per_body.end(),
                   [&](const Strength& own) { return own == s.fracture; }))
     s.fracture.per_body.clear();
@@ -264,7 +264,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   top.list("score", [&](TomlTable& t) { read_score(t, s, files); });
 }
 
-// How many frames are asked for, and where models are, decides nothing about a frame.
+// The number of frames and the paths of models do not change a frame, so they are left out.
 std::uint64_t fingerprint_of(toml::table root, const std::string& contents) {
   if (auto* time = root["time"].as_table()) time->erase("frames");
   if (auto* body = root["body"].as_table()) body->erase("mesh");

@@ -1,4 +1,4 @@
-// The tree of a scene's keys: values put in by their dotted names, motions from tables.
+// Overrides of keys by dotted names, and motions from tables.
 #include <algorithm>
 #include <charconv>
 
@@ -26,7 +26,7 @@ void override_key(toml::table& root, const std::string& key, const std::string& 
   try {
     parsed = toml::parse("value = " + value);
   } catch (const toml::parse_error&) {
-    parsed = toml::table{{"value", value}};  // a bare word is text
+    parsed = toml::table{{"value", value}};  // a word without quotes is text
   }
   toml::node* at = &root;
   for (std::size_t from = 0; from <= key.size();) {
@@ -37,7 +37,7 @@ void override_key(toml::table& root, const std::string& key, const std::string& 
     if (toml::table* table = at->as_table()) {
       if (last) {
         const std::initializer_list<const char*> fineness{"spacing", "spacing_percent",
-                                                          "nodes"};  // a body has one of them: the new one
+                                                          "nodes"};  // a body has one of them: the override
         if (std::find(fineness.begin(), fineness.end(), part) != fineness.end())
           for (const char* other : fineness) table->erase(other);
         table->insert_or_assign(part, *parsed.get("value"));

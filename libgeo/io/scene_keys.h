@@ -1,4 +1,4 @@
-// What scene files and the command line share: keys by their dotted names, and what keyframes must be.
+// Keys of a scene by their dotted names, for overrides, and checks of keyframes.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace geo {
 
-/// Puts `value`, as TOML, where the dotted key says; numbers name rows of lists. Throws InputError.
+/// Sets the key with a dotted name to a value in TOML; numbers are indices of lists. Throws
+/// InputError.
 void override_key(toml::table& root, const std::string& key, const std::string& value);
 
-/// What is wrong with keyframes; empty when nothing is.
+/// The first fault of keyframes; empty where there is none.
 std::string unfit(const std::vector<Motion::Key>& keys);
 
 }  // namespace geo

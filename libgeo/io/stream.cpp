@@ -21,7 +21,7 @@
 namespace geo {
 namespace {
 
-// A stream buffer over a file descriptor that remembers why a write failed.
+// A stream buffer over a file descriptor that keeps the error code of a failed write.
 class DescriptorBuffer : public std::streambuf {
  public:
   explicit DescriptorBuffer(int fd) : fd_(fd) { setp(buffer_, buffer_ + sizeof buffer_); }
@@ -33,7 +33,7 @@ class DescriptorBuffer : public std::streambuf {
     if (c != traits_type::eof()) sputc(static_cast<char>(c));
     return 0;
   }
-  // What fills the buffer is written directly.
+  // Text larger than the buffer is written directly.
   std::streamsize xsputn(const char* text, std::streamsize size) override {
     if (size < static_cast<std::streamsize>(sizeof buffer_)) return std::streambuf::xsputn(text, size);
     return sync() == 0 && pass_on(text, text + size) ? size : 0;
@@ -116,7 +116,7 @@ std::string read_all(const std::string& path) {
       ::close(fd);
       throw InputError(path + ": is a folder; give a file");
     }
-    constexpr std::size_t most_at_once = 1u << 30;  // what a file says of its size may not be so
+    constexpr std::size_t most_at_once = 1u << 30;  // the size that a file system reports may be wrong
     if (S_ISREG(info.st_mode))
       bytes.reserve(std::min<std::size_t>(static_cast<std::size_t>(info.st_size), most_at_once));
   }
@@ -143,7 +143,7 @@ void require_writable(const std::string& path) {
   struct stat info {};
   const bool there = ::stat(path.c_str(), &info) == 0;
   if (there && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");
-  // A device or a pipe is written to as it is; anything else is made aside, in its folder.
+  // Devices and pipes are written directly, other files through a temporary one in the same folder.
   const auto folder = std::filesystem::path(path).parent_path() / ".";
   const bool possible =
       there && !S_ISREG(info.st_mode) ? ::access(path.c_str(), W_OK) == 0 : ::access(folder.c_str(), W_OK | X_OK) == 0;
@@ -167,7 +167,7 @@ void write_all(const std::string& path, const std::function<void(std::ostream&)>
   std::unique_ptr<TemporaryOutput> unfinished;
   int fd = -1;
   if (special) {
-    fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a device or a pipe cannot be renamed over
+    fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);  // a device or a pipe, which a rename would replace
   } else {
     thread_local std::random_device random;
     for (int tries = 0; tries < 16 && fd < 0; ++tries) {

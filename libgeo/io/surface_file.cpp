@@ -21,13 +21,12 @@ bool looks_like_obj(const std::string& bytes) {
 bool looks_like_off(const std::string& bytes) {
   LineReader lines(std::string_view(bytes).substr(0, 4096), "");
   std::vector<std::string_view> words;
-  // COFF and NOFF carry colours and normals behind the coordinates; other prefixes change what a
-  // coordinate is.
+  // COFF and NOFF add colours and normals to the coordinates; other prefixes change the
+  // coordinates.
   return lines.next(words) && (words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF");
 }
 
-// What is often given in place of a surface file that is read here, told by its first bytes; null:
-// none of these.
+// Name of a common format that is not read here, recognised by its first bytes; null for any other.
 const char* other_format(const std::string& bytes) {
   static constexpr std::pair<const char*, const char*> formats[] = {
       {"glTF", "a glTF"},       {"Kaydara FBX", "an FBX"}, {"; FBX", "an FBX"}, {"<?xml", "an XML (COLLADA?)"},

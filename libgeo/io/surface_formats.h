@@ -1,4 +1,4 @@
-// What the readers and writers of surface formats share. Not part of the public interface.
+// Readers of the surface formats, and helpers that they share with the writers.
 #pragma once
 
 #include <string>
@@ -9,25 +9,32 @@
 
 namespace geo {
 
-// One reader for each format: everything the file holds, and the name that complaints begin with.
+// One reader for each format. `name` stands for the file in messages. Each throws InputError as
+// parse_surface().
+
+/// Reads PLY with patch, site, source, attributes and fronts.
 SurfaceFile parse_surface_ply(const std::string& bytes, const std::string& name);
+/// Reads Wavefront OBJ.
 TriangleMesh parse_obj(const std::string& bytes, const std::string& name);
+/// Reads OFF, COFF and NOFF.
 TriangleMesh parse_off(const std::string& bytes, const std::string& name);
+/// Reads ASCII or binary STL.
 TriangleMesh parse_stl(const std::string& bytes, const std::string& name);
 
-/// A number as a row; ~0u when it is none.
+/// A number as an index; ~0u where it is no index.
 inline std::uint32_t row_of(double x) {
   if (!(x >= 0 && x < 4294967295.0)) return ~0u;
   const auto row = static_cast<std::uint32_t>(x);
   return static_cast<double>(row) == x ? row : ~0u;
 }
 
-/// Adds a polygon of n corners as n − 2 triangles: 0, k, k + 1 for k = 1, 2 … unless these fold over, as of one that is
-/// not convex. Returns the corners of each. Throws InputError, `where` first.
+/// Adds a polygon of n corners as n − 2 triangles: a fan about corner 0, or by ear clipping where
+/// the fan would fold over. Returns the corners of each triangle. Throws InputError, with `where`
+/// first.
 std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon,
                                                       const std::string& where);
 
-/// Each vertex' value at all of its corners.
+/// Values of vertices at the corners of triangles.
 template <class V>
 std::vector<std::array<V, 3>> at_corners(const TriangleMesh& mesh, const std::vector<V>& at_vertex) {
   std::vector<std::array<V, 3>> result;
@@ -36,13 +43,14 @@ std::vector<std::array<V, 3>> at_corners(const TriangleMesh& mesh, const std::ve
   return result;
 }
 
-/// The reverse, as far as it goes: what the first corner of each vertex has, corners on skin before those on cracks.
-/// `agree`: all corners on skin have their vertex' value.
+/// Values of corners at vertices: that of the first corner of a vertex, corners of skin before
+/// those of cracks. `agree`: whether all corners of skin have the value of their vertex.
 template <class V>
 struct AtVertices {
   std::vector<V> value;
   bool agree = true;
 };
+/// See AtVertices.
 template <class V>
 AtVertices<V> at_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 3>>& at_corner) {
   AtVertices<V> result;

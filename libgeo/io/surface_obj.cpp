@@ -28,7 +28,7 @@ std::string rest_of(const std::vector<std::string_view>& words) {
   return text;
 }
 
-// The row that an index of a face means: from 1 on, or backwards from the last one so far.
+// Index from 0 of a face's index: that counts from 1, or backwards from the last entry so far.
 std::uint32_t row_at(const LineReader& lines, std::string_view word, std::size_t count, const char* what) {
   const auto i = lines.integer(word);
   const auto size = static_cast<long long>(count);
@@ -38,7 +38,7 @@ std::uint32_t row_at(const LineReader& lines, std::string_view word, std::size_t
   return static_cast<std::uint32_t>(i > 0 ? i - 1 : size + i);
 }
 
-// Rows of the texture coordinate and normal at each corner of a triangle; ~0u: none given.
+// Indices of texture coordinate and normal at each corner of a triangle; ~0u: none.
 struct CornerRows {
   std::array<std::uint32_t, 3> uv, normal;
 };
@@ -120,7 +120,7 @@ TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
 
 namespace {
 
-// Writes each different value once and knows its number from then on. Values are told apart by their bits.
+// Writes each different value once and numbers it. Values are compared bit by bit.
 template <class V>
 class Once {
  public:

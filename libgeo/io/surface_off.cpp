@@ -20,8 +20,8 @@ TriangleMesh parse_off(const std::string& bytes, const std::string& name) {
   TriangleMesh mesh;
   std::vector<Vec3> normal;
   std::vector<Color> color;
-  std::vector<bool> opaque;  // colours without alpha
-  bool bytes_given = true;   // integers, 0 to 255, and not numbers from 0 to 1
+  std::vector<bool> opaque;  // per colour: without alpha
+  bool bytes_given = true;   // integers from 0 to 255, not numbers from 0 to 1
   double largest = 0;
   for (long long i = 0; i < nv; ++i) {
     if (!lines.next(words))

@@ -10,13 +10,13 @@
 namespace geo {
 namespace {
 
-// Where a triangle comes from: its face, and its corners among the face's.
+// The face that a triangle is a part of, and the triangle's corners among the face's.
 struct Part {
   std::uint32_t face;
   std::array<std::uint32_t, 3> corner;
 };
 
-// The properties of these names when the element has all of them, none a list; else nothing.
+// The properties of these names where the element has all of them and none is a list; else empty.
 std::vector<const PlyProperty*> scalars(const PlyElement& e, std::initializer_list<const char*> names) {
   std::vector<const PlyProperty*> found;
   for (const auto* name : names)
@@ -30,7 +30,7 @@ const PlyProperty* integers(const PlyElement& e, const char* name) {
   return p && !p->count_type && p->type != 'f' && p->type != 'd' ? p : nullptr;
 }
 
-// What full intensity is in a colour of this type.
+// Value of full intensity in colours of this type.
 double full(char type) { return type == 'f' || type == 'd' ? 1 : type == 'S' ? 65535 : 255; }
 
 template <class V>
@@ -120,8 +120,8 @@ class Reader {
     }
   }
 
-  // A corner has what its face's list gives it; without such a list, what its face has (`at_face`), or on a crack
-  // `on_crack`, or else what its vertex has.
+  // Values of corners: from the face's list; without one, that of the face (`at_face`), on cracks
+  // `on_crack`, else that of the vertex.
   template <class V, class OnCrack>
   void fill(std::vector<std::array<V, 3>>& out, const char* list_name, const std::vector<V>& at_face,
             const std::vector<V>& at_vertex, const OnCrack& on_crack) {
@@ -173,7 +173,7 @@ class Reader {
                 [](std::size_t) { return crack_color; });
   }
 
-  // Named by comments in order; without these, any integers are groups.
+  // Comments name groups in order; without them any integers are groups.
   void groups() {
     Attributes& a = mesh().attributes;
     for (const auto& c : ply_.comments) {
@@ -204,7 +204,7 @@ class Reader {
     for (const Part& part : parts_) a.group.push_back(static_cast<std::int32_t>(group->values[part.face]));
   }
 
-  // One row for each front, and one for each of their points and contacts.
+  // An element row for each front, and one for each of its points and contacts.
   void fronts();
 
   const Ply& ply_;

@@ -1,4 +1,4 @@
-// Writing a surface as PLY: binary, little-endian, with everything that is needed to read it back to the bit.
+// Writes a surface as binary little-endian PLY, with all that reading it back bit by bit needs.
 #include <cfloat>
 #include <cmath>
 #include <span>
@@ -13,7 +13,8 @@ void put(std::string& row, T value) {
   row.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// Numbers of one attribute, so many a row, in the smallest type that holds every one of them exactly.
+// An attribute with a fixed number of values in a row, in the smallest type that holds all of them
+// exactly.
 struct Block {
   std::span<const double> values;
   std::size_t each = 0;
@@ -45,7 +46,8 @@ Block block_of(const std::vector<Row>& rows, bool color = false) {
   return block;
 }
 
-// How the reader would fill the corners from vertices alone; a list is needed where that is not what they have.
+// Corner values that the reader derives from the vertices alone. A list is written where they
+// differ.
 template <class V, class OnCrack>
 bool told_by_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 3>>& at_corner,
                       const AtVertices<V>& at_vertex, const OnCrack& on_crack) {

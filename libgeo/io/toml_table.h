@@ -1,5 +1,5 @@
-// A table of a TOML file, read key by key: every complaint has line and column, and a key that nobody asks for is
-// unknown.
+// A table of a TOML file, read key by key. Errors have line and column. A key that is never queried
+// is an error.
 #pragma once
 
 #include <toml++/toml.h>
@@ -15,30 +15,38 @@
 
 namespace geo {
 
+/// Reader of one table. All get() functions leave the value unchanged where the key is missing, and
+/// throw InputError where the key has another type or is out of range.
 class TomlTable {
  public:
+  /// `name`: of the file; `path`: dotted prefix of the keys in messages. `table` must outlive the
+  /// reader.
   TomlTable(const toml::table& table, std::string name, std::string path)
       : table_(table), name_(std::move(name)), path_(std::move(path)) {}
 
+  /// Throws InputError at the position of a node.
   [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
     const auto at = node.source().begin;
     throw InputError(at.line > 0 ? name_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " + what
                                  : name_ + ": " + what);
   }
+  /// Throws InputError at the position of the table.
   [[noreturn]] void fail(const std::string& what) const { fail(table_, what); }
-  /// A key that must be there is not: perhaps it is there misspelt.
+  /// Throws InputError for a missing key; where another key is similar, for that one as misspelt.
   [[noreturn]] void missing(const std::string& key, const std::string& what) const {
     for (const auto& [other, node] : table_)
       if (const auto meant = did_you_mean(other.str(), {key}); !meant.empty())
         fail(node, "unknown key '" + path_ + shown(other.str()) + "'" + meant);
     fail("'" + path_ + key + "' is missing: " + what);
   }
-  /// What stands before its keys in messages.
+  /// Prefix of the keys in messages.
   const std::string& path() const { return path_; }
+  /// The node of a key; null where it is missing.
   const toml::node* find(const std::string& key) {
     known_.insert(key);
     return table_.get(key);
   }
+  /// A number within [least, most].
   void get(const std::string& key, double& value, double least, double most) {
     const auto* node = find(key);
     if (!node) return;
@@ -49,6 +57,7 @@ class TomlTable {
            "'" + path_ + key + "' is out of range: it must be from " + in_words(least) + " to " + in_words(most));
     value = *v;
   }
+  /// An integer within [least, most].
   void get(const std::string& key, int& value, int least, int most) {
     const auto* node = find(key);
     if (!node) return;
@@ -58,6 +67,7 @@ class TomlTable {
            "'" + path_ + key + "' must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
     value = static_cast<int>(*v);
   }
+  /// Text.
   void get(const std::string& key, std::string& value) {
     const auto* node = find(key);
     if (!node) return;
@@ -65,6 +75,7 @@ class TomlTable {
     if (!v) fail(*node, "'" + path_ + key + "' must be text");
     value = *v;
   }
+  /// A truth value.
   void get(const std::string& key, bool& value) {
     const auto* node = find(key);
     if (!node) return;
@@ -72,12 +83,14 @@ class TomlTable {
     if (!v) fail(*node, "'" + path_ + key + "' must be true or false");
     value = *v;
   }
+  /// Three numbers.
   void get(const std::string& key, Vec3& value) {
     const auto* node = find(key);
     if (!node) return;
     const auto v = row(*node, 3, "'" + path_ + key + "'");
     value = {v[0], v[1], v[2]};
   }
+  /// A list of `size` finite numbers; `what` names it in messages.
   std::vector<double> row(const toml::node& node, std::size_t size, const std::string& what) const {
     const auto* array = node.as_array();
     if (!array || array->size() != size) fail(node, what + " must be " + std::to_string(size) + " numbers");
@@ -89,7 +102,7 @@ class TomlTable {
     }
     return values;
   }
-  /// The rows of a list of lists; none where the key is missing.
+  /// A list of lists of `size` numbers; empty where the key is missing.
   std::vector<std::vector<double>> rows(const std::string& key, std::size_t size) {
     std::vector<std::vector<double>> values;
     const auto* node = find(key);
@@ -98,7 +111,7 @@ class TomlTable {
     for (const auto& r : *node->as_array()) values.push_back(row(r, size, "a row of '" + path_ + key + "'"));
     return values;
   }
-  /// A table within this one; `read` gets it, and must ask for all keys it knows.
+  /// Reads a table within this one: `read` gets its reader, and must query all keys that it knows.
   template <class Read>
   void section(const std::string& key, const Read& read) {
     const auto* node = find(key);
@@ -106,7 +119,7 @@ class TomlTable {
     if (!node->is_table()) fail(*node, "'" + path_ + key + "' must be a table");
     each(*node->as_table(), key, read);
   }
-  /// The tables of [[key]], in order.
+  /// Reads the tables of [[key]] in order.
   template <class Read>
   void list(const std::string& key, const Read& read) {
     const auto* node = find(key);
@@ -115,7 +128,7 @@ class TomlTable {
       fail(*node, "write each " + key + " as [[" + key + "]]");
     for (const auto& e : *node->as_array()) each(*e.as_table(), key, read);
   }
-  /// After all keys were asked for.
+  /// Throws InputError for a key that was never queried.
   void done() const {
     for (const auto& [key, node] : table_)
       if (!known_.count(std::string(key.str())))

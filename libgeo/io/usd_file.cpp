@@ -13,7 +13,7 @@
 namespace geo {
 namespace {
 
-// In the shortest form that reads back the same.
+// Shortest text that is read back exactly.
 void add(std::string& text, auto x) {
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
@@ -86,7 +86,8 @@ std::string uv_of(const TriangleMesh& m) {
 
 using Frames = std::vector<std::size_t>;
 
-// What is made of some frames, in their order: each(i, made). `make` is asked for a few at a time, from any threads.
+// Calls each(i, make(i)) for some frames in order. `make` runs for a few frames at a time, in
+// threads.
 template <class Make>
 void each_in_order(const Frames& frames, const Make& make, const auto& each) {
   const auto batch = static_cast<std::size_t>(threads());
@@ -99,8 +100,7 @@ void each_in_order(const Frames& frames, const Make& make, const auto& each) {
   }
 }
 
-// A sample is what holds until the next: one that says the same is left out. Frames that are not given are like those
-// before them.
+// Time samples. A sample holds until the next, so an equal one is left out.
 class Samples {
  public:
   Samples(std::ostream& out, std::string margin, const std::string& declaration)
@@ -109,7 +109,7 @@ class Samples {
   }
   void add(std::size_t i, std::string text) {
     if (i > 0 && text == last_) return;
-    // Points between two samples would be interpolated from where they last changed.
+    // A repeated sample before each change: else readers interpolate from the last change on.
     if (i > written_ + 1) out_ << margin_ << "    " << i - 1 << ": " << last_ << ",\n";
     out_ << margin_ << "    " << i << ": " << text << ",\n";
     last_ = std::move(text), written_ = i;
@@ -140,7 +140,7 @@ bool same_rows(const TriangleMesh& a, const TriangleMesh& b) {
   return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv;
 }
 
-// What same_rows() looks at.
+// The arrays that same_rows() compares.
 TriangleMesh rows_of(TriangleMesh&& m) {
   TriangleMesh rows;
   rows.triangles = std::move(m.triangles), rows.patch = std::move(m.patch),
@@ -187,8 +187,8 @@ void write_usda(std::ostream& out, const UsdRun& run) {
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
   constexpr std::size_t most_kept = 16;
-  Frames cut;                                // those with other triangles than the one before
-  std::map<std::size_t, TriangleMesh> kept;  // rows of the first of them, which are not read again
+  Frames cut;                                // whose triangles differ from those of the frame before
+  std::map<std::size_t, TriangleMesh> kept;  // of the first of these frames, which are not read again
   TriangleMesh last;
   {
     Samples points(out, "        ", "point3f[] points");

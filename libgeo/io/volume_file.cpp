@@ -45,8 +45,7 @@ openvdb::FloatGrid::Ptr level_set_of(const TriangleMesh& solid, double voxel) {
 template <class Grid>
 TriangleMesh surface_of(const Grid& grid, const VolumeOptions& options, const std::string& path) {
   const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
-  // A file without a class is one of distances where its background, the value far outside, is not
-  // 0.
+  // A grid without a class holds distances where its background, the value far outside, is not 0.
   const bool low_inside = level_set || (grid.getGridClass() != openvdb::GRID_FOG_VOLUME && grid.background() > 0);
   const double iso = options.iso.value_or(low_inside ? 0.0 : 0.5);
   if (grid.activeVoxelCount() == 0) throw InputError(path + ": the grid is empty");
@@ -89,7 +88,7 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options) 
 }
 
 TriangleMesh wrapped(const TriangleMesh& solid, double voxel) {
-  // In voxels about the middle: single precision is enough there.
+  // Coordinates in voxels about the centre, where single precision is enough.
   const Vec3 middle = bounding_box(solid).center();
   TriangleMesh scaled;
   for (const Vec3& p : solid.vertices) scaled.vertices.push_back((p - middle) / voxel);

@@ -41,6 +41,7 @@ class KerfFile {
   /// name first, where the input is no .kerf file, of a newer version or another byte order,
   /// damaged, or without a complete commit.
   explicit KerfFile(Input input);
+  /// Takes the open file of `other`, which must not be used afterwards.
   KerfFile(KerfFile&& other) noexcept;
   ~KerfFile();
 

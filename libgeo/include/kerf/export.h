@@ -1,7 +1,7 @@
-// Bodies for other programs: VTK's and PLY for pictures, NumPy's and JSON for figures. See
-// docs/formats.md.
+// Bodies, pieces and bonds for other programs: VTK, PLY, NumPy, JSON, glTF (docs/formats.md).
 #pragma once
 
+#include <cstddef>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -12,55 +12,57 @@
 
 namespace geo {
 
-/// The visibility graph as a binary PLY: nodes as vertices with all that they have and the number
+// ---- The graph and the sections of a body.
+
+/// Writes the visibility graph as binary PLY: nodes as vertices with all their fields and the index
 /// of their component, edges i < j as elements `edge`.
 void write_graph_ply(std::ostream& out, const Body& body);
 
-/// The visibility graph as VTK's unstructured grid of lines, binary: nodes as points with the same
+/// Writes the visibility graph as a VTK unstructured grid of lines (`.vtu`, binary) with the same
 /// fields.
 void write_vtu(std::ostream& out, const Body& body);
 
-/// The same as VTKHDF 1.0. Memory: twice the file. Throws OutputError when there is not enough.
+/// Writes the same as VTKHDF 1.0. Memory: twice the file. Throws OutputError where there is too
+/// little.
 void write_vtkhdf(std::ostream& out, const Body& body);
 
-/// All sections under their names, as NumPy's zip archive of arrays, not compressed; the json ones
-/// as they are.
+/// Writes all sections of a file as a NumPy archive (`.npz`), uncompressed; json sections as text.
 void write_npz(std::ostream& out, const KerfFile& file);
 
-/// All sections under their names, as JSON: numbers in the shortest form that reads back the same,
-/// rows as lists.
+/// Writes all sections of a file as JSON: numbers in the shortest form that is read back exactly,
+/// rows of arrays as lists.
 void write_json(std::ostream& out, const KerfFile& file);
 
-// ---- Pieces and bonds in files: glTF 2.0 (binary) with everything in one, and JSON.
+// ---- Pieces and bonds.
 
-/// What is told of pieces beside their shapes.
-struct ChunkNotes {
-  std::string kind = "file";       ///< what pieces are named by: file or node
-  std::vector<std::string> names;  ///< of each piece
-  double strength = 1;             ///< force an area of 1 withstands; a bond's strength is this times its area
+/// Labels of pieces in written files.
+struct ChunkLabels {
+  std::string kind = "file";       ///< key of the names: "file" or "node"
+  std::vector<std::string> names;  ///< per piece
+  double strength = 1;             ///< force per unit of area that a bond withstands
 };
 
-/// `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area", "normal",
-/// "centroid", "strength"}]}`.
+/// Writes `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area",
+/// "normal", "centroid", "strength"}]}`.
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
-                 const ChunkNotes& notes);
+                 const ChunkLabels& labels);
 
 struct GlbOptions {
-  std::size_t hull_corners =
-      0;  ///< of the convex hulls below each piece's node, named UCX_ and the piece's name; 0: none
-  std::size_t hull_parts = 1;  ///< see convex_decomposition(); where there are several, their names end in _00, _01 …
-  bool z_up = false;           ///< the model's z is up; glTF's is y
+  std::size_t hull_corners = 0;  ///< corners of the convex hulls below each piece's node; 0: no hulls
+  std::size_t hull_parts = 1;    ///< hulls for each piece, see convex_decomposition()
+  bool z_up = false;             ///< the model's z axis is vertical; in glTF y is
 };
 
-/// A .glb: a root node with one node for each piece, whose origin is the piece's centroid, and one
-/// material for each group, that of cracks with a face on the inside. Normals are those given, on
-/// cracks and where there are none those of the triangles around each corner that are bent less
-/// than 45 degrees. Colours become linear, as glTF wants them. What write_bonds() says is in the
-/// scene's `extras`. Coordinates are single precision about each centroid.
+/// Writes a .glb file (glTF 2.0, binary): a root node with a node for each piece, whose origin is
+/// the piece's centroid, and a material for each group, that of cracks for inner faces. Normals are
+/// those of the mesh; without them, and on cracks, those of the triangles around a corner that
+/// differ by less than 45°. Colours are converted to linear ones, as glTF requires. Hulls have
+/// names UCX_, the piece, and hull_suffix(). The scene's `extras` hold what write_bonds() writes.
+/// Coordinates are in single precision, relative to each centroid.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
-               const ChunkNotes& notes, const GlbOptions& options = {});
+               const ChunkLabels& labels, const GlbOptions& options = {});
 
-/// What the name of hull `part` of `parts` ends in: "" for a single one, else _00, _01 …
+/// Suffix of the name of hull `part` of `parts`: "" for a single one, else _00, _01 …
 std::string hull_suffix(std::size_t part, std::size_t parts);
 
 }  // namespace geo

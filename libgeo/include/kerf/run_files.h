@@ -1,6 +1,8 @@
-// The files of a run that other programs read: nodes of a frame, ParaView series (usd_file.h: USD).
+// Files of a run: nodes of a frame, checkpoints, a ParaView series, and USD.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <ostream>
 #include <string>
@@ -13,22 +15,19 @@
 
 namespace geo {
 
-/// Nodes where they are in a frame of a run: a node file (PLY, floats) with one more field, the
-/// stress.
+// ---- Nodes of a frame.
+
+/// The nodes of a frame.
 struct FrameNodes {
-  NodeSet nodes;               ///< positions moved, all else in material coordinates
+  NodeSet nodes;               ///< deformed positions; radius, spacing and volume of the undeformed material
   std::vector<double> stress;  ///< per node, von Mises, Pa
 };
+/// Writes a node file (binary PLY, single precision) with the stress as a further property.
 void write_frame_nodes(std::ostream& out, const FrameNodes& frame);
-/// Throws InputError for what is no such file.
+/// Reads such a file; `name` stands for it in messages. Throws InputError for any other file.
 FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name);
 
-/// A series of ParaView's (`.ply.series`, JSON): paths of numbered frames, relative to it, with
-/// their times. (A collection, `.pvd`, is of VTK's own formats only.)
-void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate);
-
-// ---- The checkpoint of a run: its body and all else that it needs to go on, in one `.kerf` file,
-// so that one rename makes it.
+// ---- Checkpoints: the body of a run and its state in one `.kerf` file, replaced by one rename.
 
 struct Checkpoint {
   Body body;
@@ -36,29 +35,34 @@ struct Checkpoint {
   std::uint64_t scene = 0;  ///< fingerprint of the scene and its models
 };
 
-/// A body as write_body writes it, with sections `run/…` behind it. Deterministic.
+/// Writes a body as write_body() does, then sections `run/…`. The same run gives the same bytes.
 void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene);
-/// Throws InputError (name first) as read_body does, and for sections of the run that are missing
+/// Reads a checkpoint. Throws InputError as read_body(), and where sections of the run are missing
 /// or impossible.
 Checkpoint read_checkpoint(const KerfFile& file);
 
-// ---- A run as USD (Universal Scene Description, text form): what film and game pipelines read.
+// ---- All frames of a run, for other programs.
 
-/// Frames of one rate. Each is asked for once, those with new triangles several times where they
-/// are many, from any threads; one a thread is in memory, and one more, and the triangles of the
-/// first few with new ones.
+/// Writes a ParaView series (`.ply.series`, JSON): paths of numbered frames, relative to the
+/// series, and their times. ParaView's collections, `.pvd`, take VTK's own formats only.
+void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate);
+
+/// The frames of a run as write_usda() reads them. `surface` and `obstacles` are called from
+/// several threads: once for each frame, and several times for frames whose triangles change where
+/// there are many. Memory: one frame for each thread and one more, and the triangles of the first
+/// few changes.
 struct UsdRun {
   std::size_t frames = 0;
-  double frame_rate = 24;                            ///< frames a second
-  char up = 'Z';                                     ///< the axis that is up: 'Y' or 'Z', as USD knows no other
-  std::function<TriangleMesh(std::size_t)> surface;  ///< of the bodies, in metres; its rows may be others in each frame
-  std::function<TriangleMesh(std::size_t)> obstacles;  ///< triangles alike in all frames; none: there are no obstacles
+  double frame_rate = 24;                              ///< frames per second
+  char up = 'Z';                                       ///< vertical axis, 'Y' or 'Z', as USD has no other
+  std::function<TriangleMesh(std::size_t)> surface;    ///< of the bodies in a frame, metres
+  std::function<TriangleMesh(std::size_t)> obstacles;  ///< in a frame, with the same triangles in all; may be empty
 };
 
-/// Mesh /run/body with a time sample of points a frame, and of what its triangles are where they
-/// change; texture coordinates, where the surface has them; triangles of the skin and those of
-/// cracks as subsets bound to materials of their own, and each triangle's crack as primvars:patch.
-/// Mesh /run/obstacles.
+/// Writes a run as USD text (Universal Scene Description). The mesh /run/body has a time sample of
+/// points for each frame, and of its triangles where they change; texture coordinates where the
+/// surface has them; skin and cracks as subsets bound to two materials; and the crack of each
+/// triangle as primvars:patch. Obstacles are the mesh /run/obstacles.
 void write_usda(std::ostream& out, const UsdRun& run);
 
 }  // namespace geo

@@ -50,7 +50,9 @@ class Simulation {
   /// Continues a run from a checkpoint's body and state. Without body indices, all nodes belong to
   /// the first body. Throws InputError where the state does not fit the scene.
   Simulation(const Scene& scene, Body body, RunState state);
+  /// Takes the run of `other`, which must not be used afterwards.
   Simulation(Simulation&& other) noexcept;
+  /// Likewise.
   Simulation& operator=(Simulation&& other) noexcept;
   ~Simulation();
 

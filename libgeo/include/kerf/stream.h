@@ -26,6 +26,7 @@ class Input {
   /// Bytes in memory; `name` stands for the file in messages.
   Input(std::string bytes, std::string name);
   ~Input();
+  /// Takes the open file of `other`.
   Input(Input&& other) noexcept;
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
@@ -51,7 +52,7 @@ std::uint64_t fingerprint(std::string_view bytes);
 
 // ---- Output.
 
-/// What write_all() waits for. `by_system`: the operating system has the bytes; only a crash of the
+/// How far write_all() waits. `by_system`: the operating system has the bytes; only a crash of the
 /// machine can lose them.
 enum class Sync { on_disk, by_system };
 

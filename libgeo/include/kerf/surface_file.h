@@ -1,4 +1,4 @@
-// Surfaces in files: PLY (ASCII and binary, both orders), OBJ, STL (ASCII and binary), OFF.
+// Surfaces in files: PLY, OBJ, STL and OFF; OpenVDB volumes as closed surfaces.
 #pragma once
 
 #include <optional>
@@ -11,48 +11,51 @@
 
 namespace geo {
 
-/// A surface with the fronts that were still cutting it when it was written ("- " continued by kerf-crack).
+/// A surface, with the fronts that were cutting it when it was written. kerf-crack continues them.
 struct SurfaceFile {
   TriangleMesh mesh;
   std::vector<FrontState> fronts;
 };
 
-/// Reads any supported format, told by content first and by extension next; polygons are triangulated as fans,
-/// or by ears where they are not convex; seams are welded (weld_seams) unless there are sites. What the file has of
-/// attributes and sources comes with it. Throws InputError (with line or row) on anything malformed, NaN or infinite,
-/// indices out of range, sizes that the file cannot hold, trailing garbage.
+/// Reads a surface from a file, or from standard input where `path` is "-". The format is
+/// recognised by content, then by extension. Polygons are triangulated as fans, by ear clipping
+/// where they are not convex. Coincident vertices of seams are merged unless the mesh has sites.
+/// Throws InputError, with the line or entry, for malformed data, numbers that are not finite,
+/// indices out of range, sizes larger than the file, and trailing bytes.
 SurfaceFile read_surface(const std::string& path);
+/// The same from bytes in memory; `name` stands for the file in messages.
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name);
 
-/// Binary little-endian PLY with `patch`, `site`, `source`, the attributes and, where given, the fronts' contacts as
-/// elements of their own; docs/formats.md says how. Numbers are written in the smallest type that holds them exactly.
+/// Writes binary little-endian PLY with patch, site, source, attributes, and the contacts of
+/// `fronts` as further elements (docs/formats.md). Numbers have the smallest type that holds them
+/// exactly.
 void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts = {},
                const std::string& comment = {});
-/// Wavefront OBJ: patches as `g patch_N`, groups as `usemtl`. OBJ has one colour a vertex, without alpha: that of the
-/// skin there.
+/// Writes Wavefront OBJ: patches as `g patch_N`, groups as `usemtl`. A vertex has one colour
+/// without alpha, that of the skin, as OBJ has no others.
 void write_obj(std::ostream& out, const TriangleMesh& mesh);
 
-// ---- Volumes in files: OpenVDB level sets and fog volumes, as closed surfaces.
+// ---- Volumes.
 
 struct VolumeOptions {
-  std::string grid = {};           ///< which grid, by name; empty: the only one of numbers
-  std::optional<double> iso = {};  ///< the surface's level; default: 0 of a level set, 0.5 of a fog volume
-  double adaptivity = 0;  ///< 0: triangles of a voxel's size everywhere; up to 1: larger where the surface is flat
+  std::string grid = {};           ///< name of the grid; empty: the only scalar grid of the file
+  std::optional<double> iso = {};  ///< level of the surface; default: 0 of a level set, 0.5 of a fog volume
+  double adaptivity = 0;           ///< 0: triangles of voxel size; up to 1: larger ones where the surface is flat
 };
 
-/// The surface of a scalar grid of a `.vdb` file ("-": standard input), at values below the level for a level set,
-/// above it for any other. Closed, oriented outwards, world units. Throws InputError for files that are no OpenVDB,
-/// hold no grid of single- or double-precision numbers or several to choose from, or have no closed surface at the
-/// level.
+/// The iso-surface of a scalar grid in an OpenVDB file ("-": standard input). Inside are values
+/// below the level for a level set, above it for any other grid. Closed, oriented outwards, world
+/// units. Throws InputError where the file is no OpenVDB file, has no floating-point grid, several
+/// without a name given, or no closed surface at the level.
 TriangleMesh read_volume(const std::string& path, const VolumeOptions& options = {});
 
-/// A new surface around a closed one, which may cross itself: that of its level set, with voxels of the given size
-/// (edges are rounded by as much). `source` names the triangle that each is nearest to, and attributes are those of
-/// this one.
+/// A new surface around a closed one, which may intersect itself: the zero level of its distance
+/// field, with voxels of edge `voxel`, which also rounds edges by that length. `source` is the
+/// nearest triangle of `solid`, and attributes are those of that triangle.
 TriangleMesh wrapped(const TriangleMesh& solid, double voxel);
 
-/// Writes a mesh's level set with voxels of the given size, or with `fog` a density from 0 outside to 1 in the depth;
-/// for samples and tests.
+/// Writes a mesh as a level set with voxels of edge `voxel`; with `fog` as a density from 0 outside
+/// to 1 inside. For samples and tests. Throws OutputError.
 void write_level_set(const std::string& path, const TriangleMesh& solid, double voxel, bool fog = false);
 
 }  // namespace geo

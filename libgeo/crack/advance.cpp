@@ -1,4 +1,4 @@
-// One step of a crack, as docs/design.md tells it: sweep, meet, split, keep, guard, stitch.
+// One step of a crack: sweep, meet, split, classify, stitch, guard, commit (docs/design.md).
 #include "kerf/crack.h"
 
 #include <algorithm>
@@ -13,78 +13,93 @@
 namespace geo {
 namespace {
 
-// Another crack may have divided the front's edges since: consecutive contacts that K joins no
-// longer are joined again through the vertices that now lie between them.
-void renew_contacts(FrontState& front, const Complex& complex) {
-  const double reach = 1e-12 * complex.extent().diagonal();
+// The vertices of K on the segment from a to b, in order, if edges of K join them to a and b; else
+// none.
+std::vector<VertexId> vertices_between(const Complex& complex, const FrontState::Point& a, const FrontState::Point& b,
+                                       double tolerance) {
+  const Vec3 along = b.position - a.position;
+  const double length = along.squaredNorm();
+  std::vector<FaceId> near;
+  Box3 box{a.position, a.position};
+  box.add(b.position);
+  complex.faces_near(box.grown(tolerance), near);
+  std::vector<std::pair<double, VertexId>> between;
+  for (const FaceId f : near)
+    for (const VertexId v : complex.face(f).v) {
+      const Vec3 w = complex.point(v) - a.position;
+      const double t = w.dot(along) / length;
+      if (v != a.id && v != b.id && t > 0 && t < 1 && (w - t * along).norm() <= tolerance) between.push_back({t, v});
+    }
+  std::sort(between.begin(), between.end());
+  between.erase(std::unique(between.begin(), between.end()), between.end());
+  std::vector<VertexId> chain;
+  VertexId last = a.id;
+  for (const auto& [t, v] : between) {
+    if (complex.faces_around(last, v).empty()) return {};
+    chain.push_back(last = v);
+  }
+  if (complex.faces_around(last, b.id).empty()) return {};
+  return chain;
+}
+
+// Another crack may have divided the front's edges since the last step. Consecutive contacts that
+// no edge of K joins are joined through the vertices that now lie between them.
+void update_contacts(FrontState& front, const Complex& complex) {
+  const double tolerance = 1e-12 * complex.extent().diagonal();
   for (auto& segment : front.segments) {
-    std::vector<FrontState::Point> renewed{segment.front()};
+    std::vector<FrontState::Point> updated{segment.front()};
     for (std::size_t i = 1; i < segment.size(); ++i) {
       const auto &a = segment[i - 1], &b = segment[i];
-      if (a.id.valid() && b.id.valid() && a.id != b.id && complex.faces_around(a.id, b.id).empty()) {
-        const Vec3 along = b.position - a.position;
-        const double length = along.squaredNorm();
-        std::vector<FaceId> near;
-        Box3 box{a.position, a.position};
-        box.add(b.position);
-        complex.faces_near(box.grown(reach), near);
-        std::vector<std::pair<double, VertexId>> between;
-        for (const FaceId f : near)
-          for (const VertexId v : complex.face(f).v) {
-            const Vec3 w = complex.point(v) - a.position;
-            const double t = w.dot(along) / length;
-            if (v != a.id && v != b.id && t > 0 && t < 1 && (w - t * along).norm() <= reach) between.push_back({t, v});
-          }
-        std::sort(between.begin(), between.end());
-        between.erase(std::unique(between.begin(), between.end()), between.end());
-        bool joined = true;
-        VertexId last = a.id;
-        for (const auto& [t, v] : between) joined = joined && !complex.faces_around(last, v).empty(), last = v;
-        if (joined && !between.empty() && !complex.faces_around(last, b.id).empty())
-          for (const auto& [t, v] : between) renewed.push_back({complex.point(v), v});
-      }
-      renewed.push_back(b);
+      if (a.id.valid() && b.id.valid() && a.id != b.id && complex.faces_around(a.id, b.id).empty())
+        for (const VertexId v : vertices_between(complex, a, b, tolerance)) updated.push_back({complex.point(v), v});
+      updated.push_back(b);
     }
-    segment = std::move(renewed);
+    segment = std::move(updated);
   }
 }
 
-// The front after the step: the points of K that lie on each new segment, in order.
-void follow_front(FrontState& front, const Complex& complex, const Strip& strip, const crack::Arrangement& arrangement,
-                  const std::vector<VertexId>& vertex) {
-  const std::size_t count = front.segments.size(), n = strip.next.size();
+using Chain = std::vector<crack::PointIndex>;
+
+// Joins chains of points, which may run either way, into one that starts at `from`.
+Chain join_chains(std::vector<Chain>& chains, const Vec3& from, const crack::Points& points) {
+  Chain joined;
+  Vec3 end = from;
+  for (bool found = true; found;) {
+    found = false;
+    for (auto& chain : chains) {
+      if (chain.empty()) continue;
+      if (points[chain.front()] != end && points[chain.back()] == end) std::reverse(chain.begin(), chain.end());
+      if (points[chain.front()] != end) continue;
+      joined.insert(joined.end(), chain.begin() + (joined.empty() ? 0 : 1), chain.end());
+      end = points[chain.back()];
+      chain.clear();
+      found = true;
+      break;
+    }
+  }
+  return joined;
+}
+
+// Advances the front to the end of the step: each new segment lists the vertices of K on it, in
+// order.
+void advance_contacts(FrontState& front, const Complex& complex, const Strip& strip,
+                      const crack::Arrangement& arrangement, const std::vector<VertexId>& vertex) {
+  const std::size_t count = front.segments.size(), n = strip.new_front.size();
   // The strip edges that make up each new segment: one, or several where it was snapped to vertices
   // between its ends.
-  std::vector<std::vector<std::vector<crack::Local>>> rows(count);
+  std::vector<std::vector<Chain>> chains(count);
   for (std::uint32_t t = 0; t < arrangement.strip_size; ++t)
     for (int k = 0; k < 3; ++k)
       if (const int s = strip.triangles[t].segment[k]; s >= 0)
-        rows[static_cast<std::size_t>(s)].push_back(arrangement.along_edge(t, k));
+        chains[static_cast<std::size_t>(s)].push_back(arrangement.along_edge(t, k));
   std::vector<FrontState::Point> points;
-  for (const Vec3& p : strip.next) points.push_back({p, VertexId()});
+  for (const Vec3& p : strip.new_front) points.push_back({p, VertexId()});
   for (std::size_t s = 0; s < count; ++s) {
-    const Vec3 &p = strip.next[s], &q = strip.next[(s + 1) % n];
-    if (rows[s].empty() && front.points[s].position == p && front.points[(s + 1) % n].position == q)
-      continue;  // stood still
-    // Chained from p on; each row either way round.
-    std::vector<crack::Local> chain;
-    Vec3 end = p;
-    for (bool found = true; found;) {
-      found = false;
-      for (auto& row : rows[s]) {
-        if (row.empty()) continue;
-        if (arrangement.points()[row.front()] != end && arrangement.points()[row.back()] == end)
-          std::reverse(row.begin(), row.end());
-        if (arrangement.points()[row.front()] != end) continue;
-        chain.insert(chain.end(), row.begin() + (chain.empty() ? 0 : 1), row.end());
-        end = arrangement.points()[row.back()];
-        row.clear();
-        found = true;
-        break;
-      }
-    }
+    const Vec3 &p = strip.new_front[s], &q = strip.new_front[(s + 1) % n];
+    if (chains[s].empty() && front.points[s].position == p && front.points[(s + 1) % n].position == q)
+      continue;  // it did not move
     std::vector<FrontState::Point> segment;
-    for (const auto l : chain)
+    for (const auto l : join_chains(chains[s], p, arrangement.points()))
       if (l < vertex.size() && vertex[l].valid()) segment.push_back({complex.point(vertex[l]), vertex[l]});
     if (segment.empty() || segment.front().position != p) segment.insert(segment.begin(), {p, VertexId()});
     if (segment.back().position != q) segment.push_back({q, VertexId()});
@@ -97,9 +112,9 @@ void follow_front(FrontState& front, const Complex& complex, const Strip& strip,
   front.points = std::move(points);
 }
 
-// A point beside a face of K, neither on it nor clear of it, would make needles that cannot be
-// rounded: it is moved clear, to the side that it is on. Points that are exactly on K stay.
-Vec3 clear_of_faces(const Complex& complex, Vec3 p, double distance) {
+// Moves a point that is close to a face of K but not on it away from the face, to the side on which
+// it is: the strip would have needles there that cannot be rounded. Points exactly on K stay.
+Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
   const double reach = 0.01 * distance;
   if (!Box3{p, p}.grown(reach).meets(complex.extent())) return p;
   std::vector<FaceId> near;
@@ -122,20 +137,61 @@ struct Step {
   FrontState front;
 };
 
-Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double reach, double clearance,
-              CrackStats& work) {
+// One attempt. Throws GeometryError, K unchanged, when the guard refuses it.
+Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double snap, double clearance,
+              CrackStats& stats) {
   Stopwatch watch;
   Step result{{}, front};
   Strip strip = sweep(front, next);
-  work.snapped += snap_to_vertices(strip, complex, reach);
-  work.near_seconds += watch.lap();
+  stats.snapped += snap_to_vertices(strip, complex, snap);
+  stats.near_seconds += watch.lap();
   crack::Arrangement arrangement(complex, strip);
   std::vector<VertexId> vertex;
-  result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, work);
+  result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats);
   watch.lap();
-  follow_front(result.front, complex, strip, arrangement, vertex);
-  work.stitch_seconds += watch.lap();
+  advance_contacts(result.front, complex, strip, arrangement, vertex);
+  stats.stitch_seconds += watch.lap();
   return result;
+}
+
+// Displaces a point by up to `jitter`.
+Vec3 displaced(const Vec3& p, double jitter, Random& random) {
+  return p + random.uniform(0.2, 1.0) * jitter * random.direction();
+}
+
+// Displaces the points of a front that has not made a step yet and its new position, for a repeated
+// attempt.
+void displace_front(FrontState& front, std::vector<Vec3>& target, double jitter, Random& random) {
+  const bool first = front.step == 0;
+  for (std::size_t i = 0; i < target.size(); ++i)
+    if (target[i] != front.points[i].position || first) target[i] = displaced(target[i], jitter, random);
+  if (!first) return;
+  for (auto& segment : front.segments)
+    for (auto& p : segment)
+      if (!p.id.valid()) p.position = displaced(p.position, jitter, random);
+  for (std::size_t s = 0; s < front.segments.size(); ++s) {
+    front.points[s].position = front.segments[s].front().position;
+    const std::size_t end = (s + 1) % front.points.size();
+    if (s + 1 < front.segments.size() || front.closed)
+      front.segments[(s + 1) % front.segments.size()].front().position = front.segments[s].back().position;
+    front.points[end].position = front.segments[s].back().position;
+  }
+}
+
+// The front as the step starts: contacts updated, and before the first step its free points off the
+// faces of K.
+FrontState prepared(const FrontState& front, const Complex& complex, double face_offset) {
+  FrontState old = front;
+  update_contacts(old, complex);
+  if (front.step == 0)
+    for (auto& segment : old.segments)
+      for (auto& p : segment)
+        if (!p.id.valid()) p.position = offset_from_faces(complex, p.position, face_offset);
+  for (std::size_t s = 0; s < old.segments.size(); ++s) {
+    old.points[s].position = old.segments[s].front().position;
+    old.points[(s + 1) % old.points.size()].position = old.segments[s].back().position;
+  }
+  return old;
 }
 
 }  // namespace
@@ -168,64 +224,38 @@ FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t c
 }
 
 CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options,
-                   CrackStats* work) {
+                   CrackStats* stats) {
   if (next.size() != front.points.size())
     throw InputError("the front has " + std::to_string(front.points.size()) + " points and its next position " +
                      std::to_string(next.size()));
   for (const Vec3& p : next)
     if (!p.allFinite()) throw InputError("a front point has a coordinate that is not a finite number");
   const double size = complex.extent().diagonal();
-  FrontState old = front;
-  renew_contacts(old, complex);
-  if (front.step == 0)
-    for (auto& segment : old.segments)
-      for (auto& p : segment)
-        if (!p.id.valid()) p.position = clear_of_faces(complex, p.position, options.face_offset * size);
-  for (std::size_t s = 0; s < old.segments.size(); ++s) {
-    old.points[s].position = old.segments[s].front().position;
-    old.points[(s + 1) % old.points.size()].position = old.segments[s].back().position;
-  }
+  const FrontState old = prepared(front, complex, options.face_offset * size);
   CrackStats done;
   std::string reason;
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
   std::vector<Vec3> wanted(next.begin(), next.end());
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i] != old.points[i].position) wanted[i] = clear_of_faces(complex, wanted[i], options.face_offset * size);
-  for (int attempt = 0; attempt <= options.attempts; ++attempt) {
-    const crack::Attempt allowed = crack::attempt_at(attempt, options, size);
+    if (wanted[i] != old.points[i].position)
+      wanted[i] = offset_from_faces(complex, wanted[i], options.face_offset * size);
+  for (int number = 0; number <= options.attempts; ++number) {
+    const crack::Attempt attempt = crack::attempt_at(number, options, size);
     std::vector<Vec3> target = wanted;
     FrontState from = old;
-    if (attempt > 0) {
-      const auto moved = [&](const Vec3& p) {
-        return Vec3(p + random.uniform(0.2, 1.0) * allowed.jitter * random.direction());
-      };
-      for (std::size_t i = 0; i < target.size(); ++i)
-        if (target[i] != old.points[i].position || front.step == 0) target[i] = moved(target[i]);
-      if (front.step == 0)
-        for (auto& segment : from.segments)
-          for (auto& p : segment)
-            if (!p.id.valid()) p.position = moved(p.position);
-      if (front.step == 0)
-        for (std::size_t s = 0; s < from.segments.size(); ++s) {
-          from.points[s].position = from.segments[s].front().position;
-          const std::size_t end = (s + 1) % from.points.size();
-          if (s + 1 < from.segments.size() || from.closed)
-            from.segments[(s + 1) % from.segments.size()].front().position = from.segments[s].back().position;
-          from.points[end].position = from.segments[s].back().position;
-        }
-    }
+    if (number > 0) displace_front(from, target, attempt.jitter, random);
     ++done.attempts;
     try {
-      Step result = try_step(complex, from, target, options.snap * size, allowed.clearance, done);
+      Step result = try_step(complex, from, target, options.snap * size, attempt.clearance, done);
       ++result.front.step;
       front = std::move(result.front);
-      if (work) *work += done;
+      if (stats) *stats += done;
       return std::move(result.delta);
     } catch (const GeometryError& e) {
       reason = e.what();
     }
   }
-  if (work) *work += done;
+  if (stats) *stats += done;
   throw GeometryError("step " + std::to_string(front.step + 1) + " of the front cannot be made: " + reason);
 }
 

@@ -1,3 +1,4 @@
+// Decimation: collapses the shortest edges within a deviation.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>
@@ -6,7 +7,9 @@
 #include <queue>
 #include <unordered_map>
 
+#include "crack/edit_quality.h"
 #include "crack/features.h"
+#include "crack/local_edit.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
 
@@ -15,10 +18,14 @@ namespace {
 
 class Decimator {
  public:
-  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateStats& work)
-      : k_(k), contacts_(fronts), options_(options), work_(work), allowed_(options.deviation * k.extent().diagonal()) {
+  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateStats& stats)
+      : k_(k),
+        contacts_(fronts),
+        options_(options),
+        stats_(stats),
+        allowed_(options.deviation * k.extent().diagonal()) {
     rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
-    rules_.skin_keeps = false;
+    rules_.keep_skin = false;
     limit_ = 1 / std::tan(options.angle * std::numbers::pi / 180);
   }
 
@@ -52,46 +59,46 @@ class Decimator {
   }
 
   bool collapse(VertexId b, VertexId a) {
-    if (!contacts_.may_leave_out(b, a)) return false;
-    const auto from = crack::place_of(k_, b, rules_), to = crack::place_of(k_, a, rules_);
+    if (!contacts_.may_omit(b, a)) return false;
+    const auto from = crack::location_of(k_, b, rules_), to = crack::location_of(k_, a, rules_);
     if (!crack::lies_within(from, to)) return false;
     const auto off_line = crack::distance_off_line(k_, from, b, a);
     if (!off_line || *off_line > allowed_) return false;
     auto local = crack::collapse(k_, b, a);
     if (!local) return false;
-    const double off = std::max(*off_line, crack::distance_left(k_, *local, k_.point(b), rules_));
-    if (crack::worst_new(k_, *local) > std::max(limit_, crack::worst_old(k_, *local))) return false;
-    // Distances add up: all that the corners of the new faces stand for may be this much farther
-    // off now.
+    const double off = std::max(*off_line, crack::deviation_at(k_, *local, k_.point(b), rules_));
+    if (crack::worst_new(k_, *local) > std::max(limit_, crack::worst_removed(k_, *local))) return false;
+    // Deviations accumulate: the old surface near the corners of the new faces may be this much
+    // farther off now.
     std::vector<std::pair<VertexId, double>> moved_now{{a, std::max(moved(a), moved(b)) + off}};
     for (const auto& f : local->edit.new_faces)
       for (const VertexId v : f.v)
         if (v != a) moved_now.push_back({v, moved(v) + off});
     if (std::any_of(moved_now.begin(), moved_now.end(), [&](const auto& m) { return m.second > allowed_; }))
       return false;
-    const auto delta = crack::carry_out(k_, *local, delta_);
-    if (!delta) return ++work_.refused, false;
+    const auto delta = crack::try_commit(k_, *local, delta_);
+    if (!delta) return ++stats_.refused, false;
     for (const FaceId f : delta->new_faces) queue(f);
-    contacts_.leave_out(b);
+    contacts_.omit(b);
     for (const auto& [v, distance] : moved_now) moved_[v] = distance;
-    return ++work_.collapses, true;
+    return ++stats_.collapses, true;
   }
 
   Complex& k_;
-  crack::Contacts contacts_;
+  crack::FrontContacts contacts_;
   const DecimateOptions& options_;
-  DecimateStats& work_;
-  crack::PlaceRules rules_;
+  DecimateStats& stats_;
+  crack::FeatureRules rules_;
   double allowed_, limit_ = 0;
   std::priority_queue<Edge, std::vector<Edge>, std::greater<>> todo_;
-  std::unordered_map<VertexId, double> moved_;  // how far off what the faces at a vertex stand for may be
+  std::unordered_map<VertexId, double> moved_;  // bound of the deviation from the old surface, per vertex
   DeltaSum delta_;
 };
 
 }  // namespace
 
 CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options,
-                    DecimateStats* work) {
+                    DecimateStats* stats) {
   if (!(options.deviation >= 0) || !(options.crease >= 0 && options.crease <= 180) ||
       !(options.angle > 0 && options.angle < 60))
     throw InputError(
@@ -100,7 +107,7 @@ CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const
   Stopwatch watch;
   CrackDelta delta = Decimator(complex, fronts, options, done).run();
   done.seconds = watch.lap();
-  if (work) *work = done;
+  if (stats) *stats = done;
   return delta;
 }
 

@@ -13,11 +13,11 @@ constexpr std::size_t few = 1 << 14;  // pairs of exits and faces that are asked
 
 class Surroundings {
  public:
-  Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const Exit> exits)
+  Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits)
       : complex_(complex), edit_(edit), removed_(edit.removed_faces) {
     std::sort(removed_.begin(), removed_.end());
     std::vector<VertexId> ends;
-    for (const Exit& e : exits) {
+    for (const FrontExit& e : exits) {
       ends.push_back(e.from);
       if (e.at.valid()) ends.push_back(e.at);
     }
@@ -57,7 +57,7 @@ class Surroundings {
   }
 
   // A face of the skin in between.
-  bool meets(const Exit& exit) const {
+  bool meets(const FrontExit& exit) const {
     const Vec3 from = point(exit.from), to = end(exit);
     Box3 box{from, from};
     box.add(to);
@@ -79,7 +79,7 @@ class Surroundings {
   }
 
   Vec3 point(VertexId v) const { return point_after(complex_, edit_, v); }
-  Vec3 end(const Exit& exit) const { return exit.at.valid() ? point(exit.at) : exit.to; }
+  Vec3 end(const FrontExit& exit) const { return exit.at.valid() ? point(exit.at) : exit.to; }
 
  private:
   std::array<Vec3, 3> corners_of(const std::array<VertexId, 3>& v) const {
@@ -129,10 +129,10 @@ bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3
   return false;
 }
 
-Fault find_return(const Complex& complex, const ComplexEdit& edit, std::span<const Exit> exits) {
+Fault find_reentry(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits) {
   if (exits.empty()) return {};
   const Surroundings about(complex, edit, exits);
-  for (const Exit& exit : exits) {
+  for (const FrontExit& exit : exits) {
     const Vec3 from = about.point(exit.from), to = about.end(exit);
     if (!about.inside_at(exit.from, to) && !(exit.at.valid() && about.inside_at(exit.at, from)) && !about.meets(exit))
       continue;

@@ -1,55 +1,71 @@
-// The guard before a commit: what rounding must not have done.
+// The guard: checks that an edit of K is still valid once its coordinates are rounded to doubles.
+//
+// Decisions about the edit are exact; its new points are then rounded. Rounding may turn small
+// faces over or make them cross. The guard finds such faults before the commit, and repairs them by
+// displacing rounded points by a few ulps.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kerf/complex.h"
 
 namespace geo {
 
-/// Where a vertex is after an edit of K as it is.
+/// The position of a vertex after an edit of `complex`.
 inline const Vec3& point_after(const Complex& complex, const ComplexEdit& edit, VertexId v) {
   return v.value < complex.vertex_count() ? complex.point(v) : edit.new_vertices[v.value - complex.vertex_count()];
 }
 
-/// New faces that come from one triangle, which therefore lie in its plane but for rounding.
+/// New faces that divide one triangle and therefore lie in its plane, but for rounding.
 struct Family {
   std::array<Vec3, 3> plane;     ///< the triangle's corners
   std::uint32_t first, end;      ///< edit.new_faces[first..end)
   std::span<const FaceId> near;  ///< faces of K that may be near; empty: they are looked up
-  bool whole;                    ///< they cover the triangle, or those that are left out do not turn over either
+  bool whole;                    ///< they cover the triangle, or no child that is left out is turned over
 };
 
 /// A piece of a front's line that leaves the material at a vertex; see exits.h.
-struct Exit {
+struct FrontExit {
   VertexId from;
   Vec3 to;
   VertexId at;                   ///< the vertex at `to`, where the line comes back; else invalid
   std::span<const FaceId> near;  ///< faces of K that may be near
 };
 
-/// What is wrong with an edit.
+/// What the guard knows about an edit besides the edit itself.
+struct GuardContext {
+  std::span<const Family> families;  ///< list every new face once, in order
+  /// Per new vertex: whether rounding moved it. Faces without such a vertex are as exact decisions
+  /// left them and are not tested. Empty: all are tested.
+  std::span<const std::uint8_t> moved{};
+  /// Least distance between features of cracks that do not touch, model units. It applies to exact
+  /// faces, too: an earlier step may have rounded what is near them, and no later step could round
+  /// a gap of a few ulps. 0: no limit.
+  double clearance = 0;
+  std::span<const FrontExit> exits{};  ///< lines of the front outside the material
+};
+
+/// The reason why an edit is invalid.
 struct Fault {
-  std::string what;
-  std::vector<std::uint32_t> faces;  ///< of edit.new_faces: those concerned
+  std::string what;                  ///< empty: no fault
+  std::vector<std::uint32_t> faces;  ///< indices into edit.new_faces of the faces concerned
+  /// True when there is a fault.
   explicit operator bool() const { return !what.empty(); }
 };
 
-/// Checks an edit against K as it is: every new face has the orientation of its family's triangle
-/// and an area, no new vertex stands where another does, faces stand around edges as they are
-/// listed, no new face crosses a near one, and exits are outside. Exact. `moved` says per new
-/// vertex whether rounding moved it; faces that it has not touched are as exact decisions left them
-/// (empty: all are asked about). Families list every new face once, in order. With a `clearance`,
-/// features of cracks that do not touch must also be that far apart, exact faces' as well, since
-/// some may be near what an earlier step has rounded: what is a few last places thick no later step
-/// can round. Returns the first fault, none when all is well. Cost follows the edit.
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, std::span<const Family> families,
-                 std::span<const std::uint8_t> moved, double clearance = 0, std::span<const Exit> exits = {});
+/// Checks an edit against K as it is. In order: each new face has an area and the orientation of
+/// its family's triangle; no two vertices coincide; faces around edges are in the radial order
+/// listed; no new face crosses another one or is nearer than the clearance; exits stay outside.
+/// Exact. Returns the first fault, none for a valid edit. Cost follows the edit.
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context);
 
-/// Moves points that rounding has moved anyway by a few places more, where that takes a fault away.
-/// Returns the fault that remains, none when all is well; `repairs` is raised when one was mended.
-Fault repair(const Complex& complex, ComplexEdit& edit, std::span<const Family> families,
-             std::span<const std::uint8_t> moved, double clearance, std::span<const Exit> exits, std::size_t& repairs);
+/// Displaces points that are rounded anyway by a few ulps more, where that removes a fault. Returns
+/// the fault that remains, none for a valid edit. `repairs` is incremented when a fault was
+/// removed.
+Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs);
 
 }  // namespace geo

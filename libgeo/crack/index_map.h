@@ -1,4 +1,4 @@
-// Rows by key: a hash table that keeps no nodes and forgets nothing.
+// A hash map from keys to indices, without erasure.
 #pragma once
 
 #include <cstdint>
@@ -6,20 +6,20 @@
 
 namespace geo::crack {
 
-/// Open addressing with linear probing. `Hash` spreads its bits; values are not ~0u.
+/// Open addressing with linear probing. `Hash` must spread its bits; the values are indices other
+/// than ~0u.
 template <class Key, class Hash>
-class Lookup {
+class IndexMap {
  public:
-  /// The value under the key; ~0u where there is none as yet, to be filled in by the caller before
-  /// the next call.
+  /// The index of the key; for a new key ~0u, which the caller sets before the next call.
   std::uint32_t& operator[](const Key& key) {
     if (2 * (used_ + 1) > slots_.size()) grow();
-    Slot& slot = slots_[place(key)];
+    Slot& slot = slots_[slot_of(key)];
     if (slot.value == none) slot.key = key, ++used_;
     return slot.value;
   }
-  /// The value under the key, ~0u when there is none.
-  std::uint32_t find(const Key& key) const { return slots_.empty() ? none : slots_[place(key)].value; }
+  /// The index of the key, ~0u for an unknown one.
+  std::uint32_t find(const Key& key) const { return slots_.empty() ? none : slots_[slot_of(key)].value; }
 
  private:
   static constexpr std::uint32_t none = ~0u;
@@ -27,7 +27,7 @@ class Lookup {
     Key key{};
     std::uint32_t value = none;
   };
-  std::size_t place(const Key& key) const {
+  std::size_t slot_of(const Key& key) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t at = Hash()(key) & mask;
     while (slots_[at].value != none && !(slots_[at].key == key)) at = (at + 1) & mask;
@@ -37,15 +37,16 @@ class Lookup {
     std::vector<Slot> old(slots_.empty() ? 64 : 2 * slots_.size());
     old.swap(slots_);
     for (const Slot& s : old)
-      if (s.value != none) slots_[place(s.key)] = s;
+      if (s.value != none) slots_[slot_of(s.key)] = s;
   }
 
   std::vector<Slot> slots_;
   std::size_t used_ = 0;
 };
 
-/// One number from one or two.
-struct Spread {
+/// Fibonacci hash of an integer.
+struct SpreadHash {
+  /// The hash of x.
   std::size_t operator()(std::uint64_t x) const {
     x *= 0x9e3779b97f4a7c15ull;
     return static_cast<std::size_t>(x ^ x >> 32);

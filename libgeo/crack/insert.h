@@ -1,23 +1,24 @@
-// One attempt to insert a strip: meet, split, keep, stitch, guard, commit.
+// One attempt to insert a strip into K: meet, split, classify, stitch, guard, commit (§ 5.2).
 #pragma once
 
 #include "crack/arrangement.h"
 
 namespace geo::crack {
 
-/// What one of the attempts at a step is allowed, in model units: the first moves nothing, later
-/// ones eight times as far each time, up to a few millionths; the later half does without
-/// clearance.
+/// Parameters of one attempt at a step, model units.
 struct Attempt {
-  double jitter, clearance;
+  double jitter;     ///< displacement of the new front; none in attempt 0, then eight times as far
+                     ///< each time, five times in all
+  double clearance;  ///< see GuardContext; 0 in the later half of the attempts
 };
+/// The parameters of attempt `number`, for a complex of extent diagonal `size`.
 Attempt attempt_at(int number, const CrackOptions& options, double size);
 
-/// Inserts what of the strip lies in the material as faces of this crack and returns what changed;
-/// empty when nothing does. `clearance`: see find_fault(). `vertex` receives the vertex of each
-/// point of the arrangement that has one. Throws GeometryError, K unchanged, when rounding would
-/// break it.
+/// Inserts the parts of the strip in the material as faces of crack `crack` and returns the
+/// changes; empty when no part is inside. `clearance`: see GuardContext. `vertex` receives the
+/// vertex of each point of the arrangement that has one. Throws GeometryError, K unchanged, when
+/// rounding would break K.
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
-                        std::vector<VertexId>& vertex, double clearance, CrackStats& work);
+                        std::vector<VertexId>& vertex, double clearance, CrackStats& stats);
 
 }  // namespace geo::crack

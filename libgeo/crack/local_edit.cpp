@@ -11,49 +11,50 @@ namespace {
 
 // The faces around uv, counter-clockwise about u→v.
 std::vector<FaceId> directed(const Complex& k, VertexId u, VertexId v) {
-  const auto ring = k.faces_around(u, v);
-  std::vector<FaceId> order(ring.begin(), ring.end());
+  const auto cycle = k.faces_around(u, v);
+  std::vector<FaceId> order(cycle.begin(), cycle.end());
   if (u > v) std::reverse(order.begin(), order.end());
   return order;
 }
 
-// Collects an edit in which faces have heirs.
-class Maker {
+// Collects an edit in which new faces replace old ones.
+class EditBuilder {
  public:
-  explicit Maker(const Complex& k) : k_(k) {}
+  explicit EditBuilder(const Complex& k) : k_(k) {}
   LocalEdit local;
 
   void remove(FaceId f) { local.edit.removed_faces.push_back(f); }
-  /// Adds a face in the place of `parent`.
+  /// Adds a face as a child of `parent`.
   FaceId add(const std::array<VertexId, 3>& v, FaceId parent) {
     const FaceId id(k_.face_count() + static_cast<std::uint32_t>(local.edit.new_faces.size()));
-    const auto row = static_cast<std::uint32_t>(local.edit.new_faces.size());
+    const auto index = static_cast<std::uint32_t>(local.edit.new_faces.size());
     local.edit.new_faces.push_back({v, k_.face(parent).crack, parent});
-    local.families.push_back({k_.corners(parent), row, row + 1, {}, false});
+    local.families.push_back({k_.corners(parent), index, index + 1, {}, false});
     return id;
   }
+  /// Adds f with vertex `now` for `old`.
   FaceId replace(FaceId f, VertexId old, VertexId now) {
     auto v = k_.face(f).v;
     std::replace(v.begin(), v.end(), old, now);
-    heirs_.push_back({f, add(v, f)});
-    return heirs_.back().second;
+    replacements_.push_back({f, add(v, f)});
+    return replacements_.back().second;
   }
-  FaceId heir(FaceId f) const {
-    for (const auto& [old, now] : heirs_)
+  FaceId replacement(FaceId f) const {
+    for (const auto& [old, now] : replacements_)
       if (old == f) return now;
     return f;
   }
-  std::vector<FaceId> inherited(std::vector<FaceId> ring) const {
-    for (FaceId& f : ring) f = heir(f);
-    return ring;
+  std::vector<FaceId> replaced(std::vector<FaceId> cycle) const {
+    for (FaceId& f : cycle) f = replacement(f);
+    return cycle;
   }
-  void order(VertexId u, VertexId v, std::vector<FaceId> ring) {
-    if (ring.size() >= 3) local.edit.radial_orders.push_back({u, v, std::move(ring)});
+  void order(VertexId u, VertexId v, std::vector<FaceId> cycle) {
+    if (cycle.size() >= 3) local.edit.radial_orders.push_back({u, v, std::move(cycle)});
   }
 
  private:
   const Complex& k_;
-  std::vector<std::pair<FaceId, FaceId>> heirs_;
+  std::vector<std::pair<FaceId, FaceId>> replacements_;  // old, new
 };
 
 std::vector<VertexId> neighbors_of(const Complex& k, VertexId v) {
@@ -66,21 +67,21 @@ std::vector<VertexId> neighbors_of(const Complex& k, VertexId v) {
   return link;
 }
 
-// From just after f all the way round, without f.
-std::vector<FaceId> rest_after(const std::vector<FaceId>& ring, FaceId f) {
-  const auto at = std::find(ring.begin(), ring.end(), f);
-  std::vector<FaceId> rest(at + 1, ring.end());
-  rest.insert(rest.end(), ring.begin(), at);
+// The cycle without f, starting after f.
+std::vector<FaceId> rest_after(const std::vector<FaceId>& cycle, FaceId f) {
+  const auto at = std::find(cycle.begin(), cycle.end(), f);
+  std::vector<FaceId> rest(at + 1, cycle.end());
+  rest.insert(rest.end(), cycle.begin(), at);
   return rest;
 }
 
 }  // namespace
 
 std::optional<LocalEdit> collapse(const Complex& k, VertexId b, VertexId a) {
-  Maker maker(k);
+  EditBuilder builder(k);
   std::vector<std::pair<VertexId, FaceId>> vanishing;  // by the third vertex
   for (const FaceId f : k.faces_at(b)) {
-    maker.remove(f);
+    builder.remove(f);
     const auto& v = k.face(f).v;
     const int at = corner_at(k.face(f), b);
     const VertexId x = v[(at + 1) % 3], y = v[(at + 2) % 3];
@@ -90,34 +91,34 @@ std::optional<LocalEdit> collapse(const Complex& k, VertexId b, VertexId a) {
     }
     for (const FaceId other : k.faces_around(x, y))
       if (corner_at(k.face(other), a) >= 0) return {};
-    maker.replace(f, b, a);
-    maker.local.swept.push_back({k.point(b), k.point(a), k.point(x), k.point(y)});
+    builder.replace(f, b, a);
+    builder.local.swept.push_back({k.point(b), k.point(a), k.point(x), k.point(y)});
   }
   for (const VertexId x : neighbors_of(k, b)) {
     if (x == a) continue;
-    const auto gone = std::find_if(vanishing.begin(), vanishing.end(), [&](const auto& p) { return p.first == x; });
-    const auto mine = directed(k, a, x), its = directed(k, b, x);
-    if (gone == vanishing.end()) {
-      if (!mine.empty()) return {};
-      maker.order(a, x, maker.inherited(its));
+    const auto vanished = std::find_if(vanishing.begin(), vanishing.end(), [&](const auto& p) { return p.first == x; });
+    const auto at_a = directed(k, a, x), at_b = directed(k, b, x);
+    if (vanished == vanishing.end()) {
+      if (!at_a.empty()) return {};
+      builder.order(a, x, builder.replaced(at_b));
       continue;
     }
-    // Seen along the edges, the face between a and b shrinks to nothing: what follows it at a, then
-    // what follows at b.
-    auto merged = maker.inherited(rest_after(mine, gone->second));
-    const auto more = maker.inherited(rest_after(its, gone->second));
+    // The face abx shrinks to an edge: what follows it around ax comes before what follows it
+    // around bx.
+    auto merged = builder.replaced(rest_after(at_a, vanished->second));
+    const auto more = builder.replaced(rest_after(at_b, vanished->second));
     merged.insert(merged.end(), more.begin(), more.end());
-    maker.order(a, x, std::move(merged));
+    builder.order(a, x, std::move(merged));
   }
-  return std::move(maker.local);
+  return std::move(builder.local);
 }
 
 std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
   const auto& face = k.face(f);
   const VertexId a = face.v[e], b = face.v[(e + 1) % 3], c = face.v[(e + 2) % 3];
-  const auto ring = k.faces_around(a, b);
-  if (ring.size() != 2) return {};
-  const FaceId g = ring[0] == f ? ring[1] : ring[0];
+  const auto cycle = k.faces_around(a, b);
+  if (cycle.size() != 2) return {};
+  const FaceId g = cycle[0] == f ? cycle[1] : cycle[0];
   const auto& other = k.face(g);
   const int at = corner_at(other, b);
   if (other.crack != face.crack || (face.crack == 0 && other.source != face.source) || other.v[(at + 1) % 3] != a)
@@ -131,54 +132,54 @@ std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
         orient2d(k.point(d), k.point(b), k.point(c), axis) != turn)
       return {};
   }
-  Maker maker(k);
-  maker.remove(f);
-  maker.remove(g);
-  const FaceId left = maker.add({a, d, c}, f), right = maker.add({d, b, c}, g);
+  EditBuilder builder(k);
+  builder.remove(f);
+  builder.remove(g);
+  const FaceId left = builder.add({a, d, c}, f), right = builder.add({d, b, c}, g);
   const auto exchange = [&](VertexId u, VertexId v, FaceId old, FaceId now) {
     auto order = directed(k, u, v);
     std::replace(order.begin(), order.end(), old, now);
-    maker.order(u, v, std::move(order));
+    builder.order(u, v, std::move(order));
   };
   exchange(c, a, f, left), exchange(a, d, g, left), exchange(b, c, f, right), exchange(d, b, g, right);
-  maker.local.swept.push_back({k.point(a), k.point(b), k.point(c), k.point(d)});
-  return std::move(maker.local);
+  builder.local.swept.push_back({k.point(a), k.point(b), k.point(c), k.point(d)});
+  return std::move(builder.local);
 }
 
 LocalEdit divide(const Complex& k, VertexId a, VertexId b, const Vec3& p) {
-  Maker maker(k);
+  EditBuilder builder(k);
   const VertexId middle(k.vertex_count());
-  maker.local.edit.new_vertices.push_back(p);
+  builder.local.edit.new_vertices.push_back(p);
   std::vector<FaceId> first, second;
   for (const FaceId f : directed(k, a, b)) {
-    maker.remove(f);
-    first.push_back(maker.replace(f, b, middle));
-    second.push_back(maker.replace(f, a, middle));
+    builder.remove(f);
+    first.push_back(builder.replace(f, b, middle));
+    second.push_back(builder.replace(f, a, middle));
   }
-  maker.order(a, middle, std::move(first));
-  maker.order(middle, b, std::move(second));
-  return std::move(maker.local);
+  builder.order(a, middle, std::move(first));
+  builder.order(middle, b, std::move(second));
+  return std::move(builder.local);
 }
 
 LocalEdit relocate(const Complex& k, VertexId v, const Vec3& p) {
-  Maker maker(k);
+  EditBuilder builder(k);
   const VertexId now(k.vertex_count());
-  maker.local.edit.new_vertices.push_back(p);
+  builder.local.edit.new_vertices.push_back(p);
   for (const FaceId f : k.faces_at(v)) {
-    maker.remove(f);
-    maker.replace(f, v, now);
+    builder.remove(f);
+    builder.replace(f, v, now);
     const int at = corner_at(k.face(f), v);
-    maker.local.swept.push_back(
+    builder.local.swept.push_back(
         {k.point(v), p, k.point(k.face(f).v[(at + 1) % 3]), k.point(k.face(f).v[(at + 2) % 3])});
   }
-  for (const VertexId x : neighbors_of(k, v)) maker.order(now, x, maker.inherited(directed(k, v, x)));
-  return std::move(maker.local);
+  for (const VertexId x : neighbors_of(k, v)) builder.order(now, x, builder.replaced(directed(k, v, x)));
+  return std::move(builder.local);
 }
 
 namespace {
 
-// True when a vertex that is not one of the tetrahedron's own is in it.
-bool holds_something(const Complex& k, const std::array<Vec3, 4>& t, std::span<const FaceId> near) {
+// True when a vertex other than the tetrahedron's own lies in it.
+bool contains_vertex(const Complex& k, const std::array<Vec3, 4>& t, std::span<const FaceId> near) {
   const int side = orient3d(t[0], t[1], t[2], t[3]);
   if (side == 0) return false;
   Box3 box = box_of(t[0], t[1], t[2]);
@@ -209,13 +210,13 @@ bool is_sound(const Complex& k, LocalEdit& local) {
   k.faces_near(box, near);
   std::erase_if(near, [&](FaceId f) { return std::find(removed.begin(), removed.end(), f) != removed.end(); });
   for (Family& family : local.families) family.near = near;
-  const bool faulty = static_cast<bool>(find_fault(k, local.edit, local.families, {}));
+  const bool faulty = static_cast<bool>(find_fault(k, local.edit, {.families = local.families}));
   for (Family& family : local.families) family.near = {};
   return !faulty && std::none_of(local.swept.begin(), local.swept.end(),
-                                 [&](const auto& t) { return holds_something(k, t, near); });
+                                 [&](const auto& t) { return contains_vertex(k, t, near); });
 }
 
-std::optional<CrackDelta> carry_out(Complex& k, LocalEdit& local, DeltaSum& sum) {
+std::optional<CrackDelta> try_commit(Complex& k, LocalEdit& local, DeltaSum& sum) {
   if (!is_sound(k, local)) return {};
   try {
     CrackDelta delta = k.apply(local.edit);

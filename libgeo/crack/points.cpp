@@ -96,16 +96,16 @@ struct Points::Exact {
 Points::Points() = default;
 Points::~Points() = default;
 
-Local Points::append(Vec3 p, double error) {
+PointIndex Points::append(Vec3 p, double error) {
   near_.push_back(p + Vec3::Zero());  // one zero
   error_.push_back(error);
   definition_.push_back(~0u);
-  return static_cast<Local>(near_.size() - 1);
+  return static_cast<PointIndex>(near_.size() - 1);
 }
 
-Local Points::add(Vec3 p) { return append(p, 0); }
+PointIndex Points::add(Vec3 p) { return append(p, 0); }
 
-Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
+PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   // In extended precision the quotient is good to the last place of a double unless ab is nearly in
   // the plane.
   using Long = long double;
@@ -132,7 +132,7 @@ Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
     length = std::max(length, std::abs(b[i] - a[i]));
   }
   const double last = size * 0x1p-53, error = 1.01 * last + 1.01 * static_cast<double>(error_t) * length;
-  const Local l = append(x, error);
+  const PointIndex l = append(x, error);
   definition_[l] = static_cast<std::uint32_t>(definitions_.size());
   definitions_.push_back({l, {a, b, p, q, r}});
   if (!(error <= 8 * last) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest))
@@ -140,7 +140,7 @@ Local Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   return l;
 }
 
-Local Points::add_crossing_in_plane(Local a, Local b, Local c, Local d, int axis) {
+PointIndex Points::add_crossing_in_plane(PointIndex a, PointIndex b, PointIndex c, PointIndex d, int axis) {
   const Exact &pa = exact(a), &pb = exact(b), &pc = exact(c), &pd = exact(d);
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const auto turn = [&](const Exact& p, const Exact& q, const Exact& r) {
@@ -151,14 +151,14 @@ Local Points::add_crossing_in_plane(Local a, Local b, Local c, Local d, int axis
   for (int k = 0; k < 3; ++k) value->p[k] = pb.p[k] * pa.w * ta - pa.p[k] * pb.w * tb;
   value->w = pa.w * pb.w * whole;
   value->keep_positive();
-  const Local l = append(Vec3::Zero(), 0);
+  const PointIndex l = append(Vec3::Zero(), 0);
   if (exact_.size() <= l) exact_.resize(l + 1);
   exact_[l] = std::move(value);
   round(l);
   return l;
 }
 
-void Points::round(Local l) {
+void Points::round(PointIndex l) {
   const Exact& e = exact(l);
   double error = 0;
   for (int i = 0; i < 3; ++i) {
@@ -169,7 +169,7 @@ void Points::round(Local l) {
   error_[l] = error;
 }
 
-const Points::Exact& Points::exact(Local l) const {
+const Points::Exact& Points::exact(PointIndex l) const {
   if (exact_.size() <= l) exact_.resize(near_.size());
   auto& slot = exact_[l];
   if (slot) return *slot;
@@ -188,7 +188,7 @@ const Points::Exact& Points::exact(Local l) const {
   return *slot;
 }
 
-int Points::orient3d(Local a, Local b, Local c, Local d) const {
+int Points::orient3d(PointIndex a, PointIndex b, PointIndex c, PointIndex d) const {
   const Vec3& pd = near_[d];
   const Vec3 u = near_[a] - pd, v = near_[b] - pd, w = near_[c] - pd;
   const double error = std::max({error_[a], error_[b], error_[c]}) + error_[d];
@@ -212,7 +212,7 @@ int Points::orient3d(Local a, Local b, Local c, Local d) const {
   return sign(det(exact(b).from(from), exact(c).from(from), exact(d).from(from)));
 }
 
-int Points::orient2d(Local a, Local b, Local c, int axis) const {
+int Points::orient2d(PointIndex a, PointIndex b, PointIndex c, int axis) const {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const Vec3 &pa = near_[a], &pb = near_[b], &pc = near_[c];
   const double ux = pa[i] - pc[i], uy = pa[j] - pc[j], vx = pb[i] - pc[i], vy = pb[j] - pc[j];
@@ -225,7 +225,7 @@ int Points::orient2d(Local a, Local b, Local c, int axis) const {
   return sign(u[i] * v[j] - u[j] * v[i]);
 }
 
-int Points::compare(Local a, Local b, int axis) const {
+int Points::compare(PointIndex a, PointIndex b, int axis) const {
   const double difference = near_[a][axis] - near_[b][axis], error = error_[a] + error_[b];
   if (std::abs(difference) > 1.01 * error) return difference > 0 ? 1 : -1;
   if (error == 0) return difference > 0 ? 1 : difference < 0 ? -1 : 0;
@@ -233,14 +233,14 @@ int Points::compare(Local a, Local b, int axis) const {
   return sign(ea.p[axis] * eb.w - eb.p[axis] * ea.w);
 }
 
-bool Points::same_place(Local a, Local b) const {
+bool Points::coincide(PointIndex a, PointIndex b) const {
   if (((near_[a] - near_[b]).cwiseAbs().array() > 1.01 * (error_[a] + error_[b])).any()) return false;
   if (error_[a] == 0 && error_[b] == 0) return true;
   const ExactVec d = exact(a).from(exact(b));
   return sign(d[0]) == 0 && sign(d[1]) == 0 && sign(d[2]) == 0;
 }
 
-std::uint64_t Points::hash(Local l) const {
+std::uint64_t Points::hash(PointIndex l) const {
   Vec3 p = near_[l];
   if (error_[l] > 0)
     for (int i = 0; i < 3; ++i) p[i] = nearest(quotient(exact(l).p[i], exact(l).w));

@@ -77,7 +77,7 @@ class RingOrder {
 
 }  // namespace
 
-Fault find_misplaced(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved) {
+Fault find_radial_fault(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved) {
   return RingOrder(complex, edit, moved).first_fault();
 }
 

@@ -1,3 +1,4 @@
+// Remeshing: improves small angles of a region by flips, collapses, moves and divisions.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>
@@ -7,7 +8,9 @@
 #include <numbers>
 #include <unordered_set>
 
+#include "crack/edit_quality.h"
 #include "crack/features.h"
+#include "crack/local_edit.h"
 #include "geometry/distance.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
@@ -20,23 +23,23 @@ using crack::LocalEdit;
 
 class Remesher {
  public:
-  Remesher(Complex& k, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshStats& work)
-      : k_(k), contacts_(fronts), options_(options), work_(work), size_(k.extent().diagonal()) {
+  Remesher(Complex& k, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshStats& stats)
+      : k_(k), contacts_(fronts), options_(options), stats_(stats), size_(k.extent().diagonal()) {
     limit_ = 1 / std::tan(options.angle * std::numbers::pi / 180);
     rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
   }
 
   CrackDelta run(std::span<const FaceId> region) {
     for (const FaceId f : region) queue(f);
-    // Each face may be asked about again when its neighbours change, but not for ever.
+    // A face is tried again when its neighbours change; these bounds end the loop.
     std::size_t patience = 60 * todo_.size() + 400, divisions = 4 * todo_.size() + 40;
     while (!todo_.empty() && patience-- > 0) {
       const FaceId f = todo_.front();
       todo_.pop_front();
-      waiting_.erase(f);
+      queued_.erase(f);
       if (!k_.alive(f)) continue;
-      if (crack::badness(k_.corners(f)) <= limit_) continue;
-      ++work_.faces;
+      if (crack::smallest_angle_cotangent(k_.corners(f)) <= limit_) continue;
+      ++stats_.faces;
       if (flip(f) || collapse(f) || move(f)) continue;
       if (divisions > 0 && divide(f)) --divisions;
     }
@@ -45,21 +48,22 @@ class Remesher {
 
  private:
   void queue(FaceId f) {
-    if (k_.alive(f) && crack::badness(k_.corners(f)) > limit_ && waiting_.insert(f).second) todo_.push_back(f);
+    if (k_.alive(f) && crack::smallest_angle_cotangent(k_.corners(f)) > limit_ && queued_.insert(f).second)
+      todo_.push_back(f);
   }
 
   bool improves(const LocalEdit& local, double factor) const {
-    return crack::worst_new(k_, local) < factor * crack::worst_old(k_, local);
+    return crack::worst_new(k_, local) < factor * crack::worst_removed(k_, local);
   }
   bool stays_close(const LocalEdit& local, const Vec3& p) const {
-    return crack::distance_left(k_, local, p, rules_) <= options_.deviation * size_;
+    return crack::deviation_at(k_, local, p, rules_) <= options_.deviation * size_;
   }
 
-  // Carries an edit out if the guard lets it.
+  // Commits an edit if neither may_sweep nor the guard refuses it.
   bool apply(LocalEdit& local) {
-    const bool free = !options_.may_sweep || std::all_of(local.swept.begin(), local.swept.end(), options_.may_sweep);
-    const auto delta = free ? crack::carry_out(k_, local, delta_) : std::nullopt;
-    if (!delta) return ++work_.refused, false;
+    const bool allowed = !options_.may_sweep || std::all_of(local.swept.begin(), local.swept.end(), options_.may_sweep);
+    const auto delta = allowed ? crack::try_commit(k_, local, delta_) : std::nullopt;
+    if (!delta) return ++stats_.refused, false;
     for (const FaceId f : delta->new_faces) {
       queue(f);
       for (int e = 0; e < 3; ++e)
@@ -80,20 +84,20 @@ class Remesher {
   bool flip(FaceId f) {
     const auto c = k_.corners(f);
     for (const int e : edges_by_length(c, std::greater<>())) {
-      if (crack::is_feature(k_, k_.face(f).v[e], k_.face(f).v[(e + 1) % 3], rules_)) continue;
+      if (crack::is_feature_edge(k_, k_.face(f).v[e], k_.face(f).v[(e + 1) % 3], rules_)) continue;
       auto local = crack::flip(k_, f, e);
       if (!local || !improves(*local, 0.999)) continue;
-      // The edge's middle may not leave the surface.
+      // The deviation is largest at the edge's midpoint.
       const Vec3 middle = 0.5 * (c[e] + c[(e + 1) % 3]);
       if (k_.face(f).crack > 0 && !stays_close(*local, middle)) continue;
-      if (apply(*local)) return ++work_.flips, true;
+      if (apply(*local)) return ++stats_.flips, true;
     }
     return false;
   }
 
   bool may_merge(VertexId b, VertexId a) const {
-    if (!contacts_.may_leave_out(b, a)) return false;
-    const crack::Place from = crack::place_of(k_, b, rules_), to = crack::place_of(k_, a, rules_);
+    if (!contacts_.may_omit(b, a)) return false;
+    const crack::SurfaceLocation from = crack::location_of(k_, b, rules_), to = crack::location_of(k_, a, rules_);
     if (!crack::lies_within(from, to)) return false;
     const auto off = crack::distance_off_line(k_, from, b, a);
     return off && *off <= options_.deviation * size_;
@@ -104,63 +108,69 @@ class Remesher {
     const auto v = k_.face(f).v;
     const auto by_length = edges_by_length(c, std::less<>());
     for (std::size_t i = 0; i < 2; ++i)
-      for (const bool backwards : {false, true}) {
+      for (const bool reversed : {false, true}) {
         const int e = by_length[i];
-        const VertexId from = backwards ? v[e] : v[(e + 1) % 3], to = backwards ? v[(e + 1) % 3] : v[e];
+        const VertexId from = reversed ? v[e] : v[(e + 1) % 3], to = reversed ? v[(e + 1) % 3] : v[e];
         const auto [before, after] = crack::worst_if_moved(k_, from, k_.point(to), to);
         if (after >= 0.999 * before || !may_merge(from, to)) continue;
         auto local = crack::collapse(k_, from, to);
         if (!local) continue;
         if (!stays_close(*local, k_.point(from))) continue;
         if (!apply(*local)) continue;
-        contacts_.leave_out(from);
-        return ++work_.collapses, true;
+        contacts_.omit(from);
+        return ++stats_.collapses, true;
       }
     return false;
   }
 
-  // Moves a corner within its surface, or along its line, to where its faces are better.
+  // Positions where the faces at v may be better: towards the centroid of its neighbours within its
+  // surface, or along its feature line.
+  std::vector<Vec3> goals_of(VertexId v) const {
+    const crack::SurfaceLocation location = crack::location_of(k_, v, rules_);
+    const Vec3 p = k_.point(v);
+    std::vector<Vec3> goals;
+    if (location.features.empty() && location.sources.size() + location.cracks.size() == 1) {
+      Vec3 sum = Vec3::Zero(), normal = Vec3::Zero();
+      double weight = 0;
+      for (const FaceId g : k_.faces_at(v)) {
+        const auto t = k_.corners(g);
+        const int at = corner_at(k_.face(g), v);
+        const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+        sum += t[(at + 1) % 3] + t[(at + 2) % 3], weight += 2;
+        normal += normal.dot(n) < 0 ? Vec3(-n) : n;
+      }
+      const Vec3 n = normal.normalized(), to = sum / weight - p;
+      goals = {p + (to - to.dot(n) * n), p + 0.5 * (to - to.dot(n) * n)};
+    } else if (location.features.size() == 2) {
+      const Vec3 a = k_.point(location.features[0]), c = k_.point(location.features[1]);
+      if (distance_between_segments(p, p, a, c) > options_.deviation * size_) return {};
+      for (const VertexId w : location.features)
+        if (crack::lies_within(location, crack::location_of(k_, w, rules_)))
+          for (const double t : {0.5, 0.2}) goals.push_back(p + t * (k_.point(w) - p));
+    }
+    return goals;
+  }
+
+  // Moves a corner to where the faces at it are better.
   bool move(FaceId f) {
     for (const VertexId v : k_.face(f).v) {
-      if (contacts_.holds(v)) continue;
-      const crack::Place place = crack::place_of(k_, v, rules_);
-      std::vector<Vec3> goals;
+      if (contacts_.contains(v)) continue;
       const Vec3 p = k_.point(v);
-      if (place.features.empty() && place.sources.size() + place.cracks.size() == 1) {
-        Vec3 sum = Vec3::Zero(), normal = Vec3::Zero();
-        double weight = 0;
-        for (const FaceId g : k_.faces_at(v)) {
-          const auto t = k_.corners(g);
-          const int at = corner_at(k_.face(g), v);
-          const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-          sum += t[(at + 1) % 3] + t[(at + 2) % 3], weight += 2;
-          normal += normal.dot(n) < 0 ? Vec3(-n) : n;
-        }
-        const Vec3 n = normal.normalized(), to = sum / weight - p;
-        goals = {p + (to - to.dot(n) * n), p + 0.5 * (to - to.dot(n) * n)};
-      } else if (place.features.size() == 2) {
-        const Vec3 a = k_.point(place.features[0]), c = k_.point(place.features[1]);
-        if (distance_between_segments(p, p, a, c) > options_.deviation * size_) continue;
-        for (const VertexId w : place.features)
-          if (crack::lies_within(place, crack::place_of(k_, w, rules_)))
-            for (const double t : {0.5, 0.2}) goals.push_back(p + t * (k_.point(w) - p));
-      }
-      for (const Vec3& goal : goals) {
+      for (const Vec3& goal : goals_of(v)) {
         if (!goal.allFinite() || goal == p) continue;
         const auto [before, after] = crack::worst_if_moved(k_, v, goal);
         if (after >= 0.9 * before) continue;
         auto local = crack::relocate(k_, v, goal);
         if (!stays_close(local, p)) continue;
-        if (apply(local)) return ++work_.moves, true;
+        if (apply(local)) return ++stats_.moves, true;
       }
     }
     return false;
   }
 
-  // Divides the longest edge at the end of the way over ever longer ones (Rivara and Inostroza
-  // 1997).
+  // Bisects the terminal edge of f's longest-edge propagation path (Rivara and Inostroza 1997).
   bool divide(FaceId f) {
-    for (int way = 0; way < 64; ++way) {
+    for (int step = 0; step < 64; ++step) {
       const auto c = k_.corners(f);
       int e = 0;
       for (int i = 1; i < 3; ++i)
@@ -168,8 +178,8 @@ class Remesher {
       const VertexId a = k_.face(f).v[e], b = k_.face(f).v[(e + 1) % 3];
       const double length = (k_.point(b) - k_.point(a)).norm();
       FaceId next;
-      if (const auto ring = k_.faces_around(a, b); ring.size() == 2 && !crack::is_feature(k_, a, b, rules_)) {
-        const FaceId g = ring[0] == f ? ring[1] : ring[0];
+      if (const auto cycle = k_.faces_around(a, b); cycle.size() == 2 && !crack::is_feature_edge(k_, a, b, rules_)) {
+        const FaceId g = cycle[0] == f ? cycle[1] : cycle[0];
         const auto t = k_.corners(g);
         for (int i = 0; i < 3; ++i)
           if ((t[(i + 1) % 3] - t[i]).norm() > length * (1 + 1e-9)) next = g;
@@ -178,34 +188,34 @@ class Remesher {
         f = next;
         continue;
       }
-      if (length < 2 * options_.shortest * size_ || (contacts_.holds(a) && contacts_.holds(b))) return false;
+      if (length < 2 * options_.shortest * size_ || (contacts_.contains(a) && contacts_.contains(b))) return false;
       auto local = crack::divide(k_, a, b, 0.5 * (k_.point(a) + k_.point(b)));
       if (!apply(local)) return false;
-      ++work_.divisions;
+      ++stats_.divisions;
       return true;
     }
     return false;
   }
 
   Complex& k_;
-  crack::Contacts contacts_;
+  crack::FrontContacts contacts_;
   const RemeshOptions& options_;
-  RemeshStats& work_;
-  crack::PlaceRules rules_;
+  RemeshStats& stats_;
+  crack::FeatureRules rules_;
   double size_, limit_;
   std::deque<FaceId> todo_;
-  std::unordered_set<FaceId> waiting_;  // what is in todo_
+  std::unordered_set<FaceId> queued_;  // the faces in todo_
   DeltaSum delta_;
 };
 
 }  // namespace
 
 double smallest_angle(const std::array<Vec3, 3>& t) {
-  return std::atan2(1.0, crack::badness(t)) * 180 / std::numbers::pi;
+  return std::atan2(1.0, crack::smallest_angle_cotangent(t)) * 180 / std::numbers::pi;
 }
 
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
-                  const RemeshOptions& options, RemeshStats* work) {
+                  const RemeshOptions& options, RemeshStats* stats) {
   if (!(options.angle > 0 && options.angle <= 30) || !(options.deviation >= 0) || !(options.shortest > 0) ||
       !(options.crease > 0 && options.crease <= 180))
     throw InputError(
@@ -215,9 +225,10 @@ CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<Fr
   Stopwatch watch;
   CrackDelta delta = Remesher(complex, fronts, options, done).run(region);
   done.seconds = watch.lap();
-  if (work) {
-    work->faces += done.faces, work->flips += done.flips, work->collapses += done.collapses, work->moves += done.moves;
-    work->divisions += done.divisions, work->refused += done.refused, work->seconds += done.seconds;
+  if (stats) {
+    stats->faces += done.faces, stats->flips += done.flips, stats->collapses += done.collapses,
+        stats->moves += done.moves;
+    stats->divisions += done.divisions, stats->refused += done.refused, stats->seconds += done.seconds;
   }
   return delta;
 }

@@ -1,3 +1,5 @@
+// Roughening: bisects the inner edges of cracks and displaces their inner vertices by fractal
+// noise.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>
@@ -6,6 +8,7 @@
 #include <unordered_set>
 
 #include "crack/features.h"
+#include "crack/local_edit.h"
 #include "crack/noise.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
@@ -14,12 +17,12 @@
 namespace geo {
 namespace {
 
-constexpr int rounds = 8;
+constexpr int rounds = 8;  // of displace(): later rounds move few vertices
 
 class Roughener {
  public:
-  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenStats& work)
-      : k_(k), contacts_(fronts), options_(options), work_(work), size_(k.extent().diagonal()) {
+  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenStats& stats)
+      : k_(k), contacts_(fronts), options_(options), stats_(stats), size_(k.extent().diagonal()) {
     rules_.crease = -1;  // bends of a crack are not features here
   }
 
@@ -35,11 +38,11 @@ class Roughener {
     return k_.alive(f) && crack > 0 &&
            (options_.cracks.empty() || std::count(options_.cracks.begin(), options_.cracks.end(), crack) > 0);
   }
-  // Inside one crack, or at its tip where no front holds that.
+  // True for an edge inside one crack, or at its tip away from fronts.
   bool may_divide(VertexId a, VertexId b) const {
-    if (contacts_.holds(a) && contacts_.holds(b)) return false;
-    const auto ring = k_.faces_around(a, b);
-    return ring.size() <= 2 && is_chosen(ring[0]) && is_chosen(ring[ring.size() - 1]);
+    if (contacts_.contains(a) && contacts_.contains(b)) return false;
+    const auto cycle = k_.faces_around(a, b);
+    return cycle.size() <= 2 && is_chosen(cycle[0]) && is_chosen(cycle[cycle.size() - 1]);
   }
   double length_of(FaceId f, int e) const {
     return (k_.point(k_.face(f).v[(e + 1) % 3]) - k_.point(k_.face(f).v[e])).norm();
@@ -52,14 +55,14 @@ class Roughener {
   }
 
   bool apply(crack::LocalEdit& local) {
-    const auto delta = crack::carry_out(k_, local, delta_);
-    if (delta) last_ = delta->new_faces;
+    const auto delta = crack::try_commit(k_, local, delta_);
+    if (delta) new_faces_ = delta->new_faces;
     return delta.has_value();
   }
 
-  // Divides the longest edges, each the longest of all its faces (Rivara and Inostroza 1997), so
-  // that faces stay about as round as they were. Where the way there ends at an edge that must
-  // stay, the faces before it stay as large.
+  // Longest-edge bisection (Rivara and Inostroza 1997): each edge divided is the longest of all its
+  // faces, so that small angles stay bounded. Where the propagation path ends at an edge that must
+  // stay, the faces on the path stay as large as they are.
   void divide(double longest) {
     std::vector<FaceId> todo;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
@@ -81,20 +84,20 @@ class Roughener {
       if (!may_divide(a, b)) continue;
       auto local = crack::divide(k_, a, b, 0.5 * (k_.point(a) + k_.point(b)));
       if (!apply(local)) {
-        ++work_.refused;
+        ++stats_.refused;
         continue;
       }
-      ++work_.divisions;
+      ++stats_.divisions;
       todo.push_back(f);
-      todo.insert(todo.end(), last_.begin(), last_.end());
+      todo.insert(todo.end(), new_faces_.begin(), new_faces_.end());
     }
   }
 
-  // Ways along edges from what stays as it is, as far as the noise fades.
+  // Distances along edges from the vertices that stay, up to `reach` (Dijkstra).
   std::unordered_map<VertexId, double> distances(const std::vector<VertexId>& vertices,
                                                  const std::unordered_set<VertexId>& free, double reach) const {
-    using Way = std::pair<double, VertexId>;
-    std::priority_queue<Way, std::vector<Way>, std::greater<>> queue;
+    using Entry = std::pair<double, VertexId>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     std::unordered_map<VertexId, double> distance;
     for (const VertexId v : vertices)
       if (!free.count(v)) distance[v] = 0, queue.push({0, v});
@@ -105,36 +108,53 @@ class Roughener {
       for (const FaceId f : k_.faces_at(v))
         if (is_chosen(f))
           for (const VertexId w : k_.face(f).v) {
-            const double there = d + (k_.point(w) - k_.point(v)).norm();
-            const auto [it, fresh] = distance.try_emplace(w, there);
-            if (!fresh && there >= it->second) continue;
-            it->second = there;
-            queue.push({there, w});
+            const double through = d + (k_.point(w) - k_.point(v)).norm();
+            const auto [it, is_new] = distance.try_emplace(w, through);
+            if (!is_new && through >= it->second) continue;
+            it->second = through;
+            queue.push({through, w});
           }
     }
     return distance;
   }
 
-  void displace() {
+  struct Move {
+    VertexId vertex;
+    Vec3 to;
+    bool complete = false;
+  };
+
+  std::vector<VertexId> chosen_vertices() const {
     std::vector<VertexId> vertices;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
       if (is_chosen(FaceId(f)))
         vertices.insert(vertices.end(), k_.face(FaceId(f)).v.begin(), k_.face(FaceId(f)).v.end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  // Fractal noise at a vertex of a crack.
+  double noise_at(VertexId v, std::int32_t crack) const {
+    double sum = 0, height = 1, frequency = options_.frequency / size_;
+    for (int octave = 0; octave < options_.octaves; ++octave, height *= 0.6, frequency *= 2)
+      sum += height * gradient_noise(frequency * (k_.point(v) - k_.extent().lo),
+                                     options_.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(crack) * 64 +
+                                         static_cast<std::uint64_t>(octave));
+    return sum;
+  }
+
+  // Where the vertices inside the chosen cracks are to go.
+  std::vector<Move> plan_moves() const {
+    const std::vector<VertexId> vertices = chosen_vertices();
     std::unordered_set<VertexId> free;
     for (const VertexId v : vertices) {
-      if (contacts_.holds(v)) continue;
-      const auto place = crack::place_of(k_, v, rules_);
-      if (place.features.empty() && place.sources.empty() && place.cracks.size() == 1) free.insert(v);
+      if (contacts_.contains(v)) continue;
+      const auto location = crack::location_of(k_, v, rules_);
+      if (location.features.empty() && location.sources.empty() && location.cracks.size() == 1) free.insert(v);
     }
     const double height = options_.amplitude * size_, fade = 3 * height;
     const auto distance = distances(vertices, free, fade);
-    struct Move {
-      VertexId vertex;
-      Vec3 to;
-      bool there = false;
-    };
     std::vector<Move> moves;
     for (const VertexId v : vertices) {
       if (!free.count(v)) continue;
@@ -147,47 +167,50 @@ class Roughener {
       }
       const double length = normal.norm();
       if (!(length > 0)) continue;
-      double sum = 0, high = 1, fine = options_.frequency / size_;
-      for (int octave = 0; octave < options_.octaves; ++octave, high *= 0.6, fine *= 2)
-        sum += high * gradient_noise(fine * (k_.point(v) - k_.extent().lo), options_.seed * 0x9e3779b97f4a7c15ull +
-                                                                                static_cast<std::uint64_t>(crack) * 64 +
-                                                                                static_cast<std::uint64_t>(octave));
+      const double sum = noise_at(v, crack);
       const auto d = distance.find(v);
       const double near = d == distance.end() ? 1 : std::min(1.0, d->second / fade);
       moves.push_back({v, k_.point(v) + height * near * sum / length * normal});
     }
-    // What a neighbour that has not moved yet is in the way of gets there in a later round.
+    return moves;
+  }
+
+  // Moves all vertices, in rounds: a vertex that is blocked by a neighbour may move once the
+  // neighbour has.
+  void displace() {
+    std::vector<Move> moves = plan_moves();
     for (int round = 0; round < rounds; ++round)
       for (Move& move : moves) {
-        if (move.there) continue;
+        if (move.complete) continue;
         const Vec3 from = k_.point(move.vertex);
-        double part = 1;
-        for (int tries = 0; tries < 3; ++tries, part *= 0.5) {
-          auto local = crack::relocate(k_, move.vertex, part == 1 ? move.to : Vec3(from + part * (move.to - from)));
+        double fraction = 1;
+        for (int tries = 0; tries < 3; ++tries, fraction *= 0.5) {
+          auto local =
+              crack::relocate(k_, move.vertex, fraction == 1 ? move.to : Vec3(from + fraction * (move.to - from)));
           const VertexId moved(k_.vertex_count());
           if (!apply(local)) continue;
           move.vertex = moved;
-          move.there = part == 1;
+          move.complete = fraction == 1;
           break;
         }
       }
-    for (const Move& move : moves) ++work_.moves, work_.lowered += !move.there;
+    for (const Move& move : moves) ++stats_.moves, stats_.lowered += !move.complete;
   }
 
   Complex& k_;
-  crack::Contacts contacts_;
+  crack::FrontContacts contacts_;
   const RoughenOptions& options_;
-  RoughenStats& work_;
-  crack::PlaceRules rules_;
+  RoughenStats& stats_;
+  crack::FeatureRules rules_;
   double size_;
-  std::vector<FaceId> last_;
+  std::vector<FaceId> new_faces_;
   DeltaSum delta_;
 };
 
 }  // namespace
 
 CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options,
-                   RoughenStats* work) {
+                   RoughenStats* stats) {
   if (!(options.amplitude >= 0 && options.amplitude < 1) || !(options.frequency > 0 && options.frequency < 1e6) ||
       options.octaves < 1 || options.octaves > 16 || !(options.edge >= 0))
     throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive, its octaves 1 to 16");
@@ -195,7 +218,7 @@ CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const 
   Stopwatch watch;
   CrackDelta delta = Roughener(complex, fronts, options, done).run();
   done.seconds = watch.lap();
-  if (work) *work = done;
+  if (stats) *stats = done;
   return delta;
 }
 

@@ -1,3 +1,4 @@
+// Inserts a crack given as a surface.
 #include "kerf/crack.h"
 
 #include "base/random.h"
@@ -8,7 +9,7 @@
 namespace geo {
 
 CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
-                        CrackStats* work) {
+                        CrackStats* stats) {
   if (crack < 1) throw InputError("cracks are numbered from 1");
   for (const Vec3& p : sheet.vertices)
     if (!p.allFinite()) throw InputError("the sheet has a coordinate that is not a finite number");
@@ -34,13 +35,13 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
       crack::Arrangement arrangement(complex, strip);
       std::vector<VertexId> vertex;
       CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, clearance, done);
-      if (work) *work += done;
+      if (stats) *stats += done;
       return delta;
     } catch (const GeometryError& e) {
       reason = e.what();
     }
   }
-  if (work) *work += done;
+  if (stats) *stats += done;
   throw GeometryError("the sheet cannot be inserted: " + reason);
 }
 

@@ -1,6 +1,8 @@
 #include "crack/sweep.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "crack/index_map.h"
 #include "crack/points.h"
@@ -9,21 +11,22 @@
 namespace geo {
 namespace {
 
-struct PlaceHash {
+struct PointHash {
   std::size_t operator()(const Vec3& p) const { return crack::hash_of(p); }
 };
-using Places = crack::Lookup<Vec3, PlaceHash>;  // rows of points by where they are
+using PointMap = crack::IndexMap<Vec3, PointHash>;  // indices of points by position
 
-class Builder {
+class StripBuilder {
  public:
   Strip strip;
 
-  std::uint32_t point(const Vec3& p, bool carried) {
-    std::uint32_t& row = rows_[p];
-    if (row == ~0u)
-      row = static_cast<std::uint32_t>(strip.points.size()), strip.points.push_back(p), strip.carried.push_back(false);
-    if (carried) strip.carried[row] = true;
-    return row;
+  // The index of position p; a new point where there is none.
+  std::uint32_t point(const Vec3& p, bool fixed) {
+    std::uint32_t& index = indices_[p];
+    if (index == ~0u)
+      index = static_cast<std::uint32_t>(strip.points.size()), strip.points.push_back(p), strip.fixed.push_back(false);
+    if (fixed) strip.fixed[index] = true;
+    return index;
   }
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<int, 3> segment) {
     if (a == b || b == c || c == a || collinear(strip.points[a], strip.points[b], strip.points[c])) return;
@@ -31,21 +34,21 @@ class Builder {
   }
 
  private:
-  Places rows_;
+  PointMap indices_;
 };
 
 }  // namespace
 
 Strip sweep(const FrontState& front, std::span<const Vec3> next) {
-  Builder builder;
-  builder.strip.next.assign(next.begin(), next.end());
+  StripBuilder builder;
+  builder.strip.new_front.assign(next.begin(), next.end());
   for (const auto& segment : front.segments)
     for (const auto& p : segment) builder.point(p.position, true);
   for (std::size_t i = 0; i < front.segments.size(); ++i) {
     std::vector<std::uint32_t> old;
     for (const auto& p : front.segments[i]) {
-      const auto row = builder.point(p.position, true);
-      if (old.empty() || old.back() != row) old.push_back(row);
+      const auto index = builder.point(p.position, true);
+      if (old.empty() || old.back() != index) old.push_back(index);
     }
     const auto p = builder.point(next[i], false), q = builder.point(next[(i + 1) % next.size()], false);
     const int s = static_cast<int>(i);
@@ -67,10 +70,10 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
 }
 
 Strip strip_of(std::span<const Vec3> points, std::span<const Triangle> triangles) {
-  Builder builder;
-  std::vector<std::uint32_t> row;
-  for (const Vec3& p : points) row.push_back(builder.point(p, false));
-  for (const auto& t : triangles) builder.triangle(row[t[0]], row[t[1]], row[t[2]], {-1, -1, -1});
+  StripBuilder builder;
+  std::vector<std::uint32_t> index;
+  for (const Vec3& p : points) index.push_back(builder.point(p, false));
+  for (const auto& t : triangles) builder.triangle(index[t[0]], index[t[1]], index[t[2]], {-1, -1, -1});
   return std::move(builder.strip);
 }
 
@@ -85,98 +88,139 @@ void find_near(Strip& strip, const Complex& complex, double reach) {
   }
 }
 
-std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach) {
-  find_near(strip, complex, reach);
-  if (strip.triangles.empty()) return 0;
-  // Vertices within reach of a triangle's plane; few are.
-  std::vector<VertexId> vertices;
-  for (std::size_t t = 0; t < strip.triangles.size(); ++t) {
-    const auto& tri = strip.triangles[t].p;
-    const Vec3 &p0 = strip.points[tri[0]], n = (strip.points[tri[1]] - p0).cross(strip.points[tri[2]] - p0);
-    const double limit = 2 * reach * n.norm();
-    const Box3 box = box_of(p0, strip.points[tri[1]], strip.points[tri[2]]).grown(reach);
-    for (auto f = strip.near_begin[t]; f < strip.near_begin[t + 1]; ++f)
-      for (const VertexId v : complex.face(strip.near[f]).v) {
-        const Vec3& q = complex.point(v);
-        if (std::abs(n.dot(q - p0)) <= limit && Box3{q, q}.meets(box)) vertices.push_back(v);
-      }
+namespace {
+
+// The phases of snap_to_vertices().
+class Snapper {
+ public:
+  Snapper(Strip& strip, const Complex& complex, double reach) : strip_(strip), complex_(complex), reach_(reach) {
+    for (const Vec3& p : strip.points) positions_[p] = 0;
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  Places known;
-  for (const Vec3& p : strip.points) known[p] = 0;
-  std::size_t count = 0;
-  const double reach2 = reach * reach;
-  for (const VertexId v : vertices) {
-    const Vec3 q = complex.point(v);
-    if (known.find(q) != ~0u) continue;
-    // A corner within reach moves to the vertex, if it is free to.
-    bool done = false;
-    for (std::uint32_t i = 0; i < strip.points.size() && !done; ++i) {
-      if ((strip.points[i] - q).squaredNorm() > reach2) continue;
-      done = true;
-      if (strip.carried[i]) break;
-      for (auto& n : strip.next)
-        if (n == strip.points[i]) n = q;
-      strip.points[i] = q;
-      strip.carried[i] = true;
-      known[q] = 0;
-      ++count;
+
+  std::size_t run() {
+    for (const VertexId v : candidates()) {
+      const Vec3 q = complex_.point(v);
+      if (positions_.find(q) != ~0u) continue;
+      if (!snap_point(q) && !divide_edge(q)) divide_triangle(q);
     }
-    if (done) continue;
-    const auto add_point = [&] {
-      strip.points.push_back(q);
-      strip.carried.push_back(true);
-      known[q] = 0;
-      ++count;
-      return static_cast<std::uint32_t>(strip.points.size() - 1);
-    };
-    // An edge that passes within reach is divided there, in every triangle that has it.
-    const std::size_t triangles = strip.triangles.size();
-    std::uint32_t a = 0, b = 0;
-    for (std::size_t t = 0; t < triangles && !done; ++t)
-      for (int k = 0; k < 3 && !done; ++k) {
-        a = strip.triangles[t].p[k], b = strip.triangles[t].p[(k + 1) % 3];
-        const Vec3 e = strip.points[b] - strip.points[a], w = q - strip.points[a];
-        const double along = e.dot(w), length = e.squaredNorm();
-        done = along > 0 && along < length && e.cross(w).squaredNorm() <= reach2 * length;
-      }
-    if (done) {
-      const auto row = add_point();
-      for (std::size_t t = 0; t < triangles; ++t)
-        for (int k = 0; k < 3; ++k) {
-          auto& tri = strip.triangles[t];
-          const auto u = tri.p[k], w = tri.p[(k + 1) % 3];
-          if (!((u == a && w == b) || (u == b && w == a))) continue;
-          Strip::Triangle half = tri;  // keeps p[k+1]; the original keeps p[k]
-          half.p[k] = row;
-          half.segment[(k + 2) % 3] = -1;
-          tri.p[(k + 1) % 3] = row;
-          tri.segment[(k + 1) % 3] = -1;
-          strip.triangles.push_back(half);
-          break;
+    return count_;
+  }
+
+ private:
+  // Vertices of K within reach of a triangle's plane and box, ascending; few are.
+  std::vector<VertexId> candidates() const {
+    std::vector<VertexId> vertices;
+    for (std::size_t t = 0; t < strip_.triangles.size(); ++t) {
+      const auto& tri = strip_.triangles[t].p;
+      const Vec3 &p0 = strip_.points[tri[0]], n = (strip_.points[tri[1]] - p0).cross(strip_.points[tri[2]] - p0);
+      const double limit = 2 * reach_ * n.norm();
+      const Box3 box = box_of(p0, strip_.points[tri[1]], strip_.points[tri[2]]).grown(reach_);
+      for (auto f = strip_.near_begin[t]; f < strip_.near_begin[t + 1]; ++f)
+        for (const VertexId v : complex_.face(strip_.near[f]).v) {
+          const Vec3& q = complex_.point(v);
+          if (std::abs(n.dot(q - p0)) <= limit && Box3{q, q}.meets(box)) vertices.push_back(v);
         }
-      continue;
     }
-    for (std::size_t t = 0; t < triangles && !done; ++t) {
-      const auto tri = strip.triangles[t];
-      const Vec3 &p0 = strip.points[tri.p[0]], &p1 = strip.points[tri.p[1]], &p2 = strip.points[tri.p[2]];
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  // Moves the first point within reach to q, if it is free. False when no point is within reach.
+  bool snap_point(const Vec3& q) {
+    for (std::uint32_t i = 0; i < strip_.points.size(); ++i) {
+      if ((strip_.points[i] - q).squaredNorm() > reach_ * reach_) continue;
+      if (strip_.fixed[i]) return true;
+      for (auto& n : strip_.new_front)
+        if (n == strip_.points[i]) n = q;
+      strip_.points[i] = q;
+      strip_.fixed[i] = true;
+      positions_[q] = 0;
+      ++count_;
+      return true;
+    }
+    return false;
+  }
+
+  std::uint32_t add_point(const Vec3& q) {
+    strip_.points.push_back(q);
+    strip_.fixed.push_back(true);
+    positions_[q] = 0;
+    ++count_;
+    return static_cast<std::uint32_t>(strip_.points.size() - 1);
+  }
+
+  // The first edge that passes within reach of q.
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> edge_near(const Vec3& q) const {
+    for (const auto& t : strip_.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const auto a = t.p[k], b = t.p[(k + 1) % 3];
+        const Vec3 e = strip_.points[b] - strip_.points[a], w = q - strip_.points[a];
+        const double along = e.dot(w), length = e.squaredNorm();
+        if (along > 0 && along < length && e.cross(w).squaredNorm() <= reach_ * reach_ * length) return {{a, b}};
+      }
+    return {};
+  }
+
+  // Divides the edge near q there, in each triangle that has it. False when there is none.
+  bool divide_edge(const Vec3& q) {
+    const auto edge = edge_near(q);
+    if (!edge) return false;
+    const auto [a, b] = *edge;
+    const auto point = add_point(q);
+    const std::size_t triangles = strip_.triangles.size();
+    for (std::size_t t = 0; t < triangles; ++t)
+      for (int k = 0; k < 3; ++k) {
+        auto& tri = strip_.triangles[t];
+        const auto u = tri.p[k], w = tri.p[(k + 1) % 3];
+        if (!((u == a && w == b) || (u == b && w == a))) continue;
+        Strip::Triangle half = tri;  // keeps p[k+1]; the original keeps p[k]
+        half.p[k] = point;
+        half.segment[(k + 2) % 3] = -1;
+        tri.p[(k + 1) % 3] = point;
+        tri.segment[(k + 1) % 3] = -1;
+        strip_.triangles.push_back(half);
+        break;
+      }
+    return true;
+  }
+
+  // Divides the first triangle that q is near and inside of, if any.
+  void divide_triangle(const Vec3& q) {
+    const std::size_t triangles = strip_.triangles.size();
+    for (std::size_t t = 0; t < triangles; ++t) {
+      const auto tri = strip_.triangles[t];
+      const Vec3 &p0 = strip_.points[tri.p[0]], &p1 = strip_.points[tri.p[1]], &p2 = strip_.points[tri.p[2]];
       const Vec3 n = (p1 - p0).cross(p2 - p0);
-      if (std::abs(n.dot(q - p0)) > reach * n.norm()) continue;
+      if (std::abs(n.dot(q - p0)) > reach_ * n.norm()) continue;
       if ((p1 - p0).cross(q - p0).dot(n) <= 0 || (p2 - p1).cross(q - p1).dot(n) <= 0 ||
           (p0 - p2).cross(q - p2).dot(n) <= 0)
         continue;
-      const auto row = add_point();
+      const auto point = add_point(q);
       for (int k = 0; k < 3; ++k) {
-        const Strip::Triangle part{{tri.p[k], tri.p[(k + 1) % 3], row}, {tri.segment[k], -1, -1}};
+        const Strip::Triangle part{{tri.p[k], tri.p[(k + 1) % 3], point}, {tri.segment[k], -1, -1}};
         if (k == 0)
-          strip.triangles[t] = part;
+          strip_.triangles[t] = part;
         else
-          strip.triangles.push_back(part);
+          strip_.triangles.push_back(part);
       }
-      done = true;
+      return;
     }
   }
+
+  Strip& strip_;
+  const Complex& complex_;
+  const double reach_;
+  PointMap positions_;  // of the strip's points; the values mean nothing
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach) {
+  find_near(strip, complex, reach);
+  if (strip.triangles.empty()) return 0;
+  const std::size_t count = Snapper(strip, complex, reach).run();
   if (count > 0) {
     std::erase_if(strip.triangles, [&](const Strip::Triangle& t) {
       return collinear(strip.points[t.p[0]], strip.points[t.p[1]], strip.points[t.p[2]]);

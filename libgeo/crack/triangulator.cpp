@@ -8,14 +8,14 @@
 
 namespace geo::crack {
 
-std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner) {
+std::pair<int, int> projection_of(const Points& points, const std::array<PointIndex, 3>& corner) {
   return projection_axis(points[corner[0]], points[corner[1]], points[corner[2]]);
 }
 
-int Triangulator::add_vertex(Local l, std::uint8_t edges) {
-  if (row_.size() < points_.size()) row_.resize(points_.size(), -1);
+int Triangulator::add_vertex(PointIndex l, std::uint8_t edges) {
+  if (vertex_.size() < points_.size()) vertex_.resize(points_.size(), -1);
   const int v = static_cast<int>(local_.size());
-  row_[l] = v;
+  vertex_[l] = v;
   local_.push_back(l);
   edges_.push_back(edges);
   at_.push_back(-1);
@@ -33,7 +33,7 @@ int Triangulator::rounded_turn(int a, int b, int c) const {
   return sign_ * orient2d(p(a), p(b), p(c), axis_);
 }
 
-// Rotates the names of t's corners so that `edge` becomes edge 0.
+// Rotates the corners of t so that `edge` becomes edge 0.
 void Triangulator::turn_to(int t, int edge) {
   if (edge == 0) return;
   Tri& x = tri_[static_cast<std::size_t>(t)];
@@ -41,7 +41,7 @@ void Triangulator::turn_to(int t, int edge) {
   for (int k = 0; k < 3; ++k) x.v[k] = y.v[(k + edge) % 3], x.n[k] = y.n[(k + edge) % 3], x.e[k] = y.e[(k + edge) % 3];
 }
 
-// t's neighbour `from` is `to` now.
+// Replaces t's neighbour `from` by `to`.
 void Triangulator::relink(int t, int from, int to) {
   if (t < 0) return;
   for (int& n : tri_[static_cast<std::size_t>(t)].n)
@@ -122,7 +122,8 @@ void Triangulator::flip(int t, int edge) {
   at_[static_cast<std::size_t>(b)] = u;
 }
 
-// True when the diagonal across the edge can be exchanged: both new triangles have an area.
+// True when the edge is a diagonal and both triangles after a flip have an area. `other`, `apex`:
+// the triangle across it and its vertex there.
 bool Triangulator::may_flip(int t, int edge, int& other, int& apex) {
   const Tri& x = tri_[static_cast<std::size_t>(t)];
   other = x.n[edge];
@@ -134,8 +135,8 @@ bool Triangulator::may_flip(int t, int edge, int& other, int& apex) {
   return turn(a, apex, c) > 0 && turn(apex, b, c) > 0;
 }
 
-// Calls with each triangle at a and a's corner there, one way around until a side of the face is
-// met, then the other way; ends when `visit` says true.
+// Calls visit(t, k) for each triangle t at a, with a's corner k: one way around until a side of the
+// face is met, then the other way. Ends when visit() is true.
 template <class Visit>
 void Triangulator::around(int a, const Visit& visit) const {
   const int start = at_[static_cast<std::size_t>(a)];
@@ -152,7 +153,7 @@ void Triangulator::around(int a, const Visit& visit) const {
   }
 }
 
-// The triangle that has the edge from a to b, and where; {−1, 0} when there is none.
+// The triangle whose boundary runs a → b, and the edge's number; {−1, 0} when there is none.
 std::pair<int, int> Triangulator::find_edge(int a, int b) const {
   std::pair<int, int> found{-1, 0};
   around(a, [&](int t, int k) {
@@ -193,111 +194,124 @@ void Triangulator::insert(int p) {
   throw GeometryError("a point of a face cannot be located");
 }
 
-void Triangulator::constrain(int a, int b, const Known& known) {
-  for (int guard = 0; a != b; ++guard) {
-    if (guard > 4096) throw GeometryError("a constraint cannot be inserted");
-    if (const auto [t, k] = find_edge(a, b); t >= 0) {
-      Tri& x = tri_[static_cast<std::size_t>(t)];
-      if (x.e[k] == edge_diagonal) x.e[k] = edge_constraint;
-      if (const int u = x.n[k]; u >= 0)
-        for (int j = 0; j < 3; ++j)
-          if (tri_[static_cast<std::size_t>(u)].n[j] == t && tri_[static_cast<std::size_t>(u)].v[j] == b &&
-              tri_[static_cast<std::size_t>(u)].e[j] == edge_diagonal)
-            tri_[static_cast<std::size_t>(u)].e[j] = edge_constraint;
-      return;
-    }
-    if (const auto [t, k] = find_edge(b, a); t >= 0) {  // an edge of the face, seen from inside
-      return constrain(b, a, known);
-    }
-    // The triangle at a through which the way to b leaves, or a vertex on the way.
-    int through = -1, edge = -1, ahead = -1;
-    around(a, [&](int t, int k) {
-      const Tri& x = tri_[static_cast<std::size_t>(t)];
-      const int p = x.v[(k + 1) % 3], q = x.v[(k + 2) % 3];
-      const int sp = turn(a, b, p), sq = turn(a, b, q);
-      for (const auto& [v, s] : {std::pair{p, sp}, std::pair{q, sq}}) {
-        if (s != 0) continue;
-        // On the line: ahead when it lies on b's side of a.
-        int along = 0;
-        const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)],
-                   lv = local_[static_cast<std::size_t>(v)];
-        (points_[lb] - points_[la]).cwiseAbs().maxCoeff(&along);
-        for (int i = 0; i < 3 && points_.compare(lb, la, along) == 0; ++i) along = (along + 1) % 3;
-        if (points_.compare(lb, la, along) == points_.compare(lv, la, along)) ahead = v;
-      }
-      if (sp < 0 && sq > 0) through = t, edge = (k + 1) % 3;
-      return through >= 0 || ahead >= 0;
-    });
-    if (ahead >= 0) {
-      constrain(a, ahead, known);
-      a = ahead;
-      continue;
-    }
-    if (through < 0) throw GeometryError("a constraint leaves its face");
-    // The edges that ab crosses, as pairs of vertices: right of it, left of it.
-    std::vector<std::pair<int, int>> crossed;
-    int end = b;
-    for (int t = through, k = edge;;) {
-      const Tri& x = tri_[static_cast<std::size_t>(t)];
-      const int r = x.v[k], l = x.v[(k + 1) % 3];
-      if (x.e[k] != edge_diagonal) {
-        // Another constraint in the way: both are divided where they cross.
-        if (!known || x.n[k] < 0) throw GeometryError("constraints of a face cross");
-        const Local made = points_.add_crossing_in_plane(
-            local_[static_cast<std::size_t>(a)], local_[static_cast<std::size_t>(b)],
-            local_[static_cast<std::size_t>(r)], local_[static_cast<std::size_t>(l)], axis_);
-        const Local place = known(made);
-        if (row_.size() < points_.size()) row_.resize(points_.size(), -1);
-        if (row_[place] >= 0) throw GeometryError("constraints cross at a vertex that is not on them");
-        const int p = add_vertex(place, 0);
-        split_edge(t, k, p);
-        constrain(a, p, known);
-        a = p;
-        crossed.clear();
-        end = -1;
-        break;
-      }
-      crossed.push_back({r, l});
-      const int u = x.n[k];
-      const Tri& y = tri_[static_cast<std::size_t>(u)];
-      int j = 0;
-      while (y.v[j] == r || y.v[j] == l) ++j;
-      const int apex = y.v[j];
-      if (apex == b) break;
-      const int side = turn(a, b, apex);
-      if (side == 0) {
-        end = apex;
-        break;
-      }
-      // y runs l → r across the edge; the way leaves through (apex, l) or (r, apex).
-      t = u;
-      k = side < 0 ? j : (j + 2) % 3;  // apex right of ab: leaves between apex and l
-    }
-    if (end < 0) continue;
-    // Flips, until none of the edges crosses a–end any more (Sloan 1993).
-    std::size_t patience = 16 * crossed.size() * crossed.size() + 64;
-    for (std::size_t head = 0; head < crossed.size(); ++head) {
-      if (patience-- == 0) throw GeometryError("a constraint cannot be reached by flips");
-      const auto [r, l] = crossed[head];
-      const auto [t, k] = find_edge(r, l);
-      if (t < 0) throw GeometryError("a crossed edge is lost");
-      int other = -1, apex = -1;
-      const int mine = tri_[static_cast<std::size_t>(t)].v[(k + 2) % 3];
-      if (!may_flip(t, k, other, apex)) {
-        crossed.push_back({r, l});
-        continue;
-      }
-      flip(t, k);
-      const int s1 = mine == a || mine == end ? 0 : turn(a, end, mine),
-                s2 = apex == a || apex == end ? 0 : turn(a, end, apex);
-      if (s1 * s2 < 0) crossed.push_back(s1 < 0 ? std::pair{mine, apex} : std::pair{apex, mine});
-    }
-    constrain(a, end, known);
-    a = end;
+// Marks edge ab, in either direction, as a constraint. False when there is no such edge.
+bool Triangulator::mark_constraint(int a, int b) {
+  const auto [t, k] = find_edge(a, b);
+  if (t < 0) return find_edge(b, a).first >= 0 && mark_constraint(b, a);  // an edge of the face, seen from inside
+  Tri& x = tri_[static_cast<std::size_t>(t)];
+  if (x.e[k] == edge_diagonal) x.e[k] = edge_constraint;
+  if (const int u = x.n[k]; u >= 0)
+    for (int j = 0; j < 3; ++j)
+      if (tri_[static_cast<std::size_t>(u)].n[j] == t && tri_[static_cast<std::size_t>(u)].v[j] == b &&
+          tri_[static_cast<std::size_t>(u)].e[j] == edge_diagonal)
+        tri_[static_cast<std::size_t>(u)].e[j] = edge_constraint;
+  return true;
+}
+
+// True when v, which is on the line ab, lies on b's side of a.
+bool Triangulator::is_ahead(int a, int b, int v) const {
+  int along = 0;
+  const auto la = local_[static_cast<std::size_t>(a)], lb = local_[static_cast<std::size_t>(b)],
+             lv = local_[static_cast<std::size_t>(v)];
+  (points_[lb] - points_[la]).cwiseAbs().maxCoeff(&along);
+  for (int i = 0; i < 3 && points_.compare(lb, la, along) == 0; ++i) along = (along + 1) % 3;
+  return points_.compare(lb, la, along) == points_.compare(lv, la, along);
+}
+
+// How segment ab leaves a: through a triangle at a, or along an edge to a vertex.
+Triangulator::Departure Triangulator::leave(int a, int b) const {
+  Departure found;
+  around(a, [&](int t, int k) {
+    const Tri& x = tri_[static_cast<std::size_t>(t)];
+    const int p = x.v[(k + 1) % 3], q = x.v[(k + 2) % 3];
+    const int sp = turn(a, b, p), sq = turn(a, b, q);
+    if (sp == 0 && is_ahead(a, b, p)) found.ahead = p;
+    if (sq == 0 && is_ahead(a, b, q)) found.ahead = q;
+    if (sp < 0 && sq > 0) found.through = t, found.edge = (k + 1) % 3;
+    return found.through >= 0 || found.ahead >= 0;
+  });
+  return found;
+}
+
+// Divides segment ab and the constraint in its way, edge `edge` of t, where they cross. Returns the
+// new vertex.
+int Triangulator::split_at_crossing(int a, int b, int t, int edge, const Canonicalize& canonicalize) {
+  const Tri& x = tri_[static_cast<std::size_t>(t)];
+  if (!canonicalize || x.n[edge] < 0) throw GeometryError("constraints of a face cross");
+  const PointIndex crossing = points_.add_crossing_in_plane(
+      local_[static_cast<std::size_t>(a)], local_[static_cast<std::size_t>(b)],
+      local_[static_cast<std::size_t>(x.v[edge])], local_[static_cast<std::size_t>(x.v[(edge + 1) % 3])], axis_);
+  const PointIndex canonical = canonicalize(crossing);
+  if (vertex_.size() < points_.size()) vertex_.resize(points_.size(), -1);
+  if (vertex_[canonical] >= 0) throw GeometryError("constraints cross at a vertex that is not on them");
+  const int p = add_vertex(canonical, 0);
+  split_edge(t, edge, p);
+  return p;
+}
+
+// Walks along segment ab from triangle to triangle, as far as the next vertex on it. Where a
+// constraint is in the way the walk ends at a new vertex, with no edges to flip.
+Triangulator::Corridor Triangulator::walk(int a, int b, const Departure& from, const Canonicalize& canonicalize) {
+  Corridor corridor;
+  for (int t = from.through, k = from.edge;;) {
+    const Tri& x = tri_[static_cast<std::size_t>(t)];
+    const int r = x.v[k], l = x.v[(k + 1) % 3];
+    if (x.e[k] != edge_diagonal) return {{}, split_at_crossing(a, b, t, k, canonicalize)};
+    corridor.crossed.push_back({r, l});
+    const int u = x.n[k];
+    const Tri& y = tri_[static_cast<std::size_t>(u)];
+    int j = 0;
+    while (y.v[j] == r || y.v[j] == l) ++j;
+    corridor.end = y.v[j];
+    if (corridor.end == b) return corridor;
+    const int side = turn(a, b, corridor.end);
+    if (side == 0) return corridor;
+    // y runs l → r across the edge; the segment leaves through (apex, l) or (r, apex).
+    t = u;
+    k = side < 0 ? j : (j + 2) % 3;  // apex right of ab: between apex and l
   }
 }
 
-// Exchanges diagonals for better ones (Lawson 1977), the better by the angles that face them.
+// Flips edges until none crosses the segment from a to `end` any more (Sloan 1993).
+void Triangulator::clear_corridor(int a, int end, std::vector<std::pair<int, int>>& crossed) {
+  std::size_t patience = 16 * crossed.size() * crossed.size() + 64;
+  for (std::size_t head = 0; head < crossed.size(); ++head) {
+    if (patience-- == 0) throw GeometryError("a constraint cannot be reached by flips");
+    const auto [r, l] = crossed[head];
+    const auto [t, k] = find_edge(r, l);
+    if (t < 0) throw GeometryError("a crossed edge is lost");
+    int other = -1, apex = -1;
+    const int mine = tri_[static_cast<std::size_t>(t)].v[(k + 2) % 3];
+    if (!may_flip(t, k, other, apex)) {
+      crossed.push_back({r, l});
+      continue;
+    }
+    flip(t, k);
+    const int s1 = mine == a || mine == end ? 0 : turn(a, end, mine),
+              s2 = apex == a || apex == end ? 0 : turn(a, end, apex);
+    if (s1 * s2 < 0) crossed.push_back(s1 < 0 ? std::pair{mine, apex} : std::pair{apex, mine});
+  }
+}
+
+// Makes segment ab a chain of constraint edges, from each vertex on it to the next.
+void Triangulator::constrain(int a, int b, const Canonicalize& canonicalize) {
+  for (int guard = 0; a != b; ++guard) {
+    if (guard > 4096) throw GeometryError("a constraint cannot be inserted");
+    if (mark_constraint(a, b)) return;
+    const Departure from = leave(a, b);
+    int next = from.ahead;
+    if (next < 0) {
+      if (from.through < 0) throw GeometryError("a constraint leaves its face");
+      Corridor corridor = walk(a, b, from, canonicalize);
+      next = corridor.end;
+      clear_corridor(a, next, corridor.crossed);
+    }
+    constrain(a, next, canonicalize);
+    a = next;
+  }
+}
+
+// Flips diagonals to be locally Delaunay (Lawson 1977), by the cotangents of the opposite angles.
 void Triangulator::improve() {
   const auto cotangent = [&](int apex, int a, int b) {
     const auto p = [&](int v) -> const Vec3& { return points_[local_[static_cast<std::size_t>(v)]]; };
@@ -327,8 +341,9 @@ void Triangulator::improve() {
   }
 }
 
-// Children that rounding turns over are exchanged for others where that helps.
-void Triangulator::straighten() {
+// Flips diagonals of children that rounding turns over, where both new children keep their
+// orientation.
+void Triangulator::unflip_rounded() {
   for (int t = 0; t < static_cast<int>(tri_.size()); ++t) {
     const Tri x = tri_[static_cast<std::size_t>(t)];
     if (rounded_turn(x.v[0], x.v[1], x.v[2]) > 0) continue;
@@ -343,50 +358,52 @@ void Triangulator::straighten() {
   }
 }
 
-void Triangulator::triangulate(const std::array<Local, 3>& corner, std::span<const Mark> marks,
-                               std::span<const std::pair<Local, Local>> constraints, const Known& known,
-                               std::vector<Child>& out) {
-  std::tie(axis_, sign_) = view_of(points_, corner);
+// Divides the triangles behind edge k of the face at the points on it. No predicate is needed
+// there.
+void Triangulator::insert_edge_points(const std::array<PointIndex, 3>& corner, std::span<const SteinerPoint> steiner,
+                                      int k) {
+  chain_.clear();
+  for (const SteinerPoint& s : steiner)
+    if (s.edges & 1 << k) chain_.push_back(s.point);
+  if (chain_.empty()) return;
+  const PointIndex from = corner[k], to = corner[(k + 1) % 3];
+  if (chain_.size() > 1) {
+    int along = 0;
+    (points_[to] - points_[from]).cwiseAbs().maxCoeff(&along);
+    const int up = points_.compare(to, from, along);
+    std::sort(chain_.begin(), chain_.end(),
+              [&](PointIndex a, PointIndex b) { return a != b && points_.compare(a, b, along) == -up; });
+  }
+  int last = k;
+  for (const PointIndex l : chain_) {
+    const int p = add_vertex(l, static_cast<std::uint8_t>(1 << k));
+    const auto [t, edge] = find_edge(last, (k + 1) % 3);
+    split_edge(t, edge, p);
+    last = p;
+  }
+}
+
+void Triangulator::triangulate(const std::array<PointIndex, 3>& corner, std::span<const SteinerPoint> steiner,
+                               std::span<const std::pair<PointIndex, PointIndex>> constraints,
+                               const Canonicalize& canonicalize, std::vector<Child>& out) {
+  std::tie(axis_, sign_) = projection_of(points_, corner);
   if (sign_ == 0) throw GeometryError("a triangle without area was met");
   local_.clear(), edges_.clear(), at_.clear(), tri_.clear();
   for (int k = 0; k < 3; ++k) add_vertex(corner[k], corner_bits(k));
   tri_.push_back({{0, 1, 2}, {-1, -1, -1}, {0, 1, 2}});
   at_[0] = at_[1] = at_[2] = 0;
-  // Points on the face's edges, in order along them: they divide the triangle behind the edge, no
-  // question asked.
-  std::vector<Local> chain;
-  for (int k = 0; k < 3; ++k) {
-    chain.clear();
-    for (const Mark& m : marks)
-      if (m.edges & 1 << k) chain.push_back(m.point);
-    if (chain.empty()) continue;
-    const Local from = corner[k], to = corner[(k + 1) % 3];
-    if (chain.size() > 1) {
-      int along = 0;
-      (points_[to] - points_[from]).cwiseAbs().maxCoeff(&along);
-      const int up = points_.compare(to, from, along);
-      std::sort(chain.begin(), chain.end(),
-                [&](Local a, Local b) { return a != b && points_.compare(a, b, along) == -up; });
-    }
-    int last = k;
-    for (const Local l : chain) {
-      const int p = add_vertex(l, static_cast<std::uint8_t>(1 << k));
-      const auto [t, edge] = find_edge(last, (k + 1) % 3);
-      split_edge(t, edge, p);
-      last = p;
-    }
-  }
-  for (const Mark& m : marks)
-    if (m.edges == 0) insert(add_vertex(m.point, 0));
-  for (const auto& [a, b] : constraints) constrain(row_[a], row_[b], known);
+  for (int k = 0; k < 3; ++k) insert_edge_points(corner, steiner, k);
+  for (const SteinerPoint& s : steiner)
+    if (s.edges == 0) insert(add_vertex(s.point, 0));
+  for (const auto& [a, b] : constraints) constrain(vertex_[a], vertex_[b], canonicalize);
   improve();
-  straighten();
+  unflip_rounded();
   for (const Tri& x : tri_) {
     Child child;
     for (int k = 0; k < 3; ++k) child.v[k] = local_[static_cast<std::size_t>(x.v[k])], child.edge[k] = x.e[k];
     out.push_back(child);
   }
-  for (const Local l : local_) row_[l] = -1;
+  for (const PointIndex l : local_) vertex_[l] = -1;
 }
 
 }  // namespace geo::crack

@@ -1,54 +1,69 @@
-// Triangulates one face alone, constrained to what it shares with others (§ 5.2).
+// Triangulates one face alone, constrained to its intersections with other faces (§ 5.2).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "crack/points.h"
 
 namespace geo::crack {
 
-/// What an edge of a child is: part of the face's own edge 0, 1 or 2, of a constraint, or nothing
-/// but a diagonal.
+/// Kinds of a child's edge: part of the face's own edge 0, 1 or 2, part of a constraint, or a
+/// diagonal.
 enum EdgeKind : std::uint8_t { edge_constraint = 3, edge_diagonal = 4 };
 
+/// A triangle that a face is divided into.
 struct Child {
-  std::array<Local, 3> v;            ///< oriented as the face is
+  std::array<PointIndex, 3> v;       ///< oriented as the face is
   std::array<std::uint8_t, 3> edge;  ///< kind of the edge from v[k] to v[k+1]
 };
 
-/// A point of a face; bit k of `edges` is set when it lies on the face's edge k.
-struct Mark {
-  Local point;
+/// A point in or on a face other than its corners. Bit k of `edges` is set when it lies on edge k.
+struct SteinerPoint {
+  PointIndex point;
   std::uint8_t edges;
 };
 
-/// The bits of corner k: it lies on the edges k and k − 1.
+/// The edge bits of corner k: it lies on the edges k and k − 1.
 inline std::uint8_t corner_bits(int k) { return static_cast<std::uint8_t>(1 << k | 1 << (k + 2) % 3); }
 
-/// Constrained Delaunay as far as rounding allows it: exact where it decides what is where,
-/// approximate in which of two diagonals is the better one. Keeps its memory between calls.
+/// Constrained triangulation, Delaunay as far as rounding permits. Its topology is decided exactly;
+/// the choice between two diagonals is approximate. Keeps its memory between calls.
 class Triangulator {
  public:
+  /// Triangulates faces between these points, and adds points where constraints cross.
   explicit Triangulator(Points& points) : points_(points) {}
 
-  /// Called with a new point where two constraints cross; returns the row under which that place is
-  /// known.
-  using Known = std::function<Local(Local)>;
+  /// Called with a new point where two constraints cross; returns the index by which that position
+  /// is known.
+  using Canonicalize = std::function<PointIndex(PointIndex)>;
 
-  /// `marks`: points other than the corners, each once. Appends the children to `out`. Throws
-  /// GeometryError when the face has no area, when two rows are at one place, or when constraints
-  /// cross and `known` is empty.
-  void triangulate(const std::array<Local, 3>& corner, std::span<const Mark> marks,
-                   std::span<const std::pair<Local, Local>> constraints, const Known& known, std::vector<Child>& out);
+  /// Appends the children of a face to `out`. `steiner`: its points other than the corners, each
+  /// once; `constraints`: segments between its points. Throws GeometryError for a face without
+  /// area, for coinciding points, and for constraints that cross when `canonicalize` is empty.
+  void triangulate(const std::array<PointIndex, 3>& corner, std::span<const SteinerPoint> steiner,
+                   std::span<const std::pair<PointIndex, PointIndex>> constraints, const Canonicalize& canonicalize,
+                   std::vector<Child>& out);
 
  private:
   struct Tri {
-    int v[3], n[3];  // n[k]: across the edge from v[k] to v[k+1]; −1: none
+    int v[3], n[3];  // n[k]: neighbour across the edge from v[k] to v[k+1]; −1: none
     std::uint8_t e[3];
   };
-  int add_vertex(Local l, std::uint8_t edges);
+  // The first triangle at a vertex that a segment enters, or a vertex on the segment.
+  struct Departure {
+    int through = -1, edge = -1, ahead = -1;
+  };
+  // The edges that a segment crosses, as (right, left) vertices, up to the next vertex on it.
+  struct Corridor {
+    std::vector<std::pair<int, int>> crossed;
+    int end = -1;
+  };
+  int add_vertex(PointIndex l, std::uint8_t edges);
   int turn(int a, int b, int c) const;
   int rounded_turn(int a, int b, int c) const;
   void turn_to(int t, int edge);
@@ -61,20 +76,28 @@ class Triangulator {
   void around(int a, const Visit& visit) const;
   std::pair<int, int> find_edge(int a, int b) const;
   void insert(int p);
-  void constrain(int a, int b, const Known& known);
+  void insert_edge_points(const std::array<PointIndex, 3>& corner, std::span<const SteinerPoint> steiner, int k);
+  void constrain(int a, int b, const Canonicalize& canonicalize);
+  bool mark_constraint(int a, int b);
+  bool is_ahead(int a, int b, int v) const;
+  Departure leave(int a, int b) const;
+  Corridor walk(int a, int b, const Departure& from, const Canonicalize& canonicalize);
+  int split_at_crossing(int a, int b, int t, int edge, const Canonicalize& canonicalize);
+  void clear_corridor(int a, int end, std::vector<std::pair<int, int>>& crossed);
   void improve();
-  void straighten();
+  void unflip_rounded();
 
   Points& points_;
   int axis_ = 0, sign_ = 1;
-  std::vector<Local> local_;         // per vertex
-  std::vector<std::uint8_t> edges_;  // per vertex
+  std::vector<PointIndex> local_;    // per vertex: its point
+  std::vector<std::uint8_t> edges_;  // per vertex: bits of the face's edges
   std::vector<int> at_;              // per vertex: a triangle that has it
-  std::vector<int> row_;             // per point: its vertex, −1
+  std::vector<int> vertex_;          // per point: its vertex, −1
   std::vector<Tri> tri_;
+  std::vector<PointIndex> chain_;  // points on the edge at hand
 };
 
-/// As projection_axis(), for three points that are doubles, as corners of elements are.
-std::pair<int, int> view_of(const Points& points, const std::array<Local, 3>& corner);
+/// projection_axis() of three explicit points, as corners of elements are.
+std::pair<int, int> projection_of(const Points& points, const std::array<PointIndex, 3>& corner);
 
 }  // namespace geo::crack

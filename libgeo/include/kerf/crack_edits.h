@@ -59,9 +59,10 @@ struct RoughenOptions {
 };
 
 struct RoughenStats {
-  std::size_t divisions = 0, moves = 0;
+  std::size_t divisions = 0;
+  std::size_t moves = 0;    ///< inner vertices
   std::size_t lowered = 0;  ///< vertices that moved less far than wanted: something is in the way
-  std::size_t refused = 0;  ///< vertices that did not move
+  std::size_t refused = 0;  ///< divisions that the guard refused
   double seconds = 0;
 };
 

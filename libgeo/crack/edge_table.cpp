@@ -1,0 +1,66 @@
+#include "crack/edge_table.h"
+
+#include <algorithm>
+
+#include "geometry/predicates.h"
+
+namespace geo::crack {
+
+void EdgeTable::add(PointIndex u, PointIndex v, const EdgeUse& use) {
+  const PointIndex low = std::min(u, v);
+  entries_.push_back({std::max(u, v), head_[low], use});
+  head_[low] = static_cast<std::uint32_t>(entries_.size() - 1);
+}
+
+void EdgeTable::find(PointIndex u, PointIndex v, std::vector<EdgeUse>& out) const {
+  out.clear();
+  const PointIndex low = std::min(u, v), high = std::max(u, v);
+  for (auto e = head_[low]; e != ~0u; e = entries_[e].next)
+    if (entries_[e].high == high) out.push_back(entries_[e].use);
+  std::reverse(out.begin(), out.end());
+}
+
+RadialFace radial_face(const Arrangement& a, const EdgeUse& use, PointIndex u) {
+  const auto& c = a.children[use.child].v;
+  return {use.element, c[(use.k + 2) % 3], c[use.k] == u};
+}
+
+namespace {
+
+// The sector of face w, counter-clockwise from `zero`: 0 at angle 0, 1 below π, 2 at π, 3 above π.
+int sector(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& w) {
+  if (zero.element == w.element) return zero.forward == w.forward ? 0 : 2;
+  const int side = a.side(zero.element, w.apex);
+  if (side != 0) return (side > 0) == zero.forward ? 1 : 3;
+  const auto [axis, turn] = projection_of(a.points(), a.elements[zero.element].corner);
+  return a.points().orient2d(u, v, w.apex, axis) == (zero.forward ? turn : -turn) ? 0 : 2;
+}
+
+}  // namespace
+
+bool lies_on(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& w) {
+  return sector(a, u, v, zero, w) == 0;
+}
+
+int compare_around(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& p,
+                   const RadialFace& q) {
+  const int sp = sector(a, u, v, zero, p), sq = sector(a, u, v, zero, q);
+  if (sp != sq) return sp < sq ? -1 : 1;
+  if (sp == 0 || sp == 2 || p.element == q.element) return 0;
+  const int side = a.side(p.element, q.apex);
+  return p.forward ? -side : side;
+}
+
+EdgeTable edges_of_complex(const Arrangement& a) {
+  EdgeTable edges(a.points().size());
+  edges.reserve(2 * a.children.size());
+  for (std::uint32_t e = a.strip_size; e < a.elements.size(); ++e)
+    for (auto c = a.elements[e].first; c < a.elements[e].end; ++c) {
+      const Child& child = a.children[c];
+      for (std::uint8_t k = 0; k < 3; ++k)
+        if (child.edge[k] != edge_diagonal) edges.add(child.v[k], child.v[(k + 1) % 3], {e, c, k});
+    }
+  return edges;
+}
+
+}  // namespace geo::crack

@@ -1,0 +1,58 @@
+// Edges of an arrangement: which children use them, and in which radial order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "crack/arrangement.h"
+
+namespace geo::crack {
+
+/// A child at one of its edges (an edge-use in Weiler's terms).
+struct EdgeUse {
+  std::uint32_t element, child;
+  std::uint8_t k;  ///< the edge from the child's k-th corner to the next
+};
+
+/// Edge-uses by edge. Diagonals inside an element are not entered: no other element has them.
+class EdgeTable {
+ public:
+  /// An empty table for edges between this many points.
+  explicit EdgeTable(std::size_t points) : head_(points, ~0u) {}
+  /// Reserves memory.
+  void reserve(std::size_t uses) { entries_.reserve(uses); }
+  /// Adds a use of edge uv.
+  void add(PointIndex u, PointIndex v, const EdgeUse& use);
+  /// Replaces `out` by the uses of edge uv, in the order in which they were added.
+  void find(PointIndex u, PointIndex v, std::vector<EdgeUse>& out) const;
+
+ private:
+  struct Entry {
+    PointIndex high;
+    std::uint32_t next;
+    EdgeUse use;
+  };
+  std::vector<std::uint32_t> head_;  // by lower point
+  std::vector<Entry> entries_;
+};
+
+/// The edges of all faces of K in the arrangement, after splitting.
+EdgeTable edges_of_complex(const Arrangement& arrangement);
+
+/// A face at a directed edge u→v, for the radial order around that edge.
+struct RadialFace {
+  std::uint32_t element;
+  PointIndex apex;
+  bool forward;  ///< its boundary runs u→v
+};
+/// The child of an edge-use as seen from the edge's end u.
+RadialFace radial_face(const Arrangement& a, const EdgeUse& use, PointIndex u);
+
+/// True when face w lies in the half-plane of `zero` around u→v. Exact.
+bool lies_on(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& w);
+/// Sign of angle(p) − angle(q) around u→v, counter-clockwise from `zero`. Exact.
+int compare_around(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& p,
+                   const RadialFace& q);
+
+}  // namespace geo::crack

@@ -1,3 +1,4 @@
+// Transfers attributes of a mesh to surfaces cut from it.
 #include "kerf/mesh.h"
 
 #include <algorithm>
@@ -8,9 +9,8 @@
 namespace geo {
 namespace {
 
-// Where a point lies in a triangle: at a corner, on an edge or within, with the weight of each
-// corner concerned.
-struct Place {
+// Barycentric location of a point in a triangle: at a corner, on an edge, or inside.
+struct Location {
   int count = 1;
   std::array<int, 3> corner{};
   std::array<double, 3> weight{1, 0, 0};
@@ -20,17 +20,16 @@ bool before(const Vec3& p, const Vec3& q) {
   return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
 }
 
-Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+Location locate(const std::array<Vec3, 3>& t, const Vec3& p) {
   for (int k = 0; k < 3; ++k)
     if (t[k] == p) return {1, {k}, {1}};
-  // A cut leaves points on edges, up to the last few places of a coordinate. There both triangles
-  // of the edge must see the same weights, so the edge is taken in one direction whichever triangle
-  // it belongs to.
+  // Points that a cut puts on an edge are off it by a few ulps. Both triangles of the edge must get
+  // equal weights there, so the edge is directed independently of the triangle.
   double largest = p.cwiseAbs().maxCoeff();
   for (const Vec3& c : t) largest = std::max(largest, c.cwiseAbs().maxCoeff());
   double best = 8 * std::numeric_limits<double>::epsilon() * largest;
   int longest = 0;
-  Place on_edge{0, {}, {}};
+  Location on_edge{0, {}, {}};
   for (int k = 0; k < 3; ++k) {
     int a = k, b = (k + 1) % 3;
     if (before(t[b], t[a])) std::swap(a, b);
@@ -41,8 +40,8 @@ Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
     if (distance <= best) best = distance, on_edge = {2, {a, b}, {1 - s, s}};
   }
   if (on_edge.count == 2) return on_edge;
-  // Height over the longest edge first, then the place along it that goes with this height: the
-  // error is a few last places of a length, however thin the triangle.
+  // Height over the longest edge first, then the position along the edge: the error is a few ulps
+  // of a length, however thin the triangle.
   const int a = longest, b = (a + 1) % 3, c = (a + 2) % 3;
   const Vec3 e = t[b] - t[a], q = t[c] - t[a], d = p - t[a];
   const Vec3 up = q - e * (q.dot(e) / e.squaredNorm());
@@ -52,17 +51,17 @@ Place place_in(const std::array<Vec3, 3>& t, const Vec3& p) {
 }
 
 template <class V>
-bool constant(const std::array<V, 3>& at, const Place& place) {
-  for (int i = 1; i < place.count; ++i)
-    if (at[place.corner[i]] != at[place.corner[0]]) return false;
+bool constant(const std::array<V, 3>& at, const Location& location) {
+  for (int i = 1; i < location.count; ++i)
+    if (at[location.corner[i]] != at[location.corner[0]]) return false;
   return true;
 }
 
 template <class V>
-V mixed(const std::array<V, 3>& at, const Place& place) {
-  if (constant(at, place)) return at[place.corner[0]];
-  V sum = place.weight[0] * at[place.corner[0]];
-  for (int i = 1; i < place.count; ++i) sum += place.weight[i] * at[place.corner[i]];
+V interpolated(const std::array<V, 3>& at, const Location& location) {
+  if (constant(at, location)) return at[location.corner[0]];
+  V sum = location.weight[0] * at[location.corner[0]];
+  for (int i = 1; i < location.count; ++i) sum += location.weight[i] * at[location.corner[i]];
   return sum;
 }
 
@@ -71,25 +70,24 @@ std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, std::size_t t) {
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-// The other side of a crack's triangle, where it follows in the next row, as Kerf writes it; else
-// the row itself.
-std::uint32_t other_side(const TriangleMesh& mesh, std::uint32_t row) {
-  if (mesh.patch.empty() || row + 1 >= mesh.triangles.size() || mesh.patch[row] <= 0 ||
-      mesh.patch[row + 1] != -mesh.patch[row])
-    return row;
-  const auto sorted = [&](std::uint32_t t) {
+// The triangle on the other side of a crack: the next one, as Kerf writes surfaces. Without one,
+// the triangle itself.
+std::uint32_t other_side(const TriangleMesh& mesh, std::uint32_t t) {
+  if (mesh.patch.empty() || t + 1 >= mesh.triangles.size() || mesh.patch[t] <= 0 || mesh.patch[t + 1] != -mesh.patch[t])
+    return t;
+  const auto sites_of = [&](std::uint32_t triangle) {
     std::array<std::uint32_t, 3> sites;
-    for (int k = 0; k < 3; ++k) sites[k] = mesh.site[mesh.triangles[t][k]];
+    for (int k = 0; k < 3; ++k) sites[k] = mesh.site[mesh.triangles[triangle][k]];
     std::sort(sites.begin(), sites.end());
     return sites;
   };
-  return sorted(row) == sorted(row + 1) ? row + 1 : row;
+  return sites_of(t) == sites_of(t + 1) ? t + 1 : t;
 }
 
-// What a row of `original` names as its own source.
-std::uint32_t first_source(const TriangleMesh& original, std::uint32_t row) {
-  if (!original.source.empty()) return original.source[row];
-  return !original.patch.empty() && original.patch[row] != 0 ? ~0u : row;
+// The source of triangle t of `original`; t itself in a surface that was not cut.
+std::uint32_t source_of(const TriangleMesh& original, std::uint32_t t) {
+  if (!original.source.empty()) return original.source[t];
+  return !original.patch.empty() && original.patch[t] != 0 ? ~0u : t;
 }
 
 }  // namespace
@@ -123,7 +121,7 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
   if (!from.normal.empty()) to.normal.resize(count);
   if (!from.color.empty()) to.color.resize(count);
   if (!from.group.empty()) to.group.resize(count);
-  std::int32_t crack = -1;  // its row of group_names, once needed
+  std::int32_t crack = -1;  // index of the group, once needed
   for (std::size_t t = 0; t < count && !from.empty(); ++t) {
     const auto corners = corners_of(derived, t);
     const std::uint32_t row = derived.source[t];
@@ -145,18 +143,18 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
     const auto source = corners_of(original, s);
     if (!to.group.empty()) to.group[t] = from.group[s];
     for (int k = 0; k < 3; ++k) {
-      const Place place = place_in(source, corners[k]);
-      if (!to.uv.empty()) to.uv[t][k] = mixed(from.uv[s], place);
-      if (!to.color.empty()) to.color[t][k] = mixed(from.color[s], place);
+      const Location at = locate(source, corners[k]);
+      if (!to.uv.empty()) to.uv[t][k] = interpolated(from.uv[s], at);
+      if (!to.color.empty()) to.color[t][k] = interpolated(from.color[s], at);
       if (to.normal.empty()) continue;
-      Vec3 n = mixed(from.normal[s], place);
-      if (!constant(from.normal[s], place))
+      Vec3 n = interpolated(from.normal[s], at);
+      if (!constant(from.normal[s], at))
         n = n.norm() > 0 ? n.normalized() : face_normal(source[0], source[1], source[2]);
       to.normal[t][k] = behind && s == row ? Vec3(-n) : n;
     }
   }
   for (auto& row : derived.source)
-    if (row != ~0u) row = first_source(original, row);
+    if (row != ~0u) row = source_of(original, row);
   derived.attributes = std::move(to);
 }
 

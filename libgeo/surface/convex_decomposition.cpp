@@ -1,3 +1,4 @@
+// Approximate convex decomposition by greedy division with planes.
 #include "kerf/pieces.h"
 
 #include <algorithm>
@@ -11,13 +12,13 @@
 namespace geo {
 namespace {
 
-TriangleMesh hull_of(const std::vector<Vec3>& points, std::size_t corners) {
+TriangleMesh hull_of(const std::vector<Vec3>& points, std::size_t max_vertices) {
   TriangleMesh hull;
-  std::map<std::uint32_t, std::uint32_t> rows;
-  for (Triangle t : convex_hull(points, corners)) {
+  std::map<std::uint32_t, std::uint32_t> index;  // point → vertex of the hull
+  for (Triangle t : convex_hull(points, max_vertices)) {
     for (auto& v : t) {
-      const auto [entry, fresh] = rows.try_emplace(v, static_cast<std::uint32_t>(hull.vertices.size()));
-      if (fresh) hull.vertices.push_back(points[v]);
+      const auto [entry, is_new] = index.try_emplace(v, static_cast<std::uint32_t>(hull.vertices.size()));
+      if (is_new) hull.vertices.push_back(points[v]);
       v = entry->second;
     }
     hull.triangles.push_back(t);
@@ -25,26 +26,26 @@ TriangleMesh hull_of(const std::vector<Vec3>& points, std::size_t corners) {
   return hull;
 }
 
-// A closed soup of triangles. Where it was cut off it is closed by a fan, which may pass over
-// itself, but not beyond the hull.
-struct Part {
+// A closed triangle soup and its hull. A cut is closed by a fan of triangles, which may overlap but
+// stays inside the hull.
+struct Solid {
   std::vector<std::array<Vec3, 3>> triangles;
   TriangleMesh hull;
   double volume = 0;  // of the hull
 
-  Part(std::vector<std::array<Vec3, 3>> soup, const std::vector<Vec3>& points, std::size_t corners)
-      : triangles(std::move(soup)), hull(hull_of(points, corners)), volume(signed_volume(hull)) {}
+  Solid(std::vector<std::array<Vec3, 3>> soup, const std::vector<Vec3>& points, std::size_t max_vertices)
+      : triangles(std::move(soup)), hull(hull_of(points, max_vertices)), volume(signed_volume(hull)) {}
 };
 
-// What of a part is where `side` of (n · x − offset) is negative, closed again.
-Part below(const Part& part, const Vec3& n, double offset, double side, std::size_t corners) {
+// The part of a solid where side · (n · x − offset) is negative, closed again.
+Solid below(const Solid& solid, const Vec3& n, double offset, double side, std::size_t max_vertices) {
   std::vector<std::array<Vec3, 3>> kept;
   std::vector<std::pair<Vec3, Vec3>> rim;
   std::vector<Vec3> points;
   Vec3 middle = Vec3::Zero();
-  for (const auto& t : part.triangles) {
+  for (const auto& t : solid.triangles) {
     std::vector<Vec3> polygon;
-    std::optional<Vec3> leaves, enters;
+    std::optional<Vec3> exit, entry;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &a = t[k], &b = t[(k + 1) % 3];
       const double da = side * (n.dot(a) - offset), db = side * (n.dot(b) - offset);
@@ -52,41 +53,42 @@ Part below(const Part& part, const Vec3& n, double offset, double side, std::siz
       if ((da <= 0) == (db <= 0)) continue;
       const Vec3 p = a + da / (da - db) * (b - a);
       polygon.push_back(p);
-      (da <= 0 ? leaves : enters) = p;
+      (da <= 0 ? exit : entry) = p;
     }
     for (std::size_t k = 2; k < polygon.size(); ++k) kept.push_back({polygon[0], polygon[k - 1], polygon[k]});
     points.insert(points.end(), polygon.begin(), polygon.end());
-    if (leaves && enters) rim.push_back({*leaves, *enters}), middle += *leaves + *enters;
+    if (exit && entry) rim.push_back({*exit, *entry}), middle += *exit + *entry;
   }
   if (!rim.empty()) middle /= 2 * double(rim.size());
   for (const auto& [a, b] : rim) kept.push_back({b, a, middle});
-  return Part(std::move(kept), points, corners);
+  return Solid(std::move(kept), points, max_vertices);
 }
 
-// The best way to divide a part, and the volume of hulls that it saves.
+// A division of a solid.
 struct Division {
-  std::vector<Part> halves;
-  double saved = 0;
+  std::vector<Solid> halves;
+  double saved = 0;  // volume of the hull, less those of the halves' hulls
 };
 
-Division divide(const Part& part, std::size_t corners) {
-  constexpr int places = 7;  // of the plane along each axis, evenly spread
+// The division that saves most, by planes at evenly spaced positions across the principal axes.
+Division divide(const Solid& solid, std::size_t max_vertices) {
+  constexpr int positions = 7;  // per axis
   Vec3 mean = Vec3::Zero();
-  for (const auto& t : part.triangles) mean += (t[0] + t[1] + t[2]) / (3 * double(part.triangles.size()));
+  for (const auto& t : solid.triangles) mean += (t[0] + t[1] + t[2]) / (3 * double(solid.triangles.size()));
   Mat3 spread = Mat3::Zero();
-  for (const auto& t : part.triangles)
+  for (const auto& t : solid.triangles)
     for (const Vec3& p : t) spread += (p - mean) * (p - mean).transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
   Division best;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 n = axes.eigenvectors().col(axis);
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    for (const auto& t : part.triangles)
+    for (const auto& t : solid.triangles)
       for (const Vec3& p : t) lo = std::min(lo, n.dot(p)), hi = std::max(hi, n.dot(p));
-    for (int k = 1; k <= places; ++k) {
-      const double offset = lo + (hi - lo) * k / (places + 1);
-      Part under = below(part, n, offset, 1, corners), over = below(part, n, offset, -1, corners);
-      const double saved = part.volume - under.volume - over.volume;
+    for (int k = 1; k <= positions; ++k) {
+      const double offset = lo + (hi - lo) * k / (positions + 1);
+      Solid under = below(solid, n, offset, 1, max_vertices), over = below(solid, n, offset, -1, max_vertices);
+      const double saved = solid.volume - under.volume - over.volume;
       if (under.hull.triangles.empty() || over.hull.triangles.empty() || saved <= best.saved) continue;
       best = {{std::move(under), std::move(over)}, saved};
     }
@@ -96,24 +98,25 @@ Division divide(const Part& part, std::size_t corners) {
 
 }  // namespace
 
-std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t parts, std::size_t corners) {
-  std::vector<Part> all{Part(corners_of(mesh), mesh.vertices, corners)};
+std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t max_hulls,
+                                               std::size_t max_vertices) {
+  std::vector<Solid> all{Solid(corners_of(mesh), mesh.vertices, max_vertices)};
   if (all[0].hull.triangles.empty()) return {};
-  const double least = 0.01 * all[0].volume;
+  const double least_saving = 0.01 * all[0].volume;
   std::vector<Division> next;
-  while (all.size() < parts) {
-    for (std::size_t p = next.size(); p < all.size(); ++p) next.push_back(divide(all[p], corners));
-    const auto most = static_cast<std::size_t>(
+  while (all.size() < max_hulls) {
+    for (std::size_t p = next.size(); p < all.size(); ++p) next.push_back(divide(all[p], max_vertices));
+    const auto best = static_cast<std::size_t>(
         std::max_element(next.begin(), next.end(), [](const auto& a, const auto& b) { return a.saved < b.saved; }) -
         next.begin());
-    if (next[most].saved <= least) break;
-    auto halves = std::move(next[most].halves);
-    all.erase(all.begin() + static_cast<std::ptrdiff_t>(most)),
-        next.erase(next.begin() + static_cast<std::ptrdiff_t>(most));
-    for (Part& half : halves) all.push_back(std::move(half));
+    if (next[best].saved <= least_saving) break;
+    auto halves = std::move(next[best].halves);
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(best)),
+        next.erase(next.begin() + static_cast<std::ptrdiff_t>(best));
+    for (Solid& half : halves) all.push_back(std::move(half));
   }
   std::vector<TriangleMesh> hulls;
-  for (Part& part : all) hulls.push_back(std::move(part.hull));
+  for (Solid& solid : all) hulls.push_back(std::move(solid.hull));
   return hulls;
 }
 

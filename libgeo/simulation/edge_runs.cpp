@@ -21,7 +21,7 @@ struct Sample {
 // Samples a part of the edge. Not shared between threads: it caches deformed surface vertices.
 class EdgeSampler {
  public:
-  EdgeSampler(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose)
+  EdgeSampler(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose)
       : map_(map), body_(body), blade_(blade), pose_(pose) {}
 
   Sample at(double parameter) {
@@ -30,12 +30,12 @@ class EdgeSampler {
     const Vec3 local =
         t > 0 ? Vec3(blade_.points[i] + t * (blade_.points[(i + 1) % n] - blade_.points[i])) : blade_.points[i];
     Sample s{parameter, pose_ * local, {}, false, 0, std::numeric_limits<double>::infinity()};
-    const PointMap::Place place = map_.material(s.world, memory_);
-    s.material = place.material, s.within = place.within;
-    if (place.anchor.valid()) {
-      s.spacing = body_.nodes.spacing[place.anchor.index()];
+    const InverseDeformation::Location place = map_.to_material(s.world, memory_);
+    s.material = place.position, s.within = place.in_support;
+    if (place.nearest.valid()) {
+      s.spacing = body_.nodes.spacing[place.nearest.index()];
       s.gap =
-          (s.material - body_.nodes.position[place.anchor.index()]).norm() - body_.nodes.radius[place.anchor.index()];
+          (s.material - body_.nodes.position[place.nearest.index()]).norm() - body_.nodes.radius[place.nearest.index()];
     }
     return s;
   }
@@ -57,15 +57,15 @@ class EdgeSampler {
   }
 
  private:
-  const PointMap& map_;
+  const InverseDeformation& map_;
   const Body& body_;
   const Blade& blade_;
   const Pose& pose_;
-  PointMap::Memory memory_;
+  InverseDeformation::VertexCache memory_;
 };
 
 // All samples of an edge. Threads trace parts of it: a sample does not depend on the others.
-std::vector<Sample> sample_edge(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
+std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose) {
   std::vector<std::vector<Sample>> segments(blade.points.size() - 1);  // each with its last point
   parallel_for(segments.size(), 2, [&](std::size_t begin, std::size_t end) {
     EdgeSampler sampler(map, body, blade, pose);
@@ -116,7 +116,7 @@ bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
 
 }  // namespace
 
-std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade,
+std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose) {
   const std::vector<Sample> samples = sample_edge(map, body, blade, pose);
   std::vector<std::vector<EdgePoint>> runs;
@@ -140,7 +140,7 @@ std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& b
   return runs;
 }
 
-std::vector<EdgePoint> closed_run(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose) {
+std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose) {
   EdgeSampler sampler(map, body, blade, pose);
   std::vector<EdgePoint> run;
   for (std::size_t i = 0; i < blade.points.size(); ++i) run.push_back(sampler.at(double(i)).point());

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kerf/scene.h"
-#include "mechanics/discretisation/point_map.h"
+#include "mechanics/discretisation/inverse_deformation.h"
 #include "simulation/edge_front.h"
 
 namespace geo {
@@ -14,11 +14,11 @@ namespace geo {
 /// blade's own points, samples are inserted where the map bends the edge by more than a tenth of a
 /// node spacing, and at the ends of a run; points closer than a twentieth are left out. A run ends
 /// where no node is near, and where the edge continues in material that is disconnected from it.
-std::vector<std::vector<EdgePoint>> edge_runs(const PointMap& map, const Body& body, const Blade& blade,
+std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose);
 
 /// The points of a closed edge, each mapped into the material.
-std::vector<EdgePoint> closed_run(const PointMap& map, const Body& body, const Blade& blade, const Pose& pose);
+std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose);
 
 /// A front for each run: the one among `before` that the run continues. Fronts are joined where a
 /// run continues several, and split where several runs continue one. A run that continues none gets

@@ -186,7 +186,7 @@ void Simulation::Impl::cut_at(std::size_t b, double time, FrameStats& stats) {
   Box3 about;
   for (const Vec3& p : blade.points) about.add(pose * p);
   const LazyNodalGradients gradient = solid.gradients_when_asked(state.motion.displacement);
-  const PointMap map(body, state.motion.displacement, gradient, about);
+  const InverseDeformation map(body, state.motion.displacement, gradient, about);
   std::vector<std::vector<EdgePoint>> runs;
   if (blade.closed) {
     runs.push_back(closed_run(map, body, blade, pose));

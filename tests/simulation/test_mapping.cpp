@@ -10,7 +10,7 @@
 #include "kerf/shapes.h"
 #include "kerf/simulation.h"
 #include "mechanics/discretisation/deformation.h"
-#include "mechanics/discretisation/point_map.h"
+#include "mechanics/discretisation/inverse_deformation.h"
 
 using namespace geo;
 
@@ -46,7 +46,7 @@ struct Bent {
 
 TEST_CASE("inside, the inverse of Eq. 1 leads back to the point") {
   const Bent b;
-  const PointMap map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
+  const InverseDeformation map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
   Random random(5);
   for (int i = 0; i < 200; ++i) {
     const Vec3 x(random.uniform(0.25, 0.75), random.uniform(0.25, 0.75), random.uniform(0.25, 1.75));
@@ -54,15 +54,15 @@ TEST_CASE("inside, the inverse of Eq. 1 leads back to the point") {
     for (std::uint32_t n = 0; n < b.body.nodes.size(); ++n)
       if (const double d = (b.body.nodes.position[n] - x).norm(); d < b.body.nodes.radius[n])
         nodes.push_back({NodeId(n), d});
-    const PointMap::Place place = map.material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
-    REQUIRE(place.within);
-    CHECK((place.material - x).norm() < 1e-10);
+    const InverseDeformation::Location place = map.to_material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
+    REQUIRE(place.in_support);
+    CHECK((place.position - x).norm() < 1e-10);
   }
 }
 
 TEST_CASE("on the skin, the inverse is linear on each deformed triangle") {
   const Bent b;
-  const PointMap map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
+  const InverseDeformation map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
   Random random(6);
   for (std::uint32_t f = 0; f < b.body.surface.face_count(); f += 3) {
     const double s = random.uniform(0.1, 0.4), t = random.uniform(0.1, 0.4);
@@ -72,7 +72,7 @@ TEST_CASE("on the skin, the inverse is linear on each deformed triangle") {
       x += weight[k] * b.body.surface.point(b.body.surface.face(FaceId(f)).v[static_cast<std::size_t>(k)]);
       y += weight[k] * b.skin(b.body.surface.surface_vertex({FaceId(f), 0}, k));
     }
-    CHECK((map.material(y).material - x).norm() < 1e-9);
+    CHECK((map.to_material(y).position - x).norm() < 1e-9);
   }
 }
 
@@ -89,22 +89,22 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
           x + b.u[b.body.grid.nearest(b.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; })[0]]);
     }
     const Box3 all{Vec3::Constant(-9), Vec3::Constant(9)};
-    const PointMap map(b.body, b.u, b.gradient, all);
-    std::vector<PointMap::Place> found(points.size());
+    const InverseDeformation map(b.body, b.u, b.gradient, all);
+    std::vector<InverseDeformation::Location> found(points.size());
     set_threads(4);
     parallel_for(points.size(), 4, [&](std::size_t begin, std::size_t end) {
-      PointMap::Memory memory;
-      for (std::size_t i = begin; i < end; ++i) found[i] = map.material(points[i], memory);
+      InverseDeformation::VertexCache memory;
+      for (std::size_t i = begin; i < end; ++i) found[i] = map.to_material(points[i], memory);
     });
     set_threads(0);
     std::size_t within = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const LazyNodalGradients fresh = b.solid.gradients_when_asked(b.u);
-      const PointMap::Place alone = PointMap(b.body, b.u, fresh, all).material(points[i]);
-      CHECK(found[i].material == alone.material);
-      CHECK(found[i].anchor == alone.anchor);
-      CHECK(found[i].within == alone.within);
-      within += alone.within;
+      const InverseDeformation::Location alone = InverseDeformation(b.body, b.u, fresh, all).to_material(points[i]);
+      CHECK(found[i].position == alone.position);
+      CHECK(found[i].nearest == alone.nearest);
+      CHECK(found[i].in_support == alone.in_support);
+      within += alone.in_support;
     }
     CHECK(within > points.size() / 2);
   }

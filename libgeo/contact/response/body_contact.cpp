@@ -6,7 +6,7 @@
 
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
-#include "mechanics/discretisation/point_map.h"
+#include "mechanics/discretisation/inverse_deformation.h"
 
 namespace geo {
 namespace {
@@ -69,12 +69,12 @@ class BodyContactFinder {
     if (near.empty()) return;
     std::vector<std::uint8_t> of_body;
     for (const auto other : in_.body_index) of_body.push_back(other == b);
-    const PointMap map(in_.body, in_.displacement, gradient, near_box, std::move(of_body));
-    PointMap::Memory memory;
+    const InverseDeformation map(in_.body, in_.displacement, gradient, near_box, std::move(of_body));
+    InverseDeformation::VertexCache memory;
     for (const Vertex& v : near) {
-      const PointMap::Place mapped = map.material(v.world, memory);
-      if (!mapped.within) continue;
-      const auto nearest = nearest_point(mapped.material, in_.body.nodes.position[mapped.anchor.index()], b);
+      const InverseDeformation::Location mapped = map.to_material(v.world, memory);
+      if (!mapped.in_support) continue;
+      const auto nearest = nearest_point(mapped.position, in_.body.nodes.position[mapped.nearest.index()], b);
       if (nearest) add_contact(v.id, *nearest);
     }
   }

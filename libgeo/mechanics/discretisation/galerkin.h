@@ -10,7 +10,7 @@ namespace geo {
 /// Builds the material points of a body and keeps them up to date.
 class Galerkin {
  public:
-  /// Of no body.
+  /// Without a body.
   Galerkin() = default;
   /// Builds `points` for a body.
   Galerkin(const Body& body, MaterialPoints& points);

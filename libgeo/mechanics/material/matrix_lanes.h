@@ -9,6 +9,7 @@
 
 #include <cstddef>
 
+/// Opens the namespace of one vector target.
 HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -71,6 +72,7 @@ HWY_INLINE Matrix<Number> transposed(const Matrix<Number>& m) {
 }
 
 }  // namespace geo::HWY_NAMESPACE
+/// Closes it.
 HWY_AFTER_NAMESPACE();
 
 #endif

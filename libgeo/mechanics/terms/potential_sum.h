@@ -16,7 +16,7 @@ namespace geo {
 /// of selected islands only.
 class PotentialSum {
  public:
-  /// Of all terms of `potentials`, after their begin_substep() at displacements u. Keeps references
+  /// Sums all terms of `potentials`, after their begin_substep() at displacements u. Keeps references
   /// to both.
   PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u);
   /// True if there are no terms.

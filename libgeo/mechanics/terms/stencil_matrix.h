@@ -21,7 +21,7 @@ class StencilMatrix {
   };
   /// Without stencils.
   StencilMatrix() = default;
-  /// Of the stencils `selected`, ascending indices into `stencils`, over `nodes` nodes.
+  /// Takes the stencils `selected`, ascending indices into `stencils`, over `nodes` nodes.
   StencilMatrix(std::span<const std::uint32_t> selected, const std::vector<Stencil>& stencils, std::size_t nodes);
 
   /// The number of selected stencils.

@@ -1,0 +1,154 @@
+#include "mechanics/discretisation/inverse_deformation.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/distance.h"
+#include "mechanics/discretisation/deformation.h"
+#include "mechanics/discretisation/kernel.h"
+
+namespace geo {
+namespace {
+
+// Crushed or inverted material is treated as undeformed.
+Mat3 safe_inverse(const Mat3& f) { return f.determinant() > 0.05 ? Mat3(f.inverse()) : Mat3::Identity(); }
+
+// Smoothstep from 1 at a to 0 at b.
+double fade(double x, double a, double b) {
+  const double t = std::clamp((b - x) / (b - a), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+InverseDeformation::InverseDeformation(const Body& body, const std::vector<Vec3>& u, const LazyNodalGradients& gradient, const Box3& about,
+                   std::vector<std::uint8_t> included)
+    : body_(body),
+      u_(u),
+      gradient_(gradient),
+      included_(std::move(included)),
+      largest_support_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())),
+      grid_(body.grid.cell()) {
+  const Box3 box = about.grown(2 * largest_support_);
+  world_.reserve(body.nodes.size());
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) world_.push_back(body.nodes.position[i] + u[i]);
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    if (is_included(i) && box.meets({world_[i], world_[i]})) grid_.insert(world_, static_cast<std::uint32_t>(i));
+}
+
+bool InverseDeformation::is_included(FaceId f) const {
+  if (included_.empty()) return true;
+  std::vector<std::pair<NodeId, double>> nodes;
+  bound_nodes(body_, body_.surface.surface_vertex({f, 0}, 0), nodes);
+  return !nodes.empty() && included_[nodes[0].first.index()];
+}
+
+void InverseDeformation::update(Neighborhood& near, const Vec3& x) const {
+  if ((near.material - x).norm() < 0.5 * largest_support_) return;
+  near.material = x, near.node.clear(), near.fading.clear();
+  std::vector<std::uint32_t> candidates;
+  body_.grid.within(body_.nodes.position, x, 1.5 * largest_support_, candidates);
+  for (const auto i : candidates)
+    if (const double fading = fade((near.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3);
+        fading > 0 && is_included(i))
+      near.node.push_back(i), near.fading.push_back(fading);
+}
+
+bool InverseDeformation::deform(Neighborhood& near, const Vec3& x, Vec3& to, Mat3& f) const {
+  update(near, x);
+  double total = 0;
+  to.setZero(), f.setZero();
+  for (std::size_t k = 0; k < near.node.size(); ++k) {
+    const auto i = near.node[k];
+    const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * near.fading[k];
+    if (!(w > 0)) continue;
+    total += w, f += w * gradient_[i];
+    to += w * (u_[i] + gradient_[i] * (x - body_.nodes.position[i]));
+  }
+  if (!(total > 0)) return false;
+  to = x + to / total, f = Mat3::Identity() + f / total;
+  return true;
+}
+
+Vec3 InverseDeformation::solve(Neighborhood& near, Vec3 x, double tolerance) const {
+  Vec3 best = x, to;
+  Mat3 f;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 24 && deform(near, x, to, f); ++i) {
+    const Vec3 residual = near.world - to;
+    if (!(residual.norm() < smallest)) break;
+    smallest = residual.norm(), best = x;
+    if (smallest <= tolerance) break;
+    x += safe_inverse(f) * residual;
+  }
+  return best;
+}
+
+Vec3 InverseDeformation::deformed_vertex(SurfaceVertexId v, VertexCache& cache) const {
+  const auto [it, is_new] = cache.try_emplace(v.value);
+  if (is_new) {
+    std::vector<std::pair<NodeId, double>> nodes;
+    bound_nodes(body_, v, nodes);
+    const Vec3 x = body_.surface.point(body_.surface.site(v));
+    it->second = x + (nodes.empty() ? Vec3(Vec3::Zero()) : displacement_at(x, nodes, body_.nodes, u_, gradient_));
+  }
+  return it->second;
+}
+
+// The difference between the map that is linear on deformed triangles of the skin near y and the inverse of Eq. 1.
+// Weights grow without bound towards a triangle, so one that holds y decides alone.
+Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, double range, VertexCache& cache) const {
+  const Vec3& y = near.world;
+  Vec3 to;
+  Mat3 f;
+  std::vector<FaceId> faces;
+  body_.surface.faces_near(Box3{x, x}.grown(2 * range), faces);
+  if (faces.empty() || !deform(near, x, to, f)) return Vec3::Zero();
+  const Mat3 f_inverse = safe_inverse(f);
+  Vec3 sum = Vec3::Zero();
+  double total = 0, nearest = range;
+  for (const FaceId face : faces) {
+    if (body_.surface.face(face).crack != 0 || !is_included(face)) continue;
+    Vec3 t[3];
+    for (int k = 0; k < 3; ++k) t[k] = deformed_vertex(body_.surface.surface_vertex({face, 0}, k), cache);
+    const Vec3 on = closest_point_on_triangle(y, t[0], t[1], t[2]), b = barycentric(on, t[0], t[1], t[2]);
+    const double d = (on - y).norm();
+    if (d >= range) continue;
+    const auto corner = body_.surface.corners(face);
+    const double w = std::pow((range - d) / std::max(d, 1e-12 * range), 2);
+    sum += w * (b[0] * corner[0] + b[1] * corner[1] + b[2] * corner[2] - (x + f_inverse * (on - y)));
+    total += w, nearest = std::min(nearest, d);
+  }
+  return total > 0 ? Vec3(std::pow(1 - nearest / range, 2) * sum / total) : Vec3(Vec3::Zero());
+}
+
+InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, VertexCache& cache) const {
+  const auto nearest = grid_.nearest(world_, y, 1, ~0u, [](std::uint32_t) { return true; });
+  if (nearest.empty()) return {y, NodeId(), false};
+  const std::size_t a = nearest[0];
+  const auto& nodes = body_.nodes;
+  if (!((y - world_[a]).norm() < nodes.radius[a])) return {y - u_[a], NodeId(a), false};
+  // Each node's own inverse affine map counts as far as it agrees with the nearest node's.
+  const auto affine_inverse = [&](std::size_t i) {
+    return Vec3(nodes.position[i] + safe_inverse(Mat3::Identity() + gradient_[i]) * (y - world_[i]));
+  };
+  std::vector<std::uint32_t> candidates;
+  grid_.within(world_, y, nodes.radius[a], candidates);
+  const Vec3 guess = affine_inverse(a);
+  Vec3 sum = Vec3::Zero();
+  double total = 0;
+  for (const auto i : candidates) {
+    const double w = kernel((y - world_[i]).norm() / nodes.radius[i], 1.0);
+    if (!(w > 0)) continue;
+    const Vec3 x = affine_inverse(i);
+    const double agreeing = w * fade((x - guess).norm() / nodes.radius[a], 0.5, 1);
+    sum += agreeing * x, total += agreeing;
+  }
+  Neighborhood near;
+  near.world = y;
+  const Vec3 x = solve(near, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a]);
+  return {x + skin_correction(near, x, 0.5 * nodes.spacing[a], cache), NodeId(a), true};
+}
+
+}  // namespace geo

@@ -140,7 +140,8 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
   return runs;
 }
 
-std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose) {
+std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade,
+                                  const Pose& pose) {
   EdgeSampler sampler(map, body, blade, pose);
   std::vector<EdgePoint> run;
   for (std::size_t i = 0; i < blade.points.size(); ++i) run.push_back(sampler.at(double(i)).point());

@@ -18,7 +18,8 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
                                               const Pose& pose);
 
 /// The points of a closed edge, each mapped into the material.
-std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose);
+std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade,
+                                  const Pose& pose);
 
 /// A front for each run: the one among `before` that the run continues. Fronts are joined where a
 /// run continues several, and split where several runs continue one. A run that continues none gets

@@ -54,7 +54,8 @@ TEST_CASE("inside, the inverse of Eq. 1 leads back to the point") {
     for (std::uint32_t n = 0; n < b.body.nodes.size(); ++n)
       if (const double d = (b.body.nodes.position[n] - x).norm(); d < b.body.nodes.radius[n])
         nodes.push_back({NodeId(n), d});
-    const InverseDeformation::Location place = map.to_material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
+    const InverseDeformation::Location place =
+        map.to_material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
     REQUIRE(place.in_support);
     CHECK((place.position - x).norm() < 1e-10);
   }

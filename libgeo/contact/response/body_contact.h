@@ -35,10 +35,10 @@ struct BodyContactOptions {
 };
 
 /// Contacts of all surface vertices that are inside another body. A vertex is mapped back to that
-/// body's material (inverse_deformation.h), where the nearest point of its undeformed surface is looked for.
-/// So the distance field follows cuts, needs no update, and is exact at corners and in thin parts.
-/// Sheets of a crack count where they are open wider than the vertex is deep. Vertices of both
-/// bodies are treated so, each with half the pressure.
+/// body's material (inverse_deformation.h), where the nearest point of its undeformed surface is
+/// looked for. So the distance field follows cuts, needs no update, and is exact at corners and in
+/// thin parts. Sheets of a crack count where they are open wider than the vertex is deep. Vertices
+/// of both bodies are treated so, each with half the pressure.
 BodyContactPenalty find_body_contacts(const BodyContactInput& input, const BodyContactOptions& options);
 
 }  // namespace geo

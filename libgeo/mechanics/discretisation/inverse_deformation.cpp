@@ -22,8 +22,8 @@ double fade(double x, double a, double b) {
 
 }  // namespace
 
-InverseDeformation::InverseDeformation(const Body& body, const std::vector<Vec3>& u, const LazyNodalGradients& gradient, const Box3& about,
-                   std::vector<std::uint8_t> included)
+InverseDeformation::InverseDeformation(const Body& body, const std::vector<Vec3>& u, const LazyNodalGradients& gradient,
+                                       const Box3& about, std::vector<std::uint8_t> included)
     : body_(body),
       u_(u),
       gradient_(gradient),
@@ -96,8 +96,9 @@ Vec3 InverseDeformation::deformed_vertex(SurfaceVertexId v, VertexCache& cache) 
   return it->second;
 }
 
-// The difference between the map that is linear on deformed triangles of the skin near y and the inverse of Eq. 1.
-// Weights grow without bound towards a triangle, so one that holds y decides alone.
+// The difference between the map that is linear on deformed triangles of the skin near y and the
+// inverse of Eq. 1. Weights grow without bound towards a triangle, so one that holds y decides
+// alone.
 Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, double range, VertexCache& cache) const {
   const Vec3& y = near.world;
   Vec3 to;

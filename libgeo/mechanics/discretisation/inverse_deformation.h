@@ -10,16 +10,18 @@
 
 namespace geo {
 
-/// Inverts Eq. 1 by Newton's method. Only nodes that are near the point both in the material and in the world take
-/// part: fully up to 1.5 support radii in the world, fading to none at 3. Hence material that is close in the world but
-/// far in the material, such as the two sides of an open cut, is not mixed. The initial guess blends the nodes' own
-/// affine maps with kernel weights in the world. Near the skin the map fades into the one that is linear on each
-/// deformed triangle, which is exact there. The map is continuous except where the material is torn. Threads may query
+/// Inverts Eq. 1 by Newton's method. Only nodes that are near the point both in the material and in
+/// the world take part: fully up to 1.5 support radii in the world, fading to none at 3. Hence
+/// material that is close in the world but far in the material, such as the two sides of an open
+/// cut, is not mixed. The initial guess blends the nodes' own affine maps with kernel weights in
+/// the world. Near the skin the map fades into the one that is linear on each deformed triangle,
+/// which is exact there. The map is continuous except where the material is torn. Threads may query
 /// the same object at the same time, each with a cache of its own.
 class InverseDeformation {
  public:
-  /// For points inside the box `about`, world coordinates. `u` and `gradient` are per node. All arguments must outlive
-  /// the object. `included`: per node, 0 if its material is not mapped; empty: all nodes.
+  /// For points inside the box `about`, world coordinates. `u` and `gradient` are per node. All
+  /// arguments must outlive the object. `included`: per node, 0 if its material is not mapped;
+  /// empty: all nodes.
   InverseDeformation(const Body& body, const std::vector<Vec3>& u, const LazyNodalGradients& gradient,
                      const Box3& about, std::vector<std::uint8_t> included = {});
 

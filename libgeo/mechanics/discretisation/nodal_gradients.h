@@ -79,8 +79,8 @@ class LazyNodalGradients {
   enum class State : std::uint8_t { unknown, claimed, known };
   const NodalGradientOperator* operator_;
   const std::vector<Vec3>* u_;
-  // Cache for several threads: entry i is written once, by the thread that moves state_[i] from unknown to
-  // claimed, and is read only after its state has become known (release/acquire).
+  // Cache for several threads: entry i is written once, by the thread that moves state_[i] from
+  // unknown to claimed, and is read only after its state has become known (release/acquire).
   mutable std::vector<Mat3> gradient_;  // thread-safe by state_
   std::unique_ptr<std::atomic<State>[]> state_;
 };

@@ -1,7 +1,7 @@
-// Interface of an energy that acts on nodes in addition to elasticity: contact, friction, penalties.
-// energy term depends on one relative displacement d = Σ w_i u_i, as in incremental potential
-// contact (Li et al. 2020); the nodes i and weights w_i of a term are its contact stencil, one row
-// of the contact Jacobian.
+// Interface of an energy that acts on nodes in addition to elasticity: contact, friction,
+// penalties. energy term depends on one relative displacement d = Σ w_i u_i, as in incremental
+// potential contact (Li et al. 2020); the nodes i and weights w_i of a term are its contact
+// stencil, one row of the contact Jacobian.
 #pragma once
 
 #include <cmath>

@@ -16,8 +16,8 @@ namespace geo {
 /// of selected islands only.
 class PotentialSum {
  public:
-  /// Sums all terms of `potentials`, after their begin_substep() at displacements u. Keeps references
-  /// to both.
+  /// Sums all terms of `potentials`, after their begin_substep() at displacements u. Keeps
+  /// references to both.
   PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u);
   /// True if there are no terms.
   bool empty() const { return terms_.empty(); }

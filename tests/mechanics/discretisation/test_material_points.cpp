@@ -35,7 +35,8 @@ PointBlock random_block(Random& random, std::size_t points, std::uint32_t nodes)
 
 // ∇ at the points as a dense matrix: row 9 i + 3 c + r, column 3 j + r, over the block's nodes.
 Eigen::MatrixXd gradient_matrix(const PointBlock& block) {
-  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(9 * Eigen::Index(block.points.size()), 3 * Eigen::Index(block.nodes.size()));
+  Eigen::MatrixXd b =
+      Eigen::MatrixXd::Zero(9 * Eigen::Index(block.points.size()), 3 * Eigen::Index(block.nodes.size()));
   for (std::size_t i = 0; i < block.points.size(); ++i)
     for (auto q = block.entry_begin[i]; q < block.entry_begin[i + 1]; ++q)
       for (Eigen::Index c = 0; c < 3; ++c)

@@ -61,8 +61,7 @@ TEST_CASE("gradients at nodes are exact for linear fields, and all ways to compu
         CHECK((sum - all[i]).norm() < 1e-10 * (1 + all[i].norm()));
         for (std::size_t c = 0; c < 3; ++c) {
           CHECK(padded[i].at[c][3] == 0);
-          for (std::size_t r = 0; r < 3; ++r)
-            CHECK(padded[i].at[c][r] == all[i](Eigen::Index(r), Eigen::Index(c)));
+          for (std::size_t r = 0; r < 3; ++r) CHECK(padded[i].at[c][r] == all[i](Eigen::Index(r), Eigen::Index(c)));
         }
       }
     });
@@ -93,8 +92,8 @@ TEST_CASE("the displacement at a node in vector registers is that of Eq. 1", "[n
         nodes.push_back({NodeId(j), (body.nodes.position[j] - body.nodes.position[i]).norm()});
       // Weights relative to each node's own radius, as all radii of this body are equal.
       REQUIRE(body.nodes.radius[i] == body.nodes.radius[0]);
-      const PaddedVec3 blended = blended_displacement(gradients[i].neighbors,
-                                                      {place.data(), displacement.data(), gradient.data()}, i);
+      const PaddedVec3 blended =
+          blended_displacement(gradients[i].neighbors, {place.data(), displacement.data(), gradient.data()}, i);
       const Vec3 expected = displacement_at(body.nodes.position[i], nodes, body.nodes, u, matrices);
       CHECK((Vec3(blended.at[0], blended.at[1], blended.at[2]) - expected).norm() < 1e-12);
     }

@@ -70,7 +70,7 @@ TEST_CASE("an update after finer nodes gives the cells of a build from scratch",
   REQUIRE(cells.cells().size() == scratch.cells().size());
   for (std::size_t k = 0; k < scratch.cells().size(); ++k) {
     const QuadratureCell &a = cells.cells()[k], &b = scratch.cells()[k];
-    CHECK((a.cell.corner == b.cell.corner && a.cell.level == b.cell.level && a.volume == b.volume &&
-           a.point == b.point));
+    CHECK(
+        (a.cell.corner == b.cell.corner && a.cell.level == b.cell.level && a.volume == b.volume && a.point == b.point));
   }
 }

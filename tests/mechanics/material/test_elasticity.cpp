@@ -1,5 +1,5 @@
-// Energy, stress and stiffness of one point: finite differences, small-strain limits, and the vector versions against
-// the scalar ones.
+// Energy, stress and stiffness of one point: finite differences, small-strain limits, and the
+// vector versions against the scalar ones.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -56,7 +56,8 @@ TEST_CASE("stress is the derivative of the energy density, and its derivative th
   for (std::uint64_t seed = first; seed < first + std::uint64_t(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    // Strongly deformed, inverted ones included; det F stays off 0, where the energy's formula changes branch.
+    // Strongly deformed, inverted ones included; det F stays off 0, where the energy's formula
+    // changes branch.
     const Mat3 f = random_rotation(random) * (Mat3::Identity() + random_matrix(random, 0.7));
     if (std::abs(f.determinant()) < 0.01) continue;
     const Mat3 d = random_matrix(random, 1);
@@ -158,8 +159,14 @@ TEST_CASE("points in vector registers with plastic strain and viscosity follow t
         CHECK(energy[i] == Approx(volume[i] * density).epsilon(1e-10));
         CHECK((get(stresses, i) - volume[i] * piola).norm() < 1e-11 * (1 + piola.norm()));
         const Mat3 elastic = f * s, sigma = stress(m, elastic) * elastic.transpose() / elastic.determinant();
-        const float expected[8] = {float(sigma(0, 0)), float(sigma(1, 1)), float(sigma(2, 2)), float(sigma(0, 1)),
-                                   float(sigma(1, 2)), float(sigma(2, 0)), 1, 0};
+        const float expected[8] = {float(sigma(0, 0)),
+                                   float(sigma(1, 1)),
+                                   float(sigma(2, 2)),
+                                   float(sigma(0, 1)),
+                                   float(sigma(1, 2)),
+                                   float(sigma(2, 0)),
+                                   1,
+                                   0};
         for (std::size_t k = 0; k < 8 && elastic.determinant() > 0; ++k)
           CHECK(cauchy[8 * i + k] == Approx(expected[k]).epsilon(1e-5).margin(1e-5 * sigma.norm()));
       }

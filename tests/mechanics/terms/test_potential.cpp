@@ -131,7 +131,7 @@ TEST_CASE("a sum of potentials has the dense matrix' energy, forces, products an
     constexpr std::uint32_t nodes = 12;
     Springs springs = random_springs(random, nodes, 1 + random.below(30));
     const std::vector<Vec3> start(nodes, Vec3::Zero()), u = random_vectors(random, nodes),
-                            p = random_vectors(random, nodes);
+                                                        p = random_vectors(random, nodes);
     const Eigen::MatrixXd k = dense(springs, nodes);
     AssembledPotential assembled(springs, start);
     CHECK(assembled.energy(u) == Approx(0.5 * flat(u).dot(k * flat(u))));

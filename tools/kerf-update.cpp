@@ -39,12 +39,12 @@ int main(int argc, char** argv) {
     const std::string surface_bytes = geo::read_all(surface_path);
     const auto file = tool::parse_solid(surface_bytes, surface_path);
     if (no_resample) body.resample_limit = 0;
-    geo::SplitWork work;
+    geo::SplitStats work;
     const auto start = std::chrono::steady_clock::now();
     std::size_t triangles_cut = 0;
     try {
       triangles_cut =
-          geo::follow(body, tool::complex_of(file, surface_path), &work, t.progress()).crack.removed_faces.size();
+          geo::update_body(body, tool::complex_of(file, surface_path), &work, t.progress()).crack.removed_faces.size();
     } catch (const geo::InputError& e) {
       throw geo::InputError(surface_path + ": " + e.what());
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "body/binding.h"
+#include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
 #include "graph/graph_storage.h"
@@ -38,8 +39,9 @@ bool sees_vertex(const Complex& k, const Vec3& p, VertexId v) {
   return true;
 }
 
-// The fan at v that p looks at: that of a side which faces p and whose middle p sees.
-SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
+// The surface vertex at v on the side that p sees: that of a side which faces p and whose middle p
+// sees.
+SurfaceVertexId visible_fan(const Complex& k, const Vec3& p, VertexId v) {
   SurfaceVertexId only;
   bool several = false;
   for (const FaceId f : k.faces_at(v))
@@ -70,24 +72,24 @@ SurfaceVertexId fan_seen(const Complex& k, const Vec3& p, VertexId v) {
 }  // namespace
 
 SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
-  constexpr std::size_t most = 12;
+  constexpr std::size_t candidates = 12;
   std::vector<FaceId> faces;
   std::vector<std::pair<double, VertexId>> near;
-  std::size_t asked = 0;
-  // Most see what is nearest, and few faces are there.
-  for (const double part : {0.125, 0.25, 0.5, 1.0}) {
-    const double r = part * reach;
+  std::size_t tested = 0;
+  // As a rule the nearest vertex is visible, so a small ball with few faces suffices.
+  for (const double share : {0.125, 0.25, 0.5, 1.0}) {
+    const double r = share * reach;
     faces.clear(), near.clear();
-    k.faces_near(Box3{p, p}.grown(r * (1 + 1e-9)), faces);  // not one is missed by rounding
+    k.faces_near(Box3{p, p}.grown(r * (1 + 1e-9)), faces);  // a margin for rounding
     for (const FaceId f : faces)
       for (const VertexId v : k.face(f).v)
         if (const double d = (k.point(v) - p).norm(); d <= r) near.push_back({d, v});
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
-    for (; asked < std::min(near.size(), most); ++asked)
-      if (sees_vertex(k, p, near[asked].second))
-        if (const auto fan = fan_seen(k, p, near[asked].second); fan.valid()) return fan;
-    if (asked == most) break;
+    for (; tested < std::min(near.size(), candidates); ++tested)
+      if (sees_vertex(k, p, near[tested].second))
+        if (const auto fan = visible_fan(k, p, near[tested].second); fan.valid()) return fan;
+    if (tested == candidates) break;
   }
   return {};
 }
@@ -97,7 +99,7 @@ double longest_reach(const Body& body) { return body.graph.storage().plain_unit(
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v) {
   const Vec3& q = body.surface.point(body.surface.site(v));
   std::vector<std::uint32_t> near;
-  body.grid.within(body.nodes.position, q, longest_reach(body) * (1 + 1e-9), near);  // not one is missed by rounding
+  body.cache->grid.within(body.nodes.position, q, longest_reach(body) * (1 + 1e-9), near);  // a margin for rounding
   NodeId best;
   double least = 0;
   for (const auto i : near) {
@@ -108,9 +110,9 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
   return best;
 }
 
-NodeId stray_node_of(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept) {
-  const auto near = body.grid.nearest(body.nodes.position, body.surface.point(body.surface.site(v)), 1, ~0u,
-                                      [&](std::uint32_t i) { return accept(NodeId(i)); });
+NodeId carrier_of_unseen_shell(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept) {
+  const auto near = body.cache->grid.nearest(body.nodes.position, body.surface.point(body.surface.site(v)), 1, ~0u,
+                                             [&](std::uint32_t i) { return accept(NodeId(i)); });
   return near.empty() ? NodeId() : NodeId(near[0]);
 }
 
@@ -153,25 +155,25 @@ Binding build_binding(const Body& body) {
   for (std::uint32_t v = 0; v < n; ++v)
     if (b.master_node[v].valid()) b.master[v] = b.parent[v] = SurfaceVertexId(v), level.push_back(SurfaceVertexId(v));
   spread();
-  // A shell that no node looks at (a small cavity, a crumb) takes the nearest node of its piece,
+  // An unseen shell (a small cavity, a piece without a node) takes the nearest node of its piece,
   // else the nearest of all.
   Pieces pieces;
-  const auto piece_before = [&](Side s) {
+  const auto piece_of_side = [&](Side s) {
     return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
   };
-  constexpr std::int32_t not_asked = -2;
+  constexpr std::int32_t unknown = -2;
   std::vector<std::int32_t> piece_of_node;
   for (std::uint32_t v = 0; v < n; ++v) {
     const SurfaceVertexId id(v);
     if (!k.alive(id) || b.master[v].valid()) continue;
-    if (pieces.of_side.empty()) pieces = find_pieces(k), piece_of_node.assign(body.nodes.size(), not_asked);
-    const auto piece = piece_before(k.corner_of(id).first);
-    NodeId node = stray_node_of(body, id, [&](NodeId i) {
+    if (pieces.of_side.empty()) pieces = find_pieces(k), piece_of_node.assign(body.nodes.size(), unknown);
+    const auto piece = piece_of_side(k.corner_of(id).first);
+    NodeId node = carrier_of_unseen_shell(body, id, [&](NodeId i) {
       auto& known = piece_of_node[i.index()];
-      if (known == not_asked) known = piece_around(k, body.nodes.position[i.index()], piece_before);
+      if (known == unknown) known = piece_containing(k, body.nodes.position[i.index()], piece_of_side);
       return known == piece;
     });
-    if (!node.valid()) node = stray_node_of(body, id, [](NodeId) { return true; });
+    if (!node.valid()) node = carrier_of_unseen_shell(body, id, [](NodeId) { return true; });
     b.master_node[v] = node;
     b.master[v] = b.parent[v] = id;
     level.assign(1, id);
@@ -180,7 +182,7 @@ Binding build_binding(const Body& body) {
   return b;
 }
 
-void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out) {
+void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out) {
   out.clear();
   const SurfaceVertexId master = body.binding.master[v.index()];
   if (!master.valid()) return;

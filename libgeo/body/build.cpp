@@ -1,9 +1,10 @@
 #include <numeric>
 
-#include "body/connect.h"
+#include "body/connectivity.h"
 #include "body/front_guides.h"
+#include "body/incremental_cache.h"
 #include "body/locate.h"
-#include "body/nodes.h"
+#include "body/node_insertion.h"
 #include "graph/build_graph.h"
 #include "graph/guide_edges.h"
 #include "graph/update.h"
@@ -12,11 +13,11 @@
 namespace geo {
 namespace {
 
-// No edge meets a face, so that all nodes of a component are inside when one of them is.
+// No edge touches a face, so all nodes of a component are inside when one of them is.
 void require_inside(const Body& body, const std::vector<std::uint32_t>& component) {
-  std::uint32_t asked = 0;  // components are numbered by their lowest nodes
+  std::uint32_t tested = 0;  // components are numbered by their lowest nodes
   for (std::size_t i = 0; i < component.size(); ++i)
-    if (component[i] == asked && ++asked > 0 && !is_inside(body.surface, body.nodes.position[i]))
+    if (component[i] == tested && ++tested > 0 && !is_inside(body.surface, body.nodes.position[i]))
       throw InputError("node " + std::to_string(i) +
                        " is not inside the surface; sample the same model that the body is made of");
 }
@@ -26,15 +27,15 @@ void require_inside(const Body& body, const std::vector<std::uint32_t>& componen
 Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, const Progress& progress) {
   if (nodes.size() == 0) throw InputError("there are no nodes; make some with kerf-sample");
   if (options.k < 3 || options.k > 1000) throw InputError("k must be from 3 to 1000");
-  if (options.guides != 0 && !(options.guides >= 0.05 && options.guides <= 10))
+  if (options.guide_spacing != 0 && !(options.guide_spacing >= 0.05 && options.guide_spacing <= 10))
     throw InputError("guides must be 0 or from 0.05 to 10");
   Body body;
   body.surface = std::move(surface);
   body.nodes = std::move(nodes);
-  body.k = options.k, body.guides = options.guides;
-  set_sampled(body, static_cast<std::uint32_t>(body.nodes.size()));
+  body.k = options.k, body.guide_spacing = options.guide_spacing;
+  set_original_nodes(body, static_cast<std::uint32_t>(body.nodes.size()));
   body.debris.assign(body.nodes.size(), 0);
-  body.grid =
+  body.cache->grid =
       NodeGrid(std::accumulate(body.nodes.spacing.begin(), body.nodes.spacing.end(), 0.0) / double(body.nodes.size()),
                body.nodes.position);
   std::vector<std::array<Vec3, 3>> soup;
@@ -46,11 +47,11 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
     std::vector<std::uint32_t> component;
     body.graph.components(component);
     require_inside(body, component);
-    count_pieces(body);
-    auto found = find_disagreement(body, component);
-    mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
+    label_pieces(body);
+    auto mismatch = find_mismatch(body, component);
+    repair_connectivity(body, mismatch, [&](NodeId first_new, std::span<const NodePair> joins) {
       update_graph({.nodes = body.nodes,
-                    .grid = body.grid,
+                    .grid = body.cache->grid,
                     .first_new = first_new,
                     .k = body.k,
                     .triangles_near = triangles_near(body.surface),
@@ -58,7 +59,7 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
                    body.graph);
     });
   }
-  if (body.guides > 0) add_guides(body.nodes, body.grid, obstacles, all_guides(body), body.graph);
+  if (body.guide_spacing > 0) add_guides(body.nodes, body.cache->grid, obstacles, all_guides(body), body.graph);
   build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);
   report(progress, "binding", 0, body.nodes.size());
   body.binding = build_binding(body);

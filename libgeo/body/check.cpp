@@ -1,6 +1,7 @@
 #include <algorithm>
 
-#include "body/connect.h"
+#include "body/connectivity.h"
+#include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "graph/build_graph.h"
 #include "graph/graph_storage.h"
@@ -11,7 +12,7 @@ namespace geo {
 
 BodyReport check_body(const Body& body) {
   BodyReport report;
-  const auto note = [&](const std::string& problem) {
+  const auto add_problem = [&](const std::string& problem) {
     if (report.first_problem.empty()) report.first_problem = problem;
   };
   const Complex& k = body.surface;
@@ -21,29 +22,29 @@ BodyReport check_body(const Body& body) {
   report.graph_components = body.graph.components(component);
   const Pieces pieces = find_pieces(k);
   report.pieces = pieces.count;
-  const auto piece_before = [&](Side s) {
+  const auto piece_of_side = [&](Side s) {
     return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
   };
   std::vector<std::int32_t> piece_of(report.graph_components, -1);
   std::vector<std::uint32_t> component_of(pieces.count, ~0u);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const auto piece = piece_around(k, body.nodes.position[i], piece_before);
+    const auto piece = piece_containing(k, body.nodes.position[i], piece_of_side);
     if (piece < 0 || is_blocked(k, body.nodes.position[i], body.nodes.position[i])) {
       ++report.nodes_outside;
-      note("node " + std::to_string(i) + " is not inside the material");
+      add_problem("node " + std::to_string(i) + " is not inside the material");
       continue;
     }
     auto& known = piece_of[component[i]];
-    if (known >= 0 && known != piece) note("node " + std::to_string(i) + " is connected to another piece");
+    if (known >= 0 && known != piece) add_problem("node " + std::to_string(i) + " is connected to another piece");
     known = piece;
-    auto& part = component_of[static_cast<std::size_t>(piece)];
-    if (part != ~0u && part != component[i])
-      note("node " + std::to_string(i) + " is not connected to others of its piece");
-    part = component[i];
+    auto& known_component = component_of[static_cast<std::size_t>(piece)];
+    if (known_component != ~0u && known_component != component[i])
+      add_problem("node " + std::to_string(i) + " is not connected to others of its piece");
+    known_component = component[i];
     for (const NodeId j : body.graph.edges(NodeId(i)))
       if (j.value > i && is_blocked(k, body.nodes.position[i], body.nodes.position[j.index()])) {
         ++report.edges_crossing;
-        note("edge " + std::to_string(i) + "-" + std::to_string(j.value) + " crosses a face");
+        add_problem("edge " + std::to_string(i) + "-" + std::to_string(j.value) + " crosses a face");
       }
   }
   for (std::uint32_t g = 0; g < graph.guides().size(); ++g) {
@@ -51,21 +52,21 @@ BodyReport check_body(const Body& body) {
     for (const auto j : graph.entries(id).to)
       if (is_blocked(k, graph.position(body.nodes, j), graph.position(body.nodes, id))) {
         ++report.edges_crossing;
-        note("an edge of guide " + std::to_string(g) + " crosses a face");
+        add_problem("an edge of guide " + std::to_string(g) + " crosses a face");
       }
   }
   for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
     if (!k.alive(SurfaceVertexId(v))) continue;
-    const auto piece = piece_before(k.corner_of(SurfaceVertexId(v)).first);
+    const auto piece = piece_of_side(k.corner_of(SurfaceVertexId(v)).first);
     if (piece < 0) {
-      note("surface vertex " + std::to_string(v) + " bounds no piece of the material");
+      add_problem("surface vertex " + std::to_string(v) + " bounds no piece of the material");
       continue;
     }
-    auto& part = component_of[static_cast<std::size_t>(piece)];
-    if (part != ~0u) continue;
-    part = 0, ++report.crumbs;
-    if (room_in(k, SurfaceVertexId(v), body.grid.cell(), piece_before))
-      note("the piece of surface vertex " + std::to_string(v) + " has no node");
+    auto& known_component = component_of[static_cast<std::size_t>(piece)];
+    if (known_component != ~0u) continue;
+    known_component = 0, ++report.pieces_without_node;
+    if (point_in_piece(k, SurfaceVertexId(v), body.cache->grid.cell(), piece_of_side))
+      add_problem("the piece of surface vertex " + std::to_string(v) + " has no node");
   }
   std::vector<std::array<Vec3, 3>> soup;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
@@ -74,15 +75,15 @@ BodyReport check_body(const Body& body) {
   build_neighborhoods(body.nodes, scratch, TriangleBvh(soup));
   for (std::size_t i = 0; i < n; ++i)
     if (!(scratch.row(NodeId(i)) == body.graph.row(NodeId(i)))) {
-      note("the neighbours of node " + std::to_string(i) + " are not those that a build from scratch finds");
+      add_problem("the neighbours of node " + std::to_string(i) + " are not those that a build from scratch finds");
       break;
     }
   for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v)
     if (k.alive(SurfaceVertexId(v)) && !body.binding.master[v].valid()) {
       ++report.orphans;
-      note("surface vertex " + std::to_string(v) + " has no master");
+      add_problem("surface vertex " + std::to_string(v) + " has no master");
     }
-  if (!(build_binding(body) == body.binding)) note("the binding is not the one that a build from scratch finds");
+  if (!(build_binding(body) == body.binding)) add_problem("the binding is not the one that a build from scratch finds");
   return report;
 }
 

@@ -1,4 +1,5 @@
 #include "body/front_guides.h"
+#include "body/incremental_cache.h"
 
 #include <algorithm>
 
@@ -41,9 +42,9 @@ std::vector<SurfaceEdge> edges_at(const Complex& complex, const std::vector<Face
 
 std::vector<Guide> guides_at(const Body& body, const std::vector<FaceId>& faces, const GuideSet& taken) {
   GuideOptions options;
-  options.spacing = body.guides;
+  options.spacing = body.guide_spacing;
   const auto blocked = [&](const Vec3& p, const Vec3& q) { return is_blocked(body.surface, p, q); };
-  return place_guides(edges_at(body.surface, faces), body.nodes, body.grid, blocked, options, taken);
+  return place_guides(edges_at(body.surface, faces), body.nodes, body.cache->grid, blocked, options, taken);
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ std::vector<Guide> all_guides(const Body& body) {
 
 GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideChange change;
-  if (body.guides == 0) return change;
+  if (body.guide_spacing == 0) return change;
   const GuideSet& guides = body.graph.storage().guides();
   // Guides stand closer to their edges than a 64th of their radius; what a face comes that near to
   // has lost its edge.

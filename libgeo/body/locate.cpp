@@ -30,12 +30,12 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId exc
   return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return f != except && touches(complex, f, p, q); });
 }
 
-SightIn::SightIn(const Complex& complex, const Box3& box) {
+BoxVisibility::BoxVisibility(const Complex& complex, const Box3& box) {
   triangles_near(complex, box, triangles_);
   for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
 }
 
-bool SightIn::blocked(const Vec3& p, const Vec3& q) const {
+bool BoxVisibility::blocked(const Vec3& p, const Vec3& q) const {
   Box3 segment{p, p};
   segment.add(q);
   for (std::size_t k = 0; k < triangles_.size(); ++k)
@@ -44,12 +44,12 @@ bool SightIn::blocked(const Vec3& p, const Vec3& q) const {
   return false;
 }
 
-bool stands_before(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
+bool is_in_front(const Complex& k, Side s, const Vec3& base, const Vec3& p) {
   const auto own = k.corners(s.face);
   return k.has(s) && orient3d(own[0], own[1], own[2], p) == (s.which ? 1 : -1) && !is_blocked(k, base, p, s.face);
 }
 
-std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::function<std::int32_t(Side)>& piece) {
+std::int32_t piece_containing(const Complex& complex, const Vec3& p, const std::function<std::int32_t(Side)>& piece) {
   // Along the axis on which the way out is shortest.
   const Box3& extent = complex.extent();
   int axis = 0;
@@ -57,8 +57,8 @@ std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::func
   bool up = true;
   for (int i = 0; i < 3; ++i)
     for (const bool above : {true, false})
-      if (const double way = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; way < shortest)
-        shortest = way, axis = i, up = above;
+      if (const double d = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; d < shortest)
+        shortest = d, axis = i, up = above;
   Box3 line{p, p};
   const double beyond = std::max(shortest, 0.0) + extent.diagonal();
   (up ? line.hi : line.lo)[axis] += up ? beyond : -beyond;
@@ -101,7 +101,7 @@ std::int32_t piece_around(const Complex& complex, const Vec3& p, const std::func
 }
 
 bool is_inside(const Complex& complex, const Vec3& p) {
-  return piece_around(complex, p, [](Side) { return 0; }) == 0 && !is_blocked(complex, p, p);
+  return piece_containing(complex, p, [](Side) { return 0; }) == 0 && !is_blocked(complex, p, p);
 }
 
 }  // namespace geo

@@ -47,7 +47,7 @@ bool Regions::at_end(Region& region) {
   return region.begin == region.edge.size();
 }
 
-void Regions::take_around(std::uint32_t element) {
+void Regions::add_neighbors_of(std::uint32_t element) {
   Slot& s = slot(element);
   if (s.inside) return;
   s.inside = true;
@@ -69,11 +69,11 @@ void Regions::take_around(std::uint32_t element) {
 
 void Regions::grow(std::uint32_t at) {
   Region& region = of(at);
-  if (!at_end(region)) take_around(region.edge[region.begin]);
+  if (!at_end(region)) add_neighbors_of(region.edge[region.begin]);
 }
 
 void Regions::grow_seeds() {
-  for (const auto s : seeds_) take_around(s);
+  for (const auto s : seeds_) add_neighbors_of(s);
 }
 
 bool Regions::joined(std::uint32_t a, std::uint32_t b) {

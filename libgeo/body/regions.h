@@ -1,38 +1,43 @@
-// Connected regions that grow from seeds only as far as it takes to tell which of them are one.
+// Connected regions that grow from seeds only as far as a connectivity query requires.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace geo {
 
-/// Over the elements 0, 1, … of any undirected graph. Of two regions the smaller one grows, so that a question costs
-/// twice the smaller of them at most, and where they are joined near their seeds it costs next to nothing.
+/// Regions over the elements 0, 1, … of any undirected graph. A query grows the smaller of two
+/// regions, so it costs at most twice the smaller one, and little where both are connected near
+/// their seeds.
 class Regions {
  public:
   /// Appends the neighbours of an element.
   using Around = std::function<void(std::uint32_t, std::vector<std::uint32_t>&)>;
+  /// No regions yet.
   explicit Regions(Around around) : around_(std::move(around)), slots_(64) {}
 
-  /// A region begins here, unless one has come here already.
+  /// Starts a region at an element, unless a region contains it.
   void seed(std::uint32_t at);
-  /// Takes in the neighbours of every seed: seeds beside each other become one region.
+  /// Grows every seed's region by the seed's neighbours; adjacent seeds become one region.
   void grow_seeds();
-  /// One more element's neighbours are taken into the region of a seed.
+  /// Grows the region of a seed by the neighbours of one of its elements.
   void grow(std::uint32_t at);
-  /// True when two seeds are connected.
+  /// Are two seeds connected? Grows regions until that is known.
   bool joined(std::uint32_t a, std::uint32_t b);
 
-  /// Of a seed's region: nothing is left to take in; its lowest element; its elements so far whose neighbours are in.
+  /// Is the region of a seed a whole component?
   bool whole(std::uint32_t at) { return at_end(of(at)); }
+  /// The lowest element of a seed's region so far.
   std::uint32_t lowest(std::uint32_t at) { return of(at).lowest; }
+  /// The elements of a seed's region whose neighbours are in it, too; all, when it is whole.
   const std::vector<std::uint32_t>& inside(std::uint32_t at) { return of(at).inside; }
 
  private:
   struct Region {
     std::uint32_t parent, lowest;
-    std::vector<std::uint32_t> inside, edge;  // edge[begin…]: neighbours that may not be in yet
+    std::vector<std::uint32_t> inside, edge;  // edge[begin…]: elements whose neighbours may be missing
     std::size_t begin = 0;
     std::size_t size() const { return inside.size() + edge.size() - begin; }
   };
@@ -46,12 +51,12 @@ class Regions {
   Region& of(std::uint32_t at) { return regions_[find(slot(at).region)]; }
   std::uint32_t unite(std::uint32_t a, std::uint32_t b);
   bool at_end(Region& region);
-  void take_around(std::uint32_t element);
+  void add_neighbors_of(std::uint32_t element);
 
   Around around_;
-  std::vector<Region> regions_;
+  std::vector<Region> regions_;  // a union-find forest
   std::vector<std::uint32_t> seeds_;
-  std::vector<Slot> slots_;  // a hash table by linear probing, a power of two
+  std::vector<Slot> slots_;  // a hash table with linear probing; its size is a power of two
   std::size_t used_ = 0;
   std::vector<std::uint32_t> next_;
 };

@@ -2,9 +2,10 @@
 #include <string>
 
 #include "body/binding.h"
+#include "body/incremental_cache.h"
 #include "body/locate.h"
-#include "body/nodes.h"
-#include "body/upkeep.h"
+#include "body/node_insertion.h"
+#include "body/piece_labels.h"
 #include "graph/update.h"
 #include "kerf/error.h"
 
@@ -15,14 +16,14 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
     if (!(radius > 0))
       throw InputError("node " + std::to_string(i.index()) + " cannot have a support radius of " +
                        std::to_string(radius));
-  begin_upkeep(body);
+  prepare_cache(body);
   BodyDelta delta;
   delta.first_new_node = NodeId(body.nodes.size());
-  body.donors.clear();
+  body.cache->donors.clear();
   std::vector<NodeId> resized;
   for (const auto& [i, wanted] : radii) {
     double& now = body.nodes.radius[i.index()];
-    const double radius = std::min(wanted, body.widest);
+    const double radius = std::min(wanted, body.widest_radius);
     if (now == radius) continue;
     delta.resized_nodes.push_back({i, double(now)});
     resized.push_back(i);
@@ -30,7 +31,7 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
   }
   if (resized.empty()) return delta;
   delta.updated_nodes = update_graph({.nodes = body.nodes,
-                                      .grid = body.grid,
+                                      .grid = body.cache->grid,
                                       .first_new = delta.first_new_node,
                                       .k = body.k,
                                       .triangles_near = triangles_near(body.surface),
@@ -38,8 +39,8 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
                                      body.graph)
                             .updated_nodes;
   mark_debris(body, delta.updated_nodes);
-  // How far a node looks for its closest vertex is its radius.
-  delta.rebound = rebind(body, {}, delta.first_new_node, resized);
+  // The radius bounds the search for the closest vertex.
+  delta.rebound_vertices = rebind(body, {}, delta.first_new_node, resized);
   return delta;
 }
 

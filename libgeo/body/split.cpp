@@ -1,120 +1,166 @@
-// The seven steps of § 4, one call a line.
+// The seven steps of § 4. advance() of crack/ does steps 1 to 3 on K: front, splitting surface,
+// mesh. The rest follows here: 4 cut the graph, 5 resample, 6 update neighbours, 7 rebind surface
+// vertices. New nodes are placed before the graph is cut, so that one update serves steps 4 and 6.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <set>
 
-#include "body/agreement.h"
 #include "body/binding.h"
-#include "body/connect.h"
+#include "body/connectivity.h"
 #include "body/front_guides.h"
+#include "body/incremental_cache.h"
 #include "body/locate.h"
+#include "body/veto.h"
 #include "graph/update.h"
 
 namespace geo {
 namespace {
 
-double since(std::chrono::steady_clock::time_point& last) {
+double seconds_since(std::chrono::steady_clock::time_point& last) {
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - last).count();
   last = now;
   return seconds;
 }
 
-BodyDelta follow_delta(Body& body, CrackDelta crack, SplitWork* work, const Progress& progress = {}) {
-  auto clock = std::chrono::steady_clock::now();
-  BodyDelta delta;
-  delta.crack = std::move(crack);
-  delta.first_new_node = NodeId(body.nodes.size());
-  body.donors.clear();
-  if (delta.crack.empty()) return delta;
-  std::vector<std::array<Vec3, 3>> faces;
-  for (const FaceId f : delta.crack.new_faces) faces.push_back(body.surface.corners(f));
-  // Where rounding moved a part of a face, two nodes may see each other past it now.
-  for (const FaceId f : delta.crack.removed_faces) faces.push_back(body.surface.corners(f));
-  const TrianglesNear near = triangles_near(body.surface);
+// Triangles that may cut or free a line of sight: new faces, and faces that went, since rounding
+// may have moved their children off them.
+std::vector<std::array<Vec3, 3>> changed_triangles(const Complex& surface, const CrackDelta& crack) {
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (const FaceId f : crack.new_faces) triangles.push_back(surface.corners(f));
+  for (const FaceId f : crack.removed_faces) triangles.push_back(surface.corners(f));
+  return triangles;
+}
 
-  report(progress, "new nodes", 0, delta.crack.new_crack_faces.size());
-  delta.moved_nodes = move_off(body, delta.crack.new_crack_faces);
-  if (body.resample_limit > 0) insert_near(body, delta.crack.new_crack_faces, 0, body.updates);
-  const double resample = since(clock);
-  auto update = update_graph({.nodes = body.nodes,
-                              .grid = body.grid,
-                              .first_new = delta.first_new_node,
-                              .k = body.k,
-                              .triangles_near = near,
-                              .new_faces = faces,
-                              .moved = delta.moved_nodes,
-                              .guides = guides_after(body, delta.crack)},
-                             body.graph, progress);
-  std::set<NodeId> updated(update.updated_nodes.begin(), update.updated_nodes.end());
-  // Each piece that the crack cut off needs nodes, connected among themselves.
-  bool recounted = false;
-  const auto offcuts = part_pieces(body, delta.crack, recounted);
-  std::vector<std::uint32_t> component;
-  if (recounted) body.graph.components(component);
-  auto found = recounted ? find_disagreement(body, component)
-                         : find_disagreement(body, update.cut_edges, offcuts, delta.crack.touched_surface_vertices,
-                                             delta.first_new_node);
-  const std::size_t sampled = body.nodes.size();
-  mend(body, found, [&](NodeId first_new, std::span<const NodePair> joins) {
-    const auto more = update_graph({.nodes = body.nodes,
-                                    .grid = body.grid,
-                                    .first_new = first_new,
-                                    .k = body.k,
-                                    .triangles_near = near,
-                                    .joins = joins},
-                                   body.graph);
-    updated.insert(more.updated_nodes.begin(), more.updated_nodes.end());
-  });
-  delta.parted = parted_nodes(body, offcuts, found);
-  delta.updated_nodes.assign(updated.begin(), updated.end());
-  mark_debris(body, delta.updated_nodes);
-  const double graph = since(clock);
-  report(progress, "binding", 0, delta.crack.new_faces.size());
-  delta.rebound = rebind(body, delta.crack, delta.first_new_node, delta.moved_nodes);
-  delta.donors = body.donors;
-  ++body.updates;
-  if (work) {
-    work->resample_seconds += resample, work->graph_seconds += graph, work->binding_seconds += since(clock);
-    work->edges_cut += update.cut_edges.size(), work->edges_added += update.added_edges.size();
-    work->nodes_updated += delta.updated_nodes.size(),
-        work->nodes_added += body.nodes.size() - delta.first_new_node.index();
-    work->nodes_mended += body.nodes.size() - sampled;
-    work->nodes_moved += delta.moved_nodes.size(), work->orphans += delta.rebound.size();
+// Steps 4 to 7 for a body whose complex has taken a step already.
+class BodyUpdater {
+ public:
+  BodyUpdater(Body& body, CrackDelta crack, const Progress& progress)
+      : body_(body), progress_(progress), near_(triangles_near(body.surface)) {
+    delta.crack = std::move(crack);
+    delta.first_new_node = NodeId(body.nodes.size());
+    body.cache->donors.clear();
   }
-  return delta;
+
+  /// Step 5: moves nodes off the crack, and inserts nodes on both sides of it (§ 6.4).
+  void resample() {
+    const auto& faces = delta.crack.new_crack_faces;
+    report(progress_, "new nodes", 0, faces.size());
+    delta.moved_nodes = move_nodes_off(body_, faces);
+    if (body_.resample_limit > 0) insert_nodes_near(body_, faces, {.seed = body_.crack_steps});
+  }
+  /// Steps 4 and 6: E_cut, E_new and the neighbours of P_update (§ 6.3, 6.4).
+  void update_graph_and_neighbors() {
+    const auto faces = changed_triangles(body_.surface, delta.crack);
+    graph_update = update_graph({.nodes = body_.nodes,
+                                 .grid = body_.cache->grid,
+                                 .first_new = delta.first_new_node,
+                                 .k = body_.k,
+                                 .triangles_near = near_,
+                                 .new_faces = faces,
+                                 .moved = delta.moved_nodes,
+                                 .guides = guides_after(body_, delta.crack)},
+                                body_.graph, progress_);
+    updated_.insert(graph_update.updated_nodes.begin(), graph_update.updated_nodes.end());
+  }
+  /// Gives each detached piece nodes, connected among themselves: G has one component for each
+  /// piece.
+  void match_graph_to_pieces() {
+    bool relabelled = false;
+    const auto pieces = update_piece_labels(body_, delta.crack, relabelled);
+    std::vector<std::uint32_t> component;
+    if (relabelled) body_.graph.components(component);
+    auto mismatch = relabelled ? find_mismatch(body_, component)
+                               : find_mismatch(body_, graph_update.cut_edges, pieces,
+                                               delta.crack.touched_surface_vertices, delta.first_new_node);
+    first_repair_node_ = body_.nodes.size();
+    repair_connectivity(body_, mismatch, [&](NodeId first_new, std::span<const NodePair> joins) {
+      const auto more = update_graph({.nodes = body_.nodes,
+                                      .grid = body_.cache->grid,
+                                      .first_new = first_new,
+                                      .k = body_.k,
+                                      .triangles_near = near_,
+                                      .joins = joins},
+                                     body_.graph);
+      updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
+    });
+    delta.detached = detached_nodes(body_, pieces, mismatch);
+    delta.updated_nodes.assign(updated_.begin(), updated_.end());
+    mark_debris(body_, delta.updated_nodes);
+  }
+  /// Step 7: masters and slaves of surface vertices (§ 6.5).
+  void rebind_vertices() {
+    report(progress_, "binding", 0, delta.crack.new_faces.size());
+    delta.rebound_vertices = rebind(body_, delta.crack, delta.first_new_node, delta.moved_nodes);
+    delta.donors = body_.cache->donors;
+    ++body_.crack_steps;
+  }
+  void add_counts(SplitStats& stats) const {
+    stats.edges_cut += graph_update.cut_edges.size(), stats.edges_added += graph_update.added_edges.size();
+    stats.nodes_updated += delta.updated_nodes.size();
+    stats.nodes_added += body_.nodes.size() - delta.first_new_node.index();
+    stats.repair_nodes += body_.nodes.size() - first_repair_node_;
+    stats.nodes_moved += delta.moved_nodes.size(), stats.orphans += delta.rebound_vertices.size();
+  }
+
+  BodyDelta delta;
+  GraphUpdate graph_update;
+
+ private:
+  Body& body_;
+  const Progress& progress_;
+  const TrianglesNear near_;
+  std::set<NodeId> updated_;  // P_update of all updates
+  std::size_t first_repair_node_ = 0;
+};
+
+BodyDelta update_after_crack(Body& body, CrackDelta crack, SplitStats* stats, const Progress& progress = {}) {
+  auto clock = std::chrono::steady_clock::now();
+  BodyUpdater updater(body, std::move(crack), progress);
+  if (updater.delta.crack.empty()) return std::move(updater.delta);
+  updater.resample();
+  const double resample = seconds_since(clock);
+  updater.update_graph_and_neighbors();
+  updater.match_graph_to_pieces();
+  const double graph = seconds_since(clock);
+  updater.rebind_vertices();
+  if (stats) {
+    stats->resample_seconds += resample, stats->graph_seconds += graph;
+    stats->binding_seconds += seconds_since(clock);
+    updater.add_counts(*stats);
+  }
+  return std::move(updater.delta);
 }
 
 }  // namespace
 
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
-                SplitWork* work) {
-  begin_upkeep(body);
-  return follow_delta(body, advance(body.surface, front, next, options, work ? &work->crack : nullptr), work);
+                SplitStats* stats) {
+  return split(body, front, next, options, stats, StepVeto());
 }
 
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
-                SplitWork* work, const Agreement& agree) {
-  if (!agree) return split(body, front, next, options, work);
-  begin_upkeep(body);
+                SplitStats* stats, const StepVeto& veto) {
+  prepare_cache(body);
   FrontState moved = front;
-  CrackDelta crack = advance(body.surface, moved, next, options, work ? &work->crack : nullptr);
-  if (!crack.empty()) {
+  CrackDelta crack = advance(body.surface, moved, next, options, stats ? &stats->crack : nullptr);
+  if (veto && !crack.empty()) {
     try {
-      agree(body.surface, crack);
+      veto(body.surface, crack);
     } catch (...) {
       body.surface.undo();
       throw;
     }
   }
   front = std::move(moved);
-  return follow_delta(body, std::move(crack), work);
+  return update_after_crack(body, std::move(crack), stats);
 }
 
-BodyDelta follow(Body& body, const Complex& surface, SplitWork* work, const Progress& progress) {
+BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats, const Progress& progress) {
   report(progress, "surface", 0, 1);
-  begin_upkeep(body);
-  return follow_delta(body, body.surface.apply(body.surface.difference(surface)), work, progress);
+  prepare_cache(body);
+  return update_after_crack(body, body.surface.apply(body.surface.difference(surface)), stats, progress);
 }
 
 }  // namespace geo

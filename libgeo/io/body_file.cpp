@@ -5,7 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include "body/nodes.h"
+#include "body/incremental_cache.h"
+#include "body/node_insertion.h"
 #include "graph/graph_storage.h"
 #include "io/body_sections.h"
 #include "io/json_integer.h"
@@ -123,14 +124,15 @@ void add_binding(Arrays& a) {
 void add_about(Arrays& a) {
   const Body& body = a.body;
   nlohmann::ordered_json about = {{"k", body.k},
-                                  {"updates", body.updates},
+                                  {"updates", body.crack_steps},
                                   {"resample_limit", body.resample_limit},
-                                  {"sampled", body.sampled},
-                                  {"cell", body.grid.cell()},
+                                  {"sampled", body.original_nodes},
+                                  {"cell", body.cache->grid.cell()},
                                   {"crack_count", body.surface.crack_count()}};
-  if (body.guides > 0) about["guides"] = body.guides;
-  if (const auto first = body.nodes.radius.begin(); body.widest != *std::max_element(first, first + body.sampled))
-    about["widest"] = body.widest;
+  if (body.guide_spacing > 0) about["guides"] = body.guide_spacing;
+  if (const auto first = body.nodes.radius.begin();
+      body.widest_radius != *std::max_element(first, first + body.original_nodes))
+    about["widest"] = body.widest_radius;
   about["history"] = nlohmann::ordered_json::array();
   for (const auto& p : body.history)
     about["history"].push_back(
@@ -311,11 +313,11 @@ void read_about(const KerfFile& in, Body& body) {
   const auto about = nlohmann::json::parse(in.text("about"), nullptr, false);
   double cell = 0, widest = 0;  // 0: derived from the nodes
   try {
-    body.k = json_integer<int>(about.at("k")), body.updates = json_integer<std::uint32_t>(about.at("updates"));
+    body.k = json_integer<int>(about.at("k")), body.crack_steps = json_integer<std::uint32_t>(about.at("updates"));
     body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
-    body.guides = about.value("guides", 0.0), widest = about.value("widest", 0.0);
-    body.sampled = about.contains("sampled") ? json_integer<std::uint32_t>(about.at("sampled"))
-                                             : static_cast<std::uint32_t>(body.nodes.size());
+    body.guide_spacing = about.value("guides", 0.0), widest = about.value("widest", 0.0);
+    body.original_nodes = about.contains("sampled") ? json_integer<std::uint32_t>(about.at("sampled"))
+                                                    : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
       body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(),
                               p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
@@ -325,12 +327,13 @@ void read_about(const KerfFile& in, Body& body) {
     in.fail("section 'about' holds an impossible value");
   }
   if (body.k < 1 || body.k > 100000 || !(cell > 0) || !(cell <= largest_coordinate) || !(body.resample_limit >= 0) ||
-      body.sampled < 1 || body.sampled > body.nodes.size() || !(widest >= 0 && widest <= largest_coordinate) ||
-      (body.guides != 0 && !(body.guides >= 0.05 && body.guides <= 10)))
+      body.original_nodes < 1 || body.original_nodes > body.nodes.size() ||
+      !(widest >= 0 && widest <= largest_coordinate) ||
+      (body.guide_spacing != 0 && !(body.guide_spacing >= 0.05 && body.guide_spacing <= 10)))
     in.fail("section 'about' holds an impossible value");
-  set_sampled(body, body.sampled);
-  body.widest = widest > 0 ? widest : body.widest;
-  body.grid = NodeGrid(cell, body.nodes.position);
+  set_original_nodes(body, body.original_nodes);
+  body.widest_radius = widest > 0 ? widest : body.widest_radius;
+  body.cache->grid = NodeGrid(cell, body.nodes.position);
 }
 
 }  // namespace

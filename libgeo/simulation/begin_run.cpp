@@ -15,7 +15,7 @@ void insert_scored_sheet(const Front& sheet, std::int32_t crack, RunStart& run) 
   mesh.vertices = sheet.steps[0], mesh.triangles = sheet.triangles;
   Complex scored = run.body.surface;
   insert_sheet(scored, mesh, crack);
-  follow_donors(follow(run.body, scored), run.state);
+  follow_donors(update_body(run.body, scored), run.state);
 }
 
 // Inserts the scene's prescored cracks: fronts step by step, sheets whole.

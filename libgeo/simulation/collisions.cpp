@@ -37,8 +37,8 @@ ContactStats Collisions::finish_step(std::optional<ContactStep> step, const Body
               : surface_->finish_step_with_impulses(body, solid, before, dt, environment.fixed, motion);
 }
 
-Agreement Collisions::embedding_check(const Body& body, const Solid& solid, const State& motion,
-                                      std::optional<EmbeddingPlan>& plan, double& seconds) {
+StepVeto Collisions::embedding_check(const Body& body, const Solid& solid, const State& motion,
+                                     std::optional<EmbeddingPlan>& plan, double& seconds) {
   if (!surface_) return {};
   return [&](const Complex& grown, const CrackDelta& crack) {
     Stopwatch watch;

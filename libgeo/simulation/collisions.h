@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "body/agreement.h"
+#include "body/veto.h"
 #include "contact/self_contact.h"
 #include "kerf/scene.h"
 
@@ -28,8 +28,8 @@ class Collisions {
 
   /// A check of a crack step before its commit: plans the embedding of its surface into `plan`, and
   /// adds its time to `seconds`. Refers to all arguments. Empty without self-contact.
-  Agreement embedding_check(const Body& body, const Solid& solid, const State& motion,
-                            std::optional<EmbeddingPlan>& plan, double& seconds);
+  StepVeto embedding_check(const Body& body, const Solid& solid, const State& motion,
+                           std::optional<EmbeddingPlan>& plan, double& seconds);
   /// Follows a crack step that embedding_check() has planned.
   void commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid, const BodyDelta& delta);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "body/incremental_cache.h"
 #include "kerf/parallel.h"
 #include "simulation/fracture_ligaments.h"
 #include "simulation/fracture_start.h"
@@ -29,7 +30,7 @@ struct FrontLoad {
 };
 
 double spacing_at(const Body& body, const Vec3& p) {
-  const auto nearest = body.grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; });
+  const auto nearest = body.cache->grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; });
   return body.nodes.spacing[nearest.at(0)];
 }
 

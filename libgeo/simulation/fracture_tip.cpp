@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "geometry/nearest_rotation.h"
 #include "mechanics/discretisation/kernel.h"
@@ -63,7 +64,7 @@ struct Neighborhood {
 // The nodes within two support radii of the tip that a point just ahead of the tip sees.
 Neighborhood nodes_about(const Body& body, const TipFrame& tip) {
   Neighborhood found;
-  const auto nearest = body.grid.nearest(body.nodes.position, tip.at, 1, ~0u, [](auto) { return true; });
+  const auto nearest = body.cache->grid.nearest(body.nodes.position, tip.at, 1, ~0u, [](auto) { return true; });
   if (nearest.empty()) return found;
   found.support = body.nodes.radius[nearest[0]];
   const double reach = 2 * found.support;
@@ -74,7 +75,7 @@ Neighborhood nodes_about(const Body& body, const TipFrame& tip) {
   }
   if (eye == tip.at) return found;
   std::vector<std::uint32_t> near;
-  body.grid.within(body.nodes.position, tip.at, reach, near);
+  body.cache->grid.within(body.nodes.position, tip.at, reach, near);
   for (const auto i : near) {
     const Vec3& x = body.nodes.position[i];
     if (is_blocked(body.surface, eye, x)) continue;

@@ -3,7 +3,7 @@
 namespace geo {
 namespace {
 
-void add(SplitWork& sum, const SplitWork& o) {
+void add(SplitStats& sum, const SplitStats& o) {
   sum.crack += o.crack;
   sum.edges_cut += o.edges_cut, sum.edges_added += o.edges_added, sum.nodes_updated += o.nodes_updated;
   sum.nodes_added += o.nodes_added, sum.nodes_moved += o.nodes_moved, sum.orphans += o.orphans;

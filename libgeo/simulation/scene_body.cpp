@@ -1,4 +1,5 @@
 #include "simulation/scene_body.h"
+#include "body/incremental_cache.h"
 
 #include <algorithm>
 
@@ -29,7 +30,7 @@ Body build_scene_body(const Scene& scene, const PlacedModels& models, std::vecto
   Body body =
       build_body(Complex::from_skin(models.all), std::move(nodes), {scene.k, NeighborMethod::automatic}, progress);
   // A node inserted in a narrow passage belongs to the body of its donor.
-  for (const NodeId d : body.donors) body_index.push_back(std::uint32_t(body_index[d.index()]));
+  for (const NodeId d : body.cache->donors) body_index.push_back(std::uint32_t(body_index[d.index()]));
   body_index.resize(body.nodes.size(), 0);
   return body;
 }

@@ -148,8 +148,8 @@ bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& ne
   options.seed = scene.seed;
   try {
     std::optional<EmbeddingPlan> plan;
-    const Agreement check =
-        collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : Agreement();
+    const StepVeto check =
+        collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : StepVeto();
     const BodyDelta delta = split(body, front, next, options, &stats.split, check);
     apply_delta(delta, std::move(plan), stats);
     return true;
@@ -377,7 +377,7 @@ TriangleMesh Simulation::surface(const TriangleMesh* model) const {
     std::vector<std::pair<NodeId, double>> nodes;
     for (std::size_t v = begin; v < end; ++v) {
       if (rows[v] == ~0u) continue;
-      bound_nodes(run.body, SurfaceVertexId(v), nodes);
+      carrier_nodes(run.body, SurfaceVertexId(v), nodes);
       Vec3& x = mesh.vertices[rows[v]];
       if (!nodes.empty()) x += displacement_at(x, nodes, run.body.nodes, u, gradient);
     }

@@ -17,10 +17,10 @@ int main() {
   std::size_t cut = 0, added = 0;
   for (int step = 1; step <= 12; ++step) {
     for (geo::Vec3& p : line) p.z() -= 0.25;
-    geo::SplitWork work;
+    geo::SplitStats work;
     const geo::BodyDelta delta = geo::split(body, front, line, {}, &work);
     cut += work.edges_cut, added += work.nodes_added;
-    for (const auto& part : delta.parted) std::printf("step %d: %zu nodes came off\n", step, part.size());
+    for (const auto& part : delta.detached) std::printf("step %d: %zu nodes came off\n", step, part.size());
   }
 
   double nearest = body.nodes.radius[0];

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "bench.h"
-#include "body/agreement.h"
+#include "body/veto.h"
 #include "contact/self_contact.h"
 #include "contact_peers.h"
 #include "kerf/crossing.h"

@@ -18,7 +18,7 @@ Body make_body(const TriangleMesh& mesh, double spacing, double guides) {
   SampleOptions sampling;
   sampling.spacing = spacing;
   BodyOptions options;
-  options.guides = guides;
+  options.guide_spacing = guides;
   return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), options);
 }
 

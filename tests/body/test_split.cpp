@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "body/locate.h"
-#include "body/nodes.h"
+#include "body/node_insertion.h"
 #include "cases.h"
 #include "geometry/bvh.h"
 #include "graph/build_graph.h"
@@ -37,7 +37,7 @@ TEST_CASE("A block has one piece, one component and a master for every vertex", 
   CHECK(report.graph_components == 1);
   std::vector<std::pair<NodeId, double>> nodes;
   for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v) {
-    bound_nodes(body, SurfaceVertexId(v), nodes);
+    carrier_nodes(body, SurfaceVertexId(v), nodes);
     CHECK(!nodes.empty());
   }
 }
@@ -57,7 +57,7 @@ TEST_CASE("A plane through a block separates nodes, graph and binding", "[body]"
   auto front = begin_front(std::vector<Vec3>{{0.47, -0.5, -0.5}, {0.47, 1.5, -0.5}}, false, 1);
   for (int s = 1; s <= steps; ++s) {
     const double z = -0.5 + 2.0 * s / steps;
-    SplitWork work;
+    SplitStats work;
     split(body, front, {{0.47, -0.5, z}, {0.47, 1.5, z}}, {}, &work);
     CHECK(check_body(body).first_problem == "");
   }
@@ -74,7 +74,7 @@ TEST_CASE("A plane through a block separates nodes, graph and binding", "[body]"
       if (!body.surface.alive(FaceId(f)) || body.surface.face(FaceId(f)).crack == 0) continue;
       const auto t = body.surface.corners(FaceId(f));
       const bool normal_up = (t[1] - t[0]).cross(t[2] - t[0]).x() > 0;
-      bound_nodes(body, body.surface.surface_vertex(side, 0), nodes);
+      carrier_nodes(body, body.surface.surface_vertex(side, 0), nodes);
       for (const auto& [i, d] : nodes)
         CHECK((body.nodes.position[i.index()].x() > 0.47) == (normal_up == (which == 1)));
     }
@@ -94,10 +94,10 @@ TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[b
   Complex cut = body.surface;
   auto front = begin_front(std::vector<Vec3>{{-2, 0.1, -2}, {2, 0.2, -2}}, false, 1);
   advance(cut, front, std::vector<Vec3>{{-2, 0.1, 0}, {2, 0.2, 0}});
-  follow(body, cut);
+  update_body(body, cut);
   CHECK(check_body(body).first_problem == "");
   advance(cut, front, std::vector<Vec3>{{-2, 0.1, 2}, {2, 0.2, 2}});
-  follow(body, cut);
+  update_body(body, cut);
   CHECK(check_body(body).first_problem == "");
   CHECK(find_pieces(body.surface).count == 2);
   CHECK(check_body(body).graph_components == 2);
@@ -113,7 +113,7 @@ TEST_CASE(
   Complex cut = body.surface;
   auto front = begin_front(std::vector<Vec3>{there + Vec3(-2, 0.1, -2), there + Vec3(2, 0.2, -2)}, false, 1);
   advance(cut, front, std::vector<Vec3>{there + Vec3(-2, 0.1, 2), there + Vec3(2, 0.2, 2)});
-  follow(body, cut);
+  update_body(body, cut);
   CHECK(check_body(body).first_problem == "");
   CHECK(find_pieces(body.surface).count == 2);
 }
@@ -125,7 +125,7 @@ TEST_CASE("Following a surface tells how far it is, and stops where it is asked 
   advance(cut, front, std::vector<Vec3>{{0.47, -1, 2}, {0.47, 2, 2}});
   Body body = model;
   std::vector<std::string> phases;
-  follow(body, cut, nullptr, [&](std::string_view phase, std::size_t done, std::size_t total) {
+  update_body(body, cut, nullptr, [&](std::string_view phase, std::size_t done, std::size_t total) {
     CHECK(done < total);
     if (phases.empty() || phases.back() != phase) phases.emplace_back(phase);
     return true;
@@ -134,9 +134,9 @@ TEST_CASE("Following a surface tells how far it is, and stops where it is asked 
         std::vector<std::string>{"surface", "new nodes", "cut edges", "new edges", "neighbourhoods", "binding"});
   for (const std::string& last : phases) {
     body = model;
-    CHECK_THROWS_AS(
-        follow(body, cut, nullptr, [&](std::string_view phase, std::size_t, std::size_t) { return phase != last; }),
-        Interrupted);
+    CHECK_THROWS_AS(update_body(body, cut, nullptr,
+                                [&](std::string_view phase, std::size_t, std::size_t) { return phase != last; }),
+                    Interrupted);
   }
 }
 
@@ -176,9 +176,9 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
   sampling.spacing = 0.03, sampling.levels = 4;
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   const NodeSet before = body.nodes;
-  CHECK(body.finest == *std::min_element(before.spacing.begin(), before.spacing.end()));
+  CHECK(body.finest_spacing == *std::min_element(before.spacing.begin(), before.spacing.end()));
   const double coarsest = *std::max_element(before.spacing.begin(), before.spacing.end());
-  REQUIRE(coarsest >= 4 * body.finest);
+  REQUIRE(coarsest >= 4 * body.finest_spacing);
   auto front = begin_front(std::vector<Vec3>{{0.473, -0.5, -0.5}, {0.481, 1.5, -0.5}}, false, 1);
   for (const double z : {0.4, 0.8, 1.5}) split(body, front, {{0.473, -0.5, z}, {0.481, 1.5, z}});
   CHECK(check_body(body).first_problem == "");
@@ -195,10 +195,10 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
     for (std::size_t j = 0; j < before.size(); ++j)
       if ((before.position[j] - x).norm() < 2 * coarsest)
         least = std::min(least, before.spacing[j]), most = std::max(most, before.spacing[j]);
-    CHECK(spacing >= std::max(body.finest, 0.5 * least));
+    CHECK(spacing >= std::max(body.finest_spacing, 0.5 * least));
     CHECK(spacing <= most);
     if (std::min({x.y(), 1 - x.y(), x.z(), 1 - x.z()}) > 0.35) {
-      CHECK(spacing > 1.5 * body.finest);  // the middle of the crack is not as fine as its rim
+      CHECK(spacing > 1.5 * body.finest_spacing);  // the middle of the crack is not as fine as its rim
       ++inside;
     }
     CHECK(body.graph.neighbor_count(NodeId(i)) >= 6);
@@ -222,7 +222,7 @@ TEST_CASE("Segments in a box are blocked by the faces read for the box as by the
     };
     Box3 box;
     box.add(any()), box.add(any());
-    const SightIn sight(complex, box);
+    const BoxVisibility sight(complex, box);
     for (int k = 0; k < 50; ++k) {
       const Vec3 p = any().cwiseMax(box.lo).cwiseMin(box.hi), q = any().cwiseMax(box.lo).cwiseMin(box.hi);
       const bool expected = is_blocked(complex, p, q);

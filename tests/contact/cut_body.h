@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "body/agreement.h"
+#include "body/veto.h"
 #include "contact/self_contact.h"
 
 namespace geo {

@@ -1,4 +1,5 @@
-// One case of cracks through a body, as data: a model, how it is sampled, and cracks that cut it one after another.
+// One case of cracks through a body, as data: a model, how it is sampled, and cracks that cut it
+// one after another.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "base/random.h"
+#include "body/incremental_cache.h"
 #include "crack/grid_case.h"
 #include "crack/shrink.h"
 #include "invariants/models.h"
@@ -37,8 +39,8 @@ namespace body_cases {
 
 using namespace geo;
 
-/// A block whose nodes stand on a regular grid, so that cracks of whole coordinates run exactly through nodes and the
-/// planes between them.
+/// A block whose nodes stand on a regular grid, so that cracks of whole coordinates run exactly
+/// through nodes and the planes between them.
 inline Body make_block_body(const BodyCase& c, const BodyOptions& options) {
   const int along = static_cast<int>(std::lround(std::cbrt(c.nodes)));
   const double h = GridCase::size / (along + 1);
@@ -69,7 +71,7 @@ inline const TriangleMesh& coarse_model(const std::string& name, int faces) {
 
 inline Body make_body(const BodyCase& c) {
   BodyOptions options;
-  options.guides = c.guides;
+  options.guide_spacing = c.guides;
   if (c.model == "block") return make_block_body(c, options);
   const TriangleMesh& coarse = coarse_model(c.model, c.faces);
   SampleOptions sampling;
@@ -130,19 +132,20 @@ inline BodyCase read_body_case(const std::string& text, const std::string& name)
   return c;
 }
 
-/// Other radii for nodes in a ball, all by one factor or each by its own: what resampling may ask for, and more.
+/// Other radii for nodes in a ball, all by one factor or each by its own: what resampling may ask
+/// for, and more.
 inline std::vector<std::pair<NodeId, double>> other_radii(const Body& body, std::uint64_t seed) {
   Random random(seed);
   const NodeSet& nodes = body.nodes;
   const Vec3 middle = nodes.position[random.below(static_cast<std::uint32_t>(nodes.size()))];
-  const double around = body.grid.cell() * random.uniform(0.1, 4), by = random.uniform(0.4, 1.6);
+  const double around = body.cache->grid.cell() * random.uniform(0.1, 4), by = random.uniform(0.4, 1.6);
   const bool alike = random.below(2);
   std::vector<std::uint32_t> near;
-  body.grid.within(nodes.position, middle, around, near);
+  body.cache->grid.within(nodes.position, middle, around, near);
   std::vector<std::pair<NodeId, double>> radii;
   for (const auto i : near)
     radii.push_back({NodeId(i), std::clamp(nodes.radius[i] * (alike ? by : random.uniform(0.4, 1.6)), nodes.spacing[i],
-                                           1.2 * body.widest)});
+                                           1.2 * body.widest_radius)});
   return radii;
 }
 

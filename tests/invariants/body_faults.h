@@ -10,8 +10,8 @@
 
 #include "base/random.h"
 #include "body/locate.h"
-#include "body/nodes.h"
-#include "body/upkeep.h"
+#include "body/node_insertion.h"
+#include "body/piece_labels.h"
 #include "geometry/bvh.h"
 #include "graph/build_graph.h"
 #include "graph/graph_storage.h"
@@ -74,7 +74,7 @@ inline std::string fault_of_components(const Body& body, const Pieces& pieces,
       // Room is what is clear of the boundary by a few last places. In a crumb whose sheets
       // rounding has exchanged, a point is less than outside.
       if (boundary[p].inside(q) && boundary[p].closest(q).distance > 0x1p-48 * k.extent().diagonal() &&
-          piece_around(k, q, [&](Side s) {
+          piece_containing(k, q, [&](Side s) {
             return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
           }) == static_cast<std::int32_t>(p))
         return "piece " + std::to_string(p) + " has room, but no node";
@@ -149,21 +149,21 @@ inline std::string fault_of(const Body& body, double volume) {
   // What is kept for the next step.
   Body again;
   again.surface = k, again.binding = body.binding;
-  begin_upkeep(again);
-  const Upkeep &kept = body.upkeep, &fresh = again.upkeep;
+  prepare_cache(again);
+  const IncrementalCache &kept = *body.cache, &fresh = *again.cache;
   if (kept.depth.empty()) return {};  // nothing was split yet
   if (kept.depth != fresh.depth) return "depths are not those of scratch";
-  if (kept.strays != fresh.strays) return "strays are not those of scratch";
+  if (kept.unseen_masters != fresh.unseen_masters) return "strays are not those of scratch";
   if (fresh.inner_shells && !kept.inner_shells)
-    return "an inner shell is not known: " + std::to_string(kept.pieces) + " pieces known, " +
-           std::to_string(fresh.pieces) + " from scratch";
+    return "an inner shell is not known: " + std::to_string(kept.piece_count) + " pieces known, " +
+           std::to_string(fresh.piece_count) + " from scratch";
   std::map<std::int32_t, std::int32_t> number, back;
   for (std::size_t v = 0; v < kept.piece.size(); ++v)
     if (number.try_emplace(kept.piece[v], fresh.piece[v]).first->second != fresh.piece[v] ||
         back.try_emplace(fresh.piece[v], kept.piece[v]).first->second != kept.piece[v])
       return "surface vertex " + name(static_cast<std::uint32_t>(v)) + " is in piece " + std::to_string(kept.piece[v]) +
-             " of " + std::to_string(kept.pieces) + ", from scratch in " + std::to_string(fresh.piece[v]) + " of " +
-             std::to_string(fresh.pieces);
+             " of " + std::to_string(kept.piece_count) + ", from scratch in " + std::to_string(fresh.piece[v]) +
+             " of " + std::to_string(fresh.piece_count);
   return {};
 }
 
@@ -251,16 +251,16 @@ inline std::string fault_of(const Body& before, const Body& body, const BodyDelt
   for (std::uint32_t v = 0; v < body.surface.surface_vertex_count(); ++v)
     if (body.surface.alive(SurfaceVertexId(v)) && carrier(before, v) != carrier(body, v))
       rebound.push_back(SurfaceVertexId(v));
-  if (rebound != delta.rebound) return "other vertices were rebound than it says";
+  if (rebound != delta.rebound_vertices) return "other vertices were rebound than it says";
   std::vector<std::uint32_t> component;
   const auto count = body.graph.components(component);
   std::vector<std::uint32_t> component_before;
-  if (const auto more = count - before.graph.components(component_before); delta.parted.size() != more)
-    return std::to_string(delta.parted.size()) + " parts came off, but there are " + std::to_string(more) +
+  if (const auto more = count - before.graph.components(component_before); delta.detached.size() != more)
+    return std::to_string(delta.detached.size()) + " parts came off, but there are " + std::to_string(more) +
            " components more";
   std::vector<std::size_t> size(count, 0);
   for (const auto c : component) ++size[c];
-  for (const auto& part : delta.parted)
+  for (const auto& part : delta.detached)
     for (const NodeId i : part)
       if (component[i.index()] != component[part[0].index()] || size[component[i.index()]] != part.size())
         return "a part is not a component";

@@ -1,6 +1,7 @@
-// Bodies cut at random: after every step graph, rows and binding are those of scratch, components are pieces, nodes are
-// inside, whatever the number of threads and the vectors. A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants
-// '[bodies]'; one case of it: KERF_CASE=7000123 and the name of the test; KERF_TELL=1 tells of every step.
+// Bodies cut at random: after every step graph, rows and binding are those of scratch, components
+// are pieces, nodes are inside, whatever the number of threads and the vectors. A campaign:
+// KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]'; one case of it: KERF_CASE=7000123 and the
+// name of the test; KERF_TELL=1 tells of every step.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
@@ -38,18 +39,18 @@ Outcome cut(const BodyCase& c, bool check) {
     for (result.step = 1; result.step < crack.rows.size(); ++result.step) {
       const Body before = check ? result.body : Body();
       ++result.steps;
-      SplitWork work;
+      SplitStats work;
       try {
         const BodyDelta delta = split(result.body, front, crack.rows[result.step], {}, &work);
-        result.parted += delta.parted.size();
+        result.parted += delta.detached.size();
         if (check && std::getenv("KERF_TELL"))
           WARN("crack " << result.crack + 1 << " step " << result.step << ": " << delta.crack.new_crack_faces.size()
-                        << " crack faces, " << result.body.nodes.size() << " nodes, " << delta.parted.size()
+                        << " crack faces, " << result.body.nodes.size() << " nodes, " << delta.detached.size()
                         << " pieces more, " << work.resample_seconds << " + " << work.graph_seconds << " + "
                         << work.binding_seconds << " s");
         if (delta.crack.empty()) continue;
         ++result.cutting;
-        if (check) result.fault = body_faults::fault_of(before, result.body, delta, work.nodes_mended, volume);
+        if (check) result.fault = body_faults::fault_of(before, result.body, delta, work.repair_nodes, volume);
         if (c.resize && result.fault.empty()) {
           const Body uncut = check ? result.body : Body();
           const BodyDelta other = resize_nodes(

@@ -152,7 +152,7 @@ inline geo::Body cut_body() {
   geo::SampleOptions options;
   options.spacing = 0.3;
   geo::BodyOptions guided;
-  guided.guides = 0.5;
+  guided.guide_spacing = 0.5;
   geo::Body body = geo::build_body(geo::Complex::from_skin(mesh), geo::sample_nodes(mesh, options), guided);
   body.history.push_back({"kerf-graph", "0.1.0", "block.ply", {"block.ply xxh3:0011223344556677"}});
   geo::FrontState front = geo::begin_front(std::vector<geo::Vec3>{{-0.5, -0.5, 0.512}, {-0.5, 1.5, 0.52}}, false, 1);

@@ -39,7 +39,7 @@ Body small_body(double guides = 0) {
   SampleOptions options;
   options.spacing = 0.15;
   BodyOptions guided;
-  guided.guides = guides;
+  guided.guide_spacing = guides;
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, options), guided);
   FrontState front = begin_front(std::vector<Vec3>{{-0.5, -0.5, 0.512}, {-0.5, 1.5, 0.52}}, false, 1);
   split(body, front, {{0.6, -0.5, 0.53}, {0.61, 1.5, 0.5}});
@@ -133,7 +133,7 @@ TEST_CASE("nodes and bodies are read back to the bit") {
   const std::string kerf = bytes_of([&](auto& out) { write_body(out, body); });
   const Body again = parse_body(kerf, "b.kerf");
   CHECK(again.graph == body.graph);
-  CHECK(again.guides == guides);
+  CHECK(again.guide_spacing == guides);
   CHECK(again.surface.two_sided().source == body.surface.two_sided().source);
   CHECK(check_body(again).first_problem == "");
   CHECK(bytes_of([&](auto& out) { write_body(out, again); }) == kerf);
@@ -244,7 +244,7 @@ TEST_CASE("a body is updated in its own file") {
 
 TEST_CASE("other radii are appended to a body's file, and a body that is read goes on as the one that was written") {
   Body body = small_body(GENERATE(0.0, 1.0));
-  const double widest = body.widest;
+  const double widest = body.widest_radius;
   const auto path =
       (std::filesystem::temp_directory_path() / ("kerf-radii-" + std::to_string(std::random_device{}()) + ".kerf"))
           .string();
@@ -261,7 +261,7 @@ TEST_CASE("other radii are appended to a body's file, and a body that is read go
   Body again = read_body(path);
   CHECK(KerfFile(Input(path)).updates() == 2);
   std::filesystem::remove(path);
-  CHECK(again.widest == widest);
+  CHECK(again.widest_radius == widest);
   CHECK(again.nodes.radius == body.nodes.radius);
   CHECK(again.graph == body.graph);
   const auto bytes = [&](const Body& b) { return bytes_of([&](auto& out) { write_body(out, b); }); };

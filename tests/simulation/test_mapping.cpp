@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
+#include "body/incremental_cache.h"
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/parallel.h"
@@ -36,7 +37,7 @@ struct Bent {
   }
   Vec3 skin(SurfaceVertexId v) const {
     std::vector<std::pair<NodeId, double>> nodes;
-    bound_nodes(body, v, nodes);
+    carrier_nodes(body, v, nodes);
     const Vec3 x = body.surface.point(body.surface.site(v));
     return x + displacement_at(x, nodes, body.nodes, u, gradient);
   }
@@ -87,7 +88,7 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
     for (int i = 0; i < 200; ++i) {
       const Vec3 x(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 2));
       points.push_back(
-          x + b.u[b.body.grid.nearest(b.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; })[0]]);
+          x + b.u[b.body.cache->grid.nearest(b.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; })[0]]);
     }
     const Box3 all{Vec3::Constant(-9), Vec3::Constant(9)};
     const InverseDeformation map(b.body, b.u, b.gradient, all);

@@ -93,7 +93,7 @@ void ask_vertex(const geo::Body& body, std::size_t v, Report& report) {
   const bool orphan = !binding.master[v].valid();
   const geo::NodeId node = orphan ? geo::NodeId() : binding.master_node[binding.master[v].index()];
   std::vector<std::pair<geo::NodeId, double>> bound;
-  if (!orphan) geo::bound_nodes(body, vertex, bound);
+  if (!orphan) geo::carrier_nodes(body, vertex, bound);
   std::vector<std::string> nodes;
   for (const auto& [id, distance] : bound)
     nodes.push_back("{\"node\":" + std::to_string(id.value) + ",\"distance\":" + tool::number(distance) + "}");

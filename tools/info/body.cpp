@@ -63,7 +63,7 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
       counted(body.graph.edge_count(), "visibility edge") + ", " +
       (body.surface.crack_count() > 0 ? counted(static_cast<std::size_t>(body.surface.crack_count()), "crack")
                                       : "no crack") +
-      ", " + counted(body.updates, "crack step") + "; volume " + rounded(volume) + "." +
+      ", " + counted(body.crack_steps, "crack step") + "; volume " + rounded(volume) + "." +
       (debris > 0 ? " " + counted(debris, "node is", "nodes are") + " debris." : "");
   report.add_text("kind", "body");
   report.add("nodes", body.nodes.size());
@@ -78,7 +78,7 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
   report.add("vertices", vertices);
   report.add("orphans", result.orphans);
   report.add("bytes", bytes);
-  report.add("updates", static_cast<std::size_t>(body.updates));
+  report.add("updates", static_cast<std::size_t>(body.crack_steps));
   report.add("debris", debris);
   report.add_number("volume", volume);
   report.add("appended", static_cast<std::size_t>(file.updates()));

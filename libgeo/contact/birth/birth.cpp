@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "body/incremental_cache.h"
 #include "contact/birth/untangle.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
@@ -294,7 +295,7 @@ class Midwife {
     return nodes;
   }
   std::vector<NodeId> nodes_near(const Vec3& x) const {
-    const auto nearest = body_.grid.nearest(body_.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; });
+    const auto nearest = body_.cache->grid.nearest(body_.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; });
     return nearest.empty() ? std::vector<NodeId>() : with_neighbors(NodeId(nearest[0]));
   }
   // Those that carry an old surface vertex.

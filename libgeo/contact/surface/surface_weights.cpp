@@ -27,7 +27,7 @@ std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid&
   }
   const std::size_t n = body.surface.surface_vertex_count();
   std::vector<std::uint8_t> asked(n, 0);
-  for (const auto v : delta.rebound) asked[v.index()] = 1;
+  for (const auto v : delta.rebound_vertices) asked[v.index()] = 1;
   for (const auto* some : {&delta.crack.new_surface_vertices, &delta.crack.touched_surface_vertices})
     for (const auto v : *some) asked[v.index()] = 1;
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
@@ -74,7 +74,7 @@ void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const 
       rows_[v].clear(), heaviest_[v] = ~0u, spread_[v] = area_[v] = 0;
       if (!body.surface.alive(id)) continue;
       area_[v] = area_about(body.surface, id);
-      bound_nodes(body, id, bound);
+      carrier_nodes(body, id, bound);
       if (bound.empty()) continue;
       const Vec3& x = body.surface.point(body.surface.site(id));
       double total = 0;

@@ -1,9 +1,9 @@
-// A body: surface complex, nodes, graph, neighbourhoods and binding, always in step with each
-// other.
+// A body: everything about one deformable solid in material coordinates. Crack complex K, nodes,
+// visibility graph, neighbours and binding, always consistent with each other.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,32 +12,24 @@
 #include "kerf/complex.h"
 #include "kerf/crack.h"
 #include "kerf/graph.h"
+#include "kerf/indirect.h"
 #include "kerf/nodes.h"
 #include "kerf/progress.h"
-#include "sampling/node_grid.h"
 
 namespace geo {
 
-/// Which nodes carry each surface vertex (§ 6.5). Indexed by SurfaceVertexId; dead vertices have
-/// empty entries. A crumb that has no room for a node is rigid debris, carried by the nearest one.
+/// The nodes that carry each surface vertex (§ 6.5). A master is a surface vertex that is the
+/// closest visible one of some node. All other vertices hang in a tree below a master, along edges
+/// of the derived surface. Indexed by SurfaceVertexId where nothing else is said; entries of dead
+/// vertices are invalid.
 struct Binding {
-  std::vector<NodeId> master_node;       ///< of masters: the node with the visibility edge; else invalid
-  std::vector<SurfaceVertexId> master;   ///< the master whose tree a vertex hangs in; invalid: orphan
-  std::vector<SurfaceVertexId> parent;   ///< towards the master; itself for a master
-  std::vector<SurfaceVertexId> closest;  ///< per node: its closest visible surface vertex, where it is near one
+  std::vector<NodeId> master_node;       ///< of a master: its nearest node by a visibility edge; else invalid
+  std::vector<SurfaceVertexId> master;   ///< the root of the vertex's tree; invalid for an orphan
+  std::vector<SurfaceVertexId> parent;   ///< next vertex on the way to the master; itself for a master
+  std::vector<SurfaceVertexId> closest;  ///< by NodeId: the node's closest visible surface vertex within its
+                                         // /< support radius, or invalid
+  /// Equal in all entries.
   friend bool operator==(const Binding&, const Binding&) = default;
-};
-
-/// What a split keeps for the next one, so that it need not look at the whole body; derived by the
-/// first split.
-struct Upkeep {
-  std::vector<std::int32_t> piece;  ///< per surface vertex: a number for its piece of material, −1: dead
-  std::int32_t pieces = 0;          ///< how many numbers there are
-  std::set<std::int32_t>
-      bare;                   ///< pieces without a node, as far as known: crumbs in which doubles have no room for one
-  bool inner_shells = false;  ///< a piece may be bounded by several shells: cavities, cracks inside
-  std::vector<std::uint32_t> depth;     ///< per surface vertex: edges to its master; ~0u: orphan
-  std::vector<SurfaceVertexId> strays;  ///< masters of shells that no node looks at, ascending
 };
 
 /// Where a file came from: printed by kerf-info, written into every body.
@@ -46,90 +38,112 @@ struct Provenance {
   std::vector<std::string> inputs;  ///< "name xxh3:…"
 };
 
+struct IncrementalCache;  // body/incremental_cache.h
+
+/// One deformable solid. Made by build_body() or read_body(), changed by split(), update_body() and
+/// resize_nodes(). Lengths are in model units.
 struct Body {
-  Complex surface;
-  NodeSet nodes;
-  VisibilityGraph graph;  ///< and the neighbours of each node
-  Binding binding;
-  std::vector<NodeId> donors;  ///< of the nodes inserted last, in order; derived, never in a file
-  NodeGrid grid;               ///< over nodes.position; derived, never in a file
-  Upkeep upkeep;               ///< derived, never in a file
-  int k = 26;                  ///< nearest neighbours per node in the graph
-  double guides = 0;           ///< of guides along concave edges (§ 8), in spacings of the nodes; 0: none
-  double resample_limit = 1;   ///< 0: cracks get no new nodes
-  std::uint32_t sampled = 0;   ///< nodes that it was built of: the first rows
-  double finest = 0,
-         widest =
-             0;  ///< their smallest spacing and largest support radius: cracks get no finer nodes, and no wider ones
-  std::uint32_t updates = 0;         ///< cracks steps applied since the build
-  std::vector<std::uint8_t> debris;  ///< per node: 1 where its neighbours do not span space (nodes.h): rigid debris
-  std::vector<Provenance> history;
+  /// A body without surface and nodes.
+  Body();
+
+  Complex surface;                   ///< K
+  NodeSet nodes;                     ///< P
+  VisibilityGraph graph;             ///< G, and the neighbours of each node
+  Binding binding;                   ///< the nodes that carry each surface vertex
+  int k = 26;                        ///< nearest neighbours of a node in G
+  double guide_spacing = 0;          ///< distance between guides along concave edges (§ 8), in node spacings; 0: none
+  double resample_limit = 1;         ///< 0: cracks get no new nodes
+  std::uint32_t original_nodes = 0;  ///< number of nodes that the body was built from; they come first
+  double finest_spacing = 0;         ///< of the original nodes: cracks get no finer nodes
+  double widest_radius = 0;          ///< largest support radius of the original nodes: no node gets a wider one
+  std::uint32_t crack_steps = 0;     ///< applied since the build
+  std::vector<std::uint8_t> debris;  ///< by NodeId: 1 where the neighbours do not span space. Such a node is rigid
+                                     // /< debris: no linear field can be determined from its
+                                     // neighbours
+  std::vector<Provenance> history;   ///< programs that have written the body, oldest first
+
+  /// Data derived from the members above, which steps update instead of deriving them anew; never
+  /// in a file. For the library's own code.
+  Indirect<IncrementalCache> cache;
 };
 
+/// Options of build_body().
 struct BodyOptions {
-  int k = 26;
-  NeighborMethod method = NeighborMethod::automatic;
-  double guides = 0;  ///< along concave edges and crack fronts: how far apart, in spacings of the nodes; 0: none (§ 8)
+  int k = 26;                                         ///< nearest neighbours of a node in G, 3 to 1000
+  NeighborMethod method = NeighborMethod::automatic;  ///< all methods give the same body
+  double guide_spacing = 0;                           ///< see Body; 0 or 0.05 to 10
 };
 
-/// Builds graph, neighbourhoods and binding (§ 6.1, 6.2, 6.5). Passages too narrow for the sampling
-/// (more components in G than pieces of material) get extra nodes until components and pieces
-/// agree. Throws InputError when a node is outside the material or a piece has no node.
+/// Builds graph, neighbours and binding (§ 6.1, 6.2, 6.5). Where the sampling is too coarse for a
+/// narrow passage, G has more components than there are pieces of material; nodes are added until
+/// both agree. Throws InputError for options out of range, no nodes, or a node outside the
+/// material.
 Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options = {}, const Progress& progress = {});
 
-/// From scratch on the same complex, nodes and edges' end points: what incremental updates must
-/// equal, bit for bit.
+/// The binding from scratch. Incremental updates equal it, bit for bit.
 Binding build_binding(const Body& body);
 
-/// Counts and seconds of one split, by phase.
-struct SplitWork {
-  CrackStats crack;
-  std::size_t edges_cut = 0, edges_added = 0, nodes_updated = 0, nodes_added = 0, nodes_moved = 0, orphans = 0;
-  std::size_t nodes_mended =
-      0;  ///< of those added, the last: in pieces without a node and passages too narrow for the sampling
-  double resample_seconds = 0, graph_seconds = 0, binding_seconds = 0;
+/// Counts and seconds of splits, by phase. Functions add to it.
+struct SplitStats {
+  CrackStats crack;               ///< § 4, step 1 to 3: surface
+  std::size_t edges_cut = 0;      ///< |E_cut|
+  std::size_t edges_added = 0;    ///< |E_new|
+  std::size_t nodes_updated = 0;  ///< |P_update|
+  std::size_t nodes_added = 0;    ///< |P_new|
+  std::size_t nodes_moved = 0;    ///< old nodes moved off a crack face
+  std::size_t orphans = 0;        ///< surface vertices that got another carrying node
+  std::size_t repair_nodes = 0;   ///< of the added nodes, the last: in pieces without a node and in narrow passages
+  double resample_seconds = 0;    ///< new nodes
+  double graph_seconds = 0;       ///< graph and neighbours
+  double binding_seconds = 0;     ///< binding
 };
 
-/// What a split changed, for the mechanics.
+/// What a split changed, for the mechanics. All lists are ascending.
 struct BodyDelta {
-  CrackDelta crack;
-  NodeId first_new_node;            ///< nodes from here on are new
-  std::vector<NodeId> donors;       ///< per new node: the node that gave it half of its volume
-  std::vector<NodeId> moved_nodes;  ///< old nodes moved off a crack face, ascending
-  std::vector<std::pair<NodeId, double>>
-      resized_nodes;  ///< old nodes that stayed, but have another support radius; with the one they had, ascending
-  std::vector<NodeId> updated_nodes;     ///< rows changed (new, moved and resized ones included), ascending
-  std::vector<SurfaceVertexId> rebound;  ///< surface vertices that another node carries now, ascending
-  std::vector<std::vector<NodeId>>
-      parted;  ///< of each piece that came off, the nodes, ascending; the largest part is not among them
+  CrackDelta crack;                                      ///< changes of K
+  NodeId first_new_node;                                 ///< nodes from here on are new
+  std::vector<NodeId> donors;                            ///< for each new node: the node that gave half of its volume
+  std::vector<NodeId> moved_nodes;                       ///< old nodes moved off a crack face
+  std::vector<std::pair<NodeId, double>> resized_nodes;  ///< old nodes with another support radius, and the old radius
+  std::vector<NodeId> updated_nodes;              ///< P_update: rows changed; new, moved and resized nodes included
+  std::vector<SurfaceVertexId> rebound_vertices;  ///< surface vertices with another carrying node
+  std::vector<std::vector<NodeId>> detached;      ///< for each piece that came off, its nodes; the component with
+                                                  // /< most nodes counts as the rest
 };
 
-/// One front step through all seven steps of § 4: crack, cut graph, sample, update neighbours,
-/// re-bind. Commits all or nothing: on GeometryError body and front are unchanged.
+/// Moves a crack front to `next` through all seven steps of § 4: crack, cut graph, resample, update
+/// neighbours, rebind. Throws GeometryError when the step is not possible; body and front are then
+/// unchanged.
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
-                SplitWork* work = nullptr);
+                SplitStats* stats = nullptr);
 
 /// Steps 4 to 7 of § 4 for cracks made elsewhere: brings the body to `surface`, which has grown
-/// from the body's own. Where `progress` stops the work, body is of no more use.
-BodyDelta follow(Body& body, const Complex& surface, SplitWork* work = nullptr, const Progress& progress = {});
+/// from body.surface. If `progress` stops it, the body is lost.
+BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats = nullptr, const Progress& progress = {});
 
-/// Gives nodes other support radii (§ 6.4), those named, ascending, none wider than body.widest:
-/// graph, neighbours and binding follow, and equal those from scratch with the same edges, bit for
-/// bit. The cost follows what changes. Throws InputError for a radius that is not positive.
+/// Sets the support radii (§ 6.4) of some nodes (ascending), at most body.widest_radius, and
+/// updates graph, neighbours and binding: equal to a build from scratch with the same edges, bit
+/// for bit. The cost follows what changes. Throws InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
-/// The node neighbours of a surface vertex and their Euclidean distances (§ 6.5): those of its
-/// master's node, the node itself included, that are within their support radius.
-void bound_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
+/// Writes the nodes that carry a surface vertex with their Euclidean distances (§ 6.5): its
+/// master's node and that node's neighbours, those whose support radius covers the vertex.
+void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
 
-/// Every invariant of a body that can be checked alone; empty when all hold, else the first
-/// offending ids.
+/// The result of check_body().
 struct BodyReport {
-  std::size_t graph_components = 0, pieces = 0, edges_crossing = 0, orphans = 0, nodes_outside = 0;
-  std::size_t crumbs = 0;  ///< of the pieces, those without a node: too thin for one
-  std::string first_problem;
+  std::size_t graph_components = 0;     ///< of G
+  std::size_t pieces = 0;               ///< of material
+  std::size_t edges_crossing = 0;       ///< edges of G that touch a face
+  std::size_t orphans = 0;              ///< live surface vertices without a master
+  std::size_t nodes_outside = 0;        ///< nodes not inside the material
+  std::size_t pieces_without_node = 0;  ///< pieces too thin for a node in double precision
+  std::string first_problem;            ///< the first violated invariant with its ids; empty when all hold
+  /// Do all invariants hold?
   bool good() const { return first_problem.empty(); }
 };
+
+/// Checks every invariant of a body against a build from scratch.
 BodyReport check_body(const Body& body);
 
 }  // namespace geo

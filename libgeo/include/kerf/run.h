@@ -50,7 +50,7 @@ struct FractureStats {
 
 /// Statistics of a frame, or of a run.
 struct FrameStats {
-  SplitWork split;  ///< cutting: complex, graph, sampling, binding
+  SplitStats split;  ///< cutting: complex, graph, sampling, binding
   FractureStats fracture;
   ContactStats contact;
   std::size_t refused = 0;      ///< crack steps that could not be made

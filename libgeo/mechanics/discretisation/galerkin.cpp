@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "body/incremental_cache.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/point_supports.h"
 
@@ -45,8 +46,8 @@ class Changes {
     if (near.empty() || p.occluded) return !near.empty();
     // The point sees all nodes that may support it, within its influence radius.
     near.clear();
-    body.grid.within(body.nodes.position, p.position,
-                     p.influence_radius * (1 + 4 * std::numeric_limits<double>::epsilon()), near);
+    body.cache->grid.within(body.nodes.position, p.position,
+                            p.influence_radius * (1 + 4 * std::numeric_limits<double>::epsilon()), near);
     std::vector<Vec3> ends{intended};
     for (const auto j : near) ends.push_back(body.nodes.position[j]);
     std::vector<std::uint8_t> touched(ends.size(), 0);

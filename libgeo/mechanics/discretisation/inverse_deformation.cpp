@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/incremental_cache.h"
 #include "geometry/distance.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/discretisation/kernel.h"
@@ -29,7 +30,7 @@ InverseDeformation::InverseDeformation(const Body& body, const std::vector<Vec3>
       gradient_(gradient),
       included_(std::move(included)),
       largest_support_(*std::max_element(body.nodes.radius.begin(), body.nodes.radius.end())),
-      grid_(body.grid.cell()) {
+      grid_(body.cache->grid.cell()) {
   const Box3 box = about.grown(2 * largest_support_);
   world_.reserve(body.nodes.size());
   for (std::size_t i = 0; i < body.nodes.size(); ++i) world_.push_back(body.nodes.position[i] + u[i]);
@@ -40,7 +41,7 @@ InverseDeformation::InverseDeformation(const Body& body, const std::vector<Vec3>
 bool InverseDeformation::is_included(FaceId f) const {
   if (included_.empty()) return true;
   std::vector<std::pair<NodeId, double>> nodes;
-  bound_nodes(body_, body_.surface.surface_vertex({f, 0}, 0), nodes);
+  carrier_nodes(body_, body_.surface.surface_vertex({f, 0}, 0), nodes);
   return !nodes.empty() && included_[nodes[0].first.index()];
 }
 
@@ -48,7 +49,7 @@ void InverseDeformation::update(Neighborhood& near, const Vec3& x) const {
   if ((near.material - x).norm() < 0.5 * largest_support_) return;
   near.material = x, near.node.clear(), near.fading.clear();
   std::vector<std::uint32_t> candidates;
-  body_.grid.within(body_.nodes.position, x, 1.5 * largest_support_, candidates);
+  body_.cache->grid.within(body_.nodes.position, x, 1.5 * largest_support_, candidates);
   for (const auto i : candidates)
     if (const double fading = fade((near.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3);
         fading > 0 && is_included(i))
@@ -89,7 +90,7 @@ Vec3 InverseDeformation::deformed_vertex(SurfaceVertexId v, VertexCache& cache) 
   const auto [it, is_new] = cache.try_emplace(v.value);
   if (is_new) {
     std::vector<std::pair<NodeId, double>> nodes;
-    bound_nodes(body_, v, nodes);
+    carrier_nodes(body_, v, nodes);
     const Vec3 x = body_.surface.point(body_.surface.site(v));
     it->second = x + (nodes.empty() ? Vec3(Vec3::Zero()) : displacement_at(x, nodes, body_.nodes, u_, gradient_));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "body/incremental_cache.h"
 #include "geometry/predicates.h"
 #include "kerf/parallel.h"
 
@@ -36,7 +37,7 @@ struct Batch {
     const auto& radius = body.nodes.radius;
     Box3 box;
     for (const SupportTask& task : tasks) box.add(task.point->position);
-    body.grid.within(position, box.center(), 0.5 * (box.hi - box.lo).norm() + factor * largest_radius, nodes);
+    body.cache->grid.within(position, box.center(), 0.5 * (box.hi - box.lo).norm() + factor * largest_radius, nodes);
     std::erase_if(nodes, [&](auto j) { return !box.grown(factor * radius[j]).meets({position[j], position[j]}); });
     double largest = 0;
     for (const auto j : nodes) largest = std::max(largest, radius[j]);
@@ -156,7 +157,7 @@ Occluders all_occluders(const Complex& surface) {
 
 Vec3 moved_off_faces(const Body& body, const Vec3& p) {
   if (!is_on_face(body.surface, p)) return p;
-  const auto near = body.grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; })[0];
+  const auto near = body.cache->grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; })[0];
   const Vec3 to_node = body.nodes.position[near] - p;
   if (!(to_node.norm() < support_factors.back() * body.nodes.radius[near])) return p;
   for (double step = 1e-3; step < 0.5; step *= 4)

@@ -54,7 +54,7 @@ void Solid::follow(const Body& body, const BodyDelta& delta, State& state) {
   std::vector<Vec3> before;
   for (const NodeId i : delta.moved_nodes) before.push_back(position_[i.index()]);
   follow_nodes(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state,
-               !delta.parted.empty());
+               !delta.detached.empty());
   if (!galerkin_) return nodal_points(delta.updated_nodes);
   galerkin_->mark_changed(body, delta, before);
   other_.resize(size(), 0);

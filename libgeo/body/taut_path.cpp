@@ -1,7 +1,7 @@
 // Over the sides from one point's sight to the other's, across edges at points pulled tight, low
 // enough above both to meet nothing. What is found is only what exact predicates let through; all
 // the rest here is where to look.
-#include "body/way_along.h"
+#include "body/taut_path.h"
 
 #include <algorithm>
 #include <map>
@@ -40,7 +40,7 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
     for (int e = 0; e < 3; ++e)
       if (n.dot((t[(e + 1) % 3] - t[e]).cross(at - t[e])) < 0.01 * n.squaredNorm()) return;
-    if (stands_before(k, s, at, x)) sights.try_emplace(s, at);
+    if (is_in_front(k, s, at, x)) sights.try_emplace(s, at);
   };
   const auto look = [&](const Vec3& to) {
     Box3 box{x, x};
@@ -214,7 +214,7 @@ std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Ste
 
 }  // namespace
 
-std::vector<Vec3> way_along(const Complex& k, const Vec3& from, const Vec3& to, double reach) {
+std::vector<Vec3> taut_path(const Complex& k, const Vec3& from, const Vec3& to, double reach) {
   const auto starts = look_around(k, from, reach), ends = look_around(k, to, reach);
   std::set<Step> closed;
   Sight sight(k);

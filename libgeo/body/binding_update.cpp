@@ -8,7 +8,8 @@
 #include <unordered_map>
 
 #include "body/binding.h"
-#include "body/upkeep.h"
+#include "body/incremental_cache.h"
+#include "body/piece_labels.h"
 #include "geometry/bvh.h"
 #include "kerf/parallel.h"
 
@@ -20,19 +21,23 @@ constexpr std::uint32_t no_depth = ~0u, none = ~0u;
 class Rebinding {
  public:
   explicit Rebinding(Body& body)
-      : body_(body), k_(body.surface), b_(body.binding), depth_(body.upkeep.depth), strays_(body.upkeep.strays) {
+      : body_(body),
+        k_(body.surface),
+        b_(body.binding),
+        depth_(body.cache->depth),
+        unseen_masters_(body.cache->unseen_masters) {
     const std::size_t n = k_.surface_vertex_count();
     b_.master_node.resize(n), b_.master.resize(n), b_.parent.resize(n);
     depth_.resize(n, no_depth);
     b_.closest.resize(body.nodes.size());
   }
 
-  void renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved);
-  void renew_strays(NodeId first_new, const std::vector<NodeId>& moved);
-  void renew_masters();
-  void renew_edges(const CrackDelta& delta);
+  void update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved);
+  void update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved);
+  void update_masters();
+  void update_trees_at_changed_edges(const CrackDelta& delta);
   void grow();
-  void adopt_strays();
+  void adopt_unseen_shells();
   std::vector<SurfaceVertexId> rebound();
 
  private:
@@ -43,7 +48,9 @@ class Rebinding {
     k_.surface_neighbors(v, out);
     return out;
   }
-  bool is_stray(SurfaceVertexId v) const { return std::binary_search(strays_.begin(), strays_.end(), v); }
+  bool is_unseen_master(SurfaceVertexId v) const {
+    return std::binary_search(unseen_masters_.begin(), unseen_masters_.end(), v);
+  }
   // The node that carried a vertex before the step; asked before the vertex gets another master.
   NodeId carrier_before(SurfaceVertexId v) const {
     const SurfaceVertexId m = b_.master[v.index()];
@@ -60,7 +67,7 @@ class Rebinding {
     b_.master_node[v.index()] = node;
   }
   void orphan(SurfaceVertexId root);
-  void dismiss_stray(SurfaceVertexId v);
+  void dismiss_unseen_master(SurfaceVertexId v);
   void offer(SurfaceVertexId v, std::uint32_t depth, SurfaceVertexId parent) {
     if (std::tie(depth, parent) < std::tie(depth_[v.index()], b_.parent[v.index()])) queue_.push({depth, parent, v});
   }
@@ -69,8 +76,8 @@ class Rebinding {
   const Complex& k_;
   Binding& b_;
   std::vector<std::uint32_t>& depth_;
-  std::vector<SurfaceVertexId>& strays_;
-  std::set<SurfaceVertexId> looked_at_;  // vertices that nodes began or ceased to look at
+  std::vector<SurfaceVertexId>& unseen_masters_;
+  std::set<SurfaceVertexId> retargeted_;  // vertices that nodes began or ceased to look at
   std::vector<SurfaceVertexId> orphans_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
@@ -78,14 +85,14 @@ class Rebinding {
 
 // A node's closest vertex depends on faces no farther than it, and a twentieth more; where there is
 // none, on all within the support radius.
-void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
+void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
   const auto& x = body_.nodes.position;
   const double reach = longest_reach(body_);
   std::vector<std::array<Vec3, 3>> faces;
   for (const FaceId f : delta.new_faces) faces.push_back(k_.corners(f));
   const TriangleBvh changed(faces);
   std::vector<std::uint32_t> stale;
-  body_.grid.walk(
+  body_.cache->grid.walk(
       [&](int, const Vec3& middle, double half) {
         return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).triangle != none;
       },
@@ -114,15 +121,15 @@ void Rebinding::renew_closest(const CrackDelta& delta, NodeId first_new, const s
         stale[s] >= first_new.value || std::binary_search(moved.begin(), moved.end(), NodeId(stale[s]));
     if (closest == now[s] && !elsewhere) continue;
     for (const auto v : {closest, now[s]})
-      if (v.valid()) looked_at_.insert(v);
+      if (v.valid()) retargeted_.insert(v);
     closest = now[s];
   }
-  for (const auto v : delta.removed_surface_vertices) looked_at_.insert(v);
+  for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
 }
 
 // A stray's node stays unless it moved or was cut off, or another one is nearer now.
-void Rebinding::renew_strays(NodeId first_new, const std::vector<NodeId>& moved) {
-  const auto before = strays_;
+void Rebinding::update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved) {
+  const auto before = unseen_masters_;
   for (const auto v : before) {
     bool stays = k_.alive(v);
     if (stays) {
@@ -132,22 +139,22 @@ void Rebinding::renew_strays(NodeId first_new, const std::vector<NodeId>& moved)
       const auto rivals = [&](NodeId i) { return (body_.nodes.position[i.index()] - q).squaredNorm() <= d; };
       stays = !std::binary_search(moved.begin(), moved.end(), node) &&
               std::none_of(moved.begin(), moved.end(), rivals) &&
-              (body_.upkeep.bare.count(body_.upkeep.piece[v.index()]) ||
-               piece_of(body_, node) == body_.upkeep.piece[v.index()]);
+              (body_.cache->pieces_without_node.count(body_.cache->piece[v.index()]) ||
+               piece_of(body_, node) == body_.cache->piece[v.index()]);
       for (std::uint32_t i = first_new.value; i < body_.nodes.size() && stays; ++i) stays = !rivals(NodeId(i));
     }
-    if (!stays) dismiss_stray(v);
+    if (!stays) dismiss_unseen_master(v);
   }
 }
 
-void Rebinding::dismiss_stray(SurfaceVertexId v) {
+void Rebinding::dismiss_unseen_master(SurfaceVertexId v) {
   set_node(v, NodeId());
-  strays_.erase(std::lower_bound(strays_.begin(), strays_.end(), v));
+  unseen_masters_.erase(std::lower_bound(unseen_masters_.begin(), unseen_masters_.end(), v));
   orphan(v);
 }
 
-void Rebinding::renew_masters() {
-  const std::vector<SurfaceVertexId> vertices(looked_at_.begin(), looked_at_.end());
+void Rebinding::update_masters() {
+  const std::vector<SurfaceVertexId> vertices(retargeted_.begin(), retargeted_.end());
   std::vector<NodeId> nodes(vertices.size());
   parallel_for(vertices.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
@@ -155,8 +162,8 @@ void Rebinding::renew_masters() {
   });
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const auto v = vertices[k];
-    if (k_.alive(v) && b_.master[v.index()].valid() && is_stray(b_.master[v.index()]))
-      dismiss_stray(b_.master[v.index()]);
+    if (k_.alive(v) && b_.master[v.index()].valid() && is_unseen_master(b_.master[v.index()]))
+      dismiss_unseen_master(b_.master[v.index()]);
     const NodeId node = nodes[k], before = b_.master_node[v.index()];
     if (node != before) set_node(v, node);
     if (!k_.alive(v) || (before.valid() && !node.valid()))
@@ -185,7 +192,7 @@ void Rebinding::orphan(SurfaceVertexId root) {
 }
 
 // Edges of the surface come and go only at vertices of the delta.
-void Rebinding::renew_edges(const CrackDelta& delta) {
+void Rebinding::update_trees_at_changed_edges(const CrackDelta& delta) {
   auto at = delta.touched_surface_vertices;
   at.insert(at.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
   std::vector<SurfaceVertexId> seen = at;
@@ -198,7 +205,7 @@ void Rebinding::renew_edges(const CrackDelta& delta) {
     const auto parent = b_.parent[v.index()], master = b_.master[v.index()];
     if (parent.valid() && parent != v && !std::binary_search(beside.begin(), beside.end(), parent)) orphan(v);
     // A shell with a stray may have joined another one.
-    if (b_.master[v.index()].valid() && is_stray(master)) dismiss_stray(master);
+    if (b_.master[v.index()].valid() && is_unseen_master(master)) dismiss_unseen_master(master);
   }
   orphans_.insert(orphans_.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
   std::sort(orphans_.begin(), orphans_.end());
@@ -236,19 +243,19 @@ void Rebinding::grow() {
 }
 
 // Shells that no master reached, the lowest vertex of each first.
-void Rebinding::adopt_strays() {
+void Rebinding::adopt_unseen_shells() {
   for (const auto v : orphans_) {
     if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
-    const auto piece = body_.upkeep.piece[v.index()];
+    const auto piece = body_.cache->piece[v.index()];
     NodeId node;
-    if (!body_.upkeep.bare.count(piece))
-      node = stray_node_of(body_, v, [&](NodeId i) { return piece_of(body_, i) == piece; });
+    if (!body_.cache->pieces_without_node.count(piece))
+      node = carrier_of_unseen_shell(body_, v, [&](NodeId i) { return piece_of(body_, i) == piece; });
     if (!node.valid()) {
-      body_.upkeep.bare.insert(piece);
-      node = stray_node_of(body_, v, [](NodeId) { return true; });
+      body_.cache->pieces_without_node.insert(piece);
+      node = carrier_of_unseen_shell(body_, v, [](NodeId) { return true; });
     }
     set_node(v, node);
-    strays_.insert(std::lower_bound(strays_.begin(), strays_.end(), v), v);
+    unseen_masters_.insert(std::lower_bound(unseen_masters_.begin(), unseen_masters_.end(), v), v);
     offer(v, 0, v);
     grow();
   }
@@ -281,12 +288,12 @@ std::vector<SurfaceVertexId> Rebinding::rebound() {
 std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
                                     const std::vector<NodeId>& moved) {
   Rebinding r(body);
-  r.renew_closest(delta, first_new, moved);
-  r.renew_strays(first_new, moved);
-  r.renew_masters();
-  r.renew_edges(delta);
+  r.update_closest(delta, first_new, moved);
+  r.update_unseen_masters(first_new, moved);
+  r.update_masters();
+  r.update_trees_at_changed_edges(delta);
   r.grow();
-  r.adopt_strays();
+  r.adopt_unseen_shells();
   return r.rebound();
 }
 

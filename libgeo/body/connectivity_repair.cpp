@@ -1,0 +1,268 @@
+// Repairs of G (§ 6.4): passages too narrow for the sampling, and pieces without a node.
+#include <algorithm>
+#include <deque>
+#include <set>
+#include <unordered_map>
+
+#include "base/random.h"
+#include "body/binding.h"
+#include "body/connectivity.h"
+#include "body/locate.h"
+#include "body/taut_path.h"
+#include "geometry/bvh.h"
+
+namespace geo {
+namespace {
+
+// Inserts nodes along a taut path from node i to node j and records their joins. False, and no
+// nodes, when there is no such path.
+bool insert_nodes_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
+  const Complex& k = body.surface;
+  const auto path = taut_path(k, body.nodes.position[i.index()], body.nodes.position[j.index()], spacing);
+  if (path.empty()) return false;
+  // As few nodes as see each other, none farther apart than a grid cell. They give volume in turn.
+  std::deque<NodeId> donors{i};
+  NodeId last = i;
+  for (std::size_t s = 0; s + 1 < path.size();) {
+    std::size_t next = s + 1;
+    for (std::size_t n = s + 2; n < path.size() && (path[n] - path[s]).norm() <= body.cache->grid.cell(); ++n)
+      if (!is_blocked(k, path[s], path[n])) next = n;
+    NodeId node = j;
+    if (next + 1 < path.size()) {
+      node = insert_node(body, path[next], donors.front(), spacing);
+      donors.push_back(donors.front()), donors.push_back(node);
+      donors.pop_front();
+    }
+    joins.push_back({std::min(last, node), std::max(last, node)});
+    last = node;
+    s = next;
+  }
+  return true;
+}
+
+// Inserts a node into the piece without nodes that has surface vertex v; invalid where none fits.
+NodeId insert_node_into_piece(Body& body, SurfaceVertexId v) {
+  const auto nearest = [&](const Vec3& x) {
+    return NodeId(body.cache->grid.nearest(body.nodes.position, x, 1, ~0u, [](auto) { return true; })[0]);
+  };
+  const double spacing = body.nodes.spacing[nearest(body.surface.point(body.surface.site(v))).index()];
+  const auto x = point_in_piece(body.surface, v, spacing,
+                                [&](Side s) { return body.cache->piece[body.surface.surface_vertex(s, 0).index()]; });
+  return x ? insert_node(body, *x, nearest(*x), spacing) : NodeId();
+}
+
+// Nearest nodes within a piece. Remembers the pieces of nodes; ignores nodes inserted later.
+class NearestInPiece {
+ public:
+  explicit NearestInPiece(const Body& body) : body_(body), count_(static_cast<std::uint32_t>(body.nodes.size())) {}
+  /// The nodes nearest to i in its piece, without those of `component` (ascending).
+  std::vector<std::uint32_t> outside(NodeId i, std::size_t count, const std::vector<std::uint32_t>& component) {
+    const auto piece = piece_of_node(i.value);
+    return body_.cache->grid.nearest(
+        body_.nodes.position, body_.nodes.position[i.index()], count, i.value, [&](std::uint32_t n) {
+          return n < count_ && !std::binary_search(component.begin(), component.end(), n) && piece_of_node(n) == piece;
+        });
+  }
+
+ private:
+  std::int32_t piece_of_node(std::uint32_t i) {
+    const auto [at, fresh] = piece_.try_emplace(i, 0);
+    return fresh ? at->second = piece_of(body_, NodeId(i)) : at->second;
+  }
+  const Body& body_;
+  std::uint32_t count_;
+  std::unordered_map<std::uint32_t, std::int32_t> piece_;
+};
+
+// Joins a component to another one of its piece by a visible edge no longer than the longest
+// support radius. The k nearest nodes of a node may all be hidden while others are visible. Tests
+// at most 16 nodes of the component.
+bool join_by_visible_edge(const Body& body, NearestInPiece& nearest, const std::vector<std::uint32_t>& component,
+                          std::vector<NodePair>& joins) {
+  for (std::size_t n = 0; n < component.size(); n += 1 + component.size() / 16)
+    for (const auto other : nearest.outside(NodeId(component[n]), 8, component)) {
+      const Vec3 &p = body.nodes.position[component[n]], &q = body.nodes.position[other];
+      const auto [low, high] = std::minmax(component[n], other);
+      if ((p - q).norm() > longest_reach(body) ||
+          is_blocked(body.surface, body.nodes.position[low], body.nodes.position[high]))
+        continue;
+      joins.push_back({NodeId(low), NodeId(high)});
+      return true;
+    }
+  return false;
+}
+
+using SideByArea = std::pair<double, Side>;  // −2 × area first, so that the largest sorts first
+
+// The sides of the shell of surface vertex v, the largest first.
+std::vector<SideByArea> sides_of_shell(const Complex& k, SurfaceVertexId v) {
+  std::vector<SurfaceVertexId> shell{v}, around;
+  std::set<SurfaceVertexId> visited{v};
+  std::vector<SideByArea> sides;
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    for (const FaceId f : k.faces_at(k.site(shell[i])))
+      for (int which = 0; which < 2; ++which)
+        for (int c = 0; c < 3; ++c) {
+          if (!k.has({f, which}) || k.surface_vertex({f, which}, c) != shell[i]) continue;
+          const auto t = k.corners(f);
+          sides.push_back({-(t[1] - t[0]).cross(t[2] - t[0]).norm(), Side{f, which}});
+        }
+    around.clear();
+    k.surface_neighbors(shell[i], around);
+    for (const auto w : around)
+      if (visited.insert(w).second) shell.push_back(w);
+  }
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  return sides;
+}
+
+// For needles, whose normals say little: of random points between corners, the one farthest from
+// the boundary.
+std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<SideByArea>& sides,
+                                          const std::function<std::int32_t(Side)>& piece, std::int32_t wanted) {
+  constexpr std::size_t max_sides = 64;  // slivers too thin for other points have few
+  constexpr int samples = 256;
+  if (sides.size() > max_sides) return {};
+  std::vector<std::array<Vec3, 3>> around;
+  std::vector<Vec3> corners;
+  for (const auto& [area, s] : sides) {
+    const Side other{s.face, 1 - s.which};
+    const auto t = k.corners(s.face);
+    if (!k.has(other) || piece(other) != wanted) around.push_back(t);
+    corners.insert(corners.end(), t.begin(), t.end());
+  }
+  const TriangleBvh boundary(around);
+  Random random(corners.size());
+  std::optional<Vec3> best;
+  double clearance = 0;
+  for (int i = 0; i < samples; ++i) {
+    const auto corner = [&]() -> const Vec3& {
+      return corners[random.below(static_cast<std::uint32_t>(corners.size()))];
+    };
+    const double u = random.uniform(), v = random.uniform(), w = random.uniform();
+    const Vec3 &a = corner(), &b = corner(), &c = corner(), &d = corner();
+    const Vec3 x = (1 - u) * a + u * ((1 - v) * b + v * ((1 - w) * c + w * d));
+    const double distance = boundary.inside(x) ? boundary.closest(x).distance : 0;
+    if (distance > clearance && !is_blocked(k, x, x) && piece_containing(k, x, piece) == wanted)
+      clearance = distance, best = x;
+  }
+  return best;
+}
+
+// The rounds of a repair. Each inserts nodes and joins, updates the graph, and sees what is left.
+class ConnectivityRepair {
+ public:
+  ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update)
+      : body_(body), mismatch_(mismatch), update_(update) {}
+  void run() {
+    double scale = 0.7;  // of the spacing
+    for (int round = 0; round < 12 && !mismatch_.none(); ++round, scale *= 0.8) {
+      const NodeId first_new(body_.nodes.size());
+      fill_empty_pieces();
+      joins_.clear();
+      const auto faces = connect_components(round, scale * body_.cache->grid.cell());
+      // Limited, so that a passage that stays closed costs little.
+      insert_nodes_near(body_, faces, {.spacing = scale * body_.cache->grid.cell(), .seed = 0x6b657266u, .limit = 100});
+      if (first_new.index() < body_.nodes.size() || !joins_.empty())
+        update_(first_new, joins_);
+      else if (round >= 1)
+        return;
+      find_remaining(first_new);
+    }
+  }
+
+ private:
+  void fill_empty_pieces() {
+    for (const auto v : mismatch_.empty_pieces) {
+      const auto piece = body_.cache->piece[v.index()];
+      if (const NodeId i = insert_node_into_piece(body_, v); i.valid())
+        mismatch_.representative[piece] = i, body_.cache->pieces_without_node.erase(piece);
+      else
+        mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
+    }
+  }
+  // By an edge where two components see each other; else by sampling the passage (first round:
+  // returns the faces to sample near), else along a taut path (later rounds).
+  std::vector<FaceId> connect_components(int round, double spacing) {
+    Regions components = components_of(body_);
+    NearestInPiece nearest(body_);
+    std::vector<FaceId> faces;
+    std::set<std::uint32_t> handled;  // components, by their lowest nodes
+    for (const auto& [a, b] : mismatch_.disconnected) {
+      components.seed(a.value), components.seed(b.value);
+      if (components.joined(a.value, b.value)) continue;
+      const NodeId i = components.whole(a.value) ? a : b;  // in the smaller component
+      if (!handled.insert(components.lowest(i.value)).second) continue;
+      auto component = components.inside(i.value);
+      std::sort(component.begin(), component.end());
+      if (join_by_visible_edge(body_, nearest, component, joins_)) continue;
+      if (round == 0)
+        for (const auto n : component) {
+          const Vec3& x = body_.nodes.position[n];
+          body_.surface.faces_near(Box3{x, x}.grown(1.5 * body_.nodes.spacing[n]), faces);
+        }
+      else
+        join_by_taut_path(nearest, i, component, spacing);
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+  }
+  // Each pair of nodes is tried once, though later rounds search a little nearer to the surface: a
+  // failed search takes longest, and few succeed at a second try.
+  void join_by_taut_path(NearestInPiece& nearest, NodeId i, const std::vector<std::uint32_t>& component,
+                         double spacing) {
+    for (const NodeId from : {i, NodeId(component.front()), NodeId(component.back())}) {
+      const auto near = nearest.outside(from, 4, component);
+      const auto joins = [&](auto to) {
+        return tried_.insert({from, NodeId(to)}).second && insert_nodes_along(body_, from, NodeId(to), spacing, joins_);
+      };
+      if (std::any_of(near.begin(), near.end(), joins)) break;
+    }
+  }
+  void find_remaining(NodeId first_new) {
+    ConnectivityMismatch left;
+    left.representative = std::move(mismatch_.representative);
+    Regions components = components_of(body_);
+    for (const auto& [a, b] : mismatch_.disconnected) {
+      components.seed(a.value), components.seed(b.value);
+      if (!components.joined(a.value, b.value)) left.disconnected.push_back({a, b});
+    }
+    pair_new_nodes(body_, components, first_new, left);
+    mismatch_ = std::move(left);
+  }
+
+  Body& body_;
+  ConnectivityMismatch& mismatch_;
+  const GraphUpdater& update_;
+  std::vector<NodePair> joins_;                // of this round
+  std::set<std::pair<NodeId, NodeId>> tried_;  // ends of taut paths
+};
+
+}  // namespace
+
+std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double reach,
+                                   const std::function<std::int32_t(Side)>& piece) {
+  const auto wanted = piece(k.corner_of(v).first);
+  const auto sides = sides_of_shell(k, v);
+  for (std::size_t i = 0; i < std::min<std::size_t>(sides.size(), 16); ++i) {
+    const Side s = sides[i].second;
+    const auto t = k.corners(s.face);
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    for (double step = reach; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
+      const Vec3 x = middle + 0.5 * step * inwards;
+      if (is_in_front(k, s, middle, middle + step * inwards) && is_in_front(k, s, middle, x) && !is_blocked(k, x, x) &&
+          piece_containing(k, x, piece) == wanted)
+        return x;
+    }
+  }
+  return point_between_corners(k, sides, piece, wanted);
+}
+
+void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update) {
+  ConnectivityRepair(body, mismatch, update).run();
+}
+
+}  // namespace geo

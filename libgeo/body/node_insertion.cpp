@@ -1,0 +1,222 @@
+#include "body/node_insertion.h"
+#include "body/incremental_cache.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "base/random.h"
+#include "body/locate.h"
+#include "geometry/distance.h"
+#include "geometry/predicates.h"
+#include "kerf/parallel.h"
+#include "sampling/resample.h"
+
+namespace geo {
+
+void set_original_nodes(Body& body, std::uint32_t count) {
+  body.original_nodes = count;
+  body.finest_spacing = *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.begin() + count);
+  body.widest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.begin() + count);
+}
+
+NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing) {
+  const NodeId id(body.nodes.size());
+  NodeSet& nodes = body.nodes;
+  nodes.position.push_back(x);
+  nodes.spacing.push_back(spacing);
+  nodes.radius.push_back(double(nodes.radius[donor.index()]));
+  nodes.volume[donor.index()] *= 0.5;  // exact, so the sum is conserved to the bit
+  nodes.volume.push_back(double(nodes.volume[donor.index()]));
+  body.debris.push_back(0);
+  body.cache->donors.push_back(donor);
+  body.cache->grid.insert(nodes.position, id.value);
+  return id;
+}
+
+namespace {
+
+// The wanted spacing of new nodes at a crack: half of the spacing of the nearest original node to
+// each cell of a lattice. A crack is a boundary, and the leaves of an octree halve at most from one
+// to the next; half is as fine as nodes usually are. New nodes do not count, or each step would
+// halve anew.
+class CrackSpacing {
+ public:
+  explicit CrackSpacing(const Body& body) : body_(body), cell_(body.cache->grid.cell()) {}
+  double at(const Vec3& x) {
+    const std::array<double, 3> index{std::floor(x[0] / cell_), std::floor(x[1] / cell_), std::floor(x[2] / cell_)};
+    const auto [known, fresh] = known_.try_emplace(index, 0);
+    if (fresh) {
+      const Vec3 middle = cell_ * (Vec3(index.data()) + Vec3::Constant(0.5));
+      const double spacing = body_.nodes.spacing[body_.cache->grid.nearest(
+          body_.nodes.position, middle, 1, ~0u, [&](std::uint32_t i) { return i < body_.original_nodes; })[0]];
+      known->second = std::min(spacing, std::max(body_.finest_spacing, 0.5 * spacing));
+    }
+    return known->second;
+  }
+
+ private:
+  const Body& body_;
+  const double cell_;
+  std::map<std::array<double, 3>, double> known_;
+};
+
+// The nearest nodes to x that see it, at most twelve; `nearest` are the nearest of all.
+std::vector<std::uint32_t> visible_nodes(const Body& body, const Vec3& x, const std::vector<std::uint32_t>& nearest) {
+  Box3 around{x, x};
+  for (const auto i : nearest) around.add(body.nodes.position[i]);
+  const BoxVisibility visibility(body.surface, around);
+  std::vector<std::uint32_t> visible;
+  for (const auto i : nearest)
+    if (visible.size() < 12 && !visibility.blocked(body.nodes.position[i], x)) visible.push_back(i);
+  return visible;
+}
+
+}  // namespace
+
+std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, const InsertionOptions& options) {
+  if (faces.empty()) return 0;
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (const FaceId f : faces) triangles.push_back(body.surface.corners(f));
+  CrackSpacing crack_spacing(body);
+  const auto spacing_at = [&](const Vec3& x) { return options.spacing > 0 ? options.spacing : crack_spacing.at(x); };
+  std::size_t count = 0;
+  std::vector<std::uint32_t> near;
+  for (const auto& s : offset_samples(triangles, spacing_at, options.seed)) {
+    if (!is_in_front(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
+    near.clear();
+    body.cache->grid.within(body.nodes.position, s.position, 0.6 * s.spacing, near);
+    if (std::any_of(near.begin(), near.end(),
+                    [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
+      continue;
+    // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest of
+    // all.
+    const auto nearest =
+        body.cache->grid.nearest(body.nodes.position, s.position, 24, ~0u, [](std::uint32_t) { return true; });
+    const auto visible = visible_nodes(body, s.position, nearest);
+    // Where rounding has exchanged two sheets, even air may be in front of a side with material.
+    if (visible.empty() && !is_inside(body.surface, s.position)) continue;
+    const NodeId donor(visible.empty() ? nearest[0] : visible[0]);
+    const NodeId node = insert_node(body, s.position, donor, s.spacing);
+    if (options.spacing == 0 && !visible.empty()) {
+      // In proportion to the spacing and wide enough for a dozen neighbours, as the sampling makes
+      // it.
+      const double reach = std::min((body.nodes.position[visible.back()] - s.position).norm(), 3 * s.spacing);
+      double& radius = body.nodes.radius[node.index()];
+      radius = std::min(body.widest_radius,
+                        std::max(radius * (s.spacing / body.nodes.spacing[donor.index()]), 1.05 * reach));
+    }
+    if (++count == options.limit) break;
+  }
+  return count;
+}
+
+namespace {
+
+// The direction whose least part along all of `normals` is about the greatest: between two faces
+// half way, in a corner along its axis.
+Vec3 away_from(const std::vector<Vec3>& normals) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& n : normals) sum += n;
+  for (int i = 0; normals.size() > 1 && i < 64; ++i)
+    sum += *std::min_element(normals.begin(), normals.end(),
+                             [&](const Vec3& a, const Vec3& b) { return a.dot(sum) < b.dot(sum); });
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : normals[0];
+}
+
+// A position with more clearance for a node on or very near faces; x itself where there is none.
+Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& x, double spacing) {
+  const double close = 0.02 * spacing, farthest = 0.1 * spacing;
+  std::vector<FaceId> around;
+  surface.faces_near(Box3{x, x}.grown(farthest + close), around);
+  const auto distance = [&](FaceId f, const Vec3& p) {
+    const auto t = surface.corners(f);
+    return (closest_point_on_triangle(p, t[0], t[1], t[2]) - p).norm();
+  };
+  // Directions away from all close faces at once, since the way straight off one face may pass
+  // another. On a face either side will do.
+  std::array<std::vector<Vec3>, 2> normals;
+  double clearance = farthest;
+  for (const FaceId f : around) {
+    const double d = distance(f, x);
+    if (d > close) continue;
+    clearance = std::min(clearance, d);
+    const auto t = surface.corners(f);
+    const int above = orient3d(t[0], t[1], t[2], x);
+    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    normals[0].push_back(above < 0 ? Vec3(-n) : n), normals[1].push_back(above > 0 ? n : Vec3(-n));
+  }
+  if (normals[0].empty()) return x;
+  const auto on = std::partition(around.begin(), around.end(), [&](FaceId f) { return !touches(surface, f, x, x); });
+  if (on != around.end()) clearance = -1;  // any other position is better
+  std::vector<Vec3> directions{away_from(normals[0]), away_from(normals[1])};
+  for (const auto& side : normals) directions.insert(directions.end(), side.begin(), side.end());
+  for (Random random(node); directions.size() < 2 * normals[0].size() + 16;) directions.push_back(random.direction());
+  // As far as possible. The node leaves the faces that it is on, and passes no other.
+  Vec3 best = x;
+  for (const Vec3& along : directions)
+    for (double step = farthest; step > 1e-6 * spacing; step *= 0.5) {
+      const Vec3 to = x + step * along;
+      if (std::any_of(around.begin(), on, [&](FaceId f) { return touches(surface, f, x, to); }) ||
+          std::any_of(on, around.end(), [&](FaceId f) { return touches(surface, f, x + 1e-3 * step * along, to); }))
+        continue;
+      double least = farthest;
+      for (const FaceId f : around) least = std::min(least, distance(f, to));
+      if (least > clearance) clearance = least, best = to;
+      if (clearance > close) return best;
+      break;
+    }
+  return best;
+}
+
+}  // namespace
+
+std::vector<NodeId> move_nodes_off(Body& body, const std::vector<FaceId>& faces) {
+  std::vector<std::uint32_t> near;
+  for (const FaceId f : faces) {
+    const auto t = body.surface.corners(f);
+    // Nodes in grid cubes along the face: a ball around a large face may hold the whole body.
+    body.cache->grid.walk(
+        [&](int, const Vec3& middle, double half) {
+          const double reach = std::numbers::sqrt3 * half + 0.1 * body.cache->grid.cell();
+          return (closest_point_on_triangle(middle, t[0], t[1], t[2]) - middle).squaredNorm() <= reach * reach;
+        },
+        [&](int, std::uint32_t i) {
+          const Vec3& x = body.nodes.position[i];
+          if ((closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() <= 0.02 * body.nodes.spacing[i])
+            near.push_back(i);
+        });
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::vector<NodeId> moved;
+  for (const auto i : near) {
+    const Vec3 from = body.nodes.position[i], to = position_off_faces(body.surface, i, from, body.nodes.spacing[i]);
+    if (to == from) continue;
+    body.cache->grid.erase(i, from);
+    body.nodes.position[i] = to;
+    body.cache->grid.insert(body.nodes.position, i);
+    moved.push_back(NodeId(i));
+  }
+  return moved;
+}
+
+void mark_debris(Body& body, const std::vector<NodeId>& nodes) {
+  parallel_for(nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t i = nodes[n].index();
+      Mat3 moment = Mat3::Zero();
+      for (const auto& neighbor : body.graph.neighbors(body.nodes, nodes[n])) {
+        const Vec3 x = (body.nodes.position[neighbor.to.index()] - body.nodes.position[i]) / body.nodes.radius[i];
+        moment += x * x.transpose();
+      }
+      const Vec3 spread = Eigen::SelfAdjointEigenSolver<Mat3>(moment, Eigen::EigenvaluesOnly).eigenvalues();
+      body.debris[i] = !(spread[0] > debris_below * spread[2]);
+    }
+  });
+}
+
+}  // namespace geo

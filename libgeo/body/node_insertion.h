@@ -1,0 +1,45 @@
+// Nodes that a body gains or moves: near cracks, in narrow passages, in pieces without nodes.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "kerf/body.h"
+
+namespace geo {
+
+using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
+
+/// Declares the first `count` nodes, at least one, to be those that the body was built from.
+void set_original_nodes(Body& body, std::uint32_t count);
+
+/// Appends a node at x with the support radius of node `donor` and half of its volume: the sum of
+/// volumes does not change. Returns its id.
+NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
+
+/// Options of insert_nodes_near().
+struct InsertionOptions {
+  double spacing = 0;                   ///< wanted distance between nodes, model units. 0: half of the spacing of the
+                                        // /< original nodes there, not below Body::finest_spacing,
+                                        // and support radii /< in proportion
+  std::uint64_t seed = 0;               ///< of the samples
+  std::size_t limit = std::size_t(-1);  ///< most nodes inserted
+};
+
+/// § 6.4: inserts nodes on both sides of the faces, inside the material, visible from the face, and
+/// not too close to nodes that they see. Returns their number.
+std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, const InsertionOptions& options);
+
+/// Moves nodes that are on or very near one of the faces away from it and from all other faces near
+/// them: each node at most once, through no face that it does not touch. Returns them, ascending.
+std::vector<NodeId> move_nodes_off(Body& body, const std::vector<FaceId>& faces);
+
+/// Neighbours do not span space when the smallest eigenvalue of their moment matrix is below this
+/// share of the largest. It is the bound below which the shape functions leave a direction out.
+constexpr double debris_below = 1e-4;
+
+/// Sets Body::debris of some nodes (Müller et al. 2004, § 3.1).
+void mark_debris(Body& body, const std::vector<NodeId>& nodes);
+
+}  // namespace geo

@@ -1,4 +1,4 @@
-// kerf-model: the procedural models of the samples, and fronts that halve a model.
+// kerf-model: writes the procedural models of the samples, and fronts that halve a model.
 #include <algorithm>
 #include <cmath>
 
@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
         throw tool::UsageError("a front needs --around MODEL, --steps of 1 and --points of 2 at least");
       const auto mesh = geo::read_surface(around).mesh;
       const geo::Box3 box = geo::bounding_box(mesh);
-      // Across the longest axis, downwards along the next, a little tilted and bent so that nothing is special.
+      // Across the longest axis, downwards along the next, tilted and bent to avoid degenerate
+      // cases.
       int axis[3] = {0, 1, 2};
       const geo::Vec3 size = box.hi - box.lo;
       std::sort(axis, axis + 3, [&](int a, int b) { return size[a] > size[b]; });

@@ -12,9 +12,9 @@ namespace tool {
 namespace {
 
 struct Option {
-  std::vector<std::string> names;    // with their dashes, long ones last
-  std::string value;                 // what stands for its value in words, empty for a flag
-  std::vector<std::string> choices;  // of the value, where they can be listed
+  std::vector<std::string> names;    // with dashes, long ones last
+  std::string value;                 // placeholder of its value; empty for a flag
+  std::vector<std::string> choices;  // allowed values, if listed
   std::string help;
 };
 
@@ -92,7 +92,7 @@ std::string zsh(const CLI::App& app) {
   return out + " \\\n  '*:file:_files'\n";
 }
 
-// Text for roff: dashes that can be copied, no line taken for a request.
+// Text for roff: dashes as ASCII, and no line that begins like a request.
 std::string roff(const std::string& text) {
   std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   std::string lines;

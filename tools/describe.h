@@ -1,4 +1,4 @@
-// What a tool says of itself to others than its user: completion scripts for shells, and the frame of its manual page.
+// Completion scripts for shells, and the frame of a manual page, made from a tool's options.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ class App;
 
 namespace tool {
 
-/// A completion script for "bash" or "zsh", or the tool's manual page ("man", roff; the line @DESCRIPTION@ stands where
-/// the description belongs). Throws UsageError for another word.
+/// A completion script for `what` = "bash" or "zsh", or for "man" the manual page in roff, with
+/// @DESCRIPTION@ on a line in place of the description. Throws UsageError for any other word.
 std::string describe(const CLI::App& app, const std::string& what);
 
 }  // namespace tool

@@ -1,4 +1,4 @@
-// kerf-crack: progressive crack surfaces from fronts.
+// kerf-crack: cuts a surface by fronts and sheets.
 #include <algorithm>
 #include <iostream>
 
@@ -12,14 +12,14 @@
 
 namespace {
 
-struct Wishes {
+struct Command {
   std::string model, steps, repro;
   std::vector<std::string> fronts, sheets;
   double max_move = 0, remesh = 0, jagged = 0, bumps = 8, decimate = 0;
   std::size_t from = 0, to = ~std::size_t(0);
 };
 
-void check(Wishes& w) {
+void check(Command& w) {
   if ((w.model == "-") + std::count(w.fronts.begin(), w.fronts.end(), "-") +
           std::count(w.sheets.begin(), w.sheets.end(), "-") >
       1)
@@ -44,7 +44,7 @@ void check(Wishes& w) {
 
 class Cutting {
  public:
-  Cutting(const Wishes& wishes, const tool::Tool& t)
+  Cutting(const Command& wishes, const tool::Tool& t)
       : w_(wishes),
         t_(t),
         file_(tool::read_solid(w_.model)),
@@ -71,7 +71,8 @@ class Cutting {
     for (const auto& front : fronts) {
       if (front.is_sheet()) {
         geo::report(progress, "crack " + front.name, done++, total);
-        if (w_.from == 0) insert(front.name, front.steps[0], front.triangles);  // later steps have it already
+        if (w_.from == 0)
+          insert(front.name, front.steps[0], front.triangles);  // otherwise an earlier run has inserted it
         continue;
       }
       const std::size_t last = std::min(w_.to, front.steps.size() - 1);
@@ -148,12 +149,12 @@ class Cutting {
     return fronts;
   }
   std::int32_t next_crack() const {
-    std::int32_t crack = complex_.crack_count();  // fronts that have met nothing yet have their numbers already
+    std::int32_t crack = complex_.crack_count();  // fronts that have met nothing yet already have numbers
     for (const auto& other : states_) crack = std::max(crack, other.crack);
     return crack + 1;
   }
 
-  // A front of this name that stopped where we begin is taken up again, contacts and all.
+  // Continues a front of this name, with its contacts, that stopped at the first step of this run.
   std::size_t state_of(const geo::Front& front) {
     auto state = std::find_if(states_.begin(), states_.end(), [&](const geo::FrontState& s) {
       return s.name == front.name && s.step == w_.from && w_.from > 0;
@@ -167,7 +168,7 @@ class Cutting {
     return static_cast<std::size_t>(state - states_.begin());
   }
 
-  // How many crack triangles the step made.
+  // Returns the number of crack triangles that the step made.
   std::size_t make_step(const geo::Front& front, geo::FrontState& state, std::size_t step) {
     std::vector<geo::Vec3> start;
     for (const auto& p : state.points) start.push_back(p.position);
@@ -221,7 +222,7 @@ class Cutting {
            ",\"seconds\":" + tool::number(work.seconds) + "}";
   }
 
-  const Wishes& w_;
+  const Command& w_;
   const tool::Tool& t_;
   geo::SurfaceFile file_;
   geo::Complex complex_;
@@ -238,7 +239,7 @@ int main(int argc, char** argv) {
                "--steps 0:6 -o half.ply\n  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply\n"
                "  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply\n  kerf-crack bear.off --sheet "
                "plane.obj --jagged 0.01 -o broken.ply");
-  Wishes w;
+  Command w;
   t.argument("MESH", w.model, "A closed surface, or the output of an earlier run to go on with");
   t.option("--front", w.fronts, "Front files, each front or sheet a crack of its own");
   t.option("--sheet", w.sheets, "Surfaces, open or closed, each inserted whole as a crack of its own");

@@ -1,4 +1,4 @@
-// kerf-graph: visibility graph, neighbourhoods and binding over nodes and their surface.
+// kerf-graph: builds visibility graph, neighbourhoods and binding from nodes and their surface.
 #include <sstream>
 
 #include <kerf/body.h>

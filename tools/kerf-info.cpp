@@ -1,4 +1,4 @@
-// kerf-info: what a file holds, and whether it is sound.
+// kerf-info: reports on files, and checks them.
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -36,7 +36,7 @@ struct Command {
   int node = -1, vertex = -1;
   bool compact = false, diff = false;
   std::string exported;
-  info::Wishes wishes;
+  info::ReportOptions options;
   bool asks() const { return node >= 0 || vertex >= 0 || !edge.empty(); }
 };
 
@@ -67,21 +67,21 @@ void ask(const Command& c, const geo::Body& body, info::Report& report) {
     info::ask_edge(body, id_of(c.edge[0]), id_of(c.edge[1]), report);
 }
 
-// All that is no body.
+// Reports on any file but a body.
 std::string report_other(const Command& c, const std::string& path, const std::string& bytes, info::Report& report) {
   const auto kind = tool::kind_of(bytes, path);
   if (c.asks() && (kind != tool::Kind::surface || c.vertex < 0))
     throw geo::InputError(path + ": is no body, which alone has nodes and edges to ask for");
-  if (kind == tool::Kind::nodes) return info::report_nodes(geo::parse_nodes(bytes, path), c.wishes, report);
+  if (kind == tool::Kind::nodes) return info::report_nodes(geo::parse_nodes(bytes, path), c.options, report);
   if (kind == tool::Kind::fronts)
-    return info::report_fronts(geo::parse_fronts(bytes, path), c.wishes, report), std::string();
+    return info::report_fronts(geo::parse_fronts(bytes, path), c.options, report), std::string();
   const auto file = geo::parse_surface(bytes, path);
-  if (c.vertex < 0) return info::report_surface(file, c.wishes, report);
+  if (c.vertex < 0) return info::report_surface(file, c.options, report);
   info::ask_vertex(file.mesh, static_cast<std::size_t>(c.vertex), report);
   return {};
 }
 
-// Folds or exports: writes, and says nothing.
+// --compact and --export.
 void write(const Command& c, const tool::Tool& t) {
   const std::string& path = c.paths[0];
   const Exporter put = c.compact ? Exporter() : exporter(c.exported);
@@ -98,20 +98,20 @@ void write(const Command& c, const tool::Tool& t) {
   geo::write_all(target, [&](std::ostream& out) { put(out, file, body); });
 }
 
-// Fills the report; returns what is wrong first.
+// Fills the report; returns the first fault.
 std::string inspect(const Command& c, const std::string& path, info::Report& report) {
   if (c.diff) {
     const bool same = info::report_difference(geo::read_body(path), geo::read_body(c.paths[1]), report);
     return same ? std::string() : "differs from " + c.paths[1];
   }
-  if (!c.asks() && std::filesystem::is_directory(path)) return info::report_run(path, c.wishes, report);
-  if (!c.asks() && path.ends_with(".toml")) return info::report_scene(path, c.wishes, report);
+  if (!c.asks() && std::filesystem::is_directory(path)) return info::report_run(path, c.options, report);
+  if (!c.asks() && path.ends_with(".toml")) return info::report_scene(path, c.options, report);
   geo::Input input(path);
   const auto size = input.size();
   if (!geo::looks_like_kerf(input.text(0, 16))) return report_other(c, path, input.text(0, size), report);
   const geo::KerfFile file(std::move(input));
   const geo::Body body = geo::read_body(file);
-  if (!c.asks()) return info::report_body(file, body, size, c.wishes, report);
+  if (!c.asks()) return info::report_body(file, body, size, c.options, report);
   ask(c, body, report);
   return {};
 }
@@ -120,10 +120,10 @@ void one(const Command& c, const tool::Tool& t) {
   info::Report report;
   const std::string problem = inspect(c, c.paths[0], report);
   if (!t.quiet || t.json) report.print(t.json);
-  if ((c.wishes.check || c.diff) && !problem.empty()) throw tool::Failure(c.paths[0] + ": " + problem);
+  if ((c.options.check || c.diff) && !problem.empty()) throw tool::Failure(c.paths[0] + ": " + problem);
 }
 
-// A sentence for each; what cannot be read, or is not sound, stops nothing.
+// A sentence for each file. Files that cannot be read, or have faults, do not stop the rest.
 void many(const Command& c, const tool::Tool& t) {
   std::size_t wrong = 0;
   for (const auto& path : c.paths) {
@@ -132,7 +132,7 @@ void many(const Command& c, const tool::Tool& t) {
     report.add_text("file", path);
     try {
       const std::string found = inspect(c, path, report);
-      if (c.wishes.check && !found.empty()) problem = path + ": " + found;
+      if (c.options.check && !found.empty()) problem = path + ": " + found;
       if (t.json)
         report.print(true);
       else if (!t.quiet)
@@ -163,8 +163,8 @@ int main(int argc, char** argv) {
   Command c;
   t.argument("FILE", c.paths,
              "Files of Kerf's, folders of runs; - reads standard input; of several a sentence each; two with --diff");
-  t.flag("--check", c.wishes.check, "Verify everything; exit code 1 names the first offending ids");
-  t.flag("--histogram", c.wishes.histograms,
+  t.flag("--check", c.options.check, "Verify everything; exit code 1 names the first offending ids");
+  t.flag("--histogram", c.options.histograms,
          "Distributions: of radii, edge lengths, neighbours, as far as there are any");
   t.option("--node", c.node, "Say what is known of this node of a body; the first is 0");
   t.option("--edge", c.edge, "Say what is between these two nodes of a body");

@@ -1,5 +1,4 @@
-// kerf-pieces: a closed mesh for each piece, and the bonds between them; as a folder, or all in one
-// .glb.
+// kerf-pieces: writes pieces as closed meshes, and the bonds between them, as a folder or one .glb.
 #include <unistd.h>
 
 #include <cstdio>
@@ -16,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Wishes {
+struct Command {
   std::string model, bonds, up = "y";
   bool obj = false, hulls = false;
   int hull_corners = 64, hull_parts = 1;
   double tile = 0.25, strength = 1;
 };
 
-void check(const Wishes& w, const std::string& output) {
+void check(const Command& w, const std::string& output) {
   if (output.empty() || output == "-") throw tool::UsageError("give a folder or a .glb with -o");
   if (w.hull_corners < 4 || w.hull_corners > 100000)
     throw tool::UsageError("--hull-corners must be between 4 and 100000");
@@ -38,8 +37,8 @@ std::string name_of(std::size_t piece, const char* end) {
   return name;
 }
 
-// Written aside as a whole folder, then renamed.
-void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk>& chunks,
+// Writes a temporary folder, then renames it.
+void write_folder(fs::path folder, const Command& w, const std::vector<geo::Chunk>& chunks,
                   const std::vector<geo::Bond>& bonds, geo::ChunkLabels labels) {
   if (folder.filename().empty()) folder = folder.parent_path();
   std::error_code error;
@@ -63,7 +62,7 @@ void write_folder(fs::path folder, const Wishes& w, const std::vector<geo::Chunk
   }
   geo::write_all((aside / "pieces.json").string(),
                  [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, labels); });
-  unfinished.commit(folder.string());  // over the empty folder, if there is one
+  unfinished.commit(folder.string());  // replaces an empty folder
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ int main(int argc, char** argv) {
       "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o "
       "pieces.glb\n  kerf-pieces cut.ply -o pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/\n  kerf-pieces "
       "out/halve -o halves.glb\n  kerf-pieces out/halve/frames/frame_0020.ply -o frame20.glb");
-  Wishes w;
+  Command w;
   t.argument("SURFACE", w.model, "A cut surface (kerf-crack), a body (.kerf), a run's folder, or a frame in it");
   t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");
   t.flag("--hulls", w.hulls,

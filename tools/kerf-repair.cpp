@@ -1,4 +1,4 @@
-// kerf-repair: a solid from a surface that is nearly one, or a new surface around it.
+// kerf-repair: makes a valid solid from a surface with faults, or wraps it in a new surface.
 #include <iostream>
 
 #include <kerf/repair.h>
@@ -8,7 +8,7 @@
 
 namespace {
 
-struct Wishes {
+struct Command {
   std::string model;
   double weld = 0, voxel = 0, edge = 0;
   bool smooth = false;
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
       "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair scan.ply "
       "--smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 "
       "-o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
-  Wishes w;
+  Command w;
   t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
   t.flag("--smooth", w.smooth, "Close holes by patches that go on from the surface around them, as fine as their rims");

@@ -1,4 +1,4 @@
-// kerf-sample: adaptive nodes inside a surface or volume.
+// kerf-sample: samples nodes inside a surface or volume.
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace {
 
-/// The surface of a volume, checked as any other model is.
+// The surface of a volume, checked like any other model.
 geo::TriangleMesh read_checked_volume(const std::string& path, const geo::VolumeOptions& options) {
   geo::TriangleMesh mesh = geo::read_volume(path, options);
   try {

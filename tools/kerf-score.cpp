@@ -1,4 +1,4 @@
-// kerf-score: fracture patterns as fronts, for prescoring.
+// kerf-score: writes fracture patterns as sheets for kerf-crack.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 namespace {
 
-struct Wishes {
+struct Command {
   std::string model, pattern = "voronoi", axis, impact, depth;
   std::vector<std::string> curves, sheets;
   int pieces = 20, attempts = 60;
@@ -35,7 +35,7 @@ double percent(const std::string& text) {
   return value / 100;
 }
 
-geo::ScoreOptions options_of(const Wishes& w, std::uint64_t seed) {
+geo::ScoreOptions options_of(const Command& w, std::uint64_t seed) {
   geo::ScoreOptions o;
   o.pattern.pattern = geo::pattern_named(w.pattern);
   const bool curves = o.pattern.pattern == geo::Pattern::curves, sheets = o.pattern.pattern == geo::Pattern::sheets;
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
                "  kerf-score pane.ply --pattern glass --impact 0.4,0.5,0 --pieces 60 -o glass.front\n  kerf-score "
                "bear.off --pattern bricks --axis y --depth 80% -o partial.front\n"
                "  kerf-score bear.off --pattern curves --curves lines.obj --axis z -o curves.front");
-  Wishes w;
+  Command w;
   t.argument("MODEL", w.model, "A closed surface, or a cut one from kerf-crack");
   t.choice("--pattern", w.pattern, {geo::pattern_names.begin(), geo::pattern_names.end()}, "Where the walls are");
   t.option("--pieces", w.pieces,

@@ -1,4 +1,4 @@
-// kerf-update: brings a body up to a surface that has been cut since.
+// kerf-update: updates a body to a surface that was cut after the body was built.
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     if (surface_path == "-" && body_path == "-")
       throw tool::UsageError("body and surface cannot both come from standard input");
     const std::string target = t.target(true);
-    // Into the file that it came from, what changed is appended.
+    // An update of the input file appends the changes.
     const auto in_place =
         target != "-" && geo::same_file(body_path, target) ? std::make_unique<geo::KerfUpdate>(body_path) : nullptr;
     std::uint64_t state = 0;

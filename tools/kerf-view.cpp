@@ -1,4 +1,5 @@
-// kerf-view: pictures, animations and an interactive page of surfaces, bodies, nodes, fronts and simulation runs.
+// kerf-view: pictures, animations and an interactive page of surfaces, bodies, nodes, fronts and
+// simulation runs.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -36,7 +37,7 @@ Kind kind_of_output(const std::string& path) {
   return path.ends_with(".mp4") ? Kind::mp4 : Kind::png;
 }
 
-struct Wishes {
+struct Command {
   std::vector<std::string> paths;
   std::string size, camera = "30,22", cutaway, color = "patch", up = "auto", skin = "#e0803a", before, steps;
   bool no_ground = false, hollow = false;
@@ -44,7 +45,7 @@ struct Wishes {
   double zoom = 1, rate = 24, megabytes = 20;
 };
 
-view::Look checked(const Wishes& w, view::Look look) {
+view::Look checked(const Command& w, view::Look look) {
   if (w.samples < 1 || w.samples > 16 || w.frames < 0 || w.columns < 1)
     throw tool::UsageError("--samples and --columns must be positive, --frames not negative");
   if (!(look.opacity >= 0 && look.opacity <= 1) || !(look.explode >= 0) || !(w.zoom > 0))
@@ -74,7 +75,7 @@ view::Look checked(const Wishes& w, view::Look look) {
   return look;
 }
 
-// `shown` of the frames, the first and the last among them.
+// Indices of `shown` frames, evenly spaced, with the first and the last.
 std::vector<std::string> spread(const std::vector<std::string>& files, int shown) {
   const int n = static_cast<int>(files.size());
   std::vector<std::string> some;
@@ -86,7 +87,7 @@ std::vector<std::string> spread(const std::vector<std::string>& files, int shown
 
 class Drawing {
  public:
-  Drawing(const Wishes& w, const view::Look& look, view::Camera eye, view::RenderOptions options,
+  Drawing(const Command& w, const view::Look& look, view::Camera eye, view::RenderOptions options,
           geo::Progress progress)
       : w_(w), look_(look), eye_(std::move(eye)), options_(options), progress_(std::move(progress)) {}
 
@@ -95,7 +96,7 @@ class Drawing {
     view::Stage stage = view::stage_of(subject, look_);
     stage.ground = !w_.no_ground;
     look_at(stage);
-    if (look_.node && w_.zoom > 1) {  // looked at closely: the node in the middle
+    if (look_.node && w_.zoom > 1) {  // close-up: the node in the centre
       const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
       eye_.box = {eye_.box.lo + away, eye_.box.hi + away};
       for (geo::Vec3& p : eye_.points) p += away;
@@ -114,7 +115,7 @@ class Drawing {
     }
     return view::contact_sheet(pictures, labels, w_.columns);
   }
-  // The frames of a run, or once around what stands still.
+  // The frames of a run, or a turn around anything else.
   void animate(const std::string& target, const std::vector<std::string>& files) {
     const bool run = !files.empty();
     const int count = run ? static_cast<int>(files.size()) : w_.frames > 0 ? w_.frames : 72;
@@ -140,14 +141,14 @@ class Drawing {
     stage.ground = !w_.no_ground;
     return stage;
   }
-  // The eye sees a stage besides what it was to see before.
+  // Extends the view to another stage.
   void look_at(const view::Stage& stage) {
     const geo::Box3 frame = view::frame_of(stage);
     if (frame.empty()) return;
     eye_.box.add(frame);
     view::add_outermost(stage, eye_.box, eye_.points);
   }
-  // One eye and one floor for all frames.
+  // One camera and one floor for all frames.
   void look_around(const std::vector<std::string>& files) {
     for (const auto& file : files) {
       const view::Stage stage = staged({file});
@@ -161,7 +162,7 @@ class Drawing {
     return view::render(stage, eye_, options_);
   }
 
-  const Wishes& w_;
+  const Command& w_;
   const view::Look& look_;
   view::Camera eye_;
   geo::Box3 all_;  // of all frames
@@ -181,7 +182,7 @@ int main(int argc, char** argv) {
       "bear.kerf --cut-edges --opacity 0.2 -o near.png\n"
       "  kerf-view cut.ply halve.front -o both.png\n  kerf-view out/halve -o sheet.png\n  kerf-view out/halve -o "
       "halve.webp");
-  Wishes w;
+  Command w;
   view::Look look;
   t.argument("FILE", w.paths,
              "Surface, body, node and front files, together in one picture; or the folder of a kerf-sim run");

@@ -1,4 +1,4 @@
-// Which of Kerf's kinds of file some bytes are, told by what they hold.
+// The kind of a file, recognised by its content.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace tool {
 
 enum class Kind { body, nodes, fronts, surface };
 
-/// Comments and blank lines at the beginning decide nothing; an OBJ of polylines only is a front, one with faces a
-/// surface. `name` settles what the content leaves open: files named .front are fronts.
+/// Ignores comments and blank lines at the beginning. An OBJ file with polylines only holds fronts,
+/// one with faces a surface. Where the content leaves it open, files named .front hold fronts.
 inline Kind kind_of(const std::string& bytes, const std::string& name) {
   if (geo::looks_like_kerf(bytes)) return Kind::body;
   const auto begins = [&](const char* word, std::size_t at = 0) {

@@ -1,4 +1,4 @@
-// Reading a model for a tool: a valid solid, or one clear error.
+// Reads a model for a tool: a valid solid, or one clear error.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace tool {
 
-/// Throws InputError unless a surface, read from these bytes, is closed, manifold, oriented outwards, free of
-/// self-intersection.
+/// Throws InputError unless a surface, read from these bytes, is closed, manifold, oriented
+/// outwards, free of self-intersection.
 inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path, const std::string& bytes) {
   try {
     geo::require_solid(mesh);
@@ -34,15 +34,15 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
-/// Leaves the sites of a surface that was read out, where nothing in it is cut (frames of a run have them from the
-/// first on). Throws InputError, with the file's name and what to do, where something is.
+/// Removes the sites of an uncut surface: frames of a run have them from the first on. Throws
+/// InputError, with the file's name and `advice`, where the surface is cut.
 inline void require_whole(geo::TriangleMesh& mesh, const std::string& path, const std::string& advice) {
   if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
     throw geo::InputError(path + ": is cut already; " + advice);
   mesh.patch.clear(), mesh.site.clear();
 }
 
-/// The complex of a surface that was read; errors carry the file's name.
+/// The complex of a surface from a file. Errors begin with the file's name.
 inline geo::Complex complex_of(const geo::SurfaceFile& file, const std::string& path) {
   try {
     return geo::Complex::from_two_sided(file.mesh);

@@ -28,15 +28,15 @@ namespace tool {
 namespace {
 
 std::atomic<bool> interrupted{false}, bar_shown{false};
-constexpr int closed_pipe = 141;  // what a shell says of programs that SIGPIPE ends
+constexpr int closed_pipe = 141;  // as shells report programs that SIGPIPE ends
 
-// Takes the bar away, so that what comes next begins a line.
+// Removes the bar, so that the next text begins a line.
 void clear_bar() {
   if (bar_shown.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-// A thread of its own waits for Ctrl-C: it asks the work to stop, and where the work does not, or a
-// second Ctrl-C comes, it removes what is half written and ends the program.
+// Starts a thread that waits for Ctrl-C. It requests the work to stop; where that takes longer than
+// `patience`, or a second Ctrl-C comes, it removes incomplete outputs and ends the program.
 void watch_signals(const std::string& name, double patience) {
   sigset_t signals;
   sigemptyset(&signals);
@@ -59,16 +59,16 @@ void watch_signals(const std::string& name, double patience) {
   }).detach();
 }
 
-// False when standard output did not take everything, as on a full disk.
+// False where standard output failed, as on a full disk.
 bool flush_output() { return std::cout.flush().good() && std::fflush(stdout) == 0; }
 
-// True when standard output is a pipe whose reader has gone, as `head` does when it has enough.
+// True where standard output is a pipe whose reader has ended, as `head` does.
 bool reader_gone() {
   pollfd out{1, POLLOUT, 0};
   return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
 }
 
-// How files end whose format many programs know: what ends so had better be so.
+// Endings with a well-known format: no tool writes another format under such a name.
 const std::set<std::string> formats = {".3mf", ".abc",  ".avi",  ".bmp",  ".csv",  ".dae",  ".exr",  ".fbx",  ".front",
                                        ".gif", ".glb",  ".gltf", ".html", ".jpeg", ".jpg",  ".json", ".kerf", ".mov",
                                        ".mp4", ".obj",  ".off",  ".pcd",  ".pdf",  ".ply",  ".png",  ".stl",  ".svg",
@@ -81,8 +81,8 @@ std::string lower(std::string text) {
   return text;
 }
 
-// What the words of the command line mean: behind "--" all are files, whatever they begin with;
-// long options are known.
+// The words of the command line. After "--" all are files, whatever they begin with. Throws
+// UsageError for unknown long options.
 std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   std::vector<std::string> words(argv + 1, argv + argc), known;
   for (const CLI::Option* option : app.get_options())
@@ -98,8 +98,8 @@ std::vector<std::string> words_of(int argc, char** argv, const CLI::App& app) {
   return words;
 }
 
-// The same words where the last one behind an option that takes several ("--front halve.front
-// bear.off") is the file that the tool is about, put first; none where that could be more than one.
+// The words with the tool's file moved to the front, where it follows the values of an option that
+// takes several ("--front halve.front bear.off"). Empty where there are several such options.
 std::vector<std::string> file_first(const std::vector<std::string>& words, const CLI::App& app) {
   std::vector<std::size_t> last;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -117,7 +117,7 @@ std::vector<std::string> file_first(const std::vector<std::string>& words, const
 }
 
 void parse(CLI::App& app, std::vector<std::string> words) {
-  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  std::reverse(words.begin(), words.end());  // the order that CLI11 expects
   app.parse(std::move(words));
 }
 

@@ -1,4 +1,5 @@
-// What all tools share: the command line (CLI11, hidden), the common options, exit codes, progress, one catch.
+// Common to all tools: command line (by CLI11, which stays hidden), options, exit codes, progress,
+// and one place that catches exceptions.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One tool's command line. Bind options to variables, then `run`.
+/// The command line of a tool: bind options to variables, then call run().
 class Tool {
  public:
   /// `examples`: lines shown at the end of --help.
@@ -40,29 +41,30 @@ class Tool {
   void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,
               const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
-  /// -o/--output; where it is not given, standard output if that is no terminal (`binary`) or in any case (text). A
-  /// name that ends as another format's files do is refused where `endings`, like ".ply", are given.
+  /// -o/--output. Without it, output goes to standard output, binary output only where that is no
+  /// terminal. With `endings`, such as ".ply", names with the ending of another format are refused.
   void output(const std::string& help, std::vector<std::string> endings = {});
 
-  /// Parses (or, for `--describe bash|zsh|man`, prints what describe() makes of the tool), sets threads and signals,
-  /// calls `work`, turns every outcome into the contract's exit code.
+  /// Parses the command line, sets threads and signal handlers, calls `work`, and returns the exit
+  /// code for its outcome. For `--describe bash|zsh|man`, prints describe() instead.
   int run(int argc, char** argv, const std::function<void()>& work);
 
   bool quiet = false, verbose = false, json = false;
-  /// How long, in seconds, a first Ctrl-C waits for the work to stop by itself (see progress()) before the program
-  /// ends.
+  /// Seconds that the work has to stop by itself after a first Ctrl-C (see progress()), before the
+  /// program ends.
   double patience = 0.3;
   std::uint64_t seed = 1;
   std::string output_path;
 
-  /// Where the output goes: the path, or "-". Refuses binary to a terminal (exit 2), and, before any work is done, a
-  /// place where no file can be made (exit 73).
+  /// The output path, or "-". Throws before any work is done: UsageError for binary output to a
+  /// terminal, OutputError where the file cannot be written.
   std::string target(bool binary) const;
-  /// Refuses an output that ends as another format's files do (exit 2), see output().
+  /// Throws UsageError for an output with the ending of another format, see output().
   void require_ending() const;
-  /// A bar on standard error when that is a terminal (or as --progress says); also what Ctrl-C stops.
+  /// A progress bar on standard error, if that is a terminal or as --progress says. Its result
+  /// stops the work after Ctrl-C.
   geo::Progress progress() const;
-  /// A line on standard error unless -q.
+  /// Prints a line to standard error unless -q is given.
   void say(const std::string& line) const;
 
  private:
@@ -73,12 +75,12 @@ class Tool {
   int threads_ = 0;
 };
 
-/// "name xxh3:…" of an input, for a file's provenance: the name without its folder, so that moving files changes
-/// nothing.
+/// "name xxh3:…" of an input, for the history of a file. The name is without its folder, so moving
+/// files does not change the bytes.
 std::string named_hash(const std::string& path, std::uint64_t fingerprint);
-/// A number in the shortest form that reads back the same.
+/// Shortest text of a number that is read back exactly.
 std::string number(double x);
-/// A number for people, rounded to four digits; a point's three with commas between.
+/// A number for people, rounded to four digits; for a point three, separated by commas.
 std::string rounded(double x);
 std::string rounded(const geo::Vec3& p);
 /// "1 piece", "3 pieces".

@@ -33,12 +33,12 @@ void report_motion(const geo::Checkpoint& checkpoint, Report& report) {
 
 }  // namespace
 
-std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes, const Wishes& wishes,
-                        Report& report) {
+std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes,
+                        const ReportOptions& options, Report& report) {
   geo::BodyReport result;
   std::string problem;
   std::vector<std::uint32_t> component;
-  if (wishes.check) {
+  if (options.check) {
     result = geo::check_body(body);
     problem = result.first_problem;
     if (problem.empty()) problem = geo::check_complex(body.surface, true).first_problem;
@@ -71,7 +71,7 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
   if (body.graph.guide_count() > 0) report.add("guides", body.graph.guide_count());
   report.add("graph_components", result.graph_components);
   report.add("pieces", result.pieces);
-  report.add("edges_crossing", wishes.check ? std::to_string(result.edges_crossing) : "null");
+  report.add("edges_crossing", options.check ? std::to_string(result.edges_crossing) : "null");
   report.add_number("neighbors_min", neighbors.empty() ? 0 : *least);
   report.add_number("neighbors_mean", neighbors.empty() ? 0 : std::round(100 * sum / double(neighbors.size())) / 100);
   report.add_number("neighbors_max", neighbors.empty() ? 0 : *most);
@@ -86,7 +86,7 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
   for (const auto& h : body.history) history.push_back(tool::quoted(h.tool + " " + h.version));
   report.add("history", list(history));
   if (file.sections().count("run/displacement") > 0) report_motion(geo::read_checkpoint(file), report);
-  if (wishes.histograms) {
+  if (options.histograms) {
     report.add_histogram("radii", body.nodes.radius);
     report.add_histogram("edge_lengths", edge_lengths(body));
     report.add_histogram("neighbors", neighbors);

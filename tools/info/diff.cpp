@@ -8,7 +8,7 @@
 namespace info {
 namespace {
 
-// Counts what differs under one name, and remembers the first of it.
+// Counts the differences of one kind, and keeps the first ids.
 class Count {
  public:
   void add(const std::string& id) {
@@ -28,7 +28,7 @@ class Count {
 
 std::string pair(std::uint32_t i, std::uint32_t j) { return "[" + std::to_string(i) + "," + std::to_string(j) + "]"; }
 
-// Edges of a that b does not have.
+// Edges of `a` that `b` lacks.
 Count edges_missing(const geo::Body& a, const geo::Body& b) {
   Count gone;
   for (std::uint32_t i = 0; i < a.nodes.size(); ++i)

@@ -1,4 +1,4 @@
-// What is different between two bodies, the second of which is as a rule the first after a crack.
+// Differences between two bodies, in general one body before and after a crack.
 #pragma once
 
 #include <kerf/body.h>
@@ -6,7 +6,8 @@
 
 namespace info {
 
-/// Counts of what differs and, with each, up to eight of the ids; returns whether all is the same.
+/// Reports the number of differences of each kind, with up to eight ids. Returns whether the bodies
+/// are equal.
 bool report_difference(const geo::Body& a, const geo::Body& b, Report& report);
 
 }  // namespace info

@@ -1,5 +1,5 @@
-// A report for each kind of file. Each returns what `check` finds wrong first, empty when all is
-// well.
+// A report for each kind of file. Each function returns the first fault that `check` finds, or an
+// empty text.
 #pragma once
 
 #include <kerf/body.h>
@@ -10,21 +10,20 @@
 
 namespace info {
 
-struct Wishes {
+struct ReportOptions {
   bool check = false, histograms = false;
 };
 
-std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, Report& report);
-/// `file`, of that many `bytes`: where the body is from; a run's checkpoint has more to tell.
-std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes, const Wishes& wishes,
-                        Report& report);
-std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report& report);
-/// Reading has found all that can be wrong with fronts.
-void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, Report& report);
-/// A scene; `check` reads and checks its models too.
-std::string report_scene(const std::string& path, const Wishes& wishes, Report& report);
-/// The folder of a run, or one of numbered surfaces; `check` looks at every frame and the
-/// checkpoint.
-std::string report_run(const std::string& folder, const Wishes& wishes, Report& report);
+std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& options, Report& report);
+/// A body from `file`, whose size is `bytes`; with the state of the run where it is a checkpoint.
+std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::size_t bytes,
+                        const ReportOptions& options, Report& report);
+std::string report_nodes(const geo::NodeSet& nodes, const ReportOptions& options, Report& report);
+/// Fronts, which reading has checked completely.
+void report_fronts(const std::vector<geo::Front>& fronts, const ReportOptions& options, Report& report);
+/// A scene; `check` also reads and checks its models.
+std::string report_scene(const std::string& path, const ReportOptions& options, Report& report);
+/// The folder of a run, or of numbered surfaces; `check` checks every frame and the checkpoint.
+std::string report_run(const std::string& folder, const ReportOptions& options, Report& report);
 
 }  // namespace info

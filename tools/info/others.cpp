@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names two nodes at one place; empty when there are none.
+// Names two nodes with the same position; empty where there are none.
 std::string twins(const geo::NodeSet& nodes) {
   std::vector<std::uint32_t> order(nodes.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -31,8 +31,8 @@ std::string twins(const geo::NodeSet& nodes) {
   return {};
 }
 
-// A frame is a surface that has deformed: sheets have parted, triangles may touch, cross and have
-// no area. Only its topology is asked for.
+// Checks the topology of a frame only: in a deformed surface sheets are open, and triangles may
+// touch, cross and have no area.
 std::string check_frame(const std::string& path) {
   geo::TriangleMesh mesh = geo::read_surface(path).mesh;
   mesh.patch.clear(), mesh.site.clear();
@@ -43,7 +43,7 @@ std::string check_frame(const std::string& path) {
 
 }  // namespace
 
-std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report& report) {
+std::string report_nodes(const geo::NodeSet& nodes, const ReportOptions& options, Report& report) {
   const auto [lo, hi] = std::minmax_element(nodes.spacing.begin(), nodes.spacing.end());
   const double volume = std::accumulate(nodes.volume.begin(), nodes.volume.end(), 0.0);
   report.headline = counted(nodes.size(), "node") + ", " + rounded(*lo) + " to " + rounded(*hi) + " apart; volume " +
@@ -53,11 +53,11 @@ std::string report_nodes(const geo::NodeSet& nodes, const Wishes& wishes, Report
   report.add_number("spacing_min", *lo);
   report.add_number("spacing_max", *hi);
   report.add_number("volume", volume);
-  if (wishes.histograms) report.add_histogram("radii", nodes.radius), report.add_histogram("spacings", nodes.spacing);
-  return wishes.check ? twins(nodes) : std::string();
+  if (options.histograms) report.add_histogram("radii", nodes.radius), report.add_histogram("spacings", nodes.spacing);
+  return options.check ? twins(nodes) : std::string();
 }
 
-void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, Report& report) {
+void report_fronts(const std::vector<geo::Front>& fronts, const ReportOptions& options, Report& report) {
   std::size_t steps = 0, points = 0, sheets = 0, triangles = 0;
   std::vector<double> moves;
   for (const auto& f : fronts) {
@@ -90,10 +90,10 @@ void report_fronts(const std::vector<geo::Front>& fronts, const Wishes& wishes, 
   std::vector<std::string> names;
   for (const auto& f : fronts) names.push_back(tool::quoted(f.name));
   report.add("names", list(names));
-  if (wishes.histograms) report.add_histogram("moves", moves);
+  if (options.histograms) report.add_histogram("moves", moves);
 }
 
-std::string report_scene(const std::string& path, const Wishes& wishes, Report& report) {
+std::string report_scene(const std::string& path, const ReportOptions& options, Report& report) {
   const geo::Scene scene = geo::read_scene(path);
   std::vector<std::string> meshes, blades;
   for (const auto& body : scene.bodies) meshes.push_back(tool::quoted(body.mesh));
@@ -114,7 +114,7 @@ std::string report_scene(const std::string& path, const Wishes& wishes, Report& 
   report.add_number("frame_rate", scene.frame_rate);
   report.add_number("step", scene.dt);
   report.add_text("integrator", scene.implicit ? "implicit" : "leapfrog");
-  if (wishes.check) try {
+  if (options.check) try {
       for (const auto& body : scene.bodies) tool::read_solid(body.mesh);
     } catch (const geo::MissingInputError&) {
       throw;
@@ -124,7 +124,7 @@ std::string report_scene(const std::string& path, const Wishes& wishes, Report& 
   return {};
 }
 
-std::string report_run(const std::string& folder, const Wishes& wishes, Report& report) {
+std::string report_run(const std::string& folder, const ReportOptions& options, Report& report) {
   const fs::path top(folder), inner = fs::is_directory(top / "frames") ? top / "frames" : top,
                               checkpoint = top / "checkpoint.kerf";
   std::vector<std::string> frames;
@@ -145,14 +145,14 @@ std::string report_run(const std::string& folder, const Wishes& wishes, Report& 
     report.add("faces", last.triangles.size());
   }
   std::string problem;
-  if (wishes.check)
+  if (options.check)
     for (std::size_t i = 0; i < frames.size() && problem.empty(); ++i) problem = check_frame(frames[i]);
   if (resumable) {
     geo::Input input(checkpoint.string());
     const auto bytes = input.size();
     const geo::KerfFile file(std::move(input));
     Report inside;
-    const std::string found = report_body(file, geo::read_body(file), bytes, wishes, inside);
+    const std::string found = report_body(file, geo::read_body(file), bytes, options, inside);
     if (problem.empty() && !found.empty()) problem = "checkpoint.kerf: " + found;
     report.headline += " " + inside.headline;
     report.add_report("body", inside);

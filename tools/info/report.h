@@ -1,4 +1,4 @@
-// What is said of a file: a sentence for people, then keys and values that scripts rely on.
+// A report on a file: a headline for people, then keys and values for scripts.
 #pragma once
 
 #include <string>
@@ -17,28 +17,28 @@ class Report {
   void add(const std::string& key, bool value) { add(key, std::string(value ? "true" : "false")); }
   void add_text(const std::string& key, const std::string& value);
   void add_number(const std::string& key, double value);
-  /// Ten bins between the least and the greatest value; in JSON an object with lo, hi, mean and counts, for people
-  /// bars.
+  /// A histogram with ten bins between the smallest and the largest value: in JSON an object with
+  /// lo, hi, mean and counts, as text a bar chart.
   void add_histogram(const std::string& key, const std::vector<double>& values);
 
-  /// Another report's keys: in JSON an object; people see its histograms only.
+  /// The keys of another report: in JSON an object, as text its histograms only.
   void add_report(const std::string& key, const Report& other);
 
-  /// On standard output.
+  /// Prints to standard output.
   void print(bool as_json) const;
 
  private:
   std::string json() const;
 
   std::vector<std::pair<std::string, std::string>> rows_;
-  std::vector<std::string> bars_;  ///< what people see of histograms
+  std::vector<std::string> bars_;  ///< bar charts
 };
 
-/// "3 pieces", "1 piece"; thousands set off.
+/// "3 pieces", "1 piece"; with groups of three digits.
 std::string counted(std::size_t n, const std::string& noun, const std::string& plural = {});
 /// "3,000".
 std::string grouped(std::size_t n);
-/// "1.25 × 0.8 × 2", rounded to four digits.
+/// A number rounded to four digits.
 std::string rounded(double x);
 /// JSON lists.
 std::string list(const std::vector<std::string>& values);

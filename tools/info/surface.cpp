@@ -22,9 +22,9 @@ std::vector<double> edge_lengths(const geo::TriangleMesh& mesh) {
 
 }  // namespace
 
-std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, Report& report) {
+std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& options, Report& report) {
   const auto& mesh = file.mesh;
-  const auto result = geo::check_surface(mesh, wishes.check);
+  const auto result = geo::check_surface(mesh, options.check);
   const auto cracks =
       static_cast<std::size_t>(std::count_if(mesh.patch.begin(), mesh.patch.end(), [](auto p) { return p > 0; }));
   std::size_t pieces = 0, front_edges = 0;
@@ -72,8 +72,8 @@ std::string report_surface(const geo::SurfaceFile& file, const Wishes& wishes, R
   if (!mesh.source.empty()) names.push_back("source");
   for (auto& name : names) name = tool::quoted(name);
   report.add("attributes", list(names));
-  if (wishes.histograms) report.add_histogram("edge_lengths", edge_lengths(mesh));
-  const std::string problem = result.good() && wishes.check && !mesh.two_sided() && volume <= 0
+  if (options.histograms) report.add_histogram("edge_lengths", edge_lengths(mesh));
+  const std::string problem = result.good() && options.check && !mesh.two_sided() && volume <= 0
                                   ? "the surface is inside out; reverse its triangles"
                                   : result.first_problem;
   return problem.empty() || mesh.two_sided() ? problem : problem + ", or try kerf-repair";

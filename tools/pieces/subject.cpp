@@ -10,12 +10,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Copies of one vertex are apart.
+// True where copies of one vertex have different positions.
 bool is_deformed(const geo::TriangleMesh& mesh) {
   std::vector<const geo::Vec3*> at;
   for (std::size_t v = 0; v < mesh.site.size(); ++v) {
     const auto site = mesh.site[v];
-    if (site > 64 * mesh.vertices.size()) return false;  // no frame; who reads it says so
+    if (site > 64 * mesh.vertices.size()) return false;  // no frame: reading it reports the fault
     if (site >= at.size()) at.resize(site + 1);
     if (at[site] && *at[site] != mesh.vertices[v]) return true;
     at[site] = &mesh.vertices[v];
@@ -23,8 +23,8 @@ bool is_deformed(const geo::TriangleMesh& mesh) {
   return false;
 }
 
-// The vertices of a frame where the body that the run ends with has them. Runs only add vertices to a body and move
-// none.
+// Undeformed positions of a frame's vertices, from the last body of its run. Runs add vertices to a
+// body and move none.
 std::vector<geo::Vec3> material_points(const geo::TriangleMesh& frame, const std::string& path) {
   const fs::path checkpoint = fs::absolute(path).parent_path().parent_path() / "checkpoint.kerf";
   std::error_code error;

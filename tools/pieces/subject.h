@@ -1,4 +1,4 @@
-// What is divided into pieces: a surface, the surface of a body, or a frame of a run.
+// The surface that is divided into pieces: of a file, a body, or a frame of a run.
 #pragma once
 
 #include <string>
@@ -11,13 +11,14 @@ namespace pieces {
 
 struct Subject {
   geo::TriangleMesh mesh;  ///< undeformed, with its attributes; `complex` was made from it. Empty where a body's file
-                           ///< has the complex itself
+                           // /< has the complex itself
   geo::Complex complex;
   std::vector<geo::Vec3> moved;  ///< of a deformed frame: where its vertices are, by their rows in `mesh`; else empty
 };
 
-/// Reads any of them; of a run's folder the last frame. A frame whose cracks have opened is put back to where its run's
-/// checkpoint.kerf, in the folder above it, has its vertices: topology is decided there. Throws InputError.
+/// Reads any of them; of a run's folder the last frame. A frame with open cracks gets the
+/// undeformed positions of its run's checkpoint.kerf, in the folder above, where its topology is
+/// decided. Throws InputError.
 Subject read_subject(const std::string& path);
 
 }  // namespace pieces

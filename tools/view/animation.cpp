@@ -22,7 +22,7 @@ namespace {
 
 [[noreturn]] void failed(const std::string& what) { throw geo::OutputError("the animation cannot be made: " + what); }
 
-// One picture of a WebP, freed in the end.
+// A WebP picture, freed by the destructor.
 struct WebpPicture : WebPPicture {
   explicit WebpPicture(const Picture& from) {
     if (!WebPPictureInit(this)) failed("libwebp is of another version");
@@ -33,7 +33,7 @@ struct WebpPicture : WebPPicture {
   WebpPicture(const WebpPicture&) = delete;
 };
 
-// A program that is fed through its standard input.
+// A child process that reads its standard input.
 class Fed {
  public:
   explicit Fed(const std::vector<std::string>& words) : program_(words[0]) {
@@ -65,7 +65,7 @@ class Fed {
       at += static_cast<std::size_t>(n);
     }
   }
-  // Its exit code, once it has read everything.
+  // Closes its input and returns its exit code.
   int end() {
     if (in_ < 0) return status_;
     ::close(in_);

@@ -1,4 +1,4 @@
-// Pictures that move: .webp by libwebp, .mp4 by the ffmpeg that is installed.
+// Animations: .webp by libwebp, .mp4 by an installed ffmpeg.
 #pragma once
 
 #include <functional>
@@ -9,13 +9,14 @@
 
 namespace view {
 
-/// Makes picture i of a sequence; all are of one size, asked for in order.
+/// Makes picture i of a sequence. All have one size, and are requested in order.
 using Sequence = std::function<Picture(int i)>;
 
 /// An animated WebP that repeats for ever. Throws geo::OutputError.
 void write_webp(std::ostream& out, int count, double frame_rate, const Sequence& picture);
 
-/// H.264 in MP4, aside and renamed. Throws geo::OutputError: it cannot be written, or there is no ffmpeg.
+/// Writes H.264 in MP4, to a temporary file that is then renamed. Throws geo::OutputError where it
+/// cannot be written, or ffmpeg is missing.
 void write_mp4(const std::string& path, int count, double frame_rate, const Sequence& picture);
 
 }  // namespace view

@@ -18,7 +18,7 @@ namespace {
 using geo::Vec3;
 
 Color piece_color(std::uint32_t piece) {
-  // Hues a golden angle apart.
+  // Hues in steps of the golden angle.
   const double hue = std::fmod(0.07 + piece * 0.61803398875, 1.0) * 6;
   const auto channel = [&](double shift) {
     const double h = std::fmod(hue + shift, 6.0);
@@ -58,7 +58,7 @@ void cut(Stage& stage, const Look& look) {
   const geo::Box3 box = frame_of(stage);
   const Vec3 n = look.cutaway->normal.normalized();
   stage.cutaway = Plane{box.center() + look.cutaway->offset * 0.5 * box.diagonal() * n, n};
-  // Nodes and edges on the removed side go with it.
+  // Nodes and edges on the removed side are removed too.
   const auto gone = [&](const Vec3& p) { return (p - stage.cutaway->point).dot(n) > 0; };
   std::erase_if(stage.spheres, [&](const Sphere& s) { return gone(s.center); });
   std::erase_if(stage.sticks, [&](const Stick& s) { return gone(s.a) || gone(s.b); });
@@ -130,7 +130,7 @@ geo::Box3 box_of(const Stage& stage) {
 }
 
 void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>& points) {
-  constexpr int directions = 256;  // evenly over the sphere: along a spiral
+  constexpr int directions = 256;  // evenly over the sphere, on a spiral
   std::vector<Vec3> all = points;
   const auto beyond = [&](const Vec3& p) {
     return stage.cutaway ? (p - stage.cutaway->point).dot(stage.cutaway->normal) : -1.0;

@@ -1,4 +1,4 @@
-// From what files hold to what is drawn: colours, cut-away, exploded pieces, nodes and edges.
+// Composes a stage from a subject: colours, cut-away, exploded pieces, nodes and edges.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,8 @@
 
 namespace view {
 
-/// A cut-away relative to what is drawn: through the middle, moved along the normal by `offset` half diagonals.
+/// A cut-away relative to the stage: through its centre, moved along the normal by `offset` half
+/// diagonals.
 struct RelativePlane {
   geo::Vec3 normal;
   double offset = 0;
@@ -21,8 +22,8 @@ struct Look {
   Coloring coloring = Coloring::patch;
   Color skin{0.80f, 0.36f, 0.10f};
   bool nodes = false, edges = false, wire = false, section = true;
-  std::string field = "radius";       ///< that nodes are coloured by, see fields.h
-  bool cut_edges = false;             ///< edges that cracks cut, in red
+  std::string field = "radius";       ///< colours the nodes, see fields.h
+  bool cut_edges = false;             ///< draw the edges that cracks have cut, in red
   bool seams = false;                 ///< where cracks meet the skin (green) and where they end (red)
   bool trees = false;                 ///< masters and their trees of slaves
   std::optional<std::uint32_t> node;  ///< this node's neighbourhood
@@ -49,10 +50,11 @@ Stage stage_of(const Subject& subject, const Look& look);
 
 /// The box of everything on a stage, spheres and sticks included.
 geo::Box3 box_of(const Stage& stage);
-/// What a picture should show: the same without what obstacles have beyond a quarter of its diagonal.
+/// The box that a picture shows: the same, but of obstacles only parts within a quarter of its
+/// diagonal.
 geo::Box3 frame_of(const Stage& stage);
-/// Adds to `points` those of the stage, brought into `frame`, that are farthest off in one of some hundred directions,
-/// and leaves others out.
+/// Adds to `points` the points of the stage, clamped to `frame`, that are extreme in one of some
+/// hundred directions.
 void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<geo::Vec3>& points);
 
 }  // namespace view

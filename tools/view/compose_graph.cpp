@@ -14,7 +14,8 @@ using geo::Vec3;
 constexpr Color red{0.70f, 0.02f, 0.02f}, blue{0.10f, 0.22f, 0.55f}, bright{0.03f, 0.16f, 0.62f},
     orange{0.90f, 0.32f, 0.02f}, green{0.02f, 0.30f, 0.06f};
 
-// Shortest paths along edges from a node, no longer than `reach`: the node before each one reached.
+// Shortest paths along edges from a node, up to length `reach`: the predecessor of each node
+// reached.
 std::map<std::uint32_t, std::uint32_t> paths_from(const geo::Body& body, std::uint32_t start, double reach) {
   std::map<std::uint32_t, std::uint32_t> from;
   std::map<std::uint32_t, double> length{{start, 0}}, open = length;
@@ -33,7 +34,7 @@ std::map<std::uint32_t, std::uint32_t> paths_from(const geo::Body& body, std::ui
   return from;
 }
 
-// Widths say how near; blue sees the node, orange is behind a face and reached along the path.
+// Widths show distances; blue nodes see the node, orange ones are behind a face.
 void add_neighborhood(Stage& stage, const geo::Body& body, const std::vector<Vec3>& position, std::uint32_t i) {
   const auto& spacing = body.nodes.spacing;
   stage.spheres.push_back({position[i], 0.24 * spacing[i], red});

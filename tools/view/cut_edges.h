@@ -1,4 +1,4 @@
-// Edges that cracks have cut, and nodes whose neighbours changed for it: the red of the paper's Fig. 4c.
+// Edges that cracks have cut, and nodes whose neighbours changed: red in the paper's Fig. 4c.
 #pragma once
 
 #include <utility>
@@ -8,12 +8,12 @@
 
 namespace view {
 
-/// Pairs i < j that were edges and are none: of `before`, an earlier state of the same body, or without one, the edges
-/// that there would be if only the skin blocked sight.
+/// Pairs i < j that are no longer edges: edges of `before`, an earlier state of the same body;
+/// without it, the edges that there would be if only the skin blocked sight.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> cut_edges(const geo::Body& body, const geo::Body* before);
 
-/// Per node: 1 where its row of edges and neighbours is another than before, or it is new. Throws InputError when
-/// `before` has more nodes.
+/// Per node: 1 where its edges or neighbours differ from those before, or it is new. Throws
+/// InputError where `before` has more nodes.
 std::vector<std::uint8_t> updated_nodes(const geo::Body& body, const geo::Body& before);
 
 }  // namespace view

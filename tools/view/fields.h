@@ -1,4 +1,4 @@
-// Numbers at nodes that pictures can be coloured by.
+// Scalar fields at nodes, for colours.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ struct Field {
   std::vector<double> values;  ///< one a node
 };
 
-/// radius, spacing, volume; of bodies also neighbors, component and debris; with a motion also displacement, speed and
-/// strain: the equivalent (von Mises) strain √(⅔ e:e), e the deviator of Green's strain: the stress of that name over
-/// three times the shear modulus, for a linear material.
+/// radius, spacing, volume; for bodies also neighbors, component and debris; with a motion also
+/// displacement, speed and strain. The strain is the equivalent (von Mises) strain √(⅔ e:e), with e
+/// the deviator of the Green strain: for a linear material von Mises stress over 3 μ.
 std::vector<Field> node_fields(const Subject& subject);
 
-/// The field of that name. Throws InputError, which lists those that there are.
+/// The field of that name. Throws InputError that lists all fields.
 const Field& find_field(const std::vector<Field>& fields, const std::string& name);
 
 }  // namespace view

@@ -52,7 +52,7 @@ MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const s
     geo::report(progress, "nodes", f, run.nodes.size());
     geo::FrameNodes file = geo::parse_frame_nodes(geo::read_all(run.nodes[f]), run.nodes[f]);
     MovingNodes::Frame frame{file.nodes.size(), std::move(file.nodes.position), std::move(file.stress), {}};
-    frame.count = std::min(frame.count, rest.size());  // of a run that was stopped behind its checkpoint
+    frame.count = std::min(frame.count, rest.size());  // a run that was stopped has nodes newer than its checkpoint
     frame.position.resize(frame.count), frame.stress.resize(frame.count);
     frame.position.insert(frame.position.end(), rest.begin() + static_cast<std::ptrdiff_t>(frame.count), rest.end());
     stresses.insert(stresses.end(), frame.stress.begin(), frame.stress.end());

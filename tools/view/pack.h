@@ -1,4 +1,5 @@
-// Arrays for a page: integers as differences in byte planes, one zlib stream, base64. page/unpack.js reads them back.
+// Arrays for a page: differences of integers in byte planes, one zlib stream, base64.
+// page/unpack.js decodes them.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +13,32 @@ namespace view {
 
 class Pack {
  public:
-  /// Whole numbers under a name, `width` bytes each (1, 2, 4), in rows of `columns`. Differences are taken to the row
-  /// before, or, where `base` names an array of the same length that was put before, to that.
+  /// Adds integers of `width` bytes (1, 2, 4) in rows of `columns`. Differences are taken to the
+  /// row before, or to the array `base`, which has the same length and was added before.
   void whole(const std::string& name, const std::vector<std::uint32_t>& values, int width, int columns,
              const std::string& base = {});
-  /// Numbers as sixteen bits between their smallest and largest, or between those that are given.
+  /// Adds numbers, quantised to 16 bits between their smallest and largest, or between lo and hi.
   void scaled(const std::string& name, const std::vector<double>& values);
   void scaled(const std::string& name, const std::vector<double>& values, double lo, double hi,
               const std::string& base = {});
-  /// Points as sixteen bits an axis within `box`; the page has them moved to the middle of the box, in half diagonals.
+  /// Adds points, quantised to 16 bits for each axis within `box`. The page has them relative to
+  /// the centre of the box, in half diagonals.
   void points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box,
               const std::string& base = {});
-  /// Points that may be outside the box: the sixteen bits are within `around`.
+  /// The same for points that may be outside the box: they are quantised within `around`.
   void points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box,
               const geo::Box3& around, const std::string& base);
 
   bool has(const std::string& name) const { return values_.count(name) > 0; }
-  /// True when an array of that name was put and holds just this.
+  /// True where the array of that name has these values.
   bool holds(const std::string& name, const std::vector<std::uint32_t>& values) const {
     return has(name) && values_.at(name) == values;
   }
   std::size_t length(const std::string& name) const { return values_.at(name).size(); }
 
-  /// What the page is told: an object per array, in the order they were put.
+  /// The description of the arrays for the page: an object for each, in the order of adding.
   const nlohmann::ordered_json& manifest() const { return manifest_; }
-  /// All bytes, deflated, as base64. Throws OutputError when there is no memory.
+  /// All bytes, deflated, as base64. Throws OutputError where memory is short.
   std::string text() const;
 
  private:

@@ -22,7 +22,7 @@ namespace {
 using json = nlohmann::ordered_json;
 using Numbers = std::vector<std::uint32_t>;
 
-// How much of each kind a page may hold; what has more is made coarser.
+// Limits for the content of a page; more is made coarser.
 struct Budget {
   double triangles = 5e6, nodes = 2e5, pairs = 4e6;
 };
@@ -35,8 +35,8 @@ class Writer {
  public:
   Writer(const geo::Box3& box, const Budget& budget) : box_(box), budget_(budget) {}
 
-  // One frame, or the surface of a still; `most`: triangles. Returns true when its rows are those
-  // of the mesh.
+  // Adds one frame, or a single surface, with at most `most` triangles. True where its vertices are
+  // those of the mesh.
   bool add_surface(const geo::TriangleMesh& mesh, const std::string& label, double most) {
     PieceMap pieces = pieces_of(mesh);
     const bool coarse = double(mesh.triangles.size()) > most;
@@ -66,7 +66,7 @@ class Writer {
     return !coarse;
   }
 
-  // What bodies lie on and are pressed by, a mesh per frame that differ in position alone.
+  // Adds the obstacles: a mesh for each frame, with equal triangles.
   void add_obstacles(const std::vector<geo::TriangleMesh>& frames, double most) {
     if (frames.empty()) return;
     geo::Box3 around;
@@ -92,8 +92,8 @@ class Writer {
     }
   }
 
-  // Nodes with all that is known of them; `rest`: the surface in material coordinates, `whole`:
-  // with all of its rows.
+  // Adds nodes with all their data. `rest`: the surface in material coordinates; `whole`: with all
+  // of its vertices.
   void add_nodes(const Subject& subject, int rest, bool whole, const geo::Body* before,
                  const MovingNodes& moving = {}) {
     const geo::NodeSet& nodes = subject.nodes;
@@ -163,7 +163,7 @@ class Writer {
     for (const auto& [key, text] : notice_of_) page.notices.push_back(text);
     about_["notices"] = page.notices;
     std::string text = about_.dump(-1, ' ', true, json::error_handler_t::replace);
-    // A file's name may hold </script> or a mark.
+    // A file's name may contain </script> or a placeholder.
     for (std::size_t at = 0; (at = text.find_first_of("<@", at)) != std::string::npos;)
       text.replace(at, 1, text[at] == '<' ? "\\u003c" : "\\u0040");
     page.html = page_template();
@@ -178,7 +178,7 @@ class Writer {
  private:
   void notice(const std::string& key, const std::string& text) { notice_of_.try_emplace(key, text); }
 
-  // An array that is often the same as that of the frame before.
+  // An array that often equals that of the frame before.
   std::string shared(const std::string& name, const std::string& kind, const Numbers& values, int width, int columns) {
     std::string& last = last_[kind];
     if (!last.empty() && pack_.holds(last, values)) return last;
@@ -248,7 +248,7 @@ class Writer {
   std::map<std::string, std::string> last_;
 };
 
-// Tries budgets until the page is small enough.
+// Reduces the limits until the page is small enough.
 Page fitted(const PageOptions& options, const Budget& needed, const std::function<Page(const Budget&)>& attempt) {
   Budget budget;
   budget = {std::min(budget.triangles, needed.triangles), std::min(budget.nodes, needed.nodes),

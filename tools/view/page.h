@@ -11,16 +11,16 @@
 namespace view {
 
 struct PageOptions {
-  double megabytes = 20;              ///< the page stays below; what is too large for it is made coarser
+  double megabytes = 20;              ///< upper bound of the size; larger content is made coarser
   const geo::Body* before = nullptr;  ///< an earlier state of the body, for the edges that were cut; see cut_edges()
   double frame_rate = 24;
-  bool y_up = false;  ///< the model's y is up, not its z
+  bool y_up = false;  ///< the model's y axis is vertical, not z
 };
 
 /// A page for one subject, or for a run with what its checkpoint holds.
 struct Page {
   std::string html;
-  std::vector<std::string> notices;  ///< what was left out or made coarser, a line each; also shown on the page
+  std::vector<std::string> notices;  ///< one line for each reduction of the content; also shown on the page
 };
 Page page_of(const Subject& subject, const PageOptions& options = {}, const geo::Progress& progress = {});
 Page page_of(const Run& run, const PageOptions& options = {}, const geo::Progress& progress = {});

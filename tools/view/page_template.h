@@ -1,4 +1,4 @@
-// The page before it is filled in: page/ and three.js as one text, put together by page/assemble.cmake.
+// The page without content: page/ and three.js as one text, joined by page/assemble.cmake.
 #pragma once
 
 #include <string>

@@ -27,10 +27,11 @@ std::vector<std::uint8_t> rgb_bytes(const Picture& picture);
 /// 8-bit sRGB PNG. Throws geo::OutputError.
 void write_png(std::ostream& out, const Picture& picture);
 
-/// Pictures of one size in rows of `columns`, a thin margin between them, each with its label in the lower left.
+/// Pictures of one size in rows of `columns`, with thin margins, each labelled at the lower left.
 Picture contact_sheet(const std::vector<Picture>& pictures, const std::vector<std::string>& labels, int columns);
 
-/// Writes text (digits, letters, a few signs; 5 × 7 dots enlarged `scale` times) with its upper left at x, y.
+/// Draws text (digits, letters, a few signs; 5 × 7 dots, enlarged `scale` times) from the upper
+/// left corner x, y.
 void draw_text(Picture& picture, int x, int y, const std::string& text, int scale, Color color);
 
 }  // namespace view

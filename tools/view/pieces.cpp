@@ -8,7 +8,7 @@ namespace {
 
 using geo::Vec3;
 
-// Rows that triangles connect: the shell of each row and how many there are.
+// Connected components: the shell of each vertex, and the number of shells.
 std::uint32_t shells_of(const geo::TriangleMesh& mesh, std::vector<std::uint32_t>& shell) {
   std::vector<std::uint32_t> root(mesh.vertices.size());
   std::iota(root.begin(), root.end(), 0u);
@@ -44,8 +44,8 @@ PieceMap pieces_of(const geo::TriangleMesh& mesh) {
     const double part = (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));
     volume[s] += part, terms[s] += std::abs(part) + 1e-3 * std::pow(box[s].diagonal(), 3);
   }
-  // A shell whose volume is not positive beyond the rounding of its sum bounds a cavity, or is a crack inside: it goes
-  // with the smallest shell around it.
+  // A shell without positive volume, beyond rounding, bounds a cavity or an inner crack. It belongs
+  // to the smallest shell around it.
   std::vector<std::uint32_t> outer(shells);
   for (std::uint32_t s = 0; s < shells; ++s) {
     outer[s] = s;

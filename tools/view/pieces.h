@@ -1,4 +1,4 @@
-// Pieces of a surface as pictures need them: told from the triangles alone, deformed or not.
+// Pieces of a surface for pictures, found from its triangles alone, deformed or not.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,8 @@ struct PieceMap {
 
 PieceMap pieces_of(const geo::TriangleMesh& mesh);
 
-/// The piece of each node of a subject with a body: that of the surface its component of the graph carries.
+/// The piece of each node of a subject with a body: that of the surface which its graph component
+/// carries.
 std::vector<std::uint32_t> pieces_of_nodes(const Subject& subject, const PieceMap& pieces);
 
 }  // namespace view

@@ -22,14 +22,15 @@ Color mixed(const Color& a, const Color& b, double t) {
   return {float(a[0] + (b[0] - a[0]) * t), float(a[1] + (b[1] - a[1]) * t), float(a[2] + (b[2] - a[2]) * t)};
 }
 
-// Integer hash of a pixel sample: noise that depends on no thread.
+// Integer hash of a pixel sample: noise that does not depend on threads.
 std::uint32_t hash(std::uint32_t x) {
   x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
   return x;
 }
 
-// What is random in one sample of a pixel. Rays to lights are spread over all samples of the pixel, so that few a
-// sample are enough: one coordinate of each is from a layer of its own, the other goes on by the golden ratio.
+// Random numbers for one sample of a pixel. Rays to lights are stratified over all samples of the
+// pixel, so few for each sample are enough: one coordinate has its own stratum, the other follows
+// the golden ratio.
 class Dice {
  public:
   Dice(std::uint32_t pixel, int sample, int samples, int rays)
@@ -41,13 +42,13 @@ class Dice {
     turn_ = unit(turn);
   }
   int rays() const { return rays_; }
-  /// The i-th of the rays from a surface, about z, by the cosine of its angle to z.
+  /// The i-th ray from a surface, about z, distributed by the cosine of its angle to z.
   Vec3 ray(int i) {
     const int k = i * samples_ + sample_;
     const double u = (k + unit(state_)) / (rays_ * samples_), r = std::sqrt(u), phi = 2 * pi * (turn_ + golden * k);
     return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)};
   }
-  /// A direction to the key light, which is so wide.
+  /// A direction to the key light, within its width.
   Vec3 key(double wide) {
     const double u = (sample_ + unit(state_)) / samples_, v = turn_ + golden * sample_;
     return Vec3(-0.45 + wide * u, -0.55 + wide * (v - std::floor(v)), 0.85).normalized();
@@ -85,7 +86,7 @@ std::vector<std::array<Eigen::Vector3f, 3>> smooth_normals(const geo::TriangleMe
 }
 
 struct Crossings {
-  RTCIntersectContext context;  // first: Embree hands back a pointer to it
+  RTCIntersectContext context;  // first member: Embree returns a pointer to it
   int winding = 0;
 };
 
@@ -130,8 +131,8 @@ class Tracer {
     double from = 0, until = 1e30;
     bool at_plane = false;
     if (stage_.cutaway) {
-      // The eye may stand in what is cut away: then the ray begins at the plane, or never. Else it ends there, if it
-      // goes there.
+      // Where the eye is in the removed part, the ray begins at the plane, or hits nothing. Else it
+      // ends at the plane.
       const double height = (eye - stage_.cutaway->point).dot(stage_.cutaway->normal);
       const double rate = d.dot(stage_.cutaway->normal);
       if (height > 0) {
@@ -141,7 +142,7 @@ class Tracer {
         until = -height / rate;
       }
     }
-    const Hit thing = trace(things_, eye, d, 0);  // whole, where the plane cuts it
+    const Hit thing = trace(things_, eye, d, 0);  // objects that the plane cuts are drawn whole
     Hit skin = trace(surface_, eye, d, from);
     if (skin.t > until) skin = {};
     Color behind = thing.t < 1e29 ? lit(thing, d, dice) : background(eye, d, dice);
@@ -152,14 +153,15 @@ class Tracer {
       if (lines < 0.06) cap.color = scaled(cap.color, 0.93);
       return lit(cap, d, dice);
     }
-    // Through the skin as far as something opaque; its layers are laid over each other from behind.
+    // Follows the ray to the first opaque hit; the transparent layers before it are blended from
+    // behind.
     std::vector<std::pair<Color, double>> layers;
     while (skin.t < thing.t && skin.t < 1e29) {
       const double opacity =
           stage_.surface_opacity >= 1 || skin.opaque ? 1 : std::min(1.0, stage_.surface_opacity * rim(skin, d));
       layers.push_back({lit(skin, d, dice), opacity});
       if (opacity >= 1 || layers.size() == 6) break;
-      // The first layer only, where nothing opaque of the surface is to be found behind it.
+      // Only the first layer, where no opaque part of the surface is behind it.
       if (!stage_.sheets_opaque) break;
       skin = trace(surface_, eye, d, skin.t + 1e-6 * scale_);
     }
@@ -173,10 +175,10 @@ class Tracer {
     double t = 1e30;
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
     Color color{};
-    bool opaque = false;  ///< whatever the surface's opacity
+    bool opaque = false;  ///< independently of the opacity of the surface
   };
 
-  // Glancing surface is more opaque, so that a glassy body keeps its outline.
+  // The surface is more opaque at glancing angles, so that a transparent body keeps its outline.
   static double rim(const Hit& hit, const Vec3& d) {
     const double facing = std::abs(hit.normal.dot(d));
     return std::min(4.0, 0.6 + 2.0 * std::pow(1 - facing, 3));
@@ -255,7 +257,7 @@ class Tracer {
       const auto& n = normals_[r.hit.primID];
       hit.normal = ((1 - r.hit.u - r.hit.v) * n[0] + r.hit.u * n[1] + r.hit.v * n[2]).cast<double>().normalized();
       hit.color = stage_.triangle_colors[r.hit.primID];
-      // Two sheets at one place: each is seen from its own side, whichever the ray happens to find.
+      // Two coincident sheets: each is visible from its own side, whichever the ray hits first.
       const Vec3 flat(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
       if (!stage_.back_colors.empty() && flat.dot(d) > 0) hit.color = stage_.back_colors[r.hit.primID];
       hit.opaque = stage_.sheets_opaque && stage_.surface.patch[r.hit.primID] != 0;
@@ -283,7 +285,7 @@ class Tracer {
       if (scene == surface_ && stage_.surface_opacity < 1) continue;
       double to = reach, from = 1e-4 * scale_;
       if (stage_.cutaway && scene == surface_) {
-        // Only what is kept casts shadows.
+        // The removed part casts no shadow.
         const double height = (o - stage_.cutaway->point).dot(stage_.cutaway->normal);
         const double rate = d.dot(stage_.cutaway->normal);
         if (height > 1e-6 * scale_) {
@@ -346,10 +348,10 @@ class Tracer {
   double scale_ = 1, floor_ = 0;
 };
 
-// z is up for rays.
+// Rotates the content so that z is vertical.
 Vec3 stood_up(const Vec3& v, bool y_up) { return y_up ? Vec3(v.x(), -v.z(), v.y()) : v; }
 
-// Rays are of single precision: what is drawn goes to the origin, and is made about as large as 1.
+// Rays have single precision, so the content is moved to the origin and scaled to size 1.
 Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
   const auto place = [&](Vec3& p) { p = stood_up((p - middle) * scale, y_up); };
   for (Vec3& p : stage.surface.vertices) place(p);
@@ -360,7 +362,7 @@ Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
   return stage;
 }
 
-// What the camera is to see, as placed() puts it; from all sides, where it is to be seen from all.
+// The points that the camera shows, as placed() maps them; all rotations of them for `all_round`.
 std::vector<Vec3> to_be_seen(const Camera& camera, double scale) {
   if (camera.points.empty()) return {-Vec3::Ones(), Vec3::Ones()};
   std::vector<Vec3> points;
@@ -373,9 +375,9 @@ std::vector<Vec3> to_be_seen(const Camera& camera, double scale) {
   return points;
 }
 
-// How far back the eye has to be to see points along `axis` in a picture that reaches `slope` to either side at a
-// distance of 1, wherever it is along the axis: a point at (a, f) along axis and view is seen from (m, −d) where |a −
-// m| ≤ slope (d + f).
+// Distance of an eye that sees all points along `axis`, for a picture that extends by `slope` to
+// either side at distance 1. A point at (a, f) along axis and view is visible from (m, −d) where |a
+// − m| ≤ slope (d + f).
 double distance_to_see(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& forward, double slope) {
   double most = -1e300, least = 1e300;
   for (const Vec3& p : points)
@@ -384,9 +386,9 @@ double distance_to_see(const std::vector<Vec3>& points, const Vec3& axis, const 
   return (most - least) / (2 * slope);
 }
 
-// Where the eye is to be along `axis`, so far back, for points to be seen as far to the one side as to the other.
+// Position of the eye along `axis`, at distance `back`, that centres the points.
 double middle_of_view(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& forward, double distance) {
-  double low = -10, high = 10;  // points are about as far from each other as 1
+  double low = -10, high = 10;  // the content has size 1
   for (int halving = 0; halving < 60; ++halving) {
     const double m = 0.5 * (low + high);
     double most = -1e300, least = 1e300;
@@ -411,12 +413,12 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
                      -std::sin(elevation));
   const Vec3 right = Vec3(std::cos(azimuth), -std::sin(azimuth), 0), up = right.cross(forward);
   const double all = std::tan(17 * pi / 180),
-               field = all / camera.zoom;  // half the vertical angle of view; zoomed in, from where all is seen
+               field = all / camera.zoom;  // half the vertical field of view, from the distance that shows all
   const double aspect = double(options.width) / options.height;
-  const double room = 0.84;  // share of the picture that is filled; shadows want some
+  const double filled = 0.84;  // share of the picture, with space for shadows
   const std::vector<Vec3> points = to_be_seen(camera, 1 / radius);
-  const double distance = std::max({distance_to_see(points, right, forward, room * all * aspect),
-                                    distance_to_see(points, up, forward, room * all), 1e-3});
+  const double distance = std::max({distance_to_see(points, right, forward, filled * all * aspect),
+                                    distance_to_see(points, up, forward, filled * all), 1e-3});
   Vec3 eye = -distance * forward;
   if (!camera.on_box)
     eye +=

@@ -1,4 +1,5 @@
-// A small ray tracer (Embree): surface with both crack sheets coloured, nodes, edges, cut-away with filled section.
+// A small ray tracer (Embree): a surface with coloured crack sheets, nodes, edges, and a cut-away
+// with filled section.
 #pragma once
 
 #include <optional>
@@ -19,47 +20,47 @@ struct Stick {
   double radius;
   Color color;
 };
-/// What is on the side that `normal` points to, beyond the plane through `point`, is cut away.
+/// The side of the plane through `point` that `normal` points to is cut away.
 struct Plane {
   geo::Vec3 point, normal;
 };
 
-/// What is drawn. The surface must be closed where a cut-away is to show a filled section.
+/// The content of a picture. A filled section requires a closed surface.
 struct Stage {
   geo::TriangleMesh surface;
-  std::vector<Color> triangle_colors;  ///< one a triangle
-  std::vector<Color> back_colors;      ///< the same, seen from behind; empty: no difference
+  std::vector<Color> triangle_colors;  ///< per triangle
+  std::vector<Color> back_colors;      ///< per triangle, seen from behind; empty: the same
   std::vector<Sphere> spheres;
   std::vector<Stick> sticks;
-  std::size_t obstacles = 0;  ///< so many triangles, the last ones, are of obstacles
+  std::size_t obstacles = 0;  ///< number of triangles of obstacles, the last ones
   std::optional<Plane> cutaway;
-  double surface_opacity = 1;  ///< below 1 nodes and edges inside show through
-  bool sheets_opaque = false;  ///< the opacity is the skin's; sheets of cracks (surface.patch) stay opaque
-  bool section = true;         ///< fill the cut-away's section; false: look into the body
-  bool ground = true;          ///< a floor below that catches a soft shadow
-  bool wire = false;           ///< draw the triangles' edges
+  double surface_opacity = 1;  ///< below 1, nodes and edges inside are visible
+  bool sheets_opaque = false;  ///< crack sheets (surface.patch) are opaque, whatever the skin is
+  bool section = true;         ///< fill the section of the cut-away
+  bool ground = true;          ///< draw a floor with a soft shadow
+  bool wire = false;           ///< draw the edges of triangles
   std::optional<double> ground_level;
 };
 
-/// Degrees: azimuth turns about z (0 looks along +y), elevation lifts the eye. `zoom` 1 shows `points`, as large as
-/// they can be seen from there, in the middle; above it less, from where it stands. With `y_up` all that is seen is
-/// stood up first: its y goes to z, its z to −y.
+/// Angles in degrees: azimuth about z (0 looks along +y), elevation above the horizon. `zoom` 1
+/// shows all `points`, centred and as large as possible; a larger zoom shows less from the same
+/// position. With `y_up` the content is rotated first: y to z, z to −y.
 struct Camera {
   double azimuth = 30, elevation = 22, zoom = 1;
   bool y_up = false;
-  bool all_round = false;         ///< from the same distance for every azimuth, to 5°
-  bool on_box = false;            ///< the box's middle is in the middle
+  bool all_round = false;         ///< the same distance for every azimuth, in steps of 5°
+  bool on_box = false;            ///< the centre of the box is in the centre of the picture
   std::vector<geo::Vec3> points;  ///< within the box
   geo::Box3 box;
 };
 
 struct RenderOptions {
   int width = 960, height = 720;
-  int samples = 3;     ///< rays a pixel and direction: samples² in all
-  int occlusion = 36;  ///< rays a pixel for ambient light, one a sample or more
+  int samples = 3;     ///< rays for each pixel and direction, samples² in all
+  int occlusion = 36;  ///< rays for each pixel for ambient light, at least one for each sample
 };
 
-/// The same picture for any number of threads.
+/// Draws a stage. The picture does not depend on the number of threads.
 Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options);
 
 }  // namespace view

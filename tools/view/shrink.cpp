@@ -38,12 +38,13 @@ geo::TriangleMesh clustered(const geo::TriangleMesh& mesh, const std::vector<std
 
 geo::TriangleMesh shrink(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece, std::size_t most,
                          std::vector<std::uint32_t>& kept) {
-  // A vertex of a crack's sheet belongs to it, also where the sheet meets the skin.
+  // A vertex of a crack sheet belongs to the sheet, also where it meets the skin.
   std::vector<std::int32_t> sheet(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.patch.size(); ++t)
     if (mesh.patch[t] != 0)
       for (const auto v : mesh.triangles[t]) sheet[v] = mesh.patch[t];
-  // Of a plane, cells of this edge leave as many triangles as are wanted; of anything else more, so they grow.
+  // For a plane, cells of this size give the wanted number of triangles. Other surfaces give more,
+  // so the cells grow.
   const double size = geo::bounding_box(mesh).diagonal();
   double edge = std::max(std::sqrt(2 * geo::area(mesh) / double(std::max<std::size_t>(most, 4))), 1e-6 * size);
   for (;; edge *= 1.15) {

@@ -1,5 +1,5 @@
-// Coarser surfaces for looking at, whatever their size: vertices in one cell of a grid become one (Rossignac and Borrel
-// 1993), apart for each piece and each sheet of a crack. Not closed any more where sheets meet skin.
+// Coarser surfaces for pages: vertices in one cell of a grid are merged (Rossignac and Borrel
+// 1993), separately for each piece and crack sheet. The result is open where sheets meet the skin.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace view {
 
-/// At most `most` triangles, more only where there are more sheets: positions, triangles and patch; `kept` receives the
-/// row that stands for each row of the result. `piece`: per vertex row.
+/// At most `most` triangles, unless there are more sheets, with patch. `kept` receives the vertex
+/// of `mesh` for each vertex of the result. `piece`: per vertex.
 geo::TriangleMesh shrink(const geo::TriangleMesh& mesh, const std::vector<std::uint32_t>& piece, std::size_t most,
                          std::vector<std::uint32_t>& kept);
 

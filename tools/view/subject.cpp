@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A body, or the checkpoint of a run, which is one with its motion.
+// A body, or a checkpoint: a body with its motion.
 void add_body(Subject& subject, geo::Input input) {
   const geo::KerfFile file(std::move(input));
   if (file.sections().count("run/displacement") > 0) {
@@ -32,8 +32,8 @@ void add_body(Subject& subject, geo::Input input) {
   subject.nodes = subject.body->nodes;
 }
 
-// The file with the obstacles of a frame: frames/frame_0007.ply has obstacles/obstacles_0007.ply; empty where there is
-// none.
+// The obstacles of frames/frame_0007.ply are in obstacles/obstacles_0007.ply; empty where there is
+// no such file.
 std::string obstacles_of(const fs::path& frame) {
   const std::string name = frame.filename().string(), begin = "frame_";
   if (!name.starts_with(begin)) return {};
@@ -57,7 +57,7 @@ void add(Subject& subject, const std::string& path) {
       subject.nodes = geo::parse_nodes(bytes, path);
       break;
     case tool::Kind::fronts: {
-      geo::TriangleMesh sheets;  // seen as cracks
+      geo::TriangleMesh sheets;  // drawn like cracks
       for (auto& front : geo::parse_fronts(bytes, path)) {
         if (!front.is_sheet()) {
           subject.fronts.push_back(std::move(front));
@@ -110,7 +110,7 @@ Run find_run(const std::string& folder) {
   run.frames = ply_files(fs::is_directory(top / "frames") ? top / "frames" : top);
   if (fs::is_directory(top / "nodes")) run.nodes = ply_files(top / "nodes");
   run.nodes.resize(
-      run.nodes.size() < run.frames.size() ? 0 : run.frames.size());  // a run that was stopped may be one ahead
+      run.nodes.size() < run.frames.size() ? 0 : run.frames.size());  // a run that was stopped may have one more
   if (run.frames.empty()) throw geo::InputError(folder + ": holds no frames; give the folder that kerf-sim wrote");
   if (fs::exists(top / "checkpoint.kerf")) run.body = (top / "checkpoint.kerf").string();
   if (const fs::path usd = top / "run.usda"; fs::exists(usd)) {

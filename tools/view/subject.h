@@ -1,4 +1,4 @@
-// What there is to look at: what one or several files, or the folder of a run, hold together.
+// The content of one or several files, or of the folder of a run, that is drawn together.
 #pragma once
 
 #include <optional>
@@ -14,18 +14,18 @@ namespace view {
 
 struct Subject {
   std::string title;
-  geo::TriangleMesh surface;  ///< a surface's own, or a body's two-sided one; may be empty
+  geo::TriangleMesh surface;  ///< from a surface file, or two-sided from a body; may be empty
   std::optional<geo::Body> body;
-  std::vector<std::uint32_t> row_of;  ///< of a body: the row in `surface` of each surface vertex id
-  geo::NodeSet nodes;                 ///< a node file's, or a body's
+  std::vector<std::uint32_t> row_of;  ///< of a body: index in `surface` of each surface vertex
+  geo::NodeSet nodes;                 ///< from a node file, or a body
   std::vector<geo::Front> fronts;
-  geo::TriangleMesh obstacles;       ///< of a run, where they are in its frame
-  std::optional<geo::State> motion;  ///< of a run's body: a checkpoint
-  int frame = 0;                     ///< of the run, at which `motion` holds
+  geo::TriangleMesh obstacles;       ///< of a run, in its frame
+  std::optional<geo::State> motion;  ///< of the body, from a checkpoint
+  int frame = 0;                     ///< frame of `motion`
 };
 
-/// Reads files of any kind into one subject: at most one with a surface and one with nodes; with a frame of a run the
-/// obstacles beside it. Throws InputError.
+/// Reads files of any kind into one subject: at most one with a surface and one with nodes. A frame
+/// of a run brings the obstacles beside it. Throws InputError.
 Subject read_subject(const std::vector<std::string>& paths);
 
 /// The folder of a run, or one of numbered surfaces.
@@ -40,7 +40,8 @@ struct Run {
 Run find_run(const std::string& folder);
 /// The checkpoint's body with its motion; empty where the run has none.
 Subject read_checkpoint(const Run& run);
-/// The obstacles of each frame, rows alike in all; empty where the run has none. Throws InputError.
+/// The obstacles of each frame, with equal triangles; empty where the run has none. Throws
+/// InputError.
 std::vector<geo::TriangleMesh> read_obstacles(const Run& run);
 
 }  // namespace view

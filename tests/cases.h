@@ -1,4 +1,5 @@
-// How many random cases a campaign runs, and which: KERF_CASES multiplies, KERF_SEED shifts, KERF_CASE picks one.
+// How many random cases a campaign runs, and which: KERF_CASES multiplies, KERF_SEED shifts,
+// KERF_CASE picks one.
 #pragma once
 
 #include <cstdint>

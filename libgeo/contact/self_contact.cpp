@@ -34,7 +34,7 @@ std::vector<Vec3> likely_positions(const std::vector<Vec3>& targets, const std::
 // Weights that are updated, so that members after them can use them.
 SurfaceWeights weights_of(const Body& body, const Solid& solid) {
   SurfaceWeights weights;
-  weights.update(body, solid);
+  weights.rebuild(body, solid);
   return weights;
 }
 
@@ -78,7 +78,7 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
                                                   1e-2 * dt * dt * gravity.norm() + 1e-9 * surface().edge};
   step.penalty = spare_penalty_ ? std::move(spare_penalty_) : std::make_unique<SelfContactPenalty>(penalty_options);
   step.penalty->restart(penalty_options);
-  near_.forget();
+  near_.invalidate();
   assemble_penalty({body, solid, weights_, state.displacement, free, targets, mean_targets, free_targets, dt, gap()},
                    surface_, near_, *step.penalty);
   return step;
@@ -116,7 +116,7 @@ ContactStats SelfContact::move_surface(const Body& body, const std::vector<Vec3>
   ContactStats stats;
   const std::vector<Vec3>& targets = targets_at(body, u);
   std::vector<Vec3> opened = positions();
-  stats.opened = open_sheets(surface(), surface_.fans(), surface_.coincidence().copies, targets, gap(),
+  stats.opened = open_sheets(surface(), surface_.fans(), surface_.coincidence().coincident, targets, gap(),
                              options_.opening * surface().edge, opened);
   if (stats.opened > 0) surface_.move_to(std::move(opened));
   const Coincidence& coincidence = surface_.coincidence();
@@ -127,7 +127,7 @@ ContactStats SelfContact::move_surface(const Body& body, const std::vector<Vec3>
   surface_.move_to(move_without_crossing({surface().triangles, coincidence.representative, positions(), goal, gap(),
                                           2 * gap(), tracking_error ? &guess : nullptr},
                                          true, &bounded, &near_, &surface_.fans()));
-  ++revision_, near_.forget();
+  ++revision_, near_.invalidate();
   stats.planes = bounded.planes, stats.in_zones = bounded.in_zones, stats.held = bounded.held;
   for (std::size_t v = 0; v < targets.size(); ++v)
     if (body.surface.alive(SurfaceVertexId(v)))
@@ -137,14 +137,14 @@ ContactStats SelfContact::move_surface(const Body& body, const std::vector<Vec3>
 
 EmbeddingPlan SelfContact::plan_embedding(const Body& body, const Solid& solid, const State& state,
                                           const Complex& grown, const CrackDelta& crack) const {
-  return {give_birth(body, solid, state, surface(), positions(), grown, crack, gap()), revision_};
+  return {embed_new_surface({body, solid, state, surface(), positions(), grown, crack, gap()}), revision_};
 }
 
 void SelfContact::commit(EmbeddingPlan plan, const Body& body, const Solid& solid, const BodyDelta& delta) {
   if (plan.revision != revision_) throw std::logic_error("the surface has changed since the embedding was planned");
   surface_.replace(std::move(plan.embedding.surface), std::move(plan.embedding.positions));
-  ++revision_, near_.forget_triangles();
-  targets_.invalidate(weights_.follow(body, solid, delta));
+  ++revision_, near_.reset();
+  targets_.invalidate(weights_.apply_delta(body, solid, delta));
 }
 
 }  // namespace geo

@@ -13,8 +13,8 @@
 #include <memory>
 #include <vector>
 
-#include "contact/birth/birth.h"
-#include "contact/detection/near_pairs.h"
+#include "contact/detection/broad_phase.h"
+#include "contact/embedding/surface_embedding.h"
 #include "contact/response/self_contact_penalty.h"
 #include "contact/surface/moving_surface.h"
 #include "contact/surface/surface_targets.h"
@@ -37,7 +37,7 @@ struct ContactStep {
 /// Where the surface that a crack step makes will be: made by SelfContact::plan_embedding(), used
 /// up by commit().
 struct EmbeddingPlan {
-  Birth embedding;             ///< the surface after the crack step
+  EmbeddedSurface embedding;   ///< the surface after the crack step
   std::uint64_t revision = 0;  ///< SelfContact::revision() when it was planned
 };
 
@@ -94,7 +94,7 @@ class SelfContact {
   SurfaceWeights weights_;
   MovingSurface surface_;
   SurfaceTargetCache targets_;
-  NearPairs near_;  // broad phase of the current step; its memory is kept between steps
+  BroadPhase near_;  // broad phase of the current step; its memory is kept between steps
   std::unique_ptr<SelfContactPenalty> spare_penalty_;  // of a finished step, for its memory
   std::uint64_t revision_ = 0;
 };

@@ -1,4 +1,4 @@
-// Sums consecutive deltas of a crack complex.
+// Many deltas, one after the other, as one.
 #pragma once
 
 #include <unordered_map>
@@ -8,20 +8,18 @@
 
 namespace geo {
 
-/// Accumulates consecutive deltas into one. Items that were made and removed again are in neither
-/// list; lists are ascending.
+/// What was made and removed again is in neither list; what is left is listed in ascending order.
 class DeltaSum {
  public:
-  /// Adds the delta that follows those added so far. Cost follows the delta.
+  /// Cost follows the delta added.
   void add(const CrackDelta& delta);
-  /// The sum of all deltas.
   CrackDelta sum() const;
 
  private:
   std::vector<VertexId> new_vertices_;
   std::unordered_set<FaceId> removed_faces_, new_faces_, new_crack_faces_;
   std::unordered_set<SurfaceVertexId> removed_, touched_;
-  std::unordered_map<SurfaceVertexId, SurfaceVertexId> new_;  // with what each is a copy of
+  std::unordered_map<SurfaceVertexId, SurfaceVertexId> new_;  ///< to what each is a copy of
 };
 
 }  // namespace geo

@@ -1,4 +1,3 @@
-// Measures of triangle meshes.
 #include "kerf/mesh.h"
 
 #include <Eigen/Geometry>

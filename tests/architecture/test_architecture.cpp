@@ -32,7 +32,7 @@ const std::vector<std::string> modules{"base",
                                        "contact/surface",
                                        "contact/response",
                                        "contact/motion",
-                                       "contact/birth",
+                                       "contact/embedding",
                                        "contact",
                                        "simulation",
                                        "io"};

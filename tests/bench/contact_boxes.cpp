@@ -1,7 +1,8 @@
-// Which boxes of a folded sheet's triangles meet: beside CGAL's box intersection (Zomorodian, Edelsbrunner 2002).
+// Which boxes of a folded sheet's triangles meet: beside CGAL's box intersection (Zomorodian,
+// Edelsbrunner 2002).
 #include <CGAL/box_intersection_d.h>
 
-#include "contact/detection/box_tree.h"
+#include "contact/detection/aabb_tree.h"
 #include "contact_peers.h"
 
 namespace bench {
@@ -27,7 +28,7 @@ double cgal_pairs_seconds(const std::vector<geo::Box3>& boxes, std::size_t& pair
 }
 
 double own_pairs_seconds(const std::vector<geo::Box3>& boxes, std::size_t& pairs) {
-  return least([] {}, [&] { pairs = geo::BoxTree(boxes).pairs().size(); });
+  return least([] {}, [&] { pairs = geo::AabbTree(boxes).pairs().size(); });
 }
 
 }  // namespace bench

@@ -1,17 +1,18 @@
-// A sheet in folds that are pressed together: what it takes to find which boxes meet, and to move it without crossing.
+// A sheet in folds that are pressed together: what it takes to find which boxes meet, and to move
+// it without crossing.
 #include <cmath>
 
+#include "contact/detection/find_crossings.h"
 #include "contact/motion/bounded_motion.h"
 #include "contact_peers.h"
-#include "kerf/crossing.h"
 
 namespace bench {
 namespace {
 
 constexpr std::size_t folds = 8;
 
-// n × n squares of edge 1 / n, bent in a zigzag whose folds open by `width`; in the middle each bulges by `bulge`
-// towards the next.
+// n × n squares of edge 1 / n, bent in a zigzag whose folds open by `width`; in the middle each
+// bulges by `bulge` towards the next.
 std::vector<geo::Vec3> folded(std::size_t n, double width, double bulge) {
   const auto hump = [](double part) { return 0.5 - 0.5 * std::cos(2 * M_PI * part); };
   std::vector<geo::Vec3> at;
@@ -37,18 +38,19 @@ void contact_of_sheet(const Options& options) {
         triangles.push_back({row(i, j), row(i + 1, j), row(i, j + 1)}),
             triangles.push_back({row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)});
     const double edge = 1.0 / double(n), gap = 1e-4 * edge;
-    // Folds half an edge apart where they open widest bulge into each other; all of it falls besides.
+    // Folds half an edge apart where they open widest bulge into each other; all of it falls as
+    // well.
     const std::vector<geo::Vec3> from = folded(n, 0.5 * edge, 0);
     std::vector<geo::Vec3> to = folded(n, 0.5 * edge, 0.2 * edge);
     for (auto& p : to) p.z() -= 0.1;
-    const std::vector<std::uint32_t> together = geo::vertices_together({}, from);
+    const std::vector<std::uint32_t> representative = geo::coincident_representatives({}, from);
     std::vector<geo::Box3> boxes;
     for (const auto& [a, b, c] : triangles) boxes.push_back(geo::box_of(from[a], from[b], from[c]).grown(0.1 * edge));
     std::size_t own_pairs = 0, cgal_pairs = 0;
     const double own = own_pairs_seconds(boxes, own_pairs), cgal = cgal_pairs_seconds(boxes, cgal_pairs);
     geo::BoundedMotionStats report;
     std::vector<geo::Vec3> at;
-    const geo::SurfaceMotion motion{triangles, together, from, to, gap, 2 * gap};
+    const geo::SurfaceMotion motion{triangles, representative, from, to, gap, 2 * gap};
     const auto move = [&] { report = {}, at = geo::move_without_crossing(motion, false, &report); };
     const double moving = least([] {}, move, 5);
     print({{"triangles", double(triangles.size())},
@@ -60,8 +62,8 @@ void contact_of_sheet(const Options& options) {
            {"move_us_a_triangle", 1e6 * moving / double(triangles.size())},
            {"planes", double(report.planes)},
            {"in_zones", double(report.in_zones)},
-           {"crossings_wanted", double(geo::find_crossings(triangles, to, together, false).size())},
-           {"crossings", double(geo::find_crossings(triangles, at, together, false).size())},
+           {"crossings_wanted", double(geo::find_crossings(triangles, to, representative, false).size())},
+           {"crossings", double(geo::find_crossings(triangles, at, representative, false).size())},
            {"move_two_threads_speedup", threads_speedup(move)}},
           options.json);
   }

@@ -6,7 +6,7 @@
 #include "graph/nearest.h"
 #include "graph/spanning_tree.h"
 #include "kerf/parallel.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -58,7 +58,7 @@ TEST_CASE("nearest nodes are those of a full scan, in its order, however the nod
     const auto x = cloud(random, kind, 1 + static_cast<int>(random.below(random.below(4) ? 300 : 12)));
     CAPTURE(seed, kind, k, x.size());
     const auto expected = by_full_scan(x, k);
-    on_every_target([&] { REQUIRE(rows_are(nearest_nodes(x, k), expected)); });
+    for_each_simd_target([&] { REQUIRE(rows_are(nearest_nodes(x, k), expected)); });
   }
 }
 

@@ -5,7 +5,7 @@
 #include "geometry/predicates.h"
 #include "graph/visibility.h"
 #include "kerf/parallel.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -41,8 +41,9 @@ TEST_CASE("segments are blocked where exact predicates on all triangles say so, 
   for (auto seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     Random random(seed);
     CAPTURE(seed);
-    // Half of them on a lattice of few points: segments through edges and corners, in planes, along edges, of no
-    // length; triangles without area. The others at random, near or far, large or small; some nodes are far outside.
+    // Half of them on a lattice of few points: segments through edges and corners, in planes, along
+    // edges, of no length; triangles without area. The others at random, near or far, large or
+    // small; some nodes are far outside.
     const bool lattice = seed % 2 == 0;
     const double size = std::pow(10, random.uniform(-40, 40)), away = seed % 3 == 0 ? 1e6 : 0;
     const double most = seed % 4 == 1 ? 0.3 : 1;
@@ -66,7 +67,7 @@ TEST_CASE("segments are blocked where exact predicates on all triangles say so, 
     const auto expected = by_all_triangles(x, soup, pairs);
     const TriangleBvh tree(soup);
     const Visibility sight(x, tree);
-    on_every_target([&] { REQUIRE(sight.blocked(pairs) == expected); });
+    for_each_simd_target([&] { REQUIRE(sight.blocked(pairs) == expected); });
     for (std::size_t e = 0; e < 40; ++e) REQUIRE(sight.blocked(pairs[e].first, pairs[e].second) == (expected[e] != 0));
     for (const auto b : expected) ++(b ? blocked : open);
   }

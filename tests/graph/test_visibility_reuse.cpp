@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "graph/visibility_reuse.h"
 #include "kerf/graph.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -68,7 +68,7 @@ TEST_CASE("What was seen and is still is told from rows of any kind, whatever th
     for (const auto i : old.to)
       if (random.below(5) == 0) lost.push_back(i);
     const auto expected = looked_up(now, old, lost);
-    on_every_target([&] {
+    for_each_simd_target([&] {
       std::vector<std::uint32_t> unsure(now.to.size());
       unsure.resize(entries_to_retest(now.to, now.bits, old.view(), lost, unsure.data()));
       CHECK(unsure == expected);

@@ -14,7 +14,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/stream.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -120,9 +120,9 @@ class Campaign {
     static const auto targets = hwy::SupportedAndGeneratedTargets();
     for (const int threads : {1, 4}) {
       set_threads(threads);
-      use_vectors(targets[varied_++ % targets.size()]);
+      use_simd_target(targets[varied_++ % targets.size()]);
       check();
-      use_vectors(0);
+      use_simd_target(0);
     }
   }
 

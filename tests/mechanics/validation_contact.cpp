@@ -27,7 +27,7 @@ class Press {
         solid(body, material),
         pressure_(pressure),
         box_(bounding_box(mesh)) {
-    weights_.update(body, solid);
+    weights_.rebuild(body, solid);
     const std::vector<Vec3> zero(body.nodes.size(), Vec3::Zero());
     state = {zero, zero};
     // The node nearest to the middle stays: nothing else keeps the body from drifting aside.

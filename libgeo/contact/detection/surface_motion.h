@@ -1,4 +1,4 @@
-// What a step is about: where the vertices of a surface are at its beginning and want to be at its end.
+// The motion of a surface in one step: input of detection and of collision-free motion.
 #pragma once
 
 #include <cstdint>
@@ -9,38 +9,43 @@
 
 namespace geo {
 
-/// Triangles of rows, for each row the one that stands for it (vertices_together()), and where all are at the
-/// beginning, where no two triangles cross, and want to be at the end.
+/// Positions at the start of a step, where no two triangles cross, and wanted positions at its end.
+/// Refers to data of the caller.
 struct SurfaceMotion {
-  const std::vector<Triangle>& triangles;
-  std::span<const std::uint32_t> together;
-  const std::vector<Vec3>&from, &to;
-  double gap = 0;                            ///< that sheets in contact keep
-  double reach = 0;                          ///< pairs that come closer than this are watched
-  const std::vector<Vec3>* guess = nullptr;  ///< where given: near `to`, and less likely to be in each other's way;
-                                             ///< taken as the end if nothing fails there
+  const std::vector<Triangle>& triangles;         ///< of surface vertices
+  std::span<const std::uint32_t> representative;  ///< per vertex: coincident_representatives()
+  const std::vector<Vec3>& from;                  ///< per vertex: position at the start
+  const std::vector<Vec3>& to;                    ///< per vertex: wanted position at the end
+  double gap = 0;                                 ///< distance that sheets in contact keep, model units
+  double reach = 0;                               ///< distance below which a pair is a contact candidate, model units
+  /// If given: positions near `to` that are less likely to cross. They become the end if they are
+  /// certified.
+  const std::vector<Vec3>* guess = nullptr;
 };
 
-/// The same in rows that stand for others.
-struct StandingRows {
-  explicit StandingRows(const SurfaceMotion& motion);
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> rows;   ///< of all triangles, ascending
-  std::vector<std::uint8_t> joined;  ///< per triangle: a corner stands for others, so that it may be one of a triangle
-                                     ///< that shares none on the surface
-  Vec3 middle = Vec3::Zero();        ///< of where they want to be
+/// The surface of a motion in terms of representatives: coincident vertices are one vertex.
+struct RepresentativeSurface {
+  /// Represents the surface of `motion`.
+  explicit RepresentativeSurface(const SurfaceMotion& motion);
 
-  /// Whether two triangles that share no corner on the surface have one in common.
-  bool touch(std::size_t s, std::size_t t) const {
-    if (!joined[s] || !joined[t]) return false;
+  std::vector<Triangle> triangles;      ///< of representatives
+  std::vector<std::uint32_t> vertices;  ///< representatives in use, ascending
+  /// Per triangle: has a vertex that represents several, and may share it with a triangle with
+  /// which it has no vertex of the surface in common.
+  std::vector<std::uint8_t> has_coincident;
+  Vec3 target_centroid = Vec3::Zero();  ///< mean of the wanted positions
+
+  /// Whether two triangles that share no vertex of the surface share a representative.
+  bool share_representative(std::size_t s, std::size_t t) const {
+    if (!has_coincident[s] || !has_coincident[t]) return false;
     const auto in_t = [&, of = triangles[t]](std::uint32_t v) { return v == of[0] || v == of[1] || v == of[2]; };
     return in_t(triangles[s][0]) || in_t(triangles[s][1]) || in_t(triangles[s][2]);
   }
 
-  /// The box of what triangle t passes through on straight ways, relative to the middle.
-  Box3 swept(std::size_t t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {
+  /// The box that triangle t sweeps on straight paths, relative to the centroid.
+  Box3 swept_box(std::size_t t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {
     Box3 box;
-    for (const auto v : triangles[t]) box.add(from[v] - middle), box.add(to[v] - middle);
+    for (const auto v : triangles[t]) box.add(from[v] - target_centroid), box.add(to[v] - target_centroid);
     return box;
   }
 };

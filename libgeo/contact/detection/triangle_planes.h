@@ -1,4 +1,4 @@
-// The planes of triangles, as a quick look at which two they part.
+// Culling of triangle pairs that simple axes separate at the start and at the end of a motion.
 #pragma once
 
 #include <span>
@@ -10,46 +10,51 @@
 
 namespace geo {
 
-/// Of all triangles of a surface, where a motion begins and where it ends: what is asked about many pairs at once,
-/// corners side by side in vectors. The normals are those of the beginning. Floating point, to some 1e-15 of
-/// coordinates, the same for any processor.
+/// The planes of all triangles of a moving surface, laid out for queries about many pairs. Normals
+/// are those at the start. Floating point, with an error of about 1e-15 times the coordinates; the
+/// same for any instruction set.
 class TrianglePlanes {
  public:
+  /// Indices of two triangles.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  /// No planes.
   TrianglePlanes() = default;
+  /// As compute().
   TrianglePlanes(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-    place(triangles, from, to);
+    compute(triangles, from, to);
   }
 
-  /// Of another motion, in the same memory where there is enough. Refers to triangles and ends.
-  void place(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to);
+  /// Computes the planes for the motion of vertices from → to. Reuses the memory of earlier planes.
+  /// Keeps references to `triangles` and `to`.
+  void compute(std::span<const Triangle> triangles, const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
-  /// After the end of triangle i has changed.
-  void renew_end(std::size_t i);
+  /// Must be called after a vertex of triangle i has changed in `to`.
+  void update_end(std::size_t i);
 
-  /// Whether the plane of one of triangles i and j parts them, with the same side, by more than `first` where the
-  /// motion begins and by more than `last` where it ends. Neither is negative.
-  bool part(std::uint32_t i, std::uint32_t j, double first, double last) const;
+  /// Whether the plane of triangle i or j separates them, with j on the same side throughout, by
+  /// more than `start` at the start and more than `end` at the end. Both are at least 0.
+  bool separates(std::uint32_t i, std::uint32_t j, double start, double end) const;
 
-  /// Of pairs those that no plane parts so, in their order.
-  void keep_unparted(std::vector<Pair>& pairs, double first, double last) const;
+  /// Removes the pairs for which separates() is true. The others stay in order.
+  void remove_separated(std::vector<Pair>& pairs, double start, double end) const;
 
-  /// Of pairs those that the way from the middle of the second to that of the first, where the motion begins, does not
-  /// part by more than `first` there and by more than `last` where it ends: of triangles that lie beside each other in
-  /// a surface it does, where their planes do not.
-  void keep_unparted_across(std::vector<Pair>& pairs, double first, double last) const;
+  /// Removes the pairs that the difference of centroids at the start separates by more than `start`
+  /// and `end`. This axis separates triangles that are neighbours on a sheet, which their planes do
+  /// not.
+  void remove_centroid_separated(std::vector<Pair>& pairs, double start, double end) const;
 
-  /// The farther of the two planes' distances between the triangles of each pair where the motion ends, on the side
-  /// where it begins; negative when they pass through each other.
-  std::vector<double> left(std::span<const Pair> pairs) const;
+  /// For each pair, the larger of the separations by the two planes at the end, on the side of the
+  /// start. Negative if the motion takes the triangles through each other's planes.
+  std::vector<double> end_separations(std::span<const Pair> pairs) const;
 
-  /// Four corners an axis, the last of them twice.
+  /// One triangle. Corners have four elements an axis; the last repeats the third.
   struct Plane {
-    alignas(32) double at[2][3][4];  // corners, where the motion begins and where it ends
-    double normal[3];                // unit; of a triangle without area zero
-    double middle[3];                // where the motion begins
-    double low[2],
-        high[2];  // of the corners along the normal, at the beginning (of slivers not the same) and at the end
+    alignas(32) double at[2][3][4];  // corners at the start and at the end
+    double normal[3];                // unit; zero if the triangle has no area
+    double centroid[3];              // at the start
+    // Extremes of normal · corner at the start and at the end. For slivers the two differ even at
+    // the start.
+    double low[2], high[2];
   };
 
  private:

@@ -1,4 +1,5 @@
-// Triangles around each vertex, as a quick look at neighbours that cannot cross.
+// Fans of triangles around vertices, as a filter: triangles of a fan that is a height field do not
+// cross.
 #pragma once
 
 #include <cstdint>
@@ -10,58 +11,65 @@
 
 namespace geo {
 
-/// Of the triangles of a surface, each vertex for itself.
+/// The triangles around each vertex of a surface (its fan).
 class VertexFans {
  public:
-  /// A triangle about a vertex, and the edge across, as the triangle goes round.
+  /// A triangle of a fan, and its edge opposite the vertex, in the triangle's orientation.
   struct Link {
     std::uint32_t from, to, triangle;
   };
 
+  /// The fans of no vertices.
   VertexFans() = default;
+  /// The fans of the vertices 0, …, vertices − 1. Copies the triangles.
   VertexFans(const std::vector<Triangle>& triangles, std::size_t vertices);
 
+  /// Number of vertices.
   std::size_t size() const { return closed_.size(); }
-  /// Those that it was made of.
+  /// The triangles of the surface.
   const std::vector<Triangle>& triangles() const { return triangles_; }
-  /// Triangles about vertex v, ascending.
-  std::span<const Link> about(std::size_t v) const { return {link_.data() + first_[v], first_[v + 1] - first_[v]}; }
-  /// Of vertices with a triangle marked in `changed`, into opens_out (per vertex): whether some direction looks at the
-  /// front of all triangles around it, which close around it once; then no two of them have more in common than corners
-  /// and edges. `together`: per vertex the row of `at` that says where it is (vertices_together()). Floating point, but
-  /// never true where that is not so. Returns those of them that do not, ascending.
-  std::vector<std::uint32_t> find_shut(const std::vector<std::uint8_t>& changed,
-                                       std::span<const std::uint32_t> together, const std::vector<Vec3>& at,
-                                       std::vector<std::uint8_t>& opens_out) const;
+  /// The fan of vertex v, by ascending triangles.
+  std::span<const Link> fan(std::size_t v) const { return {link_.data() + first_[v], first_[v + 1] - first_[v]}; }
 
-  /// use(s, t) for each pair of triangles about v (s < t), but for those that have another vertex in common that
-  /// `instead` accepts.
-  template <class Instead, class Use>
-  void each_pair(std::uint32_t v, const Instead& instead, const Use& use) const {
-    const auto links = about(v);
+  /// Certifies fans as height fields: some direction sees the front of all triangles of the fan,
+  /// which closes around the vertex exactly once. No two triangles of such a fan have more in
+  /// common than shared vertices and edges. Updates `certified` (per vertex) for the vertices of
+  /// triangles marked in `changed`, and returns those of them that are not certified, ascending.
+  /// `representative`: coincident_representatives(), by which `at` gives positions. Floating
+  /// point, but conservative.
+  std::vector<std::uint32_t> find_uncertified(const std::vector<std::uint8_t>& changed,
+                                              std::span<const std::uint32_t> representative,
+                                              const std::vector<Vec3>& at, std::vector<std::uint8_t>& certified) const;
+
+  /// Calls visit(s, t) for each pair of triangles s < t of the fan of v, except pairs with
+  /// another common vertex w for which skip(w) is true. With skip(w) = (w < v), the calls for all
+  /// v visit each pair with a common vertex once.
+  template <class Skip, class Visit>
+  void for_each_pair(std::uint32_t v, const Skip& skip, const Visit& visit) const {
+    const auto links = fan(v);
     for (std::size_t i = 0; i < links.size(); ++i)
       for (std::size_t j = i + 1; j < links.size(); ++j) {
         const auto &s = links[i], &t = links[j];
-        const auto in_both = [&](std::uint32_t w) { return w == t.from || w == t.to; };
-        if ((in_both(s.from) && instead(s.from)) || (in_both(s.to) && instead(s.to))) continue;
-        use(s.triangle, t.triangle);
+        const auto in_t = [&](std::uint32_t w) { return w == t.from || w == t.to; };
+        if ((in_t(s.from) && skip(s.from)) || (in_t(s.to) && skip(s.to))) continue;
+        visit(s.triangle, t.triangle);
       }
   }
 
  private:
-  // What a triangle shows of its front: its normal, as long as twice its area, and the square of its longest edge.
+  // The normal of a triangle, as long as twice its area, and the square of its longest edge.
   struct Front {
-    double normal[3], longest;
-    Eigen::Map<const Vec3> way() const { return Eigen::Map<const Vec3>(normal); }
+    double components[3], longest;
+    /// The components as a vector.
+    Eigen::Map<const Vec3> normal() const { return Eigen::Map<const Vec3>(components); }
   };
-  bool open_out(std::uint32_t v, const UninitializedArray<Front>& fronts, std::span<const std::uint32_t> together,
-                const std::vector<Vec3>& at) const;
+  bool is_height_field(std::uint32_t v, const UninitializedArray<Front>& fronts,
+                       std::span<const std::uint32_t> representative, const std::vector<Vec3>& at) const;
 
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> first_;
+  std::vector<std::uint32_t> first_;  // of each vertex in link_
   std::vector<Link> link_;
-  std::vector<std::uint8_t>
-      closed_;  // each end of an edge across is another's beginning, and no beginning is twice there
+  std::vector<std::uint8_t> closed_;  // per vertex: each opposite edge continues exactly one other
 };
 
 }  // namespace geo

@@ -4,12 +4,12 @@
 #include <numeric>
 #include <optional>
 
-#include "contact/detection/failing_pairs.h"
+#include "contact/detection/find_crossings.h"
+#include "contact/detection/motion_certifier.h"
 #include "contact/motion/fallback_motion.h"
 #include "contact/motion/separation_projection.h"
 #include "contact/motion/vertex_advance.h"
 #include "geometry/affine_fit.h"
-#include "kerf/crossing.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -17,11 +17,11 @@ namespace {
 
 class Mover {
  public:
-  Mover(const SurfaceMotion& m, bool two_sided, NearPairs& near, const VertexFans& fans, BoundedMotionStats& report)
+  Mover(const SurfaceMotion& m, bool two_sided, BroadPhase& near, const VertexFans& fans, BoundedMotionStats& report)
       : m_(m), two_sided_(two_sided), near_(near), fans_(fans), report_(report), surface_(m), at_(m.from) {
     edge_ = mean_edge();
     double size = 0;
-    for (const auto v : surface_.rows)
+    for (const auto v : surface_.vertices)
       size = std::max({size, m.from[v].cwiseAbs().maxCoeff(), m.to[v].cwiseAbs().maxCoeff()});
     rounding_ = 1e-14 * size;
   }
@@ -33,7 +33,7 @@ class Mover {
       report_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
       if (way == Way::carried) break;
     }
-    for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.together[v]];
+    for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.representative[v]];
     return std::move(at_);
   }
 
@@ -55,7 +55,7 @@ class Mover {
   }
 
   bool wanting() const {
-    return std::any_of(surface_.rows.begin(), surface_.rows.end(), [&](auto v) { return at_[v] != m_.to[v]; });
+    return std::any_of(surface_.vertices.begin(), surface_.vertices.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
   // Straight to where all want to be; what would cross or pass something is carried along instead,
@@ -63,7 +63,7 @@ class Mover {
   enum class Way { free, carried, behind };
   Way advance(int round) {
     std::vector<Vec3> start = at_;
-    if (round == 0) apply_affine_fit(surface_.rows, at_, m_.to, start);
+    if (round == 0) apply_affine_fit(surface_.vertices, at_, m_.to, start);
     std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
     cover(start, next);
     if (give_way(start, next)) {
@@ -72,20 +72,20 @@ class Mover {
     }
     next = straight(start, m_.to);
     cover(start, next);
-    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
+    MotionCertifier check({surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes());
     std::optional<FallbackMotion> carried;
-    const FailingPairs::KeptApart keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
+    const MotionCertifier::KnownDisjoint keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
       return carried && carried->keeps_apart(s, t, distance);
     };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     for (int growth = 0;; ++growth) {
-      const auto failing = check.among(near_.pairs(), changed, keep_apart);
+      const auto failing = check.uncertified_pairs(near_.pairs(), changed, keep_apart);
       if (failing.empty()) break;
-      if (!carried) carried.emplace(surface_.triangles, surface_.rows, start, m_.to, edge_);
+      if (!carried) carried.emplace(surface_.triangles, surface_.vertices, start, m_.to, edge_);
       bool grown = carried->add(failing);
       if (growth == growths_apart) grown |= carried->add_all();
       if (!grown || growth == most_growths) {
-        together(start, next);
+        move_as_one(start, next);
         break;
       }
       const std::vector<Vec3> before = next;
@@ -100,7 +100,7 @@ class Mover {
 
   std::vector<Vec3> straight(const std::vector<Vec3>& start, const std::vector<Vec3>& to) const {
     std::vector<Vec3> next = start;
-    for (const auto v : surface_.rows) next[v] = to[v];
+    for (const auto v : surface_.vertices) next[v] = to[v];
     return next;
   }
 
@@ -108,14 +108,16 @@ class Mover {
   // all the same.
   bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     SeparationProjection couples(surface_.triangles, start, m_.gap);
-    FailingPairs check(surface_, fans_, m_.together, two_sided_, start, next, rounding_, near_.planes());
-    const FailingPairs::KeptApart bound = [&](std::uint32_t s, std::uint32_t t, double) { return couples.bound(s, t); };
+    MotionCertifier check({surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes());
+    const MotionCertifier::KnownDisjoint bound = [&](std::uint32_t s, std::uint32_t t, double) {
+      return couples.bound(s, t);
+    };
     std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
     std::size_t many = ~std::size_t(0);
     int since = 0;  // the round in which so many failed
     bool free = false;
     for (int round = 0; round < most_mendings; ++round) {
-      const auto failing = check.among(near_.pairs(), changed, bound);
+      const auto failing = check.uncertified_pairs(near_.pairs(), changed, bound);
       free = failing.empty();
       if (free) break;
       if (failing.size() < many - many / 4) many = failing.size(), since = round;
@@ -140,7 +142,7 @@ class Mover {
   // Triangles of which a corner has another place.
   void mark(const std::vector<Vec3>& before, const std::vector<Vec3>& next, std::vector<std::uint8_t>& changed) const {
     std::vector<std::uint8_t> moved(next.size(), 0);
-    for (const auto v : surface_.rows) moved[v] = next[v] != before[v];
+    for (const auto v : surface_.vertices) moved[v] = next[v] != before[v];
     for (std::size_t t = 0; t < changed.size(); ++t) {
       const auto& [a, b, c] = surface_.triangles[t];
       changed[t] = moved[a] | moved[b] | moved[c];
@@ -148,17 +150,17 @@ class Mover {
   }
 
   // As one body, unless rounding forbids even that.
-  void together(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
+  void move_as_one(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     next = start;
     cover(next, next);
-    std::vector<NearPairs::Pair> pairs = near_.pairs();
+    std::vector<BroadPhase::Pair> pairs = near_.pairs();
     for (std::uint32_t v = 0; v < fans_.size(); ++v)
-      fans_.each_pair(
+      fans_.for_each_pair(
           v, [v](std::uint32_t w) { return w < v; },
           [&](std::uint32_t s, std::uint32_t t) {
             pairs.push_back({s, t});
           });
-    report_.held = !find_crossings(pairs, surface_.triangles, next, m_.together, two_sided_).empty();
+    report_.held = !find_crossings(pairs, surface_.triangles, next, m_.representative, two_sided_).empty();
     if (report_.held) next = at_;
   }
 
@@ -166,16 +168,16 @@ class Mover {
   // triangles have another `next`.
   void cover(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
              const std::vector<std::uint8_t>* changed = nullptr) {
-    near_.cover(
-        m_.triangles, [&](std::size_t t) { return surface_.swept(t, start, next); }, spare * edge_, changed);
+    near_.update(
+        m_.triangles, [&](std::size_t t) { return surface_.swept_box(t, start, next); }, spare * edge_, changed);
   }
 
   const SurfaceMotion& m_;
   bool two_sided_;
-  NearPairs& near_;
+  BroadPhase& near_;
   const VertexFans& fans_;
   BoundedMotionStats& report_;
-  StandingRows surface_;
+  RepresentativeSurface surface_;
   std::vector<Vec3> at_;
   double edge_ = 0, rounding_ = 0;
 };
@@ -183,9 +185,9 @@ class Mover {
 }  // namespace
 
 std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotionStats* told,
-                                        NearPairs* near, const VertexFans* fans) {
+                                        BroadPhase* near, const VertexFans* fans) {
   BoundedMotionStats own;
-  NearPairs pairs;
+  BroadPhase pairs;
   if (!fans) {
     const VertexFans made(motion.triangles, motion.from.size());
     return move_without_crossing(motion, two_sided, told, near, &made);

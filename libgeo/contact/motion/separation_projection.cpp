@@ -3,33 +3,34 @@
 #include <algorithm>
 #include <numeric>
 
-#include "contact/detection/dividers.h"
-#include "contact/detection/tilted.h"
+#include "contact/detection/separating_axes.h"
 #include "geometry/affine_fit.h"
 #include "kerf/parallel.h"
 
 namespace geo {
 
 void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Vec3>& next) {
-  const auto choose = [&](std::size_t i, const Partings& p, std::size_t lane) {
+  const auto choose = [&](std::size_t i, const SeparatingAxes& p, std::size_t lane) {
     Kept& c = couples_[i];
     const bool neighbours = c.a.size < 3 || c.b.size < 3;
     const double share = neighbours ? 0.5 : 1;  // neighbours may become thinner as the body is squeezed
     double most = 0, best = -std::numeric_limits<double>::infinity();
-    for (const auto& first : p.first) most = std::max(most, first[lane]);
+    for (const auto& first : p.start_separation) most = std::max(most, first[lane]);
     const auto offer = [&](const Vec3& n, double first, double last) {
       if (first > 0 && first >= 0.5 * std::min(most, gap_) && last > best)
         best = last, c.normal = n, c.apart = std::min(gap_, share * first);
       return false;
     };
-    for (int k = 0; k < Partings::count; ++k)
-      offer({p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]}, p.first[k][lane], p.last[k][lane]);
-    if (!neighbours) some_tilted({c.a, c.b}, p, lane, start_, next, offer);
+    for (int k = 0; k < SeparatingAxes::count; ++k)
+      offer({p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]}, p.start_separation[k][lane],
+            p.end_separation[k][lane]);
+    if (!neighbours) any_tilted_axis({c.a, c.b}, p, lane, start_, next, offer);
   };
   std::vector<std::size_t> chosen;
   for (const auto& pair : pairs) {
     std::pair<Simplex, Simplex> parts[2];
-    const auto count = static_cast<std::size_t>(parts_apart(triangles_[pair.first], triangles_[pair.second], parts));
+    const auto count =
+        static_cast<std::size_t>(disjoint_subsimplices(triangles_[pair.first], triangles_[pair.second], parts));
     const std::size_t at =
         known_.try_emplace(std::uint64_t(pair.first) << 32 | pair.second, couples_.size()).first->second;
     if (at == couples_.size()) couples_.resize(at + count);
@@ -41,7 +42,7 @@ void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Ve
     }
   }
   parallel_for(chosen.size(), 64, [&](std::size_t begin, std::size_t end) {
-    CouplesInLanes<decltype(choose)> in_lanes(start_, next, true, choose);
+    SeparatingAxisBatch<decltype(choose)> in_lanes(start_, next, true, choose);
     for (std::size_t i = begin; i < end; ++i) in_lanes.add({couples_[chosen[i]].a, couples_[chosen[i]].b}, chosen[i]);
     in_lanes.finish();
   });

@@ -13,8 +13,8 @@
 
 namespace geo {
 
-/// Couples of triangles, or of what they do not share (parts_apart()), each with a direction that
-/// parts them where a straight motion begins.
+/// Couples of triangles, or of what they do not share (disjoint_subsimplices()), each with a
+/// direction that parts them where a straight motion begins.
 class SeparationProjection {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;

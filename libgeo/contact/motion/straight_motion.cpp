@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/detection/dividers.h"
-#include "contact/detection/parting_lanes.h"
+#include "contact/detection/separating_axes.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -42,17 +41,17 @@ void move_straight(const std::vector<Triangle>& triangles,
           boxes[t] = swept(triangles[t], start, at).grown(0.5 * gap), asked[t] = any_corner(triangles[t], moves);
     });
     parallel_for(pairs.size(), 512, [&](std::size_t begin, std::size_t end) {
-      const auto kept = [gap](const Parting& p, bool adjacent) {
-        return p.first > 0 && p.last >= std::min(gap, adjacent ? 0.5 * p.first : p.first);
+      const auto kept = [gap](const PairSeparation& p, bool adjacent) {
+        return p.start > 0 && p.end >= std::min(gap, adjacent ? 0.5 * p.start : p.start);
       };
-      const auto for_good = [gap](const Parting& p, bool adjacent) {
-        return p.always > 0 && p.always >= std::min(gap, adjacent ? 0.5 * p.first : p.first);
+      const auto for_good = [gap](const PairSeparation& p, bool adjacent) {
+        return p.swept > 0 && p.swept >= std::min(gap, adjacent ? 0.5 * p.start : p.start);
       };
       // Numbers: of the pair, and whether it is one of neighbours.
-      const auto judge = [&](std::size_t number, const Partings& p, std::size_t lane) {
+      const auto judge = [&](std::size_t number, const SeparatingAxes& p, std::size_t lane) {
         bool any = false, any_for_good = false;
-        for (int k = 0; k < Partings::count; ++k) {
-          const Parting one{p.first[k][lane], p.last[k][lane], p.always[k][lane]};
+        for (int k = 0; k < SeparatingAxes::count; ++k) {
+          const PairSeparation one{p.start_separation[k][lane], p.end_separation[k][lane], p.swept_separation[k][lane]};
           any |= kept(one, number % 2 != 0), any_for_good |= for_good(one, number % 2 != 0);
         }
         auto& all = found[number / 2];
@@ -61,7 +60,7 @@ void move_straight(const std::vector<Triangle>& triangles,
         else if (!any_for_good && all == never)
           all = parted;
       };
-      CouplesInLanes<decltype(judge)> couples(start, at, true, judge);
+      SeparatingAxisBatch<decltype(judge)> couples(start, at, true, judge);
       std::pair<Simplex, Simplex> parts[2];
       for (std::size_t i = begin; i < end; ++i) {
         const auto& [p, q] = pairs[i];
@@ -70,10 +69,10 @@ void move_straight(const std::vector<Triangle>& triangles,
         if (!(changed[p] || changed[q]) || !(asked[p] || asked[q])) continue;  // those that stay are apart
         if (!boxes[p].meets(boxes[q])) continue;
         found[i] = never;
-        const int count = parts_apart(triangles[p], triangles[q], parts);
+        const int count = disjoint_subsimplices(triangles[p], triangles[q], parts);
         for (int k = 0; k < count; ++k) {
-          const Couple couple{parts[k].first, parts[k].second};
-          const Parting across = part_across(couple, start, at);
+          const PrimitivePair couple{parts[k].first, parts[k].second};
+          const PairSeparation across = centroid_separation(couple, start, at);
           if (!kept(across, count == 2))
             couples.add(couple, 2 * i + (count == 2));
           else if (!for_good(across, count == 2) && found[i] == never)

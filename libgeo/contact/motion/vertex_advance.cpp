@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "contact/detection/close_pairs.h"
-#include "contact/detection/dividers.h"
+#include "contact/detection/aabb_tree.h"
+#include "contact/motion/separating_planes.h"
 #include "contact/motion/straight_motion.h"
 
 namespace geo {
@@ -25,11 +25,11 @@ std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::
     moving[t] = most > 0, boxes[t] = boxes[t].grown(most + 0.5 * gap);
   }
   if (std::count(moving.begin(), moving.end(), 1) == 0) return 0;
-  const auto pairs = close_pairs(std::move(boxes), &moving);
+  const auto pairs = overlapping_pairs(std::move(boxes), &moving);
   move_straight(triangles, pairs, to, gap, at);
   for (std::size_t v = 0; v < at.size(); ++v)
     if (room[v] > 0) room[v] = std::min(room[v], (to[v] - at[v]).norm());
-  return move_divided({triangles, pairs, to, room, gap}, at);
+  return move_between_planes({triangles, pairs, to, room, gap}, at);
 }
 
 }  // namespace geo

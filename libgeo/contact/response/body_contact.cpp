@@ -31,7 +31,7 @@ class BodyContactFinder {
     std::vector<Box3> box(bodies);
     for (std::uint32_t v = 0; v < complex().surface_vertex_count(); ++v) {
       const SurfaceVertexId id(v);
-      if (!complex().alive(id) || in_.weights.row(v).empty()) continue;
+      if (!complex().alive(id) || in_.weights.stencil(v).empty()) continue;
       vertices_.push_back({id, world(id)});
       box[body_of(id)].add(vertices_.back().world);
     }
@@ -47,11 +47,11 @@ class BodyContactFinder {
 
   const Complex& complex() const { return in_.body.surface; }
   std::uint32_t body_of(SurfaceVertexId v) const {
-    const Stencil carriers = in_.weights.row(v.index());
+    const Stencil carriers = in_.weights.stencil(v.index());
     return carriers.empty() ? ~0u : in_.body_index[carriers[0].node];
   }
   Vec3 material(SurfaceVertexId v) const { return complex().point(complex().site(v)); }
-  Vec3 world(SurfaceVertexId v) const { return material(v) + in_.weights.at(v.index(), in_.displacement); }
+  Vec3 world(SurfaceVertexId v) const { return material(v) + in_.weights.interpolate(v.index(), in_.displacement); }
   // The point's position where it is on the given side of its face.
   Vec3 world(const SidePoint& p, int which) const {
     Vec3 sum = Vec3::Zero();
@@ -107,11 +107,11 @@ class BodyContactFinder {
   void add_contact(SurfaceVertexId v, const SidePoint& p) {
     Vec3 corner[3];
     std::map<std::uint32_t, double> stencil;
-    for (const auto& e : in_.weights.row(v.index())) stencil[e.node] += e.weight;
+    for (const auto& e : in_.weights.stencil(v.index())) stencil[e.node] += e.weight;
     for (int c = 0; c < 3; ++c) {
       const SurfaceVertexId id = complex().surface_vertex(p.side, c);
       corner[c] = world(id);
-      for (const auto& e : in_.weights.row(id.index())) stencil[e.node] -= p.weight[c] * e.weight;
+      for (const auto& e : in_.weights.stencil(id.index())) stencil[e.node] -= p.weight[c] * e.weight;
     }
     const Vec3 normal =
         (p.side.which == 0 ? 1.0 : -1.0) * (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();

@@ -37,13 +37,13 @@ struct KeyedConstraint {
   std::pair<PointPairKey, PointPairKey> key;  // of the points; of the two simplices
 };
 
-void add_constraint(const Watched& candidate, const SurfaceMotion& motion, const ConstraintOptions& options,
+void add_constraint(const ContactCandidate& candidate, const SurfaceMotion& motion, const ConstraintOptions& options,
                     std::vector<KeyedConstraint>& out) {
   const Simplex &a = candidate.a, &b = candidate.b;
-  if (parted(candidate.normal, a, b, motion.to) >= candidate.gap + options.reach) return;
-  const ClosestPlaces& closest = candidate.closest;
-  ContactConstraint c{surface_point(a, closest.from), surface_point(b, closest.to), candidate.normal, 0, 0};
-  c.approach = std::max(0.0, candidate.normal.dot(closest.apart) - candidate.gap) / options.dt;
+  if (separation_along(candidate.normal, a, b, motion.to) >= candidate.gap + options.reach) return;
+  const ClosestPoints& closest = candidate.closest;
+  ContactConstraint c{surface_point(a, closest.weights_a), surface_point(b, closest.weights_b), candidate.normal, 0, 0};
+  c.approach = std::max(0.0, candidate.normal.dot(closest.difference) - candidate.gap) / options.dt;
   Vec3 apart = Vec3::Zero();  // at the end of the motion
   for (int k = 0; k < c.a.size; ++k) apart += c.a.weight[k] * motion.to[c.a.vertex[k]];
   for (int k = 0; k < c.b.size; ++k) apart -= c.b.weight[k] * motion.to[c.b.vertex[k]];
@@ -54,8 +54,8 @@ void add_constraint(const Watched& candidate, const SurfaceMotion& motion, const
 
 }  // namespace
 
-std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& candidates, const SurfaceMotion& motion,
-                                                   const ConstraintOptions& options) {
+std::vector<ContactConstraint> contact_constraints(const std::vector<ContactCandidate>& candidates,
+                                                   const SurfaceMotion& motion, const ConstraintOptions& options) {
   constexpr std::size_t chunk = 256;  // candidates; the result does not depend on it
   std::vector<std::vector<KeyedConstraint>> of_chunk((candidates.size() + chunk - 1) / chunk);
   parallel_for(of_chunk.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -73,13 +73,13 @@ std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& c
   return unique;
 }
 
-void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                           double tolerance, const ConstraintOptions& options,
+void add_sheet_constraints(const CoincidentVertices& coincident, const std::vector<Vec3>& targets,
+                           const std::vector<Vec3>& normals, double tolerance, const ConstraintOptions& options,
                            std::vector<ContactConstraint>& constraints) {
-  for (std::size_t v = 0; v < copies.size(); ++v)
-    for (std::size_t i = 0; i < copies[v].size(); ++i)
-      for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
-        const auto a = copies[v][i], b = copies[v][j];
+  for (std::size_t v = 0; v < coincident.size(); ++v)
+    for (std::size_t i = 0; i < coincident[v].size(); ++i)
+      for (std::size_t j = i + 1; j < coincident[v].size(); ++j) {
+        const auto a = coincident[v][i], b = coincident[v][j];
         // The outward normal of b's side points to a's material.
         const Vec3 across = normals[b].normalized() - normals[a].normalized();
         if (!(across.norm() > 0.5)) continue;  // they do not face each other

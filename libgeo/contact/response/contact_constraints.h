@@ -2,7 +2,7 @@
 // each other.
 #pragma once
 
-#include "contact/detection/watch.h"
+#include "contact/detection/contact_candidates.h"
 #include "contact/response/relative_stencil.h"
 #include "contact/surface/contact_surface.h"
 
@@ -34,14 +34,14 @@ constexpr std::size_t constraints_per_node_pair = 4;
 /// A constraint for the closest points of each candidate pair that the motion brings nearer than
 /// its gap (and reach). Points that several pairs share are constrained once. The result does not
 /// depend on the order of candidates.
-std::vector<ContactConstraint> contact_constraints(const std::vector<Watched>& candidates, const SurfaceMotion& motion,
-                                                   const ConstraintOptions& options);
+std::vector<ContactConstraint> contact_constraints(const std::vector<ContactCandidate>& candidates,
+                                                   const SurfaceMotion& motion, const ConstraintOptions& options);
 
 /// Adds constraints between coincident vertices, the sides of a closed sheet, whose targets lie
 /// farther than `tolerance` behind each other. The normal is the difference of the vertices'
 /// normals (`normals`: vertex_normals()). ConstraintOptions::reach has no effect.
-void add_sheet_constraints(const Copies& copies, const std::vector<Vec3>& targets, const std::vector<Vec3>& normals,
-                           double tolerance, const ConstraintOptions& options,
+void add_sheet_constraints(const CoincidentVertices& coincident, const std::vector<Vec3>& targets,
+                           const std::vector<Vec3>& normals, double tolerance, const ConstraintOptions& options,
                            std::vector<ContactConstraint>& constraints);
 
 /// For every two nodes, of those constraints whose points these nodes carry the most, the `count`

@@ -9,13 +9,14 @@ namespace {
 
 class ImpulseResponse {
  public:
-  ImpulseResponse(const StepWithoutContact& step, double gap, MovingSurface& surface, NearPairs& near)
+  ImpulseResponse(const StepWithoutContact& step, double gap, MovingSurface& surface, BroadPhase& near)
       : step_(step),
         gap_(gap),
         surface_(surface),
         near_(near),
-        normals_(vertex_normals(surface.topology(), surface.fans(), surface.coincidence().copies, surface.positions())),
-        alone_(Copies::each_alone(surface.positions().size())) {
+        normals_(
+            vertex_normals(surface.topology(), surface.fans(), surface.coincidence().coincident, surface.positions())),
+        alone_(CoincidentVertices::all_distinct(surface.positions().size())) {
     for (std::size_t i = 0; i < step.solid.size(); ++i)
       inverse_mass_.push_back(step.fixed.empty() || !step.fixed[i] ? 1 / step.solid.mass(NodeId(i)) : 0);
   }
@@ -24,20 +25,21 @@ class ImpulseResponse {
   // node, so that they satisfy their constraints. Returns the number of contacts.
   std::size_t respond(const std::vector<Vec3>& u, const ConstraintOptions& constraint, double friction,
                       std::vector<Vec3>& velocity) {
-    const auto& [representative, copies] = surface_.coincidence();
+    const auto& [representative, coincident] = surface_.coincidence();
     const std::vector<Vec3> to = surface_targets(step_.body, step_.weights, u),
                             goal = surface_.coincidence().averaged(to);
     const SurfaceMotion motion{
         surface_.topology().triangles, representative, surface_.positions(), goal, gap_, 2 * gap_};
-    if (candidates_.empty()) candidates_ = watch(motion, near_);
+    if (candidates_.empty()) candidates_ = find_contact_candidates(motion, near_);
     const auto near = deepest_constraints(contact_constraints(candidates_, motion, constraint), step_.weights,
                                           constraints_per_node_pair);
     std::vector<ContactConstraint> all_sides;
-    add_sheet_constraints(copies, to, normals_, 0.01 * gap_, constraint, all_sides);
+    add_sheet_constraints(coincident, to, normals_, 0.01 * gap_, constraint, all_sides);
     const auto sides = deepest_constraints(all_sides, step_.weights, constraints_per_node_pair);
     ImpulseOptions options;
     options.friction = friction;
-    const std::size_t count = apply_impulses(step_.weights, near, copies, inverse_mass_, options, velocity).touching;
+    const std::size_t count =
+        apply_impulses(step_.weights, near, coincident, inverse_mass_, options, velocity).touching;
     return count + apply_impulses(step_.weights, sides, alone_, inverse_mass_, options, velocity).touching;
   }
 
@@ -45,17 +47,17 @@ class ImpulseResponse {
   const StepWithoutContact& step_;
   double gap_;  // model units
   MovingSurface& surface_;
-  NearPairs& near_;
+  BroadPhase& near_;
   std::vector<Vec3> normals_;  // per surface vertex, of its sheet
-  Copies alone_;               // every vertex for itself: the sides of a sheet move apart
+  CoincidentVertices alone_;   // every vertex for itself: the sides of a sheet move apart
   std::vector<double> inverse_mass_;
-  std::vector<Watched> candidates_;  // of the first round
+  std::vector<ContactCandidate> candidates_;  // of the first round
 };
 
 }  // namespace
 
 std::size_t resolve_with_impulses(const StepWithoutContact& step, const ImpulseResponseOptions& options,
-                                  MovingSurface& surface, NearPairs& near, State& state) {
+                                  MovingSurface& surface, BroadPhase& near, State& state) {
   const std::size_t n = step.solid.size();
   const double dt = step.dt;
   std::vector<Vec3> velocity(n), u = state.displacement;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "contact/detection/near_pairs.h"
+#include "contact/detection/broad_phase.h"
 #include "contact/surface/moving_surface.h"
 #include "contact/surface/surface_weights.h"
 #include "kerf/solid.h"
@@ -34,6 +34,6 @@ struct ImpulseResponseOptions {
 /// velocity. Momentum is conserved but for fixed nodes. `near`: is left with the broad phase's
 /// pairs. Returns the number of contacts, summed over the rounds.
 std::size_t resolve_with_impulses(const StepWithoutContact& step, const ImpulseResponseOptions& options,
-                                  MovingSurface& surface, NearPairs& near, State& state);
+                                  MovingSurface& surface, BroadPhase& near, State& state);
 
 }  // namespace geo

@@ -37,7 +37,8 @@ Vec3 update_impulse(const Vec3& n, const Vec3& v, double deficit, double softnes
 }  // namespace
 
 std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
-                                               std::span<const ContactConstraint> constraints, const Copies& stands_for,
+                                               std::span<const ContactConstraint> constraints,
+                                               const CoincidentVertices& stands_for,
                                                const std::vector<double>& inverse_mass) {
   std::vector<RelativeStencil> stencils(constraints.size());
   parallel_for(constraints.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -48,7 +49,7 @@ std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
 }
 
 ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> constraints,
-                            const Copies& stands_for, const std::vector<double>& inverse_mass,
+                            const CoincidentVertices& stands_for, const std::vector<double>& inverse_mass,
                             const ImpulseOptions& options, std::vector<Vec3>& velocity) {
   ImpulseStats stats;
   const std::vector<RelativeStencil> stencils = relative_stencils(weights, constraints, stands_for, inverse_mass);

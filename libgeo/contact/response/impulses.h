@@ -13,7 +13,8 @@ namespace geo {
 /// Stencils of the constraints' points, in their order; see RelativeStencilBuilder for the
 /// parameters.
 std::vector<RelativeStencil> relative_stencils(const SurfaceWeights& weights,
-                                               std::span<const ContactConstraint> constraints, const Copies& stands_for,
+                                               std::span<const ContactConstraint> constraints,
+                                               const CoincidentVertices& stands_for,
                                                const std::vector<double>& inverse_mass);
 
 /// Options of the solver.
@@ -37,7 +38,7 @@ struct ImpulseStats {
 /// Impulses are equal and opposite, so momentum is conserved except at fixed nodes. Kinetic energy
 /// does not grow unless points must separate.
 ImpulseStats apply_impulses(const SurfaceWeights& weights, std::span<const ContactConstraint> constraints,
-                            const Copies& stands_for, const std::vector<double>& inverse_mass,
+                            const CoincidentVertices& stands_for, const std::vector<double>& inverse_mass,
                             const ImpulseOptions& options, std::vector<Vec3>& velocity);
 
 }  // namespace geo

@@ -39,13 +39,13 @@ void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weig
   const Eigen::Isometry3d to_local = from_.inverse();
   parallel_for(reaches.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      const Stencil carriers = weights.row(v);
+      const Stencil carriers = weights.stencil(v);
       if (!k.alive(SurfaceVertexId(v)) || carriers.empty()) continue;
       if (!own.empty()) {
         if (std::none_of(carriers.begin(), carriers.end(),
                          [&](const NodeWeight& w) { return placement.near_nodes[w.node] != 0; }))
           continue;
-        own[v] = rest(v) + weights.at(v, placement.displacement);
+        own[v] = rest(v) + weights.interpolate(v, placement.displacement);
       }
       reaches[v] = shape_->near(to_local * position(v), reach);
     }
@@ -59,7 +59,7 @@ void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weig
       const auto v = vertices[i];
       Contact& c = contacts_[i];
       c = {};
-      c.weights = weights.row(v), c.weight_norm = weights.spread(v);
+      c.weights = weights.stencil(v), c.weight_norm = weights.norm(v);
       c.rest = rest(v), c.displacement = position(v) - c.rest;
       const double factor = pressure_factor.empty() ? 1 : pressure_factor[weights.heaviest()[v]];
       c.stiffness = options_.pressure * factor * weights.area(v);

@@ -33,32 +33,33 @@ class PenaltyAssembly {
   }
 
   // Contacts between points of different triangles.
-  void add_near_pairs(NearPairs& near) {
-    const auto& [representative, copies] = surface_.coincidence();
+  void add_near_pairs(BroadPhase& near) {
+    const auto& [representative, coincident] = surface_.coincidence();
     const std::vector<Vec3> to = surface_.coincidence().averaged(in_.free_targets);
     const double reach = candidate_distance * edge_;
     const SurfaceMotion motion{surface_.topology().triangles, representative, surface_.positions(), to, in_.gap, reach};
-    const auto candidates = watch(motion, near, in_.weights.heaviest(), 2 * constraints_per_node_pair);
+    const auto candidates =
+        find_contact_candidates(motion, near, {in_.weights.heaviest(), 2 * constraints_per_node_pair});
     add(deepest_constraints(contact_constraints(candidates, motion, {in_.dt, 0, reach}), in_.weights,
                             constraints_per_node_pair),
-        copies, in_.mean_targets, in_.gap + clearance * edge_);
+        coincident, in_.mean_targets, in_.gap + clearance * edge_);
   }
 
   // Contacts between the two sides of a closed sheet: coincident vertices.
   void add_sheet_sides() {
-    const Copies& copies = surface_.coincidence().copies;
+    const CoincidentVertices& coincident = surface_.coincidence().coincident;
     std::vector<ContactConstraint> sides;
-    const auto normals = vertex_normals(surface_.topology(), surface_.fans(), copies, surface_.positions());
-    add_sheet_constraints(copies, in_.free_targets, normals, -candidate_distance * edge_, {in_.dt}, sides);
-    add(deepest_constraints(sides, in_.weights, constraints_per_node_pair), Copies::each_alone(copies.size()),
-        in_.targets, 0);
+    const auto normals = vertex_normals(surface_.topology(), surface_.fans(), coincident, surface_.positions());
+    add_sheet_constraints(coincident, in_.free_targets, normals, -candidate_distance * edge_, {in_.dt}, sides);
+    add(deepest_constraints(sides, in_.weights, constraints_per_node_pair),
+        CoincidentVertices::all_distinct(coincident.size()), in_.targets, 0);
   }
 
  private:
   // `at`: targets of vertices at the beginning; `separation`: to be kept, 0 between sides of a
   // sheet.
-  void add(const std::vector<ContactConstraint>& constraints, const Copies& stands_for, const std::vector<Vec3>& at,
-           double separation) {
+  void add(const std::vector<ContactConstraint>& constraints, const CoincidentVertices& stands_for,
+           const std::vector<Vec3>& at, double separation) {
     const std::vector<RelativeStencil> stencils =
         relative_stencils(in_.weights, constraints, stands_for, in_.free.inverse_mass);
     std::vector<double> depth(stencils.size());
@@ -125,7 +126,8 @@ FreeMotion free_motion(const Body& body, const Solid& solid, const State& state,
   return free;
 }
 
-void assemble_penalty(const PenaltyInput& input, MovingSurface& surface, NearPairs& near, SelfContactPenalty& penalty) {
+void assemble_penalty(const PenaltyInput& input, MovingSurface& surface, BroadPhase& near,
+                      SelfContactPenalty& penalty) {
   PenaltyAssembly assembly(input, surface, penalty);
   assembly.add_near_pairs(near);
   assembly.add_sheet_sides();

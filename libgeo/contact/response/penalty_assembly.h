@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "contact/detection/near_pairs.h"
+#include "contact/detection/broad_phase.h"
 #include "contact/response/self_contact_penalty.h"
 #include "contact/surface/moving_surface.h"
 #include "contact/surface/surface_weights.h"
@@ -40,6 +40,6 @@ struct PenaltyInput {
 /// Adds to `penalty` the contacts that the free motion may close: pairs of surface points that come
 /// near each other, and the two sides of closed sheets. `near`: is left with the broad phase's
 /// pairs.
-void assemble_penalty(const PenaltyInput& input, MovingSurface& surface, NearPairs& near, SelfContactPenalty& penalty);
+void assemble_penalty(const PenaltyInput& input, MovingSurface& surface, BroadPhase& near, SelfContactPenalty& penalty);
 
 }  // namespace geo

@@ -2,7 +2,7 @@
 
 namespace geo {
 
-RelativeStencilBuilder::RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for,
+RelativeStencilBuilder::RelativeStencilBuilder(const SurfaceWeights& weights, const CoincidentVertices& stands_for,
                                                const std::vector<double>& inverse_mass)
     : weights_(weights),
       stands_for_(stands_for),
@@ -29,11 +29,11 @@ RelativeStencil RelativeStencilBuilder::make(const SurfacePoint& a, const Surfac
 
 void RelativeStencilBuilder::add(const SurfacePoint& point, std::size_t which) {
   for (int k = 0; k < point.size; ++k) {
-    const auto copies = stands_for_[point.vertex[k]];
-    for (const auto v : copies)
-      for (const auto& e : weights_.row(v)) {
+    const auto coincident = stands_for_[point.vertex[k]];
+    for (const auto v : coincident)
+      for (const auto& e : weights_.stencil(v)) {
         if (!in_use_[e.node]) nodes_.push_back(e.node), in_use_[e.node] = 1;
-        sum_[e.node][which] += point.weight[k] / double(copies.size()) * e.weight;
+        sum_[e.node][which] += point.weight[k] / double(coincident.size()) * e.weight;
       }
   }
 }

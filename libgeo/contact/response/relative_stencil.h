@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "contact/surface/copies.h"
+#include "contact/surface/coincident_vertices.h"
 #include "contact/surface/surface_weights.h"
 
 namespace geo {
@@ -37,7 +37,7 @@ class RelativeStencilBuilder {
  public:
   /// `stands_for`: the surface vertices whose mean a vertex of a point is. `inverse_mass`: per
   /// node, 1/kg; 0 for fixed nodes. Refers to all of them.
-  RelativeStencilBuilder(const SurfaceWeights& weights, const Copies& stands_for,
+  RelativeStencilBuilder(const SurfaceWeights& weights, const CoincidentVertices& stands_for,
                          const std::vector<double>& inverse_mass);
   /// The stencil of a's displacement less b's.
   RelativeStencil make(const SurfacePoint& a, const SurfacePoint& b);
@@ -47,7 +47,7 @@ class RelativeStencilBuilder {
   void add(const SurfacePoint& point, std::size_t which);
 
   const SurfaceWeights& weights_;
-  const Copies& stands_for_;
+  const CoincidentVertices& stands_for_;
   const std::vector<double>& inverse_mass_;
   std::vector<PointWeights> sum_;     // per node; zero between calls
   std::vector<std::uint8_t> in_use_;  // per node; zero between calls

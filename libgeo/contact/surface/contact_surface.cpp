@@ -7,6 +7,7 @@
 namespace geo {
 namespace {
 
+// The triangle of a side, counter-clockwise from outside.
 Triangle triangle_of(const Complex& complex, std::uint32_t side) {
   const auto v = [&](int k) { return complex.surface_vertex({FaceId(side / 2), static_cast<int>(side % 2)}, k).value; };
   return side % 2 == 0 ? Triangle{v(0), v(1), v(2)} : Triangle{v(0), v(2), v(1)};
@@ -34,7 +35,7 @@ std::vector<FaceId> ascending(std::vector<FaceId> faces) {
 
 }  // namespace
 
-std::pair<std::size_t, std::size_t> ContactSurface::rows_of(FaceId f) const {
+std::pair<std::size_t, std::size_t> ContactSurface::triangles_of(FaceId f) const {
   const auto first = std::lower_bound(side.begin(), side.end(), 2 * f.value),
              last = std::find_if(first, side.end(), [&](auto s) { return s / 2 != f.value; });
   return {static_cast<std::size_t>(first - side.begin()), static_cast<std::size_t>(last - side.begin())};
@@ -48,29 +49,29 @@ ContactSurface contact_surface(const Complex& complex) {
   return s;
 }
 
-ContactSurface grown_surface(const ContactSurface& before, const Complex& grown, const CrackDelta& crack) {
+ContactSurface updated_contact_surface(const ContactSurface& before, const Complex& after, const CrackDelta& crack) {
   ContactSurface s;
   s.triangles.reserve(before.triangles.size() + 2 * crack.new_faces.size()), s.side.reserve(s.triangles.capacity());
-  std::size_t next = 0;  // of the rows before, all up to it are copied or gone
-  const auto copy_to = [&](std::size_t row) {
-    const auto from = static_cast<std::ptrdiff_t>(next), to = static_cast<std::ptrdiff_t>(row);
+  std::size_t next = 0;  // triangles of `before` up to this one are copied or removed
+  const auto copy_until = [&](std::size_t last) {
+    const auto from = static_cast<std::ptrdiff_t>(next), to = static_cast<std::ptrdiff_t>(last);
     s.triangles.insert(s.triangles.end(), before.triangles.begin() + from, before.triangles.begin() + to);
     s.side.insert(s.side.end(), before.side.begin() + from, before.side.begin() + to);
   };
   for (const FaceId f : ascending(crack.removed_faces)) {
-    const auto [row, end] = before.rows_of(f);
-    copy_to(row), next = end;
+    const auto [first, end] = before.triangles_of(f);
+    copy_until(first), next = end;
   }
-  copy_to(before.side.size());
-  for (const FaceId f : ascending(crack.new_faces)) add_sides(grown, f, s);  // numbers of faces are given in turn
-  // Other faces have other corners only where surface vertices came or got other triangles.
+  copy_until(before.side.size());
+  for (const FaceId f : ascending(crack.new_faces)) add_sides(after, f, s);  // new faces have the highest numbers
+  // Other faces change vertices only next to new or changed surface vertices.
   for (const auto* vertices : {&crack.new_surface_vertices, &crack.touched_surface_vertices})
     for (const auto v : *vertices) {
-      if (!grown.alive(v)) continue;
-      for (const FaceId f : grown.faces_at(grown.site(v)))
-        for (auto [row, end] = s.rows_of(f); row < end; ++row) s.triangles[row] = triangle_of(grown, s.side[row]);
+      if (!after.alive(v)) continue;
+      for (const FaceId f : after.faces_at(after.site(v)))
+        for (auto [t, end] = s.triangles_of(f); t < end; ++t) s.triangles[t] = triangle_of(after, s.side[t]);
     }
-  set_sites(grown, s);
+  set_sites(after, s);
   return s;
 }
 
@@ -83,7 +84,7 @@ double mean_edge(const ContactSurface& surface, const Complex& complex) {
   return surface.side.empty() ? 0 : length / (3 * double(surface.side.size()));
 }
 
-double area_about(const Complex& k, SurfaceVertexId v) {
+double vertex_area(const Complex& k, SurfaceVertexId v) {
   double area = 0;
   for (const FaceId f : k.faces_at(k.site(v)))
     for (int which = 0; which < 2; ++which)
@@ -95,14 +96,14 @@ double area_about(const Complex& k, SurfaceVertexId v) {
   return area;
 }
 
-std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies,
-                                 const std::vector<Vec3>& p) {
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans,
+                                 const CoincidentVertices& coincident, const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
-  parallel_for(copies.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(coincident.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      if (copies[v].size() == 1) continue;
-      for (const auto one : copies[v])
-        for (const auto& l : fans.about(one)) {
+      if (coincident[v].size() == 1) continue;
+      for (const auto one : coincident[v])
+        for (const auto& l : fans.fan(one)) {
           const auto& [a, b, c] = surface.triangles[l.triangle];
           normals[one] += (p[b] - p[a]).cross(p[c] - p[a]);
         }
@@ -111,13 +112,14 @@ std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans
   return normals;
 }
 
-std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together,
-                                 const std::vector<Vec3>& p) {
+std::vector<Vec3> coincident_side_normals(const ContactSurface& surface, std::span<const std::uint32_t> representative,
+                                          const std::vector<Vec3>& p) {
   std::vector<Vec3> normals(p.size(), Vec3::Zero());
   for (std::size_t t = 1; t < surface.triangles.size(); ++t) {
-    if (surface.side[t] / 2 != surface.side[t - 1] / 2) continue;  // the two sides of a face follow each other
+    if (surface.side[t] / 2 != surface.side[t - 1] / 2) continue;  // not the two sides of one face
     const auto &s = surface.triangles[t - 1], &o = surface.triangles[t];
-    if (together[s[0]] != together[o[0]] || together[s[1]] != together[o[2]] || together[s[2]] != together[o[1]])
+    if (representative[s[0]] != representative[o[0]] || representative[s[1]] != representative[o[2]] ||
+        representative[s[2]] != representative[o[1]])
       continue;
     const Vec3 n = (p[s[1]] - p[s[0]]).cross(p[s[2]] - p[s[0]]);
     for (int k = 0; k < 3; ++k)

@@ -1,4 +1,4 @@
-// The derived two-sided surface as contact looks at it: rows of triangles, and what belongs to which site.
+// The derived two-sided surface in the form that contact needs: triangles and sites.
 #pragma once
 
 #include <cstdint>
@@ -7,38 +7,40 @@
 #include <vector>
 
 #include "contact/detection/vertex_fans.h"
-#include "contact/surface/copies.h"
+#include "contact/surface/coincident_vertices.h"
 #include "kerf/complex.h"
 
 namespace geo {
 
+/// Triangles of the derived surface. Coincident vertices have the same site.
 struct ContactSurface {
-  std::vector<Triangle> triangles;  ///< of surface vertex ids
+  std::vector<Triangle> triangles;  ///< of surface vertices
   std::vector<std::uint32_t> side;  ///< per triangle: 2 · face + which of its two sides; ascending
-  std::vector<std::uint32_t> site;  ///< per surface vertex; of dead ones a number that no other has
-  double edge = 0;                  ///< mean length of edges, model units, at rest
-  /// The rows of a face's triangles: the first, and after the last.
-  std::pair<std::size_t, std::size_t> rows_of(FaceId f) const;
+  std::vector<std::uint32_t> site;  ///< per surface vertex; for dead ones a number that occurs once
+  double edge = 0;                  ///< mean length of edges at rest, model units
+
+  /// The triangles of a face: the index of the first, and one past the last.
+  std::pair<std::size_t, std::size_t> triangles_of(FaceId f) const;
 };
 
-/// Cost follows the whole surface.
+/// The contact surface of a complex. The cost follows the whole surface.
 ContactSurface contact_surface(const Complex& complex);
-/// The same, but for `edge`, of a complex that a crack step has made of the one that `before` is of: what has not
-/// changed is copied.
-ContactSurface grown_surface(const ContactSurface& before, const Complex& grown, const CrackDelta& crack);
-/// ContactSurface::edge. Lengths are added up one after another, so that cost follows the whole surface.
+/// The contact surface, except for `edge`, of the complex `after` a crack step, given that of the
+/// complex before it. Unchanged triangles are copied.
+ContactSurface updated_contact_surface(const ContactSurface& before, const Complex& after, const CrackDelta& crack);
+/// ContactSurface::edge. Adds lengths in a fixed order; the cost follows the whole surface.
 double mean_edge(const ContactSurface& surface, const Complex& complex);
 
-/// A third of the triangles at rest about a vertex of the derived surface, model units².
-double area_about(const Complex& complex, SurfaceVertexId v);
+/// A third of the area, at rest, of the triangles around a surface vertex, model units².
+double vertex_area(const Complex& complex, SurfaceVertexId v);
 
-/// Per vertex that is together with others the sum of the normals of its triangles (`fans`), twice their areas long, at
-/// the given positions.
-std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans, const Copies& copies,
-                                 const std::vector<Vec3>& positions);
-/// The same of triangles alone that touch the other side of their face (`together`: vertices_together()); zero where
-/// there is none.
-std::vector<Vec3> shared_normals(const ContactSurface& surface, std::span<const std::uint32_t> together,
-                                 const std::vector<Vec3>& positions);
+/// For each coincident vertex the sum of its triangles' normals at the given positions, each twice
+/// the area long. Zero for vertices that coincide with no other. `fans`: of the surface.
+std::vector<Vec3> vertex_normals(const ContactSurface& surface, const VertexFans& fans,
+                                 const CoincidentVertices& coincident, const std::vector<Vec3>& positions);
+/// As vertex_normals(), only over triangles that coincide with the other side of their face; zero
+/// if there are none. `representative`: coincident_representatives().
+std::vector<Vec3> coincident_side_normals(const ContactSurface& surface, std::span<const std::uint32_t> representative,
+                                          const std::vector<Vec3>& positions);
 
 }  // namespace geo

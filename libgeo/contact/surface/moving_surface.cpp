@@ -1,19 +1,19 @@
 #include "contact/surface/moving_surface.h"
 
-#include "kerf/crossing.h"
+#include "contact/detection/find_crossings.h"
 #include "kerf/parallel.h"
 
 namespace geo {
 
 Coincidence::Coincidence(const std::vector<std::uint32_t>& site, const std::vector<Vec3>& positions)
-    : representative(vertices_together(site, positions)), copies(representative) {}
+    : representative(coincident_representatives(site, positions)), coincident(representative) {}
 
 std::vector<Vec3> Coincidence::averaged(const std::vector<Vec3>& values) const {
   constexpr std::size_t vertices_per_task = 1024;
   std::vector<Vec3> result(values.size());
   parallel_for(values.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const auto group = copies[representative[v]];
+      const auto group = coincident[representative[v]];
       if (group.size() == 1) {
         result[v] = values[v];
         continue;

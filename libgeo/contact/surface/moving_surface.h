@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact/detection/vertex_fans.h"
+#include "contact/surface/coincident_vertices.h"
 #include "contact/surface/contact_surface.h"
-#include "contact/surface/copies.h"
 
 namespace geo {
 
@@ -16,8 +16,8 @@ struct Coincidence {
   /// The groups of vertices with these sites and positions, one of each per vertex.
   Coincidence(const std::vector<std::uint32_t>& site, const std::vector<Vec3>& positions);
 
-  std::vector<std::uint32_t> representative;  ///< per vertex (vertices_together())
-  Copies copies;                              ///< per representative its group
+  std::vector<std::uint32_t> representative;  ///< per vertex (coincident_representatives())
+  CoincidentVertices coincident;              ///< per representative its group
 
   /// Per vertex the mean of its group's values.
   std::vector<Vec3> averaged(const std::vector<Vec3>& values) const;

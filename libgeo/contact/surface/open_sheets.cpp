@@ -3,101 +3,162 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/detection/close_pairs.h"
-#include "kerf/crossing.h"
+#include "contact/detection/aabb_tree.h"
+#include "contact/detection/find_crossings.h"
 
 namespace geo {
+namespace {
 
-std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Copies& copies,
-                        const std::vector<Vec3>& to, double gap, double opens, std::vector<Vec3>& positions) {
-  const std::vector<Vec3> normals = vertex_normals(surface, fans, copies, positions);
-  std::vector<std::uint32_t> opening;
-  for (std::uint32_t v = 0; v < copies.size(); ++v)
-    for (std::size_t i = 0; i < copies[v].size(); ++i)
-      for (std::size_t j = i + 1; j < copies[v].size(); ++j) {
-        const auto a = copies[v][i], b = copies[v][j];
+using Representatives = std::vector<std::uint32_t>;
+
+// Representatives of which two copies have targets that come apart.
+Representatives find_opening(const CoincidentVertices& coincident, const std::vector<Vec3>& normals,
+                             const std::vector<Vec3>& to, double opening) {
+  Representatives result;
+  for (std::uint32_t v = 0; v < coincident.size(); ++v)
+    for (std::size_t i = 0; i < coincident[v].size(); ++i)
+      for (std::size_t j = i + 1; j < coincident[v].size(); ++j) {
+        const auto a = coincident[v][i], b = coincident[v][j];
         const Vec3 n = (normals[b].normalized() - normals[a].normalized()).normalized(), apart = to[a] - to[b];
         const double along = n.dot(apart);
-        if ((along > opens || (apart - along * n).norm() > 3 * opens) && (opening.empty() || opening.back() != v))
-          opening.push_back(v);
+        if ((along > opening || (apart - along * n).norm() > 3 * opening) && (result.empty() || result.back() != v))
+          result.push_back(v);
       }
-  const std::size_t wanted = opening.size();
-  if (wanted == 0) return 0;
-  const std::vector<Vec3> closed = positions;
-  // Triangles that may come together while none of these vertices goes further than half a gap.
-  std::vector<std::uint8_t> moving(positions.size(), 0);
-  for (const auto v : opening)
-    for (const auto c : copies[v]) moving[c] = 1;
-  std::vector<Box3> boxes(surface.triangles.size());
-  std::vector<std::uint8_t> asked(boxes.size(), 0);
-  Box3 region;
-  for (std::size_t t = 0; t < boxes.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    boxes[t] = box_of(positions[a], positions[b], positions[c]).grown(0.5 * gap);
-    if (moving[a] || moving[b] || moving[c]) region.add(boxes[t]), asked[t] = 1;
+  return result;
+}
+
+class SheetOpener {
+ public:
+  SheetOpener(const ContactSurface& surface, const CoincidentVertices& coincident, const std::vector<Vec3>& normals,
+              double gap, std::vector<Vec3>& positions)
+      : surface_(surface),
+        coincident_(coincident),
+        normals_(normals),
+        gap_(gap),
+        closed_(positions),
+        positions_(positions) {}
+
+  // Returns the number of representatives that remain closed.
+  std::size_t run(const Representatives& opening) {
+    find_pairs(opening);
+    inward_ = coincident_side_normals(surface_, coincident_representatives(surface_.site, positions_), positions_);
+    for (std::size_t v = 0; v < inward_.size(); ++v)
+      if (inward_[v].isZero(0)) inward_[v] = normals_[v];
+    Representatives closed = opening;
+    // Smaller moves for those that would cross something.
+    constexpr int most_trials = 10;
+    for (int trial = 0; !closed.empty() && trial < most_trials; ++trial) closed = open_at_once(closed, trial);
+    return open_one_by_one(closed);
   }
-  for (Box3& box : boxes)
-    if (!box.meets(region)) box = Box3();
-  const auto pairs = close_pairs(boxes, &asked);
-  // Smaller steps for those that would cross; what is left stays together.
-  std::vector<Vec3> shared = shared_normals(surface, vertices_together(surface.site, positions), positions);
-  for (std::size_t v = 0; v < shared.size(); ++v)
-    if (shared[v].isZero(0)) shared[v] = normals[v];
-  for (int trial = 0; !opening.empty() && trial < 10; ++trial) {
-    const double step = std::ldexp(0.5 * gap, -2 * (trial / 2));
-    std::vector<std::uint32_t> refused;
-    std::vector<std::uint8_t> moved(positions.size(), 0), marked(surface.triangles.size(), 0), bad(positions.size(), 0);
+
+ private:
+  // Pairs of triangles that may meet while opening vertices move by at most half a gap.
+  void find_pairs(const Representatives& opening) {
+    std::vector<std::uint8_t> moving(positions_.size(), 0);
     for (const auto v : opening)
-      for (const auto c : copies[v])
-        positions[c] -= step * (trial % 2 == 0 ? shared[c] : normals[c]).normalized(), moved[c] = 1;
+      for (const auto c : coincident_[v]) moving[c] = 1;
+    std::vector<Box3> boxes(surface_.triangles.size());
+    std::vector<std::uint8_t> marked(boxes.size(), 0);
+    Box3 region;
+    for (std::size_t t = 0; t < boxes.size(); ++t) {
+      const auto& [a, b, c] = surface_.triangles[t];
+      boxes[t] = box_of(positions_[a], positions_[b], positions_[c]).grown(0.5 * gap_);
+      if (moving[a] || moving[b] || moving[c]) region.add(boxes[t]), marked[t] = 1;
+    }
+    for (Box3& box : boxes)
+      if (!box.meets(region)) box = Box3();
+    pairs_ = overlapping_pairs(boxes, &marked);
+  }
+
+  // Moves all given vertices, then closes those whose triangles cross, until nothing crosses.
+  // Trials alternate between the two normals, with ever smaller moves. Returns the vertices that
+  // were closed.
+  Representatives open_at_once(const Representatives& opening, int trial) {
+    const double step = std::ldexp(0.5 * gap_, -2 * (trial / 2));
+    Representatives refused;
+    std::vector<std::uint8_t> moved(positions_.size(), 0), marked(surface_.triangles.size(), 0),
+        crosses(positions_.size(), 0);
+    for (const auto v : opening)
+      for (const auto c : coincident_[v])
+        positions_[c] -= step * (trial % 2 == 0 ? inward_[c] : normals_[c]).normalized(), moved[c] = 1;
     for (;;) {
       for (std::size_t t = 0; t < marked.size(); ++t)
         marked[t] =
-            std::any_of(surface.triangles[t].begin(), surface.triangles[t].end(), [&](auto v) { return moved[v]; });
-      const auto crossings = find_crossings(pairs, surface.triangles, positions,
-                                            vertices_together(surface.site, positions), true, &marked);
+            std::any_of(surface_.triangles[t].begin(), surface_.triangles[t].end(), [&](auto v) { return moved[v]; });
+      const auto crossings = find_crossings(pairs_, surface_.triangles, positions_,
+                                            coincident_representatives(surface_.site, positions_), true, &marked);
       if (crossings.empty()) break;
       for (const auto& [s, t] : crossings)
-        for (const auto& triangle : {surface.triangles[s], surface.triangles[t]})
-          for (const auto v : triangle) bad[v] = 1;
-      bool undone = false;
+        for (const auto& triangle : {surface_.triangles[s], surface_.triangles[t]})
+          for (const auto v : triangle) crosses[v] = 1;
+      bool closed_any = false;
       for (const auto v : opening)
-        if (std::any_of(copies[v].begin(), copies[v].end(), [&](auto c) { return bad[c] && moved[c]; })) {
-          for (const auto c : copies[v]) positions[c] = closed[v], moved[c] = 0;
-          refused.push_back(v), undone = true;
+        if (std::any_of(coincident_[v].begin(), coincident_[v].end(), [&](auto c) { return crosses[c] && moved[c]; })) {
+          for (const auto c : coincident_[v]) positions_[c] = closed_[v], moved[c] = 0;
+          refused.push_back(v), closed_any = true;
         }
-      if (!undone) break;
+      if (!closed_any) break;
     }
-    opening.swap(refused);
+    return refused;
   }
-  // One after another, as the others' may have been in the way.
-  auto together = vertices_together(surface.site, positions);
-  std::vector<std::uint32_t> turn(positions.size(), ~0u);  // per vertex, whose it is
-  for (std::uint32_t k = 0; k < opening.size(); ++k)
-    for (const auto c : copies[opening[k]]) turn[c] = k;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> pairs_about(opening.size());
-  if (!opening.empty())
-    for (const auto& pair : pairs)
-      for (const auto t : {pair.first, pair.second})
-        for (const auto c : surface.triangles[t])
-          if (turn[c] != ~0u && (pairs_about[turn[c]].empty() || pairs_about[turn[c]].back() != pair))
-            pairs_about[turn[c]].push_back(pair);
-  std::erase_if(opening, [&](auto v) {
-    const auto& about = pairs_about[turn[copies[v][0]]];
-    for (int trial = 0; trial < 20; ++trial) {
-      const double step = std::ldexp(0.5 * gap, -2 * (trial / 4));
-      // Both, or one of them alone.
-      for (const auto c : copies[v]) {
-        const std::vector<Vec3>& along = trial % 4 < 2 ? shared : normals;
-        positions[c] = trial % 2 == 1 && c == copies[v][0] ? closed[v] : Vec3(closed[v] - step * along[c].normalized());
-        together[c] = c;
+
+  // Opens vertices one after another, since others may have been in the way. Tries moves of both
+  // copies and of all but the first. Returns the number of vertices that stay closed.
+  std::size_t open_one_by_one(Representatives closed) {
+    constexpr int most_trials = 20;
+    auto representative = coincident_representatives(surface_.site, positions_);
+    const auto pairs_of = pairs_at(closed);
+    std::size_t next = 0;
+    return std::erase_if(closed, [&](auto v) {
+      const auto& pairs = pairs_of[next++];
+      for (int trial = 0; trial < most_trials; ++trial) {
+        const double step = std::ldexp(0.5 * gap_, -2 * (trial / 4));
+        for (const auto c : coincident_[v]) {
+          const std::vector<Vec3>& along = trial % 4 < 2 ? inward_ : normals_;
+          positions_[c] =
+              trial % 2 == 1 && c == coincident_[v][0] ? closed_[v] : Vec3(closed_[v] - step * along[c].normalized());
+          representative[c] = c;
+        }
+        if (find_crossings(pairs, surface_.triangles, positions_, representative, true).empty()) return false;
       }
-      if (find_crossings(about, surface.triangles, positions, together, true).empty()) return true;
-    }
-    for (const auto c : copies[v]) positions[c] = closed[v], together[c] = v;
-    return false;
-  });
-  return wanted - opening.size();
+      for (const auto c : coincident_[v]) positions_[c] = closed_[v], representative[c] = v;
+      return true;
+    });
+  }
+
+  // For each of the vertices the pairs with a triangle at one of its copies.
+  std::vector<std::vector<TrianglePair>> pairs_at(const Representatives& vertices) const {
+    std::vector<std::vector<TrianglePair>> result(vertices.size());
+    if (vertices.empty()) return result;
+    std::vector<std::uint32_t> number(positions_.size(), ~0u);  // per vertex: of its representative in `vertices`
+    for (std::uint32_t k = 0; k < vertices.size(); ++k)
+      for (const auto c : coincident_[vertices[k]]) number[c] = k;
+    for (const auto& pair : pairs_)
+      for (const auto t : {pair.first, pair.second})
+        for (const auto c : surface_.triangles[t])
+          if (number[c] != ~0u && (result[number[c]].empty() || result[number[c]].back() != pair))
+            result[number[c]].push_back(pair);
+    return result;
+  }
+
+  const ContactSurface& surface_;
+  const CoincidentVertices& coincident_;
+  const std::vector<Vec3>& normals_;
+  double gap_;
+  const std::vector<Vec3> closed_;  // positions before
+  std::vector<Vec3>& positions_;
+  std::vector<TrianglePair> pairs_;
+  std::vector<Vec3> inward_;  // per vertex: normal of the coincident triangles, else of all its triangles
+};
+
+}  // namespace
+
+std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const CoincidentVertices& coincident,
+                        const std::vector<Vec3>& to, double gap, double opening, std::vector<Vec3>& positions) {
+  const std::vector<Vec3> normals = vertex_normals(surface, fans, coincident, positions);
+  const Representatives candidates = find_opening(coincident, normals, to, opening);
+  if (candidates.empty()) return 0;
+  return candidates.size() - SheetOpener(surface, coincident, normals, gap, positions).run(candidates);
 }
 
 }  // namespace geo

@@ -1,15 +1,17 @@
-// Sheets that lie on each other come apart.
+// Opens closed sheets: separates coincident vertices whose targets come apart.
 #pragma once
 
 #include "contact/surface/contact_surface.h"
 
 namespace geo {
 
-/// Copies (those together) whose targets `to` come apart by more than `opens`, or slide along each other by three times
-/// that, are moved apart by half a gap each into their own material: away from what they share, or along the sum of
-/// their normals where that does not help. Where a triangle would cross another for it they stay together. `fans`: of
-/// the surface; lengths in model units. Returns how many came apart.
-std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Copies& copies,
-                        const std::vector<Vec3>& to, double gap, double opens, std::vector<Vec3>& positions);
+/// A vertex opens if the targets `to` of two of its coincident copies come apart by more than
+/// `opening` along their normals, or slide past each other by three times that. Each copy then
+/// moves by at most half a gap into its own material: against the normal of the coincident
+/// triangles around it, or against the normal of all its triangles. Copies whose triangles would
+/// cross others stay coincident. `fans`: of the surface. Lengths in model units. Changes
+/// `positions` and returns the number of representatives that were opened.
+std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const CoincidentVertices& coincident,
+                        const std::vector<Vec3>& to, double gap, double opening, std::vector<Vec3>& positions);
 
 }  // namespace geo

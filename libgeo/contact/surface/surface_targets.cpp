@@ -11,7 +11,7 @@ std::vector<Vec3> surface_targets(const Body& body, const SurfaceWeights& weight
   constexpr std::size_t vertices_per_task = 1024;
   std::vector<std::uint32_t> all(weights.size());
   std::iota(all.begin(), all.end(), 0u);
-  std::vector<Vec3> result = weights.at_each(all, u);
+  std::vector<Vec3> result = weights.interpolate(all, u);
   parallel_for(result.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       if (const SurfaceVertexId id(v); body.surface.alive(id))
@@ -27,7 +27,7 @@ const std::vector<Vec3>& SurfaceTargetCache::at(const Body& body, const SurfaceW
                        std::equal(displacement_.begin(), displacement_.end(), u.begin());
   if (unmoved) {
     targets_.resize(weights.size(), Vec3::Zero());
-    const auto offsets = weights.at_each(stale_, u);
+    const auto offsets = weights.interpolate(stale_, u);
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       const SurfaceVertexId v(stale_[i]);
       targets_[v.index()] =

@@ -10,102 +10,125 @@
 #include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
+namespace {
 
-void SurfaceWeights::update(const Body& body, const Solid& solid) {
-  rows_.clear(), heaviest_.clear(), spread_.clear(), area_.clear();
+// Sums weights by node. All sums are zero between stencils, so that the cost follows the stencil.
+class StencilSums {
+ public:
+  // For this number of nodes.
+  void resize(std::size_t nodes) {
+    weight_.resize(std::max(weight_.size(), nodes), 0), used_.resize(std::max(used_.size(), (nodes + 63) / 64), 0);
+    // A stencil was abandoned if memory for it could not be allocated.
+    if (std::any_of(used_.begin(), used_.end(), [](auto bits) { return bits != 0; }))
+      std::fill(used_.begin(), used_.end(), 0), std::fill(weight_.begin(), weight_.end(), 0.0);
+    start();
+  }
+  void add(NodeId j, double w) {
+    const std::size_t word = j.index() / 64;
+    const std::uint64_t bit = std::uint64_t(1) << j.index() % 64;
+    low_ = std::min(low_, word), high_ = std::max(high_, word);
+    size_ += (used_[word] & bit) == 0;
+    used_[word] |= bit;
+    weight_[j.index()] += w;
+  }
+  // Writes the sums to an empty stencil, by ascending nodes, without zeros, and starts the next
+  // one.
+  void move_to(std::vector<NodeWeight>& stencil) {
+    stencil.reserve(size_);
+    for (auto word = low_; word <= high_; ++word)
+      for (auto& bits = used_[word]; bits != 0; bits &= bits - 1) {
+        const auto j = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
+        if (weight_[j] != 0) stencil.push_back({j, weight_[j]});
+        weight_[j] = 0;
+      }
+    start();
+  }
+
+ private:
+  void start() { low_ = used_.size(), high_ = 0, size_ = 0; }
+
+  std::vector<double> weight_;                 // per node
+  std::vector<std::uint64_t> used_;            // one bit a node
+  std::size_t low_ = 0, high_ = 0, size_ = 0;  // range of words in use; nodes in use
+};
+
+}  // namespace
+
+void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
+  stencils_.clear(), heaviest_.clear(), norm_.clear(), area_.clear();
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
-  make(body, solid, all);
+  compute(body, solid, all);
 }
 
-std::vector<std::uint32_t> SurfaceWeights::follow(const Body& body, const Solid& solid, const BodyDelta& delta) {
-  // A row is of what the vertex's node and its neighbours have as neighbours.
-  std::vector<std::uint8_t> stale(body.nodes.size(), 0);
+std::vector<std::uint32_t> SurfaceWeights::apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta) {
+  // A stencil depends on the neighbours of the vertex' nodes and of their neighbours.
+  std::vector<std::uint8_t> stale_node(body.nodes.size(), 0);
   for (const NodeId i : delta.updated_nodes) {
-    stale[i.index()] = 1;
-    for (const auto& n : body.graph.neighbors(body.nodes, i)) stale[n.to.index()] = 1;
+    stale_node[i.index()] = 1;
+    for (const auto& n : body.graph.neighbors(body.nodes, i)) stale_node[n.to.index()] = 1;
   }
   const std::size_t n = body.surface.surface_vertex_count();
-  std::vector<std::uint8_t> asked(n, 0);
-  for (const auto v : delta.rebound_vertices) asked[v.index()] = 1;
+  std::vector<std::uint8_t> stale(n, 0);
+  for (const auto v : delta.rebound_vertices) stale[v.index()] = 1;
   for (const auto* some : {&delta.crack.new_surface_vertices, &delta.crack.touched_surface_vertices})
-    for (const auto v : *some) asked[v.index()] = 1;
+    for (const auto v : *some) stale[v.index()] = 1;
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const SurfaceVertexId master =
           body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
-      asked[v] = asked[v] || !master.valid() || stale[body.binding.master_node[master.index()].index()];
+      stale[v] = stale[v] || !master.valid() || stale_node[body.binding.master_node[master.index()].index()];
     }
   });
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t v = 0; v < n; ++v)
-    if (asked[v]) vertices.push_back(v);
-  make(body, solid, vertices);
+    if (stale[v]) vertices.push_back(v);
+  compute(body, solid, vertices);
   return vertices;
 }
 
-std::vector<Vec3> SurfaceWeights::at_each(std::span<const std::uint32_t> vertices,
-                                          const std::vector<Vec3>& values) const {
+std::vector<Vec3> SurfaceWeights::interpolate(std::span<const std::uint32_t> vertices,
+                                              const std::vector<Vec3>& values) const {
   std::vector<Vec3> result(vertices.size());
   for_each_weighted_sum(
-      vertices.size(), values, [&](std::size_t k) { return row(vertices[k]); },
+      vertices.size(), values, [&](std::size_t k) { return stencil(vertices[k]); },
       [&](std::size_t k, const Vec3& sum) { result[k] = sum; });
   return result;
 }
 
-void SurfaceWeights::make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
-  rows_.resize(body.surface.surface_vertex_count());
-  heaviest_.resize(rows_.size(), ~0u), spread_.resize(rows_.size(), 0), area_.resize(rows_.size(), 0);
+void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
+  stencils_.resize(body.surface.surface_vertex_count());
+  heaviest_.resize(stencils_.size(), ~0u), norm_.resize(stencils_.size(), 0), area_.resize(stencils_.size(), 0);
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
-    // Of all nodes, zero between rows: each thread keeps its own, as there are few vertices to a
-    // range.
-    thread_local std::vector<double> weight;
-    thread_local std::vector<std::uint64_t> used;  // a bit a node
-    weight.resize(std::max(weight.size(), solid.size()), 0),
-        used.resize(std::max(used.size(), (solid.size() + 63) / 64), 0);
-    if (std::any_of(used.begin(), used.end(),
-                    [](auto bits) { return bits != 0; }))  // a row was given up when there was no memory for it
-      std::fill(used.begin(), used.end(), 0), std::fill(weight.begin(), weight.end(), 0.0);
+    thread_local StencilSums sums;  // as large as all nodes, for a range of few vertices
+    sums.resize(solid.size());
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
-      rows_[v].clear(), heaviest_[v] = ~0u, spread_[v] = area_[v] = 0;
+      auto& stencil = stencils_[v];
+      stencil.clear(), heaviest_[v] = ~0u, norm_[v] = area_[v] = 0;
       if (!body.surface.alive(id)) continue;
-      area_[v] = area_about(body.surface, id);
+      area_[v] = vertex_area(body.surface, id);
       carrier_nodes(body, id, bound);
       if (bound.empty()) continue;
       const Vec3& x = body.surface.point(body.surface.site(id));
+      // Kernel weights replace distances. If all vanish, the first node carries the vertex.
       double total = 0;
       for (auto& [i, d] : bound) total += d = kernel(d / body.nodes.radius[i.index()], 1.0);
       if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
-      std::size_t low = used.size(), high = 0, size = 0;
-      const auto add = [&](NodeId j, double w) {
-        const std::size_t word = j.index() / 64;
-        const std::uint64_t bit = std::uint64_t(1) << j.index() % 64;
-        low = std::min(low, word), high = std::max(high, word);
-        size += (used[word] & bit) == 0;
-        used[word] |= bit;
-        weight[j.index()] += w;
-      };
       for (const auto& [i, w] : bound) {
-        add(i, w / total);
+        sums.add(i, w / total);
         gradient.clear();
         solid.gradient_row(i, gradient);
-        for (const auto& [j, g] : gradient) add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
+        for (const auto& [j, g] : gradient) sums.add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
       }
-      rows_[v].reserve(size);
-      for (auto word = low; word <= high; ++word)
-        for (auto& bits = used[word]; bits != 0; bits &= bits - 1) {
-          const auto j = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
-          if (weight[j] != 0) rows_[v].push_back({j, weight[j]});
-          weight[j] = 0;
-        }
-      const auto most = std::max_element(rows_[v].begin(), rows_[v].end(),
-                                         [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
-      if (most != rows_[v].end()) heaviest_[v] = most->node;
-      spread_[v] = weight_norm(rows_[v]);
+      sums.move_to(stencil);
+      const auto heaviest = std::max_element(stencil.begin(), stencil.end(),
+                                             [](const Entry& a, const Entry& b) { return a.weight < b.weight; });
+      if (heaviest != stencil.end()) heaviest_[v] = heaviest->node;
+      norm_[v] = weight_norm(stencil);
     }
   });
 }

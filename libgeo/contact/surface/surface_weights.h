@@ -1,4 +1,4 @@
-// Eq. 1 as one linear map: how the displacement of each surface vertex follows from those of nodes.
+// Equation 1 as a sparse linear map: displacements of surface vertices from those of nodes.
 #pragma once
 
 #include <cstdint>
@@ -11,35 +11,40 @@
 
 namespace geo {
 
-/// A row per surface vertex: nodes, and weights that sum to 1. A vertex's velocity follows from the
-/// nodes' by the same weights, and an impulse on it is spread over the nodes by them (§ 3.3).
+/// One stencil of nodes per surface vertex, with weights of sum 1. The same weights give a vertex
+/// its velocity, and distribute an impulse on it over the nodes (§ 3.3).
 class SurfaceWeights {
  public:
+  /// A node and its weight.
   using Entry = NodeWeight;
-  /// Rows of all living surface vertices: the kernel weights of Eq. 1 and, through each node's
-  /// gradient, those of its neighbours. Cost follows the surface.
-  void update(const Body& body, const Solid& solid);
-  /// After a split that was made since: the same, but only rows are made anew that it can have
-  /// changed. Returns which, ascending.
-  std::vector<std::uint32_t> follow(const Body& body, const Solid& solid, const BodyDelta& delta);
+  /// Computes the stencils of all living surface vertices: the kernel weights of Eq. 1 and, through
+  /// the shape gradients of its nodes, weights of their neighbours. The cost follows the surface.
+  void rebuild(const Body& body, const Solid& solid);
+  /// Updates the stencils that the last split of the body may have changed; the result is that of
+  /// rebuild(). Returns their vertices, ascending.
+  std::vector<std::uint32_t> apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta);
 
-  std::size_t size() const { return rows_.size(); }
-  std::span<const Entry> row(std::size_t v) const { return rows_[v]; }
-  double area(std::size_t v) const { return area_[v]; }      ///< area_about() it
-  double spread(std::size_t v) const { return spread_[v]; }  ///< weight_norm() of its row
-  /// Per surface vertex the node that weighs most, the lowest of several; ~0u: none carries it.
+  /// Number of surface vertices.
+  std::size_t size() const { return stencils_.size(); }
+  /// The stencil of surface vertex v; empty if v is dead or no node carries it.
+  Stencil stencil(std::size_t v) const { return stencils_[v]; }
+  /// vertex_area() of surface vertex v, model units².
+  double area(std::size_t v) const { return area_[v]; }
+  /// weight_norm() of the stencil of surface vertex v.
+  double norm(std::size_t v) const { return norm_[v]; }
+  /// Per surface vertex its node with the largest weight, the lowest of several; ~0u: no node.
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
-  /// What the nodes' values are at surface vertex v; zero for a vertex that no node carries.
-  Vec3 at(std::size_t v, const std::vector<Vec3>& values) const { return weighted_sum(rows_[v], values); }
-  /// The same of many, by all threads.
-  std::vector<Vec3> at_each(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;
+  /// The nodes' values interpolated at surface vertex v; zero if no node carries it.
+  Vec3 interpolate(std::size_t v, const std::vector<Vec3>& values) const { return weighted_sum(stencils_[v], values); }
+  /// interpolate() for many vertices, in parallel; equal to the bit.
+  std::vector<Vec3> interpolate(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;
 
  private:
-  void make(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);
+  void compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);
 
-  std::vector<std::vector<Entry>> rows_;
+  std::vector<std::vector<Entry>> stencils_;
   std::vector<std::uint32_t> heaviest_;
-  std::vector<double> area_, spread_;
+  std::vector<double> area_, norm_;
 };
 
 }  // namespace geo

@@ -4,12 +4,12 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "contact/detection/watch.h"
+#include "contact/detection/contact_candidates.h"
+#include "contact/detection/find_crossings.h"
 #include "contact/motion/bounded_motion.h"
 #include "contact/motion/straight_motion.h"
 #include "contact/response/contact_constraints.h"
 #include "geometry/predicates.h"
-#include "kerf/crossing.h"
 #include "kerf/shapes.h"
 
 using namespace geo;
@@ -18,20 +18,20 @@ namespace {
 
 struct Soup {
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> together;
+  std::vector<std::uint32_t> representative;
   std::vector<Vec3> from, to;
   void add(const TriangleMesh& m, const Vec3& at, double size) {
     const auto base = static_cast<std::uint32_t>(from.size());
     for (const Vec3& p : m.vertices)
-      together.push_back(static_cast<std::uint32_t>(from.size())), from.push_back(at + size * p);
+      representative.push_back(static_cast<std::uint32_t>(from.size())), from.push_back(at + size * p);
     for (const auto& [a, b, c] : m.triangles) triangles.push_back({a + base, b + base, c + base});
   }
   std::vector<Vec3> move(BoundedMotionStats* report = nullptr) const {
-    return move_without_crossing({triangles, together, from, to, 1e-4, 2e-3}, false, report);
+    return move_without_crossing({triangles, representative, from, to, 1e-4, 2e-3}, false, report);
   }
   std::size_t crossings(const std::vector<Vec3>& at) const {
     const std::vector<std::uint8_t> all(triangles.size(), 1);  // pair by pair
-    return find_crossings(triangles, at, together, false, &all).size();
+    return find_crossings(triangles, at, representative, false, &all).size();
   }
 };
 
@@ -51,7 +51,7 @@ struct Sheets : Soup {
         for (int j = 0; j <= n; ++j) {
           const auto off = [&](int k) { return k == 0 || k == n ? 0.0 : 0.2 * edge * (random.uniform() - 0.5); };
           const double x = i * edge + off(i), y = j * edge + off(j);
-          together.push_back(static_cast<std::uint32_t>(from.size()));
+          representative.push_back(static_cast<std::uint32_t>(from.size()));
           from.push_back({x, y, height(x, y) + side * (0.06 * edge)});
         }
       const auto v = [&](int i, int j) { return base + static_cast<std::uint32_t>(i * (n + 1) + j); };
@@ -104,7 +104,7 @@ TEST_CASE("a guess that is certified is the end of the motion, and another one i
     const Sheets s(random);
     const auto end = s.move();
     const auto again = [&](const std::vector<Vec3>& guess) {
-      return move_without_crossing({s.triangles, s.together, s.from, s.to, 1e-4, 2e-3, &guess}, false);
+      return move_without_crossing({s.triangles, s.representative, s.from, s.to, 1e-4, 2e-3, &guess}, false);
     };
     held += again(end) == end;
     std::vector<Vec3> worse = s.to;
@@ -187,7 +187,7 @@ TEST_CASE("nothing leaves a shell at any speed, nor passes a triangle in its own
     }
     // Two coplanar triangles side by side: the targets of one are inside the other.
     Soup s;
-    s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.together = {0, 1, 2, 3, 4, 5};
+    s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.representative = {0, 1, 2, 3, 4, 5};
     s.from = {{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}, {6, 0, 0}, {7, 0, 0}, {6, 1, 0}};
     s.to = s.from;
     for (std::size_t v = 3; v < 6; ++v) s.to[v].x() -= speed;
@@ -204,7 +204,7 @@ TEST_CASE("triangles that a fixed axis separates at both ends do not meet in bet
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     Soup s;
-    s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.together = {0, 1, 2, 3, 4, 5};
+    s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.representative = {0, 1, 2, 3, 4, 5};
     for (int v = 0; v < 6; ++v)
       s.from.push_back(Vec3(v < 3 ? 0 : 1, 0, 0) + random.uniform(0, 0.5) * random.direction());
     const Vec3 closer = Vec3(0.4, 0, 0) + random.uniform(0, 0.5) * random.direction();
@@ -215,8 +215,9 @@ TEST_CASE("triangles that a fixed axis separates at both ends do not meet in bet
     Soup held = s;  // a fixed sphere around them, so that the surface as a whole does not move
     held.add(make_sphere(2), {0, 0, 0}, 100);
     held.to.insert(held.to.end(), held.from.begin() + 6, held.from.end());
-    NearPairs near;
-    const auto watched = watch({held.triangles, held.together, held.from, held.to, 1e-4, 2e-3}, near);
+    BroadPhase near;
+    const auto watched =
+        find_contact_candidates({held.triangles, held.representative, held.from, held.to, 1e-4, 2e-3}, near);
     bool meets = false;
     for (int step = 0; step <= 2000 && !meets; ++step) {
       std::vector<Vec3> at;
@@ -243,21 +244,22 @@ TEST_CASE("contact constraints do not depend on what the broad phase was used fo
     const Sheets soup(random);
     std::vector<std::uint32_t> owner;
     for (std::size_t v = 0; v < soup.from.size(); ++v) owner.push_back(static_cast<std::uint32_t>(v / 7));
-    NearPairs fresh, used;
+    BroadPhase fresh, used;
     // The broad phase has seen the same triangles elsewhere.
     std::vector<Vec3> elsewhere;
     for (const Vec3& p : soup.from) elsewhere.push_back({p.y(), random.uniform(), -p.x()});
-    used.cover(
+    used.update(
         soup.triangles,
         [&](std::size_t t) {
           return box_of(elsewhere[soup.triangles[t][0]], elsewhere[soup.triangles[t][1]],
                         elsewhere[soup.triangles[t][2]]);
         },
         0);
-    used.forget();
-    const SurfaceMotion motion{soup.triangles, soup.together,       soup.from,
+    used.invalidate();
+    const SurfaceMotion motion{soup.triangles, soup.representative, soup.from,
                                soup.to,        0.05 * Sheets::edge, 0.1 * Sheets::edge};
-    const auto of_fresh = watch(motion, fresh, owner, 2), of_used = watch(motion, used, owner, 2);
+    const auto of_fresh = find_contact_candidates(motion, fresh, {owner, 2}),
+               of_used = find_contact_candidates(motion, used, {owner, 2});
     for (std::size_t i = 0; i < std::min(of_fresh.size(), of_used.size()); ++i)
       in_another_order += !std::equal(of_fresh[i].a.v, of_fresh[i].a.v + 3, of_used[i].a.v);
     const auto a = contact_constraints(of_fresh, motion, {0.01, 0, 0.1 * Sheets::edge}),
@@ -277,7 +279,8 @@ TEST_CASE("contact constraints do not depend on what the broad phase was used fo
 }
 
 TEST_CASE(
-    "targets of sheets that are pressed together while they slide are projected by their deficit, without zones") {
+    "targets of sheets that are pressed representative while they slide are projected by their deficit, without "
+    "zones") {
   const auto [first, count] = seeds(20);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);

@@ -28,13 +28,13 @@ struct StruckBlock {
   Solid solid;
   SurfaceWeights weights;
   std::vector<double> inverse_mass;
-  Copies alone{{}};
+  CoincidentVertices alone{{}};
 
   StruckBlock(double edge, double spacing)
       : body(sampled(make_block({1, 1, 1}, edge), spacing)), solid(body.nodes, body.graph, Material()) {
-    weights.update(body, solid);
+    weights.rebuild(body, solid);
     for (std::size_t i = 0; i < solid.size(); ++i) inverse_mass.push_back(1 / solid.mass(NodeId(i)));
-    alone = Copies::each_alone(weights.size());
+    alone = CoincidentVertices::all_distinct(weights.size());
   }
 
  private:
@@ -53,7 +53,7 @@ TEST_CASE("impulses conserve momentum, stop approaching points, and do not add e
   for (std::size_t v = 0; v < block.weights.size(); ++v) {
     double sum = 0;
     Vec3 x = Vec3::Zero();
-    for (const auto& e : block.weights.row(v)) sum += e.weight, x += e.weight * block.body.nodes.position[e.node];
+    for (const auto& e : block.weights.stencil(v)) sum += e.weight, x += e.weight * block.body.nodes.position[e.node];
     CHECK(sum == Approx(1).epsilon(1e-12));
     CHECK((x - block.body.surface.point(block.body.surface.site(SurfaceVertexId(v)))).norm() < 1e-12);
   }
@@ -83,8 +83,8 @@ TEST_CASE("impulses conserve momentum, stop approaching points, and do not add e
     CHECK(kinetic(block.solid, velocity) <= kinetic(block.solid, before) * (1 + 1e-12));
     if (options.friction > 0) continue;
     for (const auto& t : touching) {
-      Vec3 v = -block.weights.at(t.b.vertex[0], velocity);
-      for (int c = 0; c < 3; ++c) v += t.a.weight[c] * block.weights.at(t.a.vertex[c], velocity);
+      Vec3 v = -block.weights.interpolate(t.b.vertex[0], velocity);
+      for (int c = 0; c < 3; ++c) v += t.a.weight[c] * block.weights.interpolate(t.a.vertex[c], velocity);
       CHECK(t.normal.dot(v) > -0.02);
     }
   }
@@ -109,7 +109,7 @@ TEST_CASE("friction stops slow slip and slows fast slip") {
     ImpulseOptions options;
     options.friction = 0.5, options.softness = 0, options.sweeps = 200, options.tolerance = 1e-5;
     apply_impulses(block.weights, std::span(&t, 1), block.alone, block.inverse_mass, options, velocity);
-    const Vec3 left = block.weights.at(b, velocity) - block.weights.at(a, velocity);
+    const Vec3 left = block.weights.interpolate(b, velocity) - block.weights.interpolate(a, velocity);
     CHECK(std::abs(left.x()) < 1e-6);
     CHECK(left.y() ==
           Approx(slide < 0.5 ? 0 : slide - 0.5).margin(1e-6));  // the impulse along y is half of that along x, at most

@@ -29,7 +29,7 @@ struct Block {
     const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
     return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   }
-  explicit Block(double spacing) : body(make(spacing)), solid(body, Material{}) { weights.update(body, solid); }
+  explicit Block(double spacing) : body(make(spacing)), solid(body, Material{}) { weights.rebuild(body, solid); }
 };
 
 }  // namespace
@@ -170,9 +170,9 @@ TEST_CASE("contacts within their activation distance are zero: energy and force 
         p->begin_substep(begun, later ? 0.5 : 0, later ? 1 : random.uniform(0.3, 1));
         for (const double far : {0.0, 0.003, 0.01, 0.03, 0.1, 0.3}) {
           std::vector<Vec3> x = begun;
-          const Vec3 together = far * random.direction();
+          const Vec3 representative = far * random.direction();
           const double alike = random.uniform();
-          for (Vec3& y : x) y += alike * together + (1 - alike) * far * random.direction();
+          for (Vec3& y : x) y += alike * representative + (1 - alike) * far * random.direction();
           AssembledPotential assembled(*p, begun);
           const double wanted = energy_of(*p, x);
           CHECK(assembled.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));

@@ -8,6 +8,7 @@
 #include "base/union_find.h"
 #include "cases.h"
 #include "contact/cut_body.h"
+#include "contact/detection/find_crossings.h"
 #include "contact/detection/triangle_planes.h"
 #include "contact/response/body_contact_penalty.h"
 #include "contact/response/self_contact_penalty.h"
@@ -205,7 +206,7 @@ TEST_CASE("triangles that the plane of one separates at both ends do not meet in
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
-    const std::vector<std::uint32_t> together = {0, 1, 2, 3, 4, 5};
+    const std::vector<std::uint32_t> representative = {0, 1, 2, 3, 4, 5};
     std::vector<Vec3> from, to;
     for (int v = 0; v < 6; ++v)
       from.push_back(Vec3(v < 3 ? 0 : 0.4, 0, 0) + random.uniform(0.2, 0.6) * random.direction());
@@ -216,12 +217,12 @@ TEST_CASE("triangles that the plane of one separates at both ends do not meet in
     for (int step = 0; step <= 500 && !meets; ++step) {
       std::vector<Vec3> at;
       for (std::size_t v = 0; v < 6; ++v) at.push_back(from[v] + step / 500.0 * (to[v] - from[v]));
-      meets = !find_crossings(triangles, at, together, false).empty();
+      meets = !find_crossings(triangles, at, representative, false).empty();
     }
-    const bool part = planes.part(0, 1, 1e-12, 1e-12);
+    const bool part = planes.separates(0, 1, 1e-12, 1e-12);
     if (meets) CHECK_FALSE(part);
     met += meets, parted += part;
-    CHECK(planes.part(0, 1, 1e-12, 1e-12) == planes.part(1, 0, 1e-12, 1e-12));
+    CHECK(planes.separates(0, 1, 1e-12, 1e-12) == planes.separates(1, 0, 1e-12, 1e-12));
   }
   CHECK(met > 20);
   CHECK(parted > 20);

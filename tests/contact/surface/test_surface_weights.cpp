@@ -22,21 +22,21 @@ TEST_CASE("after each step of a cut the weights are those of a surface looked at
     Solid solid(body, Material{});
     State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
     SurfaceWeights weights;
-    weights.update(body, solid);
+    weights.rebuild(body, solid);
     const double y = random.uniform(0.3, 0.7);
     auto front = begin_front(std::vector<Vec3>{{-0.3, y, 1.3}, {0.5, y + 0.01, 1.3}, {1.3, y, 1.3}}, false, 1);
     for (int step = 1; step <= 9; ++step) {
       const double z = 1.3 - 0.2 * step, sway = random.uniform(-0.05, 0.05);
       const BodyDelta delta = split(body, front, {{-0.3, y + sway, z}, {0.5, y + sway + 0.05, z}, {1.3, y + sway, z}});
       solid.update(body, delta, state);
-      weights.follow(body, solid, delta);
+      weights.apply_delta(body, solid, delta);
       SurfaceWeights whole;
-      whole.update(body, solid);
+      whole.rebuild(body, solid);
       REQUIRE(weights.size() == whole.size());
       CHECK(weights.heaviest() == whole.heaviest());
       std::size_t other = 0;
       for (std::size_t v = 0; v < whole.size(); ++v) {
-        const auto a = weights.row(v), b = whole.row(v);
+        const auto a = weights.stencil(v), b = whole.stencil(v);
         other += !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NodeWeight& p, const NodeWeight& q) {
           return p.node == q.node && p.weight == q.weight;
         });
@@ -48,9 +48,9 @@ TEST_CASE("after each step of a cut the weights are those of a surface looked at
       std::vector<std::uint32_t> asked;
       for (std::size_t k = 0; k < whole.size() + 1; ++k)
         asked.push_back(random.below(static_cast<std::uint32_t>(whole.size())));
-      const std::vector<Vec3> many = whole.at_each(asked, values);
+      const std::vector<Vec3> many = whole.interpolate(asked, values);
       std::size_t differ = 0;
-      for (std::size_t k = 0; k < asked.size(); ++k) differ += many[k] != whole.at(asked[k], values);
+      for (std::size_t k = 0; k < asked.size(); ++k) differ += many[k] != whole.interpolate(asked[k], values);
       CHECK(differ == 0);
     }
   }

@@ -9,7 +9,7 @@
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/discretisation/elastic_block.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -86,7 +86,7 @@ TEST_CASE(
     const auto waves = any_waves(random, size);
     const auto moved = field(body, affine),
                bent = field(body, [&](const Vec3&x) -> Vec3 { return affine(x) + waves(x); });
-    on_every_target([&] {
+    for_each_simd_target([&] {
       const BlockStrain loose(points, body.nodes.position, whole, moved);
       CHECK(largest_difference(points, exact, loose, moved) < 1e-11);  // of a shift of 1e3, in places 1e-13 of that
       CHECK(largest_difference(points, exact, loose, bent) < 2e-4 * size + 1e-11);

@@ -10,7 +10,7 @@
 #include "mechanics/discretisation/point_lanes.h"
 #include "mechanics/discretisation/stiffness_product_lanes.h"
 #include "mechanics/material/stress_derivative.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -99,7 +99,7 @@ TEST_CASE("gradients and divergence of a block are a dense matrix and its transp
     const Eigen::VectorXd u = random_field(random, block);
     const Eigen::VectorXd s = Eigen::VectorXd::NullaryExpr(b.rows(), [&] { return random.uniform(-1, 1); });
     const double size = b.cwiseAbs().maxCoeff();
-    on_every_target([&] {
+    for_each_simd_target([&] {
       PointMatrices<double> gradient;
       point_gradients(block, padded_field<double>(u).data(), gradient);
       CHECK((unpadded(gradient, points) - b * u).norm() < 1e-12 * (1 + b.norm()));
@@ -153,7 +153,7 @@ TEST_CASE("stiffness products of a block are those of the dense matrix Bᵀ D B"
     }
     const Eigen::MatrixXd b = gradient_matrix(block), k = b.transpose() * d * b;
     const Eigen::VectorXd v = random_field(random, block);
-    on_every_target([&] {
+    for_each_simd_target([&] {
       StiffnessModes modes;
       modes.resize(padded);
       stiffness_modes(stiffness_constants(m), {0, padded}, gradient, nullptr, weight, modes);
@@ -178,7 +178,7 @@ TEST_CASE("points add their numbers to nodes by volume and kernel", "[points]") 
   }
   for (std::size_t i = 0; i < block.points.size(); ++i)
     for (std::size_t k = 0; k < 8; ++k) numbers.push_back(k == 6 ? float(i % 3 != 1) : float(random.uniform(-1, 1)));
-  on_every_target([&] {
+  for_each_simd_target([&] {
     std::vector<float> sums(8 * block.nodes.size(), 0);
     add_kernel_weighted(block, base, place.data(), numbers.data(), sums.data());
     std::vector<double> expected(sums.size(), 0);

@@ -8,7 +8,7 @@
 #include "kerf/parallel.h"
 #include "mechanics/bodies.h"
 #include "mechanics/discretisation/deformation.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -41,7 +41,7 @@ TEST_CASE("gradients at nodes are exact for linear fields, and all ways to compu
   Random random(1);
   const std::vector<Vec3> v = random_field(random, u.size());
   for (const auto& field : {u, v})
-    on_every_target([&] {
+    for_each_simd_target([&] {
       const auto all = gradients.gradients(field);
       const auto padded = gradients.padded_gradients(field);
       const LazyNodalGradients lazy(gradients, field);
@@ -85,7 +85,7 @@ TEST_CASE("the displacement at a node in vector registers is that of Eq. 1", "[n
     place.push_back({x[0], x[1], x[2], 1 / (body.nodes.radius[i] * body.nodes.radius[i])});
     displacement.push_back({u[i][0], u[i][1], u[i][2], 0});
   }
-  on_every_target([&] {
+  for_each_simd_target([&] {
     for (std::uint32_t i = 0; i < n; ++i) {
       std::vector<std::pair<NodeId, double>> nodes{{NodeId(i), 0}};
       for (const auto j : gradients[i].neighbors)

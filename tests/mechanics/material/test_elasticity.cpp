@@ -13,7 +13,7 @@
 #include "mechanics/material/plasticity.h"
 #include "mechanics/material/stiffness_lanes.h"
 #include "mechanics/material/stress_derivative.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -144,7 +144,7 @@ TEST_CASE("points in vector registers with plastic strain and viscosity follow t
       set(start, i, random_matrix(random, 0.3)), set(previous, i, random_matrix(random, 0.3));
       set(inverse_stretch, i, inverse_plastic_stretch(plastic)), volume[i] = random.uniform(0.5, 1);
     }
-    on_every_target([&] {
+    for_each_simd_target([&] {
       PointMatrices<double> stresses = start;
       elastic_response(elastic_constants(m, dt), {0, points}, volume, {&inverse_stretch, &previous}, stresses, energy,
                        nullptr);

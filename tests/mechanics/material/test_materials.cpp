@@ -1,4 +1,4 @@
-// Bodies of different materials in one solid: no material affects another body.
+// Bodies of different materials in one solid: none has to do with another's.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -58,7 +58,7 @@ Material soft() {
   return m;
 }
 
-// Different from soft() in every parameter that may differ.
+// Different in all that may be.
 Material other(Discretisation discretisation) {
   Material m;
   m.model = ElasticModel::saint_venant_kirchhoff, m.discretisation = discretisation;
@@ -81,30 +81,30 @@ Environment clamped(const Body& body) {
 }  // namespace
 
 TEST_CASE(
-    "forces and stiffness of a body are those of its own material, in blocks with points of several materials, too") {
+    "forces and stiffness of a body are those of its own material, also where points of several stand side by side") {
   const Body body = both(0.03);
   for (const auto discretisation : {Discretisation::galerkin, Discretisation::mueller04}) {
     Material first = soft(), second = other(discretisation);
     first.discretisation = discretisation;
     const Solid mixed(body, Materials({first, second}, numbers(body))),
         uniform[2] = {Solid(body, first), Solid(body, second)};
-    std::size_t mixed_ranges = 0;
+    std::size_t among = 0;
     for (const PointBlock& b : mixed.points().blocks)
-      for (const MaterialRange& range : b.material_ranges) mixed_ranges += !range.uniform;
-    CHECK(mixed_ranges > 0);
+      for (const MaterialRange& run : b.material_ranges) among += !run.uniform;
+    CHECK(among > 0);
     Random random(3);
     std::vector<Vec3> u(body.nodes.size()), p(u.size()),
         own[2] = {std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
     for (std::size_t i = 0; i < u.size(); ++i)
       u[i] = 0.02 * random.direction(), p[i] = random.direction(), own[is_second(body, i)][i] = u[i];
-    State strained{u, u}, yielded = strained;
+    State strained{u, u}, flown = strained;
     for (std::size_t k = 0; k < mixed.points().size(); ++k) {
-      const Vec3 strain = 0.05 * random.direction();
-      yielded.plastic.push_back(strain.asDiagonal());
+      const Vec3 by = 0.05 * random.direction();
+      flown.plastic.push_back(by.asDiagonal());
     }
     for (const auto& target : vector_targets()) {
       use_vector_target(target);
-      for (const State* state : {&strained, &yielded}) {
+      for (const State* state : {&strained, &flown}) {
         const auto stress = von_mises_stress(mixed, body.nodes, *state),
                    of_first = von_mises_stress(uniform[0], body.nodes, *state),
                    of_second = von_mises_stress(uniform[1], body.nodes, *state);
@@ -127,7 +127,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a body moves as if the other one had the same material, bit for bit") {
+TEST_CASE("a body moves as if the other one were of its material, too, bit for bit") {
   const Body body = far_apart();
   const Material first = soft(), second = other(Discretisation::galerkin);
   const Environment env = clamped(body);
@@ -147,26 +147,26 @@ TEST_CASE("a body moves as if the other one had the same material, bit for bit")
   }
   CHECK(moved[0] > 0.01);
   CHECK(moved[1] > 1e-3);
-  // Only the second body yields.
+  // Only the second one flows.
   const Solid solid(body, Materials({first, second}, numbers(body)));
   REQUIRE(mixed.plastic.size() == solid.points().size());
-  double yielded[2] = {0, 0};
+  double flown[2] = {0, 0};
   for (std::size_t b = 0, k = 0; b < solid.points().blocks.size(); ++b)
     for (const MaterialPoint& p : solid.points().blocks[b].points) {
       CHECK(p.material == (p.position.y() > 0.4));
-      yielded[p.material] += mixed.plastic[k++].norm();
+      flown[p.material] += mixed.plastic[k++].norm();
     }
-  CHECK(yielded[0] == 0);
-  CHECK(yielded[1] > 0);
+  CHECK(flown[0] == 0);
+  CHECK(flown[1] > 0);
 }
 
-TEST_CASE("a clamped body sags as it does without the other one") {
+TEST_CASE("a body among others hangs as it does alone") {
   const Body together = both(0.1), alone[2] = {bars(0.1, std::array{0}), bars(0.1, std::array{1})};
   for (const auto discretisation : {Discretisation::galerkin, Discretisation::mueller04}) {
     Material of[2] = {soft(), soft()};
     of[0].damping = of[1].damping = 10, of[1].young = 1.2e5, of[1].density = 900;
     of[0].discretisation = of[1].discretisation = discretisation;
-    const auto sag = [&](const Body& body, const Materials& materials) {
+    const auto hang = [&](const Body& body, const Materials& materials) {
       const Solid solid(body, materials);
       State state = at_rest(body);
       const Environment env = clamped(body);
@@ -176,17 +176,17 @@ TEST_CASE("a clamped body sags as it does without the other one") {
         lowest[is_second(body, i)] = std::min(lowest[is_second(body, i)], state.displacement[i].z());
       return std::array{lowest[0], lowest[1]};
     };
-    const auto mixed = sag(together, Materials({of[0], of[1]}, numbers(together)));
+    const auto mixed = hang(together, Materials({of[0], of[1]}, numbers(together)));
     for (const std::size_t b : {std::size_t(0), std::size_t(1)}) {
-      const double own = sag(alone[b], of[b])[b];
+      const double own = hang(alone[b], of[b])[b];
       CHECK(own < -0.01);
-      // Both runs have the same nodes, but other quadrature cells.
+      // Nodes are the same ones; the cells of the quadrature are not.
       CHECK(mixed[b] == Approx(own).epsilon(discretisation == Discretisation::mueller04 ? 1e-4 : 0.03));
     }
   }
 }
 
-TEST_CASE("after a cut, a solid of several materials equals one built from scratch") {
+TEST_CASE("materials follow a cut through bodies as if they had been built of it") {
   for (const auto discretisation : {Discretisation::galerkin, Discretisation::mueller04}) {
     Body body = both(0.03);
     Material first = soft(), second = other(discretisation);
@@ -217,7 +217,7 @@ TEST_CASE("after a cut, a solid of several materials equals one built from scrat
   }
 }
 
-TEST_CASE("the fastest wave of all materials decides the number of leapfrog substeps") {
+TEST_CASE("leapfrog steps are as short as the fastest wave of all materials asks") {
   const Body body = far_apart();
   Material slow = soft(), fast = soft();
   slow.damping = 0, fast.young = 5e6, fast.density = 100, fast.damping = 0;
@@ -230,25 +230,25 @@ TEST_CASE("the fastest wave of all materials decides the number of leapfrog subs
     return state;
   };
   const State mixed = run(Materials({slow, fast}, numbers(body)));
-  const auto fine = substeps;
+  const auto most = substeps;
   const State of_fast = run(fast);
-  CHECK(substeps == fine);
+  CHECK(substeps == most);
   const State of_slow = run(slow);
-  CHECK(substeps < fine);
+  CHECK(substeps < most);
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     if (is_second(body, i))
       REQUIRE(mixed.displacement[i] == of_fast.displacement[i]);
     else
       REQUIRE((mixed.displacement[i] - of_slow.displacement[i]).norm() < 1e-3);
   }
-  // A viscous material limits the step by diffusion: it needs more substeps than the fast one.
+  // What is slow because it is tough does not let the other one break.
   Material tough = soft();
   tough.viscosity = 3000;
   run(Materials({tough, fast}, numbers(body)));
-  CHECK(substeps > fine);
+  CHECK(substeps > most);
 }
 
-TEST_CASE("invalid materials are refused") {
+TEST_CASE("materials that cannot be are refused") {
   const Body body = both(1);
   Material bad = soft(), nodal = soft();
   bad.poisson = 0.7, nodal.discretisation = Discretisation::mueller04;

@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/material/stiffness_lanes.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -26,7 +26,7 @@ TEST_CASE("Points turn as the singular value decomposition says, and alike which
     const std::vector<float> weight(points, 1);
     const StiffnessConstants constants = stiffness_constants(Material{});
     StiffnessModes first;
-    on_every_target([&] {
+    for_each_simd_target([&] {
       StiffnessModes all;
       all.resize(points);
       stiffness_modes(constants, {begin, points}, gradient, nullptr, weight, all);

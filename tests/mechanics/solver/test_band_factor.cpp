@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/solver/band_factor.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -17,8 +17,8 @@ struct Band {
   Eigen::MatrixXf matrix;
 };
 
-// Tiles at random up to `last` of each row, each row's diagonal larger than all beside it; blocks of rows that nothing
-// joins.
+// Tiles at random up to `last` of each row, each row's diagonal larger than all beside it; blocks
+// of rows that nothing joins.
 Band random_band(Random& random) {
   Band b;
   const auto tiles = 1 + static_cast<std::size_t>(random.uniform() * 20);
@@ -55,7 +55,7 @@ TEST_CASE("A band matrix's factor solves as a dense one does, with the same numb
     for (auto& x : right) x = static_cast<float>(random.uniform() - 0.5);
     const Eigen::VectorXd expected = b.matrix.cast<double>().llt().solve(right.cast<double>());
     Eigen::VectorXf first;
-    on_every_target([&] {
+    for_each_simd_target([&] {
       BandFactor f = filled(b);
       f.factor();
       Eigen::VectorXf x = right;

@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/solver/coarse_lanes.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -105,7 +105,7 @@ TEST_CASE("Rigid motions of groups have the stiffness of their strains, in all v
     std::vector<float> arms;
     for (std::size_t j = 0; j < c.arm.size(); ++j)
       for (const float x : arm_numbers(c.arm[j], c.free[j])) arms.push_back(x);
-    on_every_target([&] {
+    for_each_simd_target([&] {
       std::vector<float> tiles(tile * slots * (slots + 1) / 2, 0);
       rigid_stiffness(c.block, c.modes, c.weight, c.moduli, c.stride, c.slot, arms.data(), tiles.data());
       const float* at = tiles.data();

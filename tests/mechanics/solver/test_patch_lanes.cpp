@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/solver/patch_lanes.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -23,8 +23,8 @@ Eigen::Vector3f any_vector(Random& random) {
   return Eigen::Vector3f::NullaryExpr([&] { return static_cast<float>(random.uniform(-1, 1)); });
 }
 
-// Points with gradients at random of up to all nodes; a block for each node that is not held; sizes far apart from
-// patch to patch.
+// Points with gradients at random of up to all nodes; a block for each node that is not held; sizes
+// far apart from patch to patch.
 Patch put_any(Random& random, std::size_t lane, EightPatches& to) {
   const auto nodes = 1 + random.below(to.nodes);
   const float scale = static_cast<float>(std::pow(10, random.uniform(-3, 6)));
@@ -103,7 +103,7 @@ TEST_CASE("Eight patches are inverted as each on its own, in all vectors, and he
     made.begin(1 + random.below(12));
     std::vector<Patch> patches;
     for (std::size_t lane = random.below(3); lane < 8; ++lane) patches.push_back(put_any(random, lane, made));
-    on_every_target([&] {
+    for_each_simd_target([&] {
       EightPatches eight = made;
       invert_positive(eight);
       for (std::size_t k = 0; k < patches.size(); ++k) {
@@ -129,7 +129,7 @@ TEST_CASE("A row of a patch that another one says, too, is taken out", "[mechani
       for (std::size_t a = 0; a < 2; ++a) eight.blocks[72 * a + 8 * k + l] = 2;
       if (k == 4) eight.tiles[72 + 8 * k + l] = 1;  // 2 along y, 1 along x and z
     }
-  on_every_target([&] {
+  for_each_simd_target([&] {
     EightPatches inverse = eight;
     invert_positive(inverse);
     for (std::size_t l = 0; l < 8; ++l) {

@@ -9,7 +9,7 @@
 #include "cases.h"
 #include "mechanics/terms/stencil_matrix.h"
 #include "mechanics/terms/weighted_sums.h"
-#include "vectors.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -78,7 +78,7 @@ TEST_CASE("weighted sums of many stencils are those of each, bit for bit", "[pot
     Random random(seed);
     const Springs springs = random_springs(random, 30, 1 + random.below(40));
     const std::vector<Vec3> values = random_vectors(random, 30);
-    on_every_target([&] {
+    for_each_simd_target([&] {
       std::vector<Vec3> sums(springs.size(), Vec3::Constant(-1));
       for_each_weighted_sum(
           springs.size(), values, [&](std::size_t k) { return springs.stencil(k); },

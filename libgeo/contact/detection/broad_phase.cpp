@@ -1,0 +1,44 @@
+#include "contact/detection/broad_phase.h"
+
+#include <algorithm>
+
+#include "kerf/parallel.h"
+
+namespace geo {
+namespace {
+
+bool contains(const Box3& box, const Box3& inner) {
+  return (inner.lo.array() >= box.lo.array()).all() && (inner.hi.array() <= box.hi.array()).all();
+}
+
+}  // namespace
+
+void BroadPhase::update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
+                        const std::vector<std::uint8_t>* changed) {
+  constexpr std::size_t rebuild_share = 4;  // rebuild if more than a quarter has left its box
+  const bool valid = valid_ && tree_.boxes().size() == triangles.size(), changed_only = valid && changed;
+  std::vector<Box3> boxes(changed_only ? 0 : triangles.size());
+  std::vector<std::uint8_t> outside(triangles.size(), 0);
+  parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (changed_only && !(*changed)[t]) continue;
+      const Box3 now = box(t);
+      outside[t] = valid && !contains(tree_.boxes()[t], now);
+      if (!changed_only) boxes[t] = now;
+    }
+  });
+  const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
+  if (valid && count == 0) return;
+  if (!valid || (count * rebuild_share > triangles.size() && !changed)) {
+    tree_.refit_or_rebuild(std::move(boxes), triangles);
+    valid_ = true, pairs_ = tree_.pairs();
+    return;
+  }
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    if (outside[t]) tree_.enlarge(t, (changed_only ? box(t) : boxes[t]).grown(margin));
+  std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
+  const auto added = tree_.pairs(&outside);
+  pairs_.insert(pairs_.end(), added.begin(), added.end());
+}
+
+}  // namespace geo

@@ -1,0 +1,47 @@
+// The broad phase: pairs of triangles whose boxes meet, kept and updated during a step.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "contact/detection/aabb_tree.h"
+#include "contact/detection/triangle_planes.h"
+
+namespace geo {
+
+/// A superset of the pairs of triangles without a common vertex whose boxes meet. A triangle that
+/// stays within its previous box costs nothing. Boxes are relative to a point that moves with the
+/// surface.
+class BroadPhase {
+ public:
+  /// Indices of two triangles.
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+  /// Updates pairs() for new boxes, box(t) for triangle t. With `changed`, only marked triangles
+  /// have boxes that differ from the previous call. A triangle that has left its box gets a new
+  /// one, extended by `margin` (model units). All pairs are searched anew at the first call,
+  /// after invalidate(), and after a quarter of the triangles have left their boxes. `triangles`
+  /// must be the same at each call until reset(): they tell which pairs share a vertex.
+  void update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
+              const std::vector<std::uint8_t>* changed = nullptr);
+
+  /// Pairs i < j, each once, in no order that results may depend on.
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  /// Scratch memory for the caller's culling of pairs(), which is reused from step to step.
+  TrianglePlanes& planes() { return planes_; }
+  /// Discards boxes and pairs at the start of another step of the same triangles. The order of the
+  /// tree is kept.
+  void invalidate() { valid_ = false, pairs_.clear(); }
+  /// Discards everything. Must be called before an update with other triangles.
+  void reset() { invalidate(), tree_ = {}; }
+
+ private:
+  TrianglePlanes planes_;
+  AabbTree tree_;
+  bool valid_ = false;  // tree_ has the boxes of this step
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace geo

@@ -1,0 +1,126 @@
+// Separating axes of pairs of simplices at the start and at the end of a motion, eight pairs at a
+// time.
+//
+// If one axis separates two convex sets at the start and at the end of a linear motion, the sets do
+// not meet during it: a plane normal to the axis separates them throughout. No cubic equation is
+// solved, and coplanar motion is no special case.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "contact/detection/simplex.h"
+
+namespace geo {
+
+/// A pair of simplices that must stay disjoint.
+struct PrimitivePair {
+  Simplex a, b;
+};
+
+/// Candidate axes for up to eight pairs (a, b), one pair a SIMD lane. Axes point from b to a. One
+/// of them has the largest separation of all directions at the start.
+struct SeparatingAxes {
+  /// Pairs to a batch.
+  static constexpr std::size_t width = 8;
+  /// The candidates: the difference of centroids, the two normals, the differences of closest
+  /// points.
+  enum Axis { between_centroids, a_normal, b_normal, between_closest, between_closest_at_end, count };
+
+  alignas(64) double normal[count][3][width];         ///< unit vectors; zero: the candidate does not exist
+  alignas(64) double start_separation[count][width];  ///< separation_along() at the start, model units
+  alignas(64) double end_separation[count][width];    ///< at the end
+  /// For corners that are anywhere on their paths, independently of each other.
+  alignas(64) double swept_separation[count][width];
+  alignas(64) double weights_a[3][width];  ///< barycentric coordinates of a's closest point at the start
+  alignas(64) double weights_b[3][width];  ///< of b's closest point
+};
+
+/// The separation of one pair along one axis, as in SeparatingAxes.
+struct PairSeparation {
+  double start, end, swept;
+};
+
+/// The separation along the difference of centroids at the start. It separates most pairs and is
+/// therefore tried before the other axes.
+inline PairSeparation centroid_separation(const PrimitivePair& pair, const std::vector<Vec3>& from,
+                                          const std::vector<Vec3>& to) {
+  const auto centroid = [&](const Simplex& s) {
+    return s.size == 1   ? from[s.v[0]]
+           : s.size == 2 ? Vec3((from[s.v[0]] + from[s.v[1]]) / 2)
+                         : Vec3((from[s.v[0]] + from[s.v[1]] + from[s.v[2]]) / 3);
+  };
+  Vec3 n = centroid(pair.a) - centroid(pair.b);
+  if (const double length = n.norm(); length > 0) n /= length;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double a_start = infinity, a_end = infinity, b_start = -infinity, b_end = -infinity;
+  for (int k = 0; k < pair.a.size; ++k)
+    a_start = std::min(a_start, n.dot(from[pair.a.v[k]])), a_end = std::min(a_end, n.dot(to[pair.a.v[k]]));
+  for (int k = 0; k < pair.b.size; ++k)
+    b_start = std::max(b_start, n.dot(from[pair.b.v[k]])), b_end = std::max(b_end, n.dot(to[pair.b.v[k]]));
+  return {a_start - b_start, a_end - b_end, std::min(a_start, a_end) - std::max(b_start, b_end)};
+}
+
+/// Computes the axes of `size` ≤ 8 pairs whose vertices move from `from` to `to`. Axis
+/// between_closest_at_end is computed only if `end` is set. Floating point; the same for any
+/// instruction set.
+void find_separating_axes(const PrimitivePair* pairs, std::size_t size, const std::vector<Vec3>& from,
+                          const std::vector<Vec3>& to, bool end, SeparatingAxes& out);
+
+/// Axes for uneven sheets that slide over each other: the normals of a and b and their sum, each
+/// tilted by growing amounts towards the difference of closest points.
+struct TiltedAxes {
+  static constexpr int count = 15;                                    ///< number of axes
+  static constexpr std::size_t width = 16;                            ///< with padding: the last element is undefined
+  alignas(64) double normal[3][width];                                ///< unit vectors, from b to a
+  alignas(64) double start_separation[width], end_separation[width];  ///< as in SeparatingAxes
+};
+
+/// The tilted axes of one pair whose other axes are in lane `lane` of `axes`. The same for any
+/// instruction set.
+void find_tilted_axes(const PrimitivePair& pair, const SeparatingAxes& axes, std::size_t lane,
+                      const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedAxes& out);
+
+/// Whether accept(n, start_separation, end_separation) is true for one of the tilted axes n.
+template <class Accept>
+bool any_tilted_axis(const PrimitivePair& pair, const SeparatingAxes& axes, std::size_t lane,
+                     const std::vector<Vec3>& from, const std::vector<Vec3>& to, const Accept& accept) {
+  TiltedAxes tilted;
+  find_tilted_axes(pair, axes, lane, from, to, tilted);
+  for (int k = 0; k < TiltedAxes::count; ++k)
+    if (accept(Vec3(tilted.normal[0][k], tilted.normal[1][k], tilted.normal[2][k]), tilted.start_separation[k],
+               tilted.end_separation[k]))
+      return true;
+  return false;
+}
+
+/// Collects pairs into batches of eight. Calls use(number, axes, lane) for each pair, in order.
+template <class Use>
+class SeparatingAxisBatch {
+ public:
+  /// `from`, `to`, `end`: as in find_separating_axes(). Refers to `from`, `to` and `use`.
+  SeparatingAxisBatch(const std::vector<Vec3>& from, const std::vector<Vec3>& to, bool end, const Use& use)
+      : from_(from), to_(to), end_(end), use_(use) {}
+  /// Adds a pair, which `use` will see under this number.
+  void add(const PrimitivePair& pair, std::size_t number) {
+    pairs_[size_] = pair, numbers_[size_] = number;
+    if (++size_ == SeparatingAxes::width) finish();
+  }
+  /// Processes the pairs that are left. Must be called after the last add().
+  void finish() {
+    if (size_ > 0) find_separating_axes(pairs_, size_, from_, to_, end_, axes_);
+    for (std::size_t lane = 0; lane < size_; ++lane) use_(numbers_[lane], axes_, lane);
+    size_ = 0;
+  }
+
+ private:
+  const std::vector<Vec3>&from_, &to_;
+  bool end_;
+  const Use& use_;
+  std::size_t size_ = 0;
+  PrimitivePair pairs_[SeparatingAxes::width];
+  std::size_t numbers_[SeparatingAxes::width];
+  SeparatingAxes axes_;
+};
+
+}  // namespace geo

@@ -1,0 +1,82 @@
+// Parallel loops: each index once, serial scopes, exceptions.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "kerf/parallel.h"
+
+using namespace geo;
+
+namespace {
+
+// Restores the number of threads also if a check fails.
+struct Threads {
+  explicit Threads(int count) { set_threads(count); }
+  ~Threads() { set_threads(0); }
+};
+
+}  // namespace
+
+TEST_CASE("a loop visits each index once, for any number of threads and any grain", "[parallel]") {
+  for (const int count : {1, 2, 5}) {
+    const Threads threads_set(count);
+    CHECK(threads() == count);
+    for (const std::size_t n : {0, 1, 99, 10000})
+      for (const std::size_t grain : {1, 64, 100000}) {
+        std::vector<int> visits(n, 0);
+        parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) ++visits[i];
+        });
+        CAPTURE(count, n, grain);
+        REQUIRE(std::accumulate(visits.begin(), visits.end(), std::size_t(0)) == n);
+        REQUIRE(std::count(visits.begin(), visits.end(), 1) == std::ptrdiff_t(n));
+      }
+  }
+  CHECK(threads() >= 1);
+}
+
+TEST_CASE("a range of the grain's size or less is not divided", "[parallel]") {
+  const Threads threads_set(4);
+  std::atomic<int> calls{0};
+  parallel_for(100, 100, [&](std::size_t begin, std::size_t end) {
+    ++calls;
+    CHECK((begin == 0 && end == 100));
+  });
+  CHECK(calls == 1);
+}
+
+TEST_CASE("in a serial scope, loops and pairs run in the calling thread", "[parallel]") {
+  const Threads threads_set(4);
+  const auto self = std::this_thread::get_id();
+  std::atomic<int> elsewhere{0}, calls{0};
+  const auto run = [&] {
+    parallel_for(1000, 1, [&](std::size_t, std::size_t) { ++calls, elsewhere += std::this_thread::get_id() != self; });
+    parallel_invoke([&] { ++calls, elsewhere += std::this_thread::get_id() != self; },
+                    [&] { ++calls, elsewhere += std::this_thread::get_id() != self; });
+  };
+  {
+    const SerialScope outer;
+    { const SerialScope inner; }
+    run();  // still serial: scopes nest
+  }
+  CHECK(elsewhere == 0);
+  CHECK(calls == 3);  // the loop is one range
+}
+
+TEST_CASE("both functions of a pair are called, and exceptions reach the caller", "[parallel]") {
+  for (const int count : {1, 3}) {
+    const Threads threads_set(count);
+    std::atomic<int> sum{0};
+    parallel_invoke([&] { sum += 1; }, [&] { sum += 2; });
+    CHECK(sum == 3);
+    CHECK_THROWS_AS(parallel_invoke([] {}, [] { throw std::out_of_range("second"); }), std::out_of_range);
+    CHECK_THROWS_AS(parallel_for(1000, 1,
+                                 [](std::size_t begin, std::size_t) {
+                                   if (begin == 0) throw std::out_of_range("first");
+                                 }),
+                    std::out_of_range);
+  }
+}

@@ -1,7 +1,7 @@
 // Interface of an energy that acts on nodes in addition to elasticity: contact, friction,
-// penalties. energy term depends on one relative displacement d = Σ w_i u_i, as in incremental
-// potential contact (Li et al. 2020); the nodes i and weights w_i of a term are its contact
-// stencil, one row of the contact Jacobian.
+// penalties. Each of its terms depends on one relative displacement d = Σ w_i u_i, as in
+// incremental potential contact (Li et al. 2020). The nodes i and weights w_i of a term are its
+// contact stencil, one row of the contact Jacobian.
 #pragma once
 
 #include <cmath>
@@ -19,8 +19,8 @@ struct NodeWeight {
   double weight;
 };
 
-/// One row of a sparse Jacobian over the nodes, no node twice: the relative displacement is Σ
-/// weight × u[node].
+/// One row of a sparse Jacobian over the nodes, no node twice. Its relative displacement is
+/// Σ weight × u[node].
 using Stencil = std::span<const NodeWeight>;
 
 /// Σ |weight|: the largest norm of weighted_sum() if no value is longer than 1.

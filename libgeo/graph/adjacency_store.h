@@ -24,6 +24,7 @@ class AdjacencyStore {
   AdjacencyStore() = default;
   /// Copies rows and blocks; blocks that wait to be used (give_block()) are not copied.
   AdjacencyStore(const AdjacencyStore& o);
+  /// Takes the rows of `o`.
   AdjacencyStore(AdjacencyStore&& o) noexcept { swap(o); }
   /// Takes the rows of `o`.
   AdjacencyStore& operator=(AdjacencyStore o) noexcept {

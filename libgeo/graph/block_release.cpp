@@ -4,34 +4,35 @@
 
 namespace geo {
 
-BlockRelease::BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run, AdjacencyStore& to)
+BlockRelease::BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run_length, AdjacencyStore& to)
     : graph_(graph), to_(to) {
   const std::size_t n = nodes.size();
-  // A search goes by bounds of edges, which are low by less than 2¹⁰: by a share of the least of
-  // them at most. Where that is nothing it may go anywhere, and all blocks are kept.
-  std::uint32_t least = unit_radius;
-  for (std::uint32_t i = 0; i < n; ++i) least = std::min(least, AdjacencyRow::bound(graph.rows().lowest_bound(i)));
+  // A search follows lower bounds of lengths, which are low by less than 2¹⁰: by a share of the
+  // shortest edge at most. If that is 0, a search may go anywhere and all blocks are kept.
+  std::uint32_t shortest = unit_radius;
+  for (std::uint32_t i = 0; i < n; ++i)
+    shortest = std::min(shortest, AdjacencyRow::bound(graph.rows().lowest_bound(i)));
   const GraphStorage& all = graph;
   for (std::uint32_t g = 0; g < graph.guides().size(); ++g)
-    least = std::min(least, AdjacencyRow::bound(all.store(GraphStorage::guide_id(0)).lowest_bound(g)));
-  if (least == 0) return;
-  const double reach = graph.longest_edge() * (1 + 1024.0 / least) * (1 + 1e-6);
+    shortest = std::min(shortest, AdjacencyRow::bound(all.store(GraphStorage::guide_id(0)).lowest_bound(g)));
+  if (shortest == 0) return;
+  const double reach = graph.longest_edge() * (1 + 1024.0 / shortest) * (1 + 1e-6);
   blocks_.resize(graph.rows().block_count());
   for (std::size_t i = 0; i < n; ++i) {
-    if (i % run == 0) read_.emplace_back();
+    if (i % run_length == 0) read_.emplace_back();
     read_.back().add(nodes.position[i]);
     if (!graph.rows().entries(i).to.empty()) blocks_[graph.rows().block_of(i)].add(nodes.position[i]);
   }
-  runs_ = std::vector<std::atomic<std::uint32_t>>(blocks_.size());
+  readers_ = std::vector<std::atomic<std::uint32_t>>(blocks_.size());
   for (Box3& box : read_) {
     box = box.grown(reach);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) runs_[b] += box.meets(blocks_[b]);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) readers_[b] += box.meets(blocks_[b]);
   }
 }
 
 void BlockRelease::done(std::size_t run) {
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (read_[run].meets(blocks_[b]) && --runs_[b] == 0) graph_.give_block(static_cast<std::uint32_t>(b), to_);
+    if (read_[run].meets(blocks_[b]) && --readers_[b] == 0) graph_.give_block(static_cast<std::uint32_t>(b), to_);
 }
 
 }  // namespace geo

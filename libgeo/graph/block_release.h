@@ -1,4 +1,4 @@
-// Memory of the graph's edges that goes over to rows of neighbours while these are found.
+// Reuse of the memory of edge rows for rows with neighbours, while these are found.
 #pragma once
 
 #include <atomic>
@@ -10,20 +10,21 @@
 
 namespace geo {
 
-/// Which blocks of a graph's rows the searches from runs of nodes may read, by boxes: when the last
-/// run that may read a block is done, its memory is given to the store that is being filled.
+/// Knows by bounding boxes which blocks of a graph's rows the searches from each run of nodes may
+/// read. When the last run that may read a block is done, the block's memory goes to the store
+/// being filled.
 class BlockRelease {
  public:
-  /// Run c is of the nodes from c · `run` on, `run` of them or those that are left.
-  BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run, AdjacencyStore& to);
-  /// Called once for each run, when its rows are in the store; from several threads.
+  /// Run c consists of the nodes from c · run_length on, run_length of them or those that are left.
+  BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run_length, AdjacencyStore& to);
+  /// To be called once for each run, when its rows are stored; safe from several threads.
   void done(std::size_t run);
 
  private:
   GraphStorage& graph_;
   AdjacencyStore& to_;
-  std::vector<Box3> read_, blocks_;               // what each run may read, and what is in each block
-  std::vector<std::atomic<std::uint32_t>> runs_;  // of each block, so many are left
+  std::vector<Box3> read_, blocks_;                  // what each run may read; what each block holds
+  std::vector<std::atomic<std::uint32_t>> readers_;  // by block: runs that may still read it
 };
 
 }  // namespace geo

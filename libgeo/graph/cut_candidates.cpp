@@ -55,6 +55,8 @@ struct Surroundings {
   double reach;
 };
 
+// Walks the grids down to small cubes, keeps those that faces reach into, and tests the nodes in
+// them in batches.
 class Search {
  public:
   Search(const NodeSet& nodes, const GraphStorage& graph, std::span<const Corners> faces, const TriangleBvh& tree)
@@ -68,11 +70,11 @@ class Search {
     // these distances.
     for (const Corners& face : faces) around_.emplace_back(face, 0.5 * reach_);
   }
-  Near run(const NodeGrid& grid, NodeId first_new) {
+  CutCandidates run(const NodeGrid& grid, NodeId first_new) {
     if (!(reach_ > 0)) return {};  // no edge yet
     walk(grid, 0, first_new.value);
     walk(graph_.guides().grid(), GraphStorage::guide_id(0), ~0u);
-    return std::move(near_);
+    return std::move(found_);
   }
 
  private:
@@ -120,7 +122,7 @@ class Search {
     grid.walk(into, [&](int, std::uint32_t row) {
       if (row >= end) return;
       if (is_new) {
-        if (suspects_.size() >= batch) settle();
+        if (suspects_.size() >= batch) test_suspects();
         const auto& here = faces_at_[depth_of_cube];
         cubes_.push_back({cube_faces_.size(), cube_faces_.size() + here.size(), regions_.size() - 1});
         cube_faces_.insert(cube_faces_.end(), here.begin(), here.end());
@@ -129,12 +131,12 @@ class Search {
       suspects_.push_back({base + row, static_cast<std::uint32_t>(cubes_.size() - 1)});
       __builtin_prefetch(&graph_.position(nodes_, base + row));
     });
-    settle();
+    test_suspects();
   }
 
   // Takes those of the suspects that are near, and forgets them all.
-  void settle() {
-    in_doubt_.clear();
+  void test_suspects() {
+    far_edges_only_.clear();
     std::size_t count = 0;
     for (const auto& suspect : suspects_) {
       const Vec3& x = graph_.position(nodes_, suspect.id);
@@ -150,26 +152,26 @@ class Search {
       const bool is_near = within(support_);
       if (!is_near && !(reach_ > support_ && within(reach_))) continue;
       graph_.store(suspect.id).prefetch_location(GraphStorage::index_of(suspect.id));
-      in_doubt_.push_back(!is_near);
+      far_edges_only_.push_back(!is_near);
       suspects_[count++] = suspect;
     }
     for (std::size_t k = 0; k < count; ++k) {
       const auto id = suspects_[k].id;
-      if (in_doubt_[k] && !graph_.store(id).has_edge_only_entries(GraphStorage::index_of(id))) continue;
-      near_.ids.push_back(id), near_.slabs.push_back(regions_[cubes_[suspects_[k].cube].region].slab);
+      if (far_edges_only_[k] && !graph_.store(id).has_edge_only_entries(GraphStorage::index_of(id))) continue;
+      found_.ids.push_back(id), found_.slabs.push_back(regions_[cubes_[suspects_[k].cube].region].slab);
     }
     suspects_.clear(), cubes_.clear(), cube_faces_.clear();
   }
 
   const Slab& slab_of(Region& region) {
     if (region.slab == ~0u) {
-      rows_.clear();
+      indices_.clear();
       const Vec3 way = Vec3::Constant(region.half + reach_);
-      tree_.near({region.middle - way, region.middle + way}, rows_);
-      region.slab = static_cast<std::uint32_t>(near_.slab.size());
-      near_.slab.emplace_back(faces_, rows_, region.middle, 2 * way.x());
+      tree_.near({region.middle - way, region.middle + way}, indices_);
+      region.slab = static_cast<std::uint32_t>(found_.slab.size());
+      found_.slab.emplace_back(faces_, indices_, region.middle, 2 * way.x());
     }
-    return near_.slab[region.slab];
+    return found_.slab[region.slab];
   }
 
   static constexpr double region_size = 1;   // half its edge at most, in supports
@@ -183,21 +185,21 @@ class Search {
   std::vector<std::vector<std::uint32_t>> faces_at_;  // by depth, from 1: those that reach into the cube
   std::vector<Cube> cubes_;
   std::vector<Region> regions_;
-  std::vector<std::uint32_t> cube_faces_, rows_;
+  std::vector<std::uint32_t> cube_faces_, indices_;
   std::vector<Suspect> suspects_;
-  std::vector<std::uint8_t> in_doubt_;
-  Near near_;
+  std::vector<std::uint8_t> far_edges_only_;
+  CutCandidates found_;
 };
 
 }  // namespace
 
-Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, const Vec3& origin, double reach)
+Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> indices, const Vec3& origin, double reach)
     : origin(origin) {
   double largest = -1, far = reach;
-  for (const auto f : rows)
+  for (const auto f : indices)
     if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest)
       largest = n.squaredNorm(), normal = n;
-  for (const auto f : rows)
+  for (const auto f : indices)
     for (const Vec3& corner : faces[f]) {
       const double h = height(corner);
       from = std::min(from, h), to = std::max(to, h), far = std::max(far, (corner - origin).lpNorm<Eigen::Infinity>());
@@ -208,8 +210,8 @@ Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> rows, 
   length = normal.norm() * (1 + 1e-12);
 }
 
-Near find_cut_candidates(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
-                         std::span<const Corners> faces, const TriangleBvh& tree) {
+CutCandidates find_cut_candidates(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid,
+                                  NodeId first_new, std::span<const Corners> faces, const TriangleBvh& tree) {
   return Search(nodes, graph, faces, tree).run(grid, first_new);
 }
 

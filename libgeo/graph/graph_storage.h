@@ -1,4 +1,4 @@
-// What a VisibilityGraph stores: adjacency rows of nodes and guides, and the guides themselves.
+// The storage of a VisibilityGraph: adjacency rows of nodes and guides, and the guides themselves.
 #pragma once
 
 #include <array>

@@ -12,11 +12,11 @@
 namespace geo {
 namespace {
 
-constexpr double beside = 1.0 / 64;  // of the nodes' spacing: how far guides stand from their edges
+constexpr double offset = 1.0 / 64;  // distance of guides from their edges, in spacings of the nodes
 
-// Of unit length, halves the material around an edge, unless that spans less than 180 degrees and
-// `bend`, in radians, more.
-std::optional<Vec3> way_into(const SurfaceEdge& e, double bend) {
+// The unit vector that bisects the material around an edge. Empty unless the material spans 180
+// degrees and `bend` (radians) more.
+std::optional<Vec3> bisector_into_material(const SurfaceEdge& e, double bend) {
   const Vec3 along = (e.b - e.a).normalized();
   const auto across = [&](const Vec3& p) -> Vec3 { return ((p - e.a) - (p - e.a).dot(along) * along).normalized(); };
   const Vec3 u = across(e.c), v = across(e.d);
@@ -46,14 +46,14 @@ std::vector<Guide> place_guides(std::span<const SurfaceEdge> edges, const NodeSe
     return grid.nearest(nodes.position, p, 1, ~0u, [](std::uint32_t) { return true; }).front();
   };
   for (const SurfaceEdge& edge : edges) {
-    const auto into = way_into(edge, options.bend * std::numbers::pi / 180);
+    const auto into = bisector_into_material(edge, options.bend * std::numbers::pi / 180);
     if (!into) continue;
     const double gap = options.spacing * nodes.spacing[node_at(0.5 * (edge.a + edge.b))];
     const auto parts = static_cast<std::size_t>(std::ceil((edge.b - edge.a).norm() / gap));
     for (std::size_t k = 0; k < parts; ++k) {
       const Vec3 at = edge.a + (double(k) + 0.5) / double(parts) * (edge.b - edge.a);
       const auto node = node_at(at);
-      const Vec3 p = at + beside * nodes.spacing[node] * *into;
+      const Vec3 p = at + offset * nodes.spacing[node] * *into;
       near.clear();
       placed.within(p, 0.5 * options.spacing * nodes.spacing[node], near);
       if (std::any_of(near.begin(), near.end(), [&](std::uint32_t g) { return !blocked(placed.position(g), p); }))

@@ -1,4 +1,4 @@
-// Where guides stand (§ 8): beside the concave edges of a surface, where shortest paths bend.
+// Positions of guides (§ 8): beside the concave edges of a surface, where shortest paths bend.
 #pragma once
 
 #include <functional>
@@ -11,23 +11,23 @@
 
 namespace geo {
 
-/// An edge ab of the surface between triangles abc and bad, which face outwards. At the front of a
-/// crack they are the two sides of one face.
+/// An edge ab of the surface between triangles abc and bad, which face outwards. At a crack front
+/// the two triangles are the two sides of one face.
 struct SurfaceEdge {
   Vec3 a, b, c, d;
 };
 
+/// Options of place_guides().
 struct GuideOptions {
-  double spacing = 0.5;  ///< between guides along an edge, in spacings of the nodes there; from 0.05 to 10
-  double bend =
-      20;  ///< edges get guides where the material spans at least so much more than 180 degrees; from 1 to 180
+  double spacing = 0.5;  ///< between guides along an edge, in spacings of the nodes there; 0.05 to 10
+  double bend = 20;      ///< least angle by which the material around an edge exceeds 180 degrees; 1 to 180
 };
 
-/// Points just inside the material along those of the edges that are concave, and along the fronts
-/// of cracks: the middles of equal parts of each edge, but none that sees one placed before, or one
-/// of `taken`, close by. `grid` holds all nodes, of which there is one at least: a guide takes the
-/// support radius of the nearest. `blocked`: whether a face touches the segment between two points.
-/// Throws InputError when an option is out of range.
+/// Guides just inside the material along those of the edges that are concave or crack fronts:
+/// beside the middles of equal parts of each edge. A guide is left out where a guide placed before,
+/// or one of `taken`, is close by and visible. Guides take the support radius of the nearest node.
+/// `grid` is over all nodes, of which there is at least one. `blocked`: does a face touch the
+/// segment between two points? Throws InputError for options out of range.
 std::vector<Guide> place_guides(std::span<const SurfaceEdge> edges, const NodeSet& nodes, const NodeGrid& grid,
                                 const std::function<bool(const Vec3&, const Vec3&)>& blocked,
                                 const GuideOptions& options = {}, const GuideSet& taken = {});

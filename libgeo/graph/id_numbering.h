@@ -1,4 +1,4 @@
-// Numbers ids in the order in which they come, and lists them ascending.
+// Numbers ids in the order of their addition, and lists them ascending.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace geo {
 
-/// Faster than a hash table where ids are near each other. Memory is a kilobyte for each run of 256
-/// ids of which one came, and four bytes for each run of the graph.
+/// Faster than a hash table where ids are near each other. Takes a kilobyte (a page) for each run
+/// of 256 ids of which one is numbered, and four bytes for each run of the graph.
 class IdNumbering {
  public:
   /// Forgets all ids.
@@ -21,8 +21,9 @@ class IdNumbering {
     used_.clear();
     size_ = 0;
   }
+  /// How many ids are numbered.
   std::uint32_t size() const { return size_; }
-  /// The number of an id, which becomes the next one when it is new.
+  /// The number of an id; a new id gets the next one.
   std::uint32_t add(std::uint32_t id) {
     auto& pages = table(id);
     const std::size_t at = GraphStorage::index_of(id) >> shift;
@@ -31,13 +32,13 @@ class IdNumbering {
     if (number == none) number = size_++;
     return number;
   }
-  /// Calls see(id, number) for all ids, ascending.
-  template <class See>
-  void each(const See& see) {
+  /// Calls visit(id, number) for all ids, ascending.
+  template <class Visit>
+  void each(const Visit& visit) {
     std::sort(used_.begin(), used_.end());
     for (const auto& [run, page] : used_)
       for (std::uint32_t k = 0; k < length; ++k)
-        if (pages_[page][k] != none) see(run << shift | k, pages_[page][k]);
+        if (pages_[page][k] != none) visit(run << shift | k, pages_[page][k]);
   }
 
  private:
@@ -52,7 +53,7 @@ class IdNumbering {
     used_.push_back({run, pages[at] = page});
   }
 
-  std::vector<std::uint32_t> tables_[2];                       // of nodes and of guides: the page of each run, or none
+  std::vector<std::uint32_t> tables_[2];                       // for nodes and guides: the page of each run, or none
   std::vector<Page> pages_;                                    // numbers
   std::vector<std::pair<std::uint32_t, std::uint32_t>> used_;  // runs and their pages
   std::uint32_t size_ = 0;

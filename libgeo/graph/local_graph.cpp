@@ -26,10 +26,10 @@ void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_
   std::size_t used = 0, tail = 0;
   if (queue_.size() < count) queue_.resize(2 * count);
   for (std::uint32_t number = 0; number < count; ++number)
-    queue_[tail++] = number, discoveries_[number].reach = 0, queued_[number] = 1;
-  const auto leads_on = [&](std::uint32_t number) {
+    queue_[tail++] = number, discoveries_[number].distance = 0, queued_[number] = 1;
+  const auto may_lead_on = [&](std::uint32_t number) {
     const Discovery& d = discoveries_[number];
-    return d.reach + AdjacencyRow::bound(graph.store(d.id).lowest_bound(GraphStorage::index_of(d.id))) < unit_radius;
+    return d.distance + AdjacencyRow::bound(graph.store(d.id).lowest_bound(GraphStorage::index_of(d.id))) < unit_radius;
   };
   const auto prefetch_location = [&](std::uint32_t id) {
     graph.store(id).prefetch_location(GraphStorage::index_of(id));
@@ -40,9 +40,9 @@ void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_
     queued_[number] = 0;
     constexpr std::size_t ahead = 6;
     if (at + 2 * ahead < tail) prefetch_location(discoveries_[queue_[at + 2 * ahead]].id);
-    if (at + ahead < tail && leads_on(queue_[at + ahead])) prefetch(discoveries_[queue_[at + ahead]].id);
-    if (number >= count && !leads_on(number)) continue;
-    const auto reach = discoveries_[number].reach;
+    if (at + ahead < tail && may_lead_on(queue_[at + ahead])) prefetch(discoveries_[queue_[at + ahead]].id);
+    if (number >= count && !may_lead_on(number)) continue;
+    const auto distance = discoveries_[number].distance;
     const auto row = graph.entries(discoveries_[number].id);
     const auto size = row.to.size();
     constexpr std::size_t vector = 16;
@@ -50,10 +50,10 @@ void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_
     if (next_.size() < size + vector) next_.resize(2 * size + vector);
     if (queue_.size() < tail + size) queue_.resize(2 * tail + size);
     auto* const targets = targets_.data() + used;
-    const std::size_t edges = edges_within_support(row, reach, targets, next_.data());
+    const std::size_t edges = edges_within_support(row, distance, targets, next_.data());
     for (std::size_t k = 0; k < edges; ++k) {
       const auto to = targets[k] = discover(targets[k]);
-      auto& known = discoveries_[to].reach;
+      auto& known = discoveries_[to].distance;
       const std::uint8_t enters = (next_[k] < known) & (queued_[to] ^ 1);
       known = std::min(known, next_[k]);
       queued_[to] |= enters;
@@ -73,22 +73,23 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
     squared_.resize(2 * count + 16, 1), radius_.resize(2 * count + 16, 1), length_.resize(2 * count + 16);
     to_.resize(length_.size()), class_.resize(length_.size());
   }
-  const Place& p = places_[place_[number]];
+  const Point& p = points_[local_[number]];
   for (std::size_t k = 0; k < count; ++k) {
-    to_[k] = place_[targets[k]];
-    const Place& q = places_[to_[k]];
+    to_[k] = local_[targets[k]];
+    const Point& q = points_[to_[k]];
     const double x = p.x - q.x, y = p.y - q.y, z = p.z - q.z;  // as squared_distance()
     squared_[k] = (x * x + y * y) + z * z;
     radius_[k] = std::max(p.radius, q.radius);
   }
   warped_lengths(squared_.data(), radius_.data(), count, length_.data());
-  // A counting sort into classes; the last is of edges that lead nowhere, which go.
+  // A counting sort into classes. The last class holds edges that lead to no neighbour; it is
+  // dropped.
   constexpr std::uint32_t classes = unit_radius >> class_shift;
-  const auto most = unit_radius - from.reach;
+  const auto limit = unit_radius - from.distance;
   std::uint32_t shortest = unit_radius, longest = 0;
   for (std::size_t k = 0; k < count; ++k) {
     shortest = std::min(shortest, length_[k]), longest = std::max(longest, length_[k]);
-    class_[k] = length_[k] < most ? length_[k] >> class_shift : classes;
+    class_[k] = length_[k] < limit ? length_[k] >> class_shift : classes;
   }
   std::array<std::uint32_t, classes + 1> begin{};
   for (std::size_t k = 0; k < count; ++k) ++begin[class_[k]];
@@ -99,7 +100,7 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   first_.push_back(begin[classes - 1]);
   limit_.push_back(unit_radius - shortest);
   if (source)
-    bare_edges_[number] =
+    edge_only_[number] =
         longest >= unit_radius || std::any_of(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(count),
                                               [&](auto to) { return to >= nodes_; });
 }
@@ -107,17 +108,17 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
 void LocalGraph::gather(const NodeSet& nodes, const GraphStorage& graph, std::span<const std::uint32_t> sources) {
   explore(graph, sources);
   nodes_ = 0;
-  id_.resize(discovered_), place_.resize(discovered_), places_.resize(discovered_), number_.resize(discovered_);
+  id_.resize(discovered_), local_.resize(discovered_), points_.resize(discovered_), number_.resize(discovered_);
   std::uint32_t local = 0;
   numbers_.each([&](std::uint32_t id, std::uint32_t number) {
-    id_[local] = id, number_[local] = number, place_[number] = local;
+    id_[local] = id, number_[local] = number, local_[number] = local;
     const Vec3& p = graph.position(nodes, id);
-    places_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
+    points_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
     nodes_ += !GraphStorage::is_guide(id);
     ++local;
   });
   first_.assign(1, 0), limit_.clear();
-  bare_edges_.assign(sources.size(), 0);
+  edge_only_.assign(sources.size(), 0);
   for (const auto number : number_) measure(number, number < sources.size());
 }
 

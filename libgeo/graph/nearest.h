@@ -1,4 +1,4 @@
-// The nodes nearest to each node (§ 6.1).
+// The k nearest nodes of each node (§ 6.1).
 #pragma once
 
 #include <functional>
@@ -10,13 +10,15 @@
 
 namespace geo {
 
-/// The k nearest nodes of each node (fewer when there are fewer), by (distance, id), without itself. Row i at [i·k].
-/// Missing entries are invalid ids. Exact: by squared_distance(), then id.
+/// The k nearest nodes of each node, without itself, ascending by squared_distance(), then id.
+/// Exact. Row i begins at [i·k]; missing entries are invalid ids. Throws InputError for a negative
+/// k.
 UninitializedArray<NodeId> nearest_nodes(std::span<const Vec3> positions, int k);
+/// The same over a tree that exists.
 UninitializedArray<NodeId> nearest_nodes(const NodeTree& tree, int k);
 
-/// The same, a row at a time and none of them kept: `take(i, row)` is called once for each node, in no set order and
-/// from several threads; the row is gone after the call.
-void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& take);
+/// The same without storing them: calls visit(i, nearest) once for each node, in no fixed order and
+/// from several threads. `nearest` is valid during the call.
+void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& visit);
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-// Nearest nodes in vector lanes: what nearest.cpp calls.
+// Nearest nodes in vector lanes, for nearest.cpp.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,9 @@
 
 namespace geo {
 
-/// visit_nearest() for the nodes of some cells, by the widest vectors that the processor has.
+/// visit_nearest() for the nodes of some cells (`groups`), with the widest vectors of the
+/// processor.
 void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,
-                       const std::function<void(NodeId, std::span<const NodeId>)>& take);
+                       const std::function<void(NodeId, std::span<const NodeId>)>& visit);
 
 }  // namespace geo

@@ -10,7 +10,7 @@ namespace {
 
 constexpr PathLength far = ~PathLength(0), radius = PathLength(unit_radius) << 32;
 
-// A row of the matrix: a hash table without deletion.
+// A row of the distance matrix D: a hash table without deletion.
 class SparseRow {
  public:
   SparseRow() : slots_(64) {}
@@ -76,8 +76,8 @@ std::vector<PathDistances> edge_lengths(const NodeSet& nodes, const GraphStorage
   return rows;
 }
 
-void BoundedDijkstra::run(std::uint32_t source, PathDistances& row) {
-  row.clear();
+void BoundedDijkstra::run(std::uint32_t source, PathDistances& distances) {
+  distances.clear();
   best_[source] = 0;
   heap_.assign(1, {0, source});
   while (!heap_.empty()) {
@@ -85,7 +85,7 @@ void BoundedDijkstra::run(std::uint32_t source, PathDistances& row) {
     const auto [d, u] = heap_.back();
     heap_.pop_back();
     if (d != best_[u]) continue;
-    if (u != source) row.push_back({u, d});
+    if (u != source) distances.push_back({u, d});
     for (const auto& [v, length] : edges_[u])
       if (const PathLength next = d + length; next < radius && next < best_[v]) {
         best_[v] = next;
@@ -94,8 +94,8 @@ void BoundedDijkstra::run(std::uint32_t source, PathDistances& row) {
       }
   }
   best_[source] = far;
-  for (const auto& [v, d] : row) best_[v] = far;
-  std::sort(row.begin(), row.end());
+  for (const auto& [v, d] : distances) best_[v] = far;
+  std::sort(distances.begin(), distances.end());
 }
 
 std::vector<PathDistances> modified_floyd_warshall(const std::vector<PathDistances>& edges) {

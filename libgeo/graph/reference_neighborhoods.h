@@ -1,5 +1,5 @@
-// Rows of neighbours by textbook methods, one source or one node at a time: what faster ones are
-// held to.
+// Neighbourhoods by textbook methods, one source or one node at a time: the reference for faster
+// ones.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,25 @@
 
 namespace geo {
 
-/// A distance as one number, warped length in the high half and plain length in the low one: the
-/// smallest is the shortest warped path and, among equals, the plainly shortest. They add without
-/// rounding.
+/// A distance as one number: warped length in the high half, plain length in the low half. The
+/// smallest is the path with the least warped length and, among equals, the least plain length.
+/// Sums are exact.
 using PathLength = std::uint64_t;
+/// Pairs (node, distance), ascending by node.
 using PathDistances = std::vector<std::pair<std::uint32_t, PathLength>>;
 
-/// The graph's edges with their lengths, those shorter than the support. Guides follow the nodes.
+/// The edges shorter than the support radius with their lengths, by node. Guides follow the nodes,
+/// numbered from graph.node_count() on.
 std::vector<PathDistances> edge_lengths(const NodeSet& nodes, const GraphStorage& graph);
 
-/// Dijkstra from one node, bounded by the support; ascending by node, without the node itself.
+/// Dijkstra's algorithm from one node, bounded by the support radius.
 class BoundedDijkstra {
  public:
+  /// Over edge_lengths(), which must outlive the object.
   explicit BoundedDijkstra(const std::vector<PathDistances>& edges)
       : edges_(edges), best_(edges.size(), ~PathLength(0)) {}
-  void run(std::uint32_t source, PathDistances& row);
+  /// Writes the distances from `source` to all nodes within the support radius, without `source`.
+  void run(std::uint32_t source, PathDistances& distances);
 
  private:
   const std::vector<PathDistances>& edges_;
@@ -32,8 +36,8 @@ class BoundedDijkstra {
   std::vector<std::pair<PathLength, std::uint32_t>> heap_;
 };
 
-/// § 6.2: the modified Floyd-Warshall on sparse rows; a path longer than the support is never
-/// stored.
+/// § 6.2: the modified Floyd–Warshall algorithm on sparse rows. It never stores a path longer than
+/// the support radius.
 std::vector<PathDistances> modified_floyd_warshall(const std::vector<PathDistances>& edges);
 
 }  // namespace geo

@@ -18,7 +18,7 @@ namespace geo {
 /// Appends the triangles of K whose boxes meet a box. Must be safe to call from several threads.
 using TrianglesNear = std::function<void(const Box3&, std::vector<std::array<Vec3, 3>>&)>;
 
-/// What a step changes in the surroundings of a graph. The graph itself is as before the step.
+/// The changes of a step around a graph. The graph itself is as before the step.
 struct GraphChange {
   const NodeSet& nodes;          ///< new nodes included, all where they are after the step
   const NodeGrid& grid;          ///< over nodes.position
@@ -36,7 +36,7 @@ struct GraphChange {
   GuideChange guides = {};                                ///< added guides stand beside the new faces
 };
 
-/// What an update changed. Pairs are nodes i < j, ascending; guides are left out.
+/// The changes that an update made. Pairs are nodes i < j, ascending; guides are left out.
 struct GraphUpdate {
   std::vector<std::pair<NodeId, NodeId>> cut_edges;    ///< E_cut
   std::vector<std::pair<NodeId, NodeId>> added_edges;  ///< E_new

@@ -7,10 +7,10 @@
 namespace geo {
 
 void Visibility::blocked(NodeId i, std::span<const NodeId> to, std::span<std::uint8_t> result) const {
-  constexpr std::size_t most = 32;
-  Vec3 ends[most];
-  for (std::size_t first = 0; first < to.size(); first += most) {
-    const std::size_t count = std::min(most, to.size() - first);
+  constexpr std::size_t batch = 32;
+  Vec3 ends[batch];
+  for (std::size_t first = 0; first < to.size(); first += batch) {
+    const std::size_t count = std::min(batch, to.size() - first);
     for (std::size_t q = 0; q < count; ++q) ends[q] = positions_[to[first + q].index()];
     obstacles_.blocks(positions_[i.index()], {ends, count}, result.data() + first);
   }

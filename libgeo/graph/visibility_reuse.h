@@ -1,4 +1,5 @@
-// Who saw a node, and does still.
+// Reuse of visibility: a pair that saw each other before a step still does, unless a new face came
+// between.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +9,14 @@
 
 namespace geo {
 
-/// Set in what entries_to_retest() writes where something came between.
+/// Set in entries of entries_to_retest() that a new face hides.
 constexpr std::uint32_t hidden_bit = std::uint32_t(1) << 31;
 
-/// Of a node's new row: which entries are neither edges nor were seen in its old row and are still.
-/// Writes their places, ascending, with hidden_bit where they were seen and are among `lost`
-/// (ascending). Returns how many.
+/// The entries of a node's new row (`to`, `bits`) whose visibility does not follow from its old
+/// row: those that are no edges and were not visible, or are in `hidden` (ascending). Writes their
+/// indices, ascending, with hidden_bit where they were visible and are in `hidden`. Returns their
+/// number.
 std::size_t entries_to_retest(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
-                              const AdjacencyRow& old, std::span<const std::uint32_t> lost, std::uint32_t* unsure);
+                              const AdjacencyRow& old, std::span<const std::uint32_t> hidden, std::uint32_t* retest);
 
 }  // namespace geo

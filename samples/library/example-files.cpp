@@ -1,4 +1,4 @@
-// Writes what the tools read, reads it back, and shows what a damaged file gives.
+// Writes a surface and a body, reads the body back, and shows the error for a damaged file.
 #include <cstdio>
 #include <fstream>
 #include <sstream>

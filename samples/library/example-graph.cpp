@@ -1,4 +1,4 @@
-// The same cut in a body with nodes: those on either side of it are neighbours no more.
+// Cuts a body with nodes and a visibility graph: nodes on opposite sides are no longer neighbours.
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -17,10 +17,10 @@ int main() {
   std::size_t cut = 0, added = 0;
   for (int step = 1; step <= 12; ++step) {
     for (geo::Vec3& p : line) p.z() -= 0.25;
-    geo::SplitStats work;
-    const geo::BodyDelta delta = geo::split(body, front, line, {}, &work);
-    cut += work.edges_cut, added += work.nodes_added;
-    for (const auto& part : delta.detached) std::printf("step %d: %zu nodes came off\n", step, part.size());
+    geo::SplitStats stats;
+    const geo::BodyDelta delta = geo::split(body, front, line, {}, &stats);
+    cut += stats.edges_cut, added += stats.nodes_added;
+    for (const auto& ids : delta.detached) std::printf("step %d: %zu nodes detached\n", step, ids.size());
   }
 
   double nearest = body.nodes.radius[0];

@@ -1,4 +1,4 @@
-// Cuts a pumpkin in two by a front that sweeps through it, and says what the halves measure.
+// Cuts a pumpkin in two by a front that sweeps through it, and measures the halves.
 #include <cstdio>
 #include <vector>
 
@@ -9,13 +9,13 @@
 int main() {
   geo::Complex complex = geo::Complex::from_skin(geo::make_pumpkin(12));
 
-  // The front: a line of three points, above the pumpkin at first, below it at last.
+  // The front: a line of three points, first above the pumpkin, at the end below it.
   std::vector<geo::Vec3> line = {{-2, 0.1, 1.5}, {0, -0.1, 1.5}, {2, 0.1, 1.5}};
   geo::FrontState front = geo::begin_front(line, false, 1);
   for (int step = 1; step <= 12; ++step) {
     for (geo::Vec3& p : line) p.z() -= 0.25;
     const geo::CrackDelta delta = geo::advance(complex, front, line);
-    std::printf("step %2d: %zu faces gone, %zu new, %zu of them of the crack\n", step, delta.removed_faces.size(),
+    std::printf("step %2d: %zu faces removed, %zu new, %zu of them on the crack\n", step, delta.removed_faces.size(),
                 delta.new_faces.size(), delta.new_crack_faces.size());
   }
 

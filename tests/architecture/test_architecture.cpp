@@ -52,6 +52,7 @@ const std::map<std::string, std::string> public_headers{
     {"front_file", "io"},
     {"graph", "graph"},
     {"indirect", "base"},
+    {"kerf", "io"},
     {"material", "mechanics/material"},
     {"mesh", "surface"},
     {"node_file", "io"},

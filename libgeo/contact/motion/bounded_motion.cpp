@@ -15,132 +15,154 @@
 namespace geo {
 namespace {
 
-class Mover {
+// Limits of effort. None changes whether something crosses; they bound what one step may cost.
+constexpr int max_rounds = 8;          // of motion and reduction of the tracking error
+constexpr int max_projections = 240;   // in a round
+constexpr int patience = 6;            // projections without progress, after which pairs become rigid
+constexpr int max_growths = 20;        // of the fallback's set of vertices
+constexpr int growths_to_follow = 10;  // after which all vertices follow the field
+// Progress: so much fewer pairs are uncertified.
+constexpr std::size_t progress_divisor = 4;
+// Margin of boxes in the broad phase, of an edge: what is projected further mostly stays within it.
+constexpr double box_margin = 0.05;
+// Error bound of separations over the size of coordinates: some ulps of the products in them.
+constexpr double relative_rounding = 1e-14;
+
+class CrossingFreeMotion {
  public:
-  Mover(const SurfaceMotion& m, bool two_sided, BroadPhase& near, const VertexFans& fans, BoundedMotionStats& report)
-      : m_(m), two_sided_(two_sided), near_(near), fans_(fans), report_(report), surface_(m), at_(m.from) {
+  CrossingFreeMotion(const SurfaceMotion& m, bool two_sided, BroadPhase& near, const VertexFans& fans,
+                     BoundedMotionStats& stats)
+      : m_(m), two_sided_(two_sided), near_(near), fans_(fans), stats_(stats), surface_(m), at_(m.from) {
     edge_ = mean_edge();
     double size = 0;
     for (const auto v : surface_.vertices)
       size = std::max({size, m.from[v].cwiseAbs().maxCoeff(), m.to[v].cwiseAbs().maxCoeff()});
-    rounding_ = 1e-14 * size;
+    rounding_ = relative_rounding * size;
   }
 
   std::vector<Vec3> run() {
-    for (int round = 0; round < most_rounds && wanting(); ++round) {
-      const Way way = advance(round);
-      if (way == Way::free) break;
-      report_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
-      if (way == Way::carried) break;
+    for (int round = 0; round < max_rounds && !arrived(); ++round) {
+      const Outcome outcome = advance(round);
+      if (outcome == Outcome::free) break;
+      stats_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
+      if (outcome == Outcome::fallback) break;
     }
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.representative[v]];
     return std::move(at_);
   }
 
  private:
-  static constexpr double spare = 0.05;  // of an edge: so that what is carried further stays in its box
-  static constexpr int most_rounds = 8, most_mendings = 240, patience = 6, growths_apart = 10, most_growths = 20;
+  // How a round ended: all vertices went straight to their projected targets; some followed the
+  // fallback, which went as far as they wanted; or it was scaled down.
+  enum class Outcome { free, fallback, scaled_down };
 
-  // Sums of stretches one after the other, the same for any number of threads.
+  // Chunked sums, the same for any number of threads.
   double mean_edge() const {
-    constexpr std::size_t stretch = 2048;
-    std::vector<double> sums((surface_.triangles.size() + stretch - 1) / stretch, 0);
+    constexpr std::size_t chunk = 2048;
+    std::vector<double> sums((surface_.triangles.size() + chunk - 1) / chunk, 0);
     parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin * stretch; t < std::min(surface_.triangles.size(), end * stretch); ++t) {
+      for (std::size_t t = begin * chunk; t < std::min(surface_.triangles.size(), end * chunk); ++t) {
         const auto& [a, b, c] = surface_.triangles[t];
-        sums[t / stretch] += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
+        sums[t / chunk] += (at_[b] - at_[a]).norm() + (at_[c] - at_[b]).norm() + (at_[a] - at_[c]).norm();
       }
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0) / std::max(1.0, 3 * double(surface_.triangles.size()));
   }
 
-  bool wanting() const {
-    return std::any_of(surface_.vertices.begin(), surface_.vertices.end(), [&](auto v) { return at_[v] != m_.to[v]; });
+  bool arrived() const {
+    return std::none_of(surface_.vertices.begin(), surface_.vertices.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
-  // Straight to where all want to be; what would cross or pass something is carried along instead,
-  // and left behind where the field would be too steep.
-  enum class Way { free, carried, behind };
-  Way advance(int round) {
+  Outcome advance(int round) {
     std::vector<Vec3> start = at_;
     if (round == 0) apply_affine_fit(surface_.vertices, at_, m_.to, start);
     std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
-    cover(start, next);
-    if (give_way(start, next)) {
+    update_near(start, next);
+    if (project_targets(start, next)) {
       at_ = std::move(next);
-      return Way::free;
+      return Outcome::free;
     }
-    next = straight(start, m_.to);
-    cover(start, next);
-    MotionCertifier check({surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes());
-    std::optional<FallbackMotion> carried;
-    const MotionCertifier::KnownDisjoint keep_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
-      return carried && carried->keeps_apart(s, t, distance);
-    };
-    std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
-    for (int growth = 0;; ++growth) {
-      const auto failing = check.uncertified_pairs(near_.pairs(), changed, keep_apart);
-      if (failing.empty()) break;
-      if (!carried) carried.emplace(surface_.triangles, surface_.vertices, start, m_.to, edge_);
-      bool grown = carried->add(failing);
-      if (growth == growths_apart) grown |= carried->add_all();
-      if (!grown || growth == most_growths) {
-        move_as_one(start, next);
-        break;
-      }
-      const std::vector<Vec3> before = next;
-      carried->apply(next);
-      mark(before, next, changed);
-      cover(start, next, &changed);
-    }
-    if (carried) report_.in_zones = std::max(report_.in_zones, carried->in_zones());
-    at_ = std::move(next);
-    return !carried || carried->share() == 1 ? Way::carried : Way::behind;
+    return fall_back(start);
   }
 
+  // The end of a straight motion of all vertices in use.
   std::vector<Vec3> straight(const std::vector<Vec3>& start, const std::vector<Vec3>& to) const {
     std::vector<Vec3> next = start;
     for (const auto v : surface_.vertices) next[v] = to[v];
     return next;
   }
 
-  // Mends where all want to go until nothing would cross or pass anything; false: something would
-  // all the same.
-  bool give_way(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
-    SeparationProjection couples(surface_.triangles, start, m_.gap);
-    MotionCertifier check({surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes());
-    const MotionCertifier::KnownDisjoint bound = [&](std::uint32_t s, std::uint32_t t, double) {
-      return couples.bound(s, t);
-    };
-    std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
-    std::size_t many = ~std::size_t(0);
-    int since = 0;  // the round in which so many failed
-    bool free = false;
-    for (int round = 0; round < most_mendings; ++round) {
-      const auto failing = check.uncertified_pairs(near_.pairs(), changed, bound);
-      free = failing.empty();
-      if (free) break;
-      if (failing.size() < many - many / 4) many = failing.size(), since = round;
-      const std::vector<Vec3> before = next;
-      if (round - since < patience)
-        couples.add(failing, next);
-      else
-        couples.bind(failing), many = failing.size(), since = round;
-      couples.push(next);
-      if (next == before) {
-        if (!couples.bind(failing)) break;
-        couples.push(next);
-      }
-      mark(before, next, changed);
-      for (const auto& [s, t] : failing) changed[s] = changed[t] = 1;  // they may not have been moved
-      cover(start, next, &changed);
-    }
-    report_.in_zones = std::max(report_.in_zones, couples.in_zones());
-    return free;
+  MotionCertifier certifier(const std::vector<Vec3>& start, const std::vector<Vec3>& next) {
+    return {{surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes()};
   }
 
-  // Triangles of which a corner has another place.
-  void mark(const std::vector<Vec3>& before, const std::vector<Vec3>& next, std::vector<std::uint8_t>& changed) const {
+  // Changes `next` until the motion from `start` is certified. False: it still is not.
+  bool project_targets(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
+    SeparationProjection projection(surface_.triangles, start, m_.gap);
+    MotionCertifier certify = certifier(start, next);
+    const MotionCertifier::KnownDisjoint rigid = [&](std::uint32_t s, std::uint32_t t, double) {
+      return projection.is_rigid(s, t);
+    };
+    std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
+    std::size_t fewest = ~std::size_t(0);  // uncertified pairs at the last progress
+    int last_progress = 0;                 // the iteration of it
+    bool certified = false;
+    for (int i = 0; i < max_projections; ++i) {
+      const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, rigid);
+      certified = uncertified.empty();
+      if (certified) break;
+      if (uncertified.size() < fewest - fewest / progress_divisor) fewest = uncertified.size(), last_progress = i;
+      const std::vector<Vec3> before = next;
+      if (i - last_progress < patience)
+        projection.add(uncertified, next);
+      else
+        projection.make_rigid(uncertified), fewest = uncertified.size(), last_progress = i;
+      projection.project(next);
+      if (next == before) {
+        if (!projection.make_rigid(uncertified)) break;
+        projection.project(next);
+      }
+      mark_changed(before, next, changed);
+      for (const auto& [s, t] : uncertified) changed[s] = changed[t] = 1;  // to be tested again if unmoved, too
+      update_near(start, next, &changed);
+    }
+    stats_.in_zones = std::max(stats_.in_zones, projection.in_zones());
+    return certified;
+  }
+
+  // Moves at_ from `start`, by the fallback where the straight motion is not certified.
+  Outcome fall_back(const std::vector<Vec3>& start) {
+    std::vector<Vec3> next = straight(start, m_.to);
+    update_near(start, next);
+    MotionCertifier certify = certifier(start, next);
+    std::optional<FallbackMotion> fallback;
+    const MotionCertifier::KnownDisjoint kept_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
+      return fallback && fallback->keeps_apart(s, t, distance);
+    };
+    std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
+    for (int growth = 0;; ++growth) {
+      const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, kept_apart);
+      if (uncertified.empty()) break;
+      if (!fallback) fallback.emplace(surface_.triangles, surface_.vertices, start, m_.to, edge_);
+      bool grown = fallback->add(uncertified);
+      if (growth == growths_to_follow) grown |= fallback->add_all();
+      if (!grown || growth == max_growths) {
+        move_as_one(start, next);
+        break;
+      }
+      const std::vector<Vec3> before = next;
+      fallback->apply(next);
+      mark_changed(before, next, changed);
+      update_near(start, next, &changed);
+    }
+    if (fallback) stats_.in_zones = std::max(stats_.in_zones, fallback->in_zones());
+    at_ = std::move(next);
+    return !fallback || fallback->share() == 1 ? Outcome::fallback : Outcome::scaled_down;
+  }
+
+  // Marks triangles with a vertex that has moved.
+  void mark_changed(const std::vector<Vec3>& before, const std::vector<Vec3>& next,
+                    std::vector<std::uint8_t>& changed) const {
     std::vector<std::uint8_t> moved(next.size(), 0);
     for (const auto v : surface_.vertices) moved[v] = next[v] != before[v];
     for (std::size_t t = 0; t < changed.size(); ++t) {
@@ -149,10 +171,11 @@ class Mover {
     }
   }
 
-  // As one body, unless rounding forbids even that.
+  // Last resort: the affine motion alone, which crosses nothing but for rounding; if rounding makes
+  // it cross, no motion.
   void move_as_one(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     next = start;
-    cover(next, next);
+    update_near(next, next);
     std::vector<BroadPhase::Pair> pairs = near_.pairs();
     for (std::uint32_t v = 0; v < fans_.size(); ++v)
       fans_.for_each_pair(
@@ -160,39 +183,39 @@ class Mover {
           [&](std::uint32_t s, std::uint32_t t) {
             pairs.push_back({s, t});
           });
-    report_.held = !find_crossings(pairs, surface_.triangles, next, m_.representative, two_sided_).empty();
-    if (report_.held) next = at_;
+    stats_.held = !find_crossings(pairs, surface_.triangles, next, m_.representative, two_sided_).empty();
+    if (stats_.held) next = at_;
   }
 
-  // Sees to it that all pairs are there that may come together from `start` to `next`; only these
-  // triangles have another `next`.
-  void cover(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
-             const std::vector<std::uint8_t>* changed = nullptr) {
+  // Makes near_ a superset of the pairs that may meet between `start` and `next`. Only triangles
+  // marked in `changed` have another `next` than before.
+  void update_near(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
+                   const std::vector<std::uint8_t>* changed = nullptr) {
     near_.update(
-        m_.triangles, [&](std::size_t t) { return surface_.swept_box(t, start, next); }, spare * edge_, changed);
+        m_.triangles, [&](std::size_t t) { return surface_.swept_box(t, start, next); }, box_margin * edge_, changed);
   }
 
   const SurfaceMotion& m_;
   bool two_sided_;
   BroadPhase& near_;
   const VertexFans& fans_;
-  BoundedMotionStats& report_;
+  BoundedMotionStats& stats_;
   RepresentativeSurface surface_;
-  std::vector<Vec3> at_;
-  double edge_ = 0, rounding_ = 0;
+  std::vector<Vec3> at_;            // per vertex; current for representatives only
+  double edge_ = 0, rounding_ = 0;  // model units
 };
 
 }  // namespace
 
-std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotionStats* told,
+std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided, BoundedMotionStats* stats,
                                         BroadPhase* near, const VertexFans* fans) {
-  BoundedMotionStats own;
-  BroadPhase pairs;
+  BoundedMotionStats own_stats;
+  BroadPhase own_near;
   if (!fans) {
-    const VertexFans made(motion.triangles, motion.from.size());
-    return move_without_crossing(motion, two_sided, told, near, &made);
+    const VertexFans own_fans(motion.triangles, motion.from.size());
+    return move_without_crossing(motion, two_sided, stats, near, &own_fans);
   }
-  return Mover(motion, two_sided, near ? *near : pairs, *fans, told ? *told : own).run();
+  return CrossingFreeMotion(motion, two_sided, near ? *near : own_near, *fans, stats ? *stats : own_stats).run();
 }
 
 }  // namespace geo

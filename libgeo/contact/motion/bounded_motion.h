@@ -1,5 +1,7 @@
-// Moves a surface to where it should be, or as near to it as it comes without crossing itself.
+// Collision-free motion of a surface: towards wanted positions, as far as it does not cross itself.
 #pragma once
+
+#include <vector>
 
 #include "contact/detection/broad_phase.h"
 #include "contact/detection/surface_motion.h"
@@ -7,26 +9,32 @@
 
 namespace geo {
 
+/// What a motion took.
 struct BoundedMotionStats {
-  std::size_t planes = 0;    ///< between parts that might have met
-  std::size_t in_zones = 0;  ///< vertices that had to move as rigid zones
-  bool held = false;         ///< nothing could be carried along
+  std::size_t planes = 0;    ///< separating planes between triangles that might have met
+  std::size_t in_zones = 0;  ///< vertices that moved in rigid impact zones, at most at a time
+  bool held = false;         ///< not even a rigid motion was possible, so nothing moved
 };
 
-/// The end of the motion, by row; rows together move together. At the beginning no triangles cross,
-/// and at the end none do. After the affine motion that is closest to what they want, all go
-/// straight to their places. Where pairs of triangles would cross, by the exact test of crossing.h,
-/// or pass, the places (or the guess) are mended first, again and again; the few that no mending
-/// parts move as rigid zones meanwhile (give_way.h). If something fails after many rounds all the
-/// same, vertices of such pairs are carried along by a smooth field of what all want
-/// (smooth_field.h), in which neither side of a narrow gap passes the other; what crosses all the
-/// same, since triangles are flat and the field is not, moves as rigid zones (Provot 1997; Bridson,
-/// Fedkiw, Anderson 2002), which grow until nothing does. From there, then, each vertex for itself
-/// goes straight on where nothing is in its way, and as far as planes between near parts let it
-/// (settle.h). `near`: what is known of the same triangles from watch(), about this motion or one
-/// like it; `fans`: of them.
+/// Positions at the end of the motion, per vertex; coincident vertices stay coincident. No
+/// triangles cross at the beginning, and none at the end, by the exact test (find_crossings.h);
+/// none has passed through another.
+///
+/// 1. The affine motion nearest to the wanted one is applied, then all vertices go straight to
+/// their targets.
+/// 2. Where this is not certified (motion_certifier.h), targets are changed by projection of
+/// separation
+///    constraints (separation_projection.h), beginning with `motion.guess` if there is one.
+/// 3. If that fails, vertices of uncertified pairs follow a smooth field of the wanted motion or
+/// rigid impact
+///    zones (fallback_motion.h), which grow until all is certified; the tracking error that this
+///    leaves is
+///    reduced (vertex_advance.h), and the motion begins again from there.
+///
+/// `near`: pairs known of the same triangles, from find_contact_candidates() or an earlier motion
+/// in this step; `fans`: of the triangles; null: made here. `two_sided`: as in find_crossings().
 std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided,
-                                        BoundedMotionStats* report = nullptr, BroadPhase* near = nullptr,
+                                        BoundedMotionStats* stats = nullptr, BroadPhase* near = nullptr,
                                         const VertexFans* fans = nullptr);
 
 }  // namespace geo

@@ -1,7 +1,8 @@
-// Triangles that would pass through each other give way: where they are to go is mended, before
-// anything goes there.
+// Projection of separation constraints: changes the end of a straight motion until triangles that
+// would pass through each other do not (position-based dynamics, Müller et al. 2007).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -9,48 +10,56 @@
 
 #include "contact/detection/simplex.h"
 #include "contact/motion/rigid_zones.h"
-#include "kerf/mesh.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
-/// Couples of triangles, or of what they do not share (disjoint_subsimplices()), each with a
-/// direction that parts them where a straight motion begins.
+struct SeparatingAxes;
+
+/// Constraints between pairs of triangles, each with an axis that separates the pair at the start
+/// of the motion and has to separate it at the end: then the pair does not meet in between.
+/// Triangles that share vertices are constrained by their disjoint sub-simplices. Pairs without a
+/// usable axis move in rigid impact zones.
 class SeparationProjection {
  public:
+  /// Indices of two triangles.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  /// `gap`: that couples keep, model units, or what the direction parts them by at the beginning.
+  /// No constraints yet. `start`: per vertex, where no triangles cross. `gap`: separation to be
+  /// kept, model units; pairs that start nearer keep what they have. Refers to triangles and start.
   SeparationProjection(const std::vector<Triangle>& triangles, const std::vector<Vec3>& start, double gap)
       : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
 
-  /// Pairs that the motion from start to `next` does not keep apart: of some directions that part
-  /// one about as well as any does at the beginning, the one that parts it most at the end; anew
-  /// where a pair was added before. Pairs so near each other that rounding hides all directions are
-  /// bound.
+  /// Adds constraints for pairs that the motion from the start to `next` does not certify; replaces
+  /// those of pairs that have some. Of the axes that separate a pair well at the start, the one
+  /// that separates it most at the end is used. A pair so near that rounding hides all axes is made
+  /// rigid.
   void add(std::span<const Pair> pairs, const std::vector<Vec3>& next);
-  /// From now on these pairs, and all that were bound to one of them, move as one rigid zone. True
-  /// when that is new.
-  bool bind(std::span<const Pair> pairs);
-  /// Whether two triangles are in one zone: what does not change its shape cannot pass itself.
-  bool bound(std::uint32_t s, std::uint32_t t) const { return zones_.contain(triangles_[s], triangles_[t]); }
+  /// Merges each pair, and all that move with it, into one rigid zone. Returns whether that changed
+  /// anything.
+  bool make_rigid(std::span<const Pair> pairs);
+  /// Whether two triangles are in one zone: then they cannot pass each other.
+  bool is_rigid(std::uint32_t s, std::uint32_t t) const { return zones_.contain(triangles_[s], triangles_[t]); }
+  /// Number of vertices in rigid zones.
   std::size_t in_zones() const { return zones_.vertex_count(); }
 
-  /// Moves the end of the motion until all couples are parted by their directions, or for many
-  /// sweeps: each in turn the least it takes, half by half (position based dynamics, Müller et al.
-  /// 2007), in the order in which they were added; zones after each sweep.
-  void push(std::vector<Vec3>& next) const;
+  /// Moves `next`, per vertex, until all constraints hold, or for a number of sweeps: Gauss–Seidel
+  /// in the order in which constraints were added, each moving both sides by the same least amount.
+  /// Zones are made rigid after each sweep.
+  void project(std::vector<Vec3>& next) const;
 
  private:
-  struct Kept {
-    Simplex a, b;  // corners that are not there are the first again
-    Vec3 normal;   // from b to a
-    double apart;
-    std::uint32_t s, t;  // the pair
+  struct Constraint {
+    Simplex a, b;        // with less than three vertices, the first is repeated
+    Vec3 axis;           // unit, from b to a; zero: none was found
+    double separation;   // to be kept, model units
+    std::uint32_t s, t;  // the triangles
   };
+  void choose_axis(Constraint& c, const SeparatingAxes& axes, std::size_t lane, const std::vector<Vec3>& next) const;
   const std::vector<Triangle>& triangles_;
   const std::vector<Vec3>& start_;
   double gap_;
-  std::vector<Kept> couples_;
-  std::unordered_map<std::uint64_t, std::size_t> known_;  // the first couple of each pair
+  std::vector<Constraint> constraints_;
+  std::unordered_map<std::uint64_t, std::size_t> first_of_pair_;  // index of each pair's first constraint
   RigidZones zones_;
 };
 

@@ -1,18 +1,20 @@
-// Each vertex of a surface goes straight to where it wants to be, where nothing is in its way.
+// Straight motion of each vertex to its target, as far as no pair of triangles can meet.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "kerf/mesh.h"
+#include "kerf/vec.h"
 
 namespace geo {
 
-/// Moves rows of `at`, where no two triangles (of rows that stand for others) cross: all the way to `to`, or half or a
-/// quarter of it, or not at all, where a pair of triangles would not be parted all along by one direction. `pairs`: of
-/// triangles; no others come together. Parts keep `gap`, model units, or what they have if that is less; those of
-/// neighbours half of it.
+/// Moves the vertices `at`, of which no two triangles cross, straight towards `to`: all the way, a
+/// half or a quarter of it, or not at all, so that one axis separates each pair at both ends.
+/// `triangles`: of representatives. `pairs`: of triangles; no others can come together. Pairs keep
+/// the separation `gap`, model units, or what they have if that is less; adjacent triangles half of
+/// it.
 void move_straight(const std::vector<Triangle>& triangles,
                    std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs, const std::vector<Vec3>& to,
                    double gap, std::vector<Vec3>& at);

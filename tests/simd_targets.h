@@ -1,24 +1,30 @@
-// The vector instructions that this machine has, each in turn.
+// Runs checks with each SIMD instruction set that kernels are compiled for and that this machine
+// has.
 #pragma once
+
+#include "base/simd_targets.h"
 
 #include <hwy/targets.h>
 
 #include <cstdint>
-#include <functional>
-#include <vector>
+#include <string>
+#include <type_traits>
 
-/// From now on only these instructions are used, and slower ones that they include; 0: the best
-/// there are.
+/// Restricts kernels to one instruction set and the baseline; 0: no restriction.
 inline void use_simd_target(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-/// Runs `check` on each kind of vectors that this machine has.
-inline void for_each_simd_target(const std::function<void()>& check) {
+/// Calls check(), or check(name) if it takes a string, with each instruction set in turn.
+template <class Check>
+void for_each_simd_target(const Check& check) {
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {
     use_simd_target(target);
-    check();
+    if constexpr (std::is_invocable_v<Check, std::string>)
+      check(std::string(hwy::TargetName(target)));
+    else
+      check();
   }
   use_simd_target(0);
 }

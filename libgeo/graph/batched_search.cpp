@@ -2,7 +2,8 @@
 // of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/batched_search.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "base/simd_targets.h"
+
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <bit>
@@ -269,23 +270,6 @@ void BatchedSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> 
   scratch_.tail = tail;
   HWY_DYNAMIC_DISPATCH(Search)(graph, scratch_);
   HWY_DYNAMIC_DISPATCH(Collect)(graph, scratch_);
-}
-
-std::vector<std::string> vector_targets() {
-  std::vector<std::string> names;
-  hwy::SetSupportedTargetsForTest(0);
-  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1)
-    names.push_back(hwy::TargetName(rest & -rest));
-  return names;
-}
-
-void use_vector_target(const std::string& name) {
-  hwy::SetSupportedTargetsForTest(0);
-  std::int64_t wanted = 0;
-  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1)
-    if (name == hwy::TargetName(rest & -rest)) wanted = rest & -rest;
-  hwy::SetSupportedTargetsForTest(wanted);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 }  // namespace geo

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "graph/local_graph.h"
@@ -73,11 +72,5 @@ class BatchedSearch {
  private:
   Scratch scratch_;
 };
-
-/// Names of the vector instruction sets that this processor can use, best first. For tests.
-std::vector<std::string> vector_targets();
-/// Chooses one of vector_targets(), or the best for "". All give equal results. Must not run beside
-/// a search.
-void use_vector_target(const std::string& name);
 
 }  // namespace geo

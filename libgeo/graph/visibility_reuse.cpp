@@ -2,7 +2,8 @@
 // of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/visibility_reuse.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_AVX3_DL)
+#include "base/simd_targets.h"
+
 #include "hwy/foreach_target.h"
 // After foreach_target.h:
 #include <algorithm>

@@ -5,7 +5,6 @@
 
 #include "cases.h"
 #include "concave_shapes.h"
-#include "graph/batched_search.h"
 #include "graph/build_graph.h"
 #include "graph/guide_edges.h"
 #include "graph/guide_placement.h"
@@ -13,6 +12,7 @@
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
 #include "node_cases.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -47,11 +47,7 @@ TEST_CASE("every method, vector width and number of threads gives the same rows 
     VisibilityGraph again = rows;
     build_neighborhoods(nodes, again, tree);
     REQUIRE(rows == again);
-    for (const auto& target : vector_targets()) {
-      use_vector_target(target);
-      REQUIRE(rows == guided(nodes, tree, guides));
-    }
-    use_vector_target("");
+    for_each_simd_target([&] { REQUIRE(rows == guided(nodes, tree, guides)); });
     set_threads(seed % 2 ? 1 : 4);
     REQUIRE(rows == guided(nodes, tree, guides));
     set_threads(0);

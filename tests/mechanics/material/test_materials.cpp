@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
-#include "graph/batched_search.h"
 #include "kerf/error.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
+#include "simd_targets.h"
 
 using namespace geo;
 
@@ -102,8 +102,7 @@ TEST_CASE(
       const Vec3 by = 0.05 * random.direction();
       flown.plastic.push_back(by.asDiagonal());
     }
-    for (const auto& target : vector_targets()) {
-      use_vector_target(target);
+    for_each_simd_target([&] {
       for (const State* state : {&strained, &flown}) {
         const auto stress = von_mises_stress(mixed, body.nodes, *state),
                    of_first = von_mises_stress(uniform[0], body.nodes, *state),
@@ -122,8 +121,7 @@ TEST_CASE(
         }
         CHECK(mixed.energy(own[second_bar]) == alike.energy(own[second_bar]));
       }
-    }
-    use_vector_target("");
+    });
   }
 }
 

@@ -19,8 +19,7 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t t) {
   return {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
 }
 
-// Drops the triangles that have nothing to do with the material, and the vertices that nothing uses
-// then.
+// Drops the triangles farther outside the material than `margin`, and vertices without triangles.
 void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
   std::vector<char> keep(walls.triangles.size());
   parallel_for(keep.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -32,23 +31,23 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
       keep[t] = skin.closest(middle, radius).triangle != ~0u || skin.inside(middle);
     }
   });
-  std::vector<std::uint32_t> row(walls.vertices.size(), ~0u);
+  std::vector<std::uint32_t> index(walls.vertices.size(), ~0u);
   TriangleMesh kept;
   for (std::size_t t = 0; t < keep.size(); ++t) {
     if (!keep[t]) continue;
     Triangle triangle = walls.triangles[t];
     for (auto& v : triangle) {
-      if (row[v] == ~0u)
-        row[v] = static_cast<std::uint32_t>(kept.vertices.size()), kept.vertices.push_back(walls.vertices[v]);
-      v = row[v];
+      if (index[v] == ~0u)
+        index[v] = static_cast<std::uint32_t>(kept.vertices.size()), kept.vertices.push_back(walls.vertices[v]);
+      v = index[v];
     }
     kept.triangles.push_back(triangle);
   }
   walls = std::move(kept);
 }
 
-// Longest edges first: each is then the longest of all its triangles, which stay about as round as
-// they were.
+// Bisects edges, the longest first: each is then the longest of all its triangles, so that small
+// angles stay bounded.
 void divide(TriangleMesh& walls, double longest) {
   struct Edge {
     double length2;
@@ -93,26 +92,26 @@ void divide(TriangleMesh& walls, double longest) {
   }
 }
 
-// Finds triangles that cross each other, again where some have changed.
+// Finds triangles that cross each other, incrementally.
 class Crossings {
  public:
   explicit Crossings(const TriangleMesh& walls) : walls_(walls), at_(walls.vertices.size()) {
     index_.reserve(walls.triangles.size());
     for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
       insert(t);
-      asked_.push_back(t);
+      changed_.push_back(t);
       for (const auto v : walls.triangles[t]) at_[v].push_back(t);
     }
   }
 
-  // The vertices, ascending, of those that cross others, among all or, after moved(), those with
-  // moved vertices.
+  // The vertices, ascending, of crossing triangles: among all, or after update(), of pairs with a
+  // moved vertex.
   std::vector<std::uint32_t> vertices() const {
-    std::vector<std::vector<std::uint32_t>> bad(asked_.size());
+    std::vector<std::vector<std::uint32_t>> bad(changed_.size());
     parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> near;
       for (std::size_t i = begin; i < end; ++i) {
-        const auto t = asked_[i];
+        const auto t = changed_[i];
         const auto c = corners(walls_, t);
         near.clear();
         index_.find_near_triangle(c[0], c[1], c[2], 0, near);
@@ -127,18 +126,19 @@ class Crossings {
     return sorted(std::move(all));
   }
 
-  void moved(const std::vector<std::uint32_t>& vertices) {
-    asked_.clear();
-    for (const auto v : vertices) asked_.insert(asked_.end(), at_[v].begin(), at_[v].end());
-    asked_ = sorted(std::move(asked_));
-    for (const auto t : asked_) index_.erase(t), insert(t);
+  // Updates the triangles at moved vertices.
+  void update(const std::vector<std::uint32_t>& vertices) {
+    changed_.clear();
+    for (const auto v : vertices) changed_.insert(changed_.end(), at_[v].begin(), at_[v].end());
+    changed_ = sorted(std::move(changed_));
+    for (const auto t : changed_) index_.erase(t), insert(t);
   }
 
  private:
-  static std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> rows) {
-    std::sort(rows.begin(), rows.end());
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    return rows;
+  static std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
   }
   void insert(std::uint32_t t) {
     const auto c = corners(walls_, t);
@@ -147,14 +147,14 @@ class Crossings {
 
   const TriangleMesh& walls_;
   std::vector<std::vector<std::uint32_t>> at_;  // triangles at each vertex
-  std::vector<std::uint32_t> asked_;
+  std::vector<std::uint32_t> changed_;
   TriangleIndex index_;
 };
 
 }  // namespace
 
 void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, double margin) {
-  // Coarsely first, so that little is divided that is dropped afterwards.
+  // Coarsely first: few triangles are divided that are dropped afterwards.
   for (const double edge : {8 * longest, 2 * longest, longest}) {
     divide(walls, edge);
     trim(walls, skin, margin);
@@ -169,16 +169,16 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
   const double size = skin.box().diagonal();
   refine_walls(walls, skin, size * (o.edge > 0 ? o.edge : 1 / (8 * o.frequency)), 4 * o.amplitude * size);
   const std::vector<Vec3> flat = walls.vertices;
-  std::vector<Vec3> way(flat.size(), Vec3::Zero());
+  std::vector<Vec3> offset(flat.size(), Vec3::Zero());
   parallel_for(flat.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      double high = o.amplitude * size, fine = o.frequency / size;
-      for (int octave = 0; octave < o.octaves; ++octave, high *= 0.6, fine *= 2)
+      double height = o.amplitude * size, frequency = o.frequency / size;
+      for (int octave = 0; octave < o.octaves; ++octave, height *= 0.6, frequency *= 2)
         for (int k = 0; k < 3; ++k)
-          way[i][k] +=
-              high * gradient_noise(fine * (flat[i] - skin.box().lo),
-                                    o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
-      walls.vertices[i] = flat[i] + way[i];
+          offset[i][k] +=
+              height * gradient_noise(frequency * (flat[i] - skin.box().lo),
+                                      o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
+      walls.vertices[i] = flat[i] + offset[i];
     }
   });
   std::vector<int> lowered(flat.size());
@@ -186,13 +186,13 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
   for (bool changed = true; changed;) {
     changed = false;
     std::vector<std::uint32_t> bad = crossings.vertices();
-    std::erase_if(bad, [&](std::uint32_t v) { return way[v].isZero(0); });
+    std::erase_if(bad, [&](std::uint32_t v) { return offset[v].isZero(0); });
     for (const auto v : bad) {
-      way[v] *= ++lowered[v] < 4 ? 0.5 : 0;
-      walls.vertices[v] = flat[v] + way[v];
+      offset[v] *= ++lowered[v] < 4 ? 0.5 : 0;
+      walls.vertices[v] = flat[v] + offset[v];
       changed = true;
     }
-    crossings.moved(bad);
+    crossings.update(bad);
   }
   trim(walls, skin, 0);
 }

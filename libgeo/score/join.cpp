@@ -9,7 +9,7 @@
 namespace geo {
 namespace {
 
-using Pair = std::pair<std::uint32_t, std::uint32_t>;  // two pieces on either side of a wall, the lower first
+using Pair = std::pair<std::uint32_t, std::uint32_t>;  // pieces on both sides of a wall, lower first
 
 class Joining {
  public:
@@ -25,17 +25,17 @@ class Joining {
       if (a == b) continue;
       const auto c = cut.corners(FaceId(f));
       const Pair pair{std::min(a, b), std::max(a, b)};
-      const auto row = tree.closest((c[0] + c[1] + c[2]) / 3).triangle;
-      auto& pairs = between_[row];
+      const auto triangle = tree.closest((c[0] + c[1] + c[2]) / 3).triangle;
+      auto& pairs = between_[triangle];
       if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) {
         pairs.push_back(pair);
-        walls_[pair].triangles.push_back(row);
+        walls_[pair].triangles.push_back(triangle);
       }
       walls_[pair].area += 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
     }
   }
 
-  // Joins one small piece with a neighbour. False when none can be.
+  // Joins the smallest group that can be joined with a neighbour. False when there is none.
   bool join_one() {
     std::vector<std::uint32_t> smallest;
     for (std::uint32_t g = 0; g < members_.size(); ++g)
@@ -52,7 +52,7 @@ class Joining {
       for (const auto& [other, area] : shared) neighbors.push_back({-area, other});
       std::sort(neighbors.begin(), neighbors.end());
       for (const auto& [area, other] : neighbors)
-        if (leaves_nothing(g, other)) {
+        if (separates_only(g, other)) {
           for (const auto p : members_[g]) group_[p] = other;
           members_[other].insert(members_[other].end(), members_[g].begin(), members_[g].end());
           members_[g].clear();
@@ -74,8 +74,8 @@ class Joining {
     double area = 0;
     std::vector<std::uint32_t> triangles;
   };
-  // Whether all triangles between two groups are between these two alone.
-  bool leaves_nothing(std::uint32_t g, std::uint32_t other) const {
+  // Whether no triangle between the two groups also bounds a third one.
+  bool separates_only(std::uint32_t g, std::uint32_t other) const {
     const auto of_both = [&](std::uint32_t p) { return group_[p] == g || group_[p] == other; };
     for (const auto& [pair, wall] : walls_)
       if (group_[pair.first] != group_[pair.second] && of_both(pair.first) && of_both(pair.second))
@@ -88,7 +88,7 @@ class Joining {
   std::vector<std::vector<Pair>> between_;  // per triangle of the walls
   std::map<Pair, Wall> walls_;
   std::vector<std::uint32_t> group_;                 // per piece
-  std::vector<std::vector<std::uint32_t>> members_;  // per group, named by one of its pieces
+  std::vector<std::vector<std::uint32_t>> members_;  // pieces per group; a group has the index of one of its pieces
   std::vector<double> volume_;
 };
 

@@ -1,4 +1,4 @@
-// Scores that do not go all the way (§ 7): bodies hold until they break.
+// Partial scores (§ 7): ligaments hold a body together until they break.
 #pragma once
 
 #include "geometry/bvh.h"
@@ -6,10 +6,10 @@
 
 namespace geo {
 
-/// Leaves of each wall, as far as it is in one place in the material, what is less deep under the
-/// skin than that fraction of its greatest depth: a ligament in the middle stays whole. Triangles
-/// are cut along that depth, where walls meet in the same points. Walls end where others meet them.
-/// `depth` is in (0, 1); throws InputError when it is not.
+/// Keeps each connected part of a wall inside the material only where it is less deep under the
+/// skin than the fraction `depth` of its greatest depth: a ligament in the middle stays whole.
+/// Triangles are cut along that depth; walls that meet are cut at the same points. A wall ends
+/// where others meet it. Throws InputError unless depth is in (0, 1).
 void keep_shallow(TriangleMesh& walls, const TriangleBvh& skin, double depth);
 
 }  // namespace geo

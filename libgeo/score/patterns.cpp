@@ -29,16 +29,18 @@ Vec3 axis_of(const Box3& box, const PatternOptions& o) {
 
 Box3 widened(const Box3& box) { return box.grown(0.25 * box.diagonal()); }
 
-// `count` parts of [low, high], a little uneven; the outer ones reach farther by the margin.
-std::vector<double> cuts(double low, double high, int count, double uneven, double margin, Random& random) {
+// The ends of `count` intervals of [low, high], randomly uneven; the outer ones extend beyond by
+// the margin.
+std::vector<double> interval_ends(double low, double high, int count, double unevenness, double margin,
+                                  Random& random) {
   std::vector<double> at{low - margin};
   const double step = (high - low) / count;
-  for (int i = 1; i < count; ++i) at.push_back(low + step * (i + uneven * random.uniform(-0.5, 0.5)));
+  for (int i = 1; i < count; ++i) at.push_back(low + step * (i + unevenness * random.uniform(-0.5, 0.5)));
   at.push_back(high + margin);
   return at;
 }
 
-// How many parts along each extent make about so many boxes, about as long as wide.
+// The numbers of intervals along each axis that make about `cells` boxes of equal edges.
 std::array<int, 3> divisions(const Vec3& size, int cells) {
   const double edge = std::cbrt(size.prod() / cells);
   std::array<int, 3> n;
@@ -54,19 +56,19 @@ TriangleMesh planes(const Box3& box, int cells, const PatternOptions& o) {
   const auto n = crossing ? divisions(along.hi - along.lo, cells) : std::array<int, 3>{1, 1, cells};
   std::array<std::vector<double>, 3> at;
   for (std::size_t k = 0; k < 3; ++k)
-    at[k] = cuts(along.lo[int(k)], along.hi[int(k)], n[k], 0.3, along.diagonal(), random);
+    at[k] = interval_ends(along.lo[int(k)], along.hi[int(k)], n[k], 0.3, along.diagonal(), random);
   return grid_walls(
       at, [&](int i, int j, int k) { return (i * n[1] + j) * n[2] + k; }, frame);
 }
 
 TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
-  // Twice as long as wide, wide as high; each course is shifted by half a brick both ways. A brick
-  // is 2 × 2 halves.
+  // A brick is 2 × 2 half cells: twice as long as wide, as wide as high. Courses are shifted by
+  // half a brick along both axes.
   const Mat3 frame = frame_along(axis_of(box, o));
   const Box3 along = box_along(box, frame);
   const Vec3 size = along.hi - along.lo;
-  const double high = std::cbrt(size.prod() / (2.0 * cells));
-  const Vec3 half(high, 0.5 * high, high);
+  const double height = std::cbrt(size.prod() / (2.0 * cells));
+  const Vec3 half(height, 0.5 * height, height);
   Random random(o.seed);
   std::array<std::vector<double>, 3> at;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -81,6 +83,7 @@ TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
       at, [&](int i, int j, int k) { return (k * rows + (j + k % 2) / 2) * columns + (i + k % 2) / 2; }, frame);
 }
 
+// Spokes around a hub, and rings for glass.
 TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
   const Mat3 frame = frame_along(axis_of(box, o));
   const Box3 along = box_along(box, frame);
@@ -103,8 +106,8 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
   for (int s = 0; s < spokes; ++s) angle.push_back(turn / spokes * (s + 0.5 * random.uniform(-0.5, 0.5)));
   for (int s = 0; s < spokes; ++s)
     for (int c = 1; c <= circles; ++c) {
-      // Circles stand the closer the nearer to the hub; the last one is outside, where no chord
-      // comes near the model.
+      // Rings are denser near the hub. The last one is outside: no chord of it comes near the
+      // model.
       const double uneven = rings && c < circles ? 0.25 * random.uniform(-1, 1) : 0;
       const double radius = c == circles ? 3 * reach + box.diagonal() : reach * std::pow((c + uneven) / circles, 1.6);
       const double a = angle[std::size_t(s)] + (c < circles ? turn / spokes * 0.15 * random.uniform(-1, 1) : 0);
@@ -163,7 +166,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   Random random(o.seed);
   const Box3& box = skin.box();
   const double diagonal = box.diagonal();
-  // How far apart sites stand there, for one away from the impact.
+  // Spacing of sites, relative to that far from the impact.
   constexpr double closest = 0.15;
   const auto spacing = [&](const Vec3& p) {
     return o.impact ? 1 - (1 - closest) * std::exp(-std::pow((p - *o.impact).norm() / (2 * o.cluster * diagonal), 2))
@@ -173,8 +176,8 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   const auto candidate = [&](Vec3& p) {
     for (int tries = 0; tries < 100000; ++tries) {
       for (int k = 0; k < 3; ++k) p[k] = random.uniform(box.lo[k], box.hi[k]);
-      const bool taken = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
-      if (taken && skin.inside(p)) return true;
+      const bool accepted = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
+      if (accepted && skin.inside(p)) return true;
     }
     return false;
   };

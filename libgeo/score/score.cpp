@@ -28,10 +28,10 @@ class Scoring {
   Score run() {
     Try now{o_.pieces, o_.pattern.seed};
     std::uint64_t variants = 0;
-    int low = 0, high = 2 * o_.pieces + 2;  // numbers of cells that make too few pieces, and too many
+    int low = 0, high = 2 * o_.pieces + 2;  // bisection: numbers of cells with too few and too many pieces
     while (best_.attempts < o_.attempts && best_.pieces != wanted()) {
       const bool done = attempt(now);
-      if (as_given()) break;
+      if (is_given()) break;
       if (done && now.pieces < wanted()) {
         low = now.cells;
         now.cells += o_.pieces - int(now.pieces);
@@ -58,7 +58,7 @@ class Scoring {
   std::uint32_t wanted() const { return static_cast<std::uint32_t>(o_.pieces); }
   double edge() const { return skin_.box().diagonal() / (8 * o_.jagged.frequency); }
 
-  bool as_given() const { return o_.pattern.pattern == Pattern::curves || o_.pattern.pattern == Pattern::sheets; }
+  bool is_given() const { return o_.pattern.pattern == Pattern::curves || o_.pattern.pattern == Pattern::sheets; }
 
   struct Try {
     int cells;
@@ -70,18 +70,20 @@ class Scoring {
     pattern.seed = t.seed;
     return pattern_walls(skin_, t.cells, pattern);
   }
-  double off(std::uint32_t pieces) const { return pieces == 0 ? 1e300 : std::abs(double(pieces) - o_.pieces); }
+  double distance_from_wanted(std::uint32_t pieces) const {
+    return pieces == 0 ? 1e300 : std::abs(double(pieces) - o_.pieces);
+  }
 
-  // Counts the pieces of the pattern as it is; where they are few enough too many to be joined,
-  // finishes it. False when it cannot be inserted.
+  // Counts the pieces that a pattern makes, and finishes it where they are as many as wanted, or
+  // few enough more to be joined. False when the pattern cannot be inserted.
   bool attempt(Try& t) {
     report(progress_, "score", static_cast<std::size_t>(best_.attempts), static_cast<std::size_t>(o_.attempts));
     ++best_.attempts;
     try {
       TriangleMesh walls = walls_of(t);
-      t.pieces = as_given() ? 1 : find_pieces(cut_by(walls)).count;
-      if (off(t.pieces) < off(nearest_.pieces)) nearest_ = t;
-      if (as_given() || (t.pieces >= wanted() && t.pieces <= wanted() + wanted() / 4 + 1))
+      t.pieces = is_given() ? 1 : find_pieces(cut_by(walls)).count;
+      if (distance_from_wanted(t.pieces) < distance_from_wanted(nearest_.pieces)) nearest_ = t;
+      if (is_given() || (t.pieces >= wanted() && t.pieces <= wanted() + wanted() / 4 + 1))
         t.pieces = finish(std::move(walls));
       return true;
     } catch (const GeometryError& e) {
@@ -90,18 +92,18 @@ class Scoring {
     }
   }
 
-  // Roughens walls, joins pieces that are too many, and keeps what comes nearest. Returns the
-  // pieces there were before.
+  // Roughens walls, joins surplus pieces, and keeps the result if it is the best one. Returns the
+  // number of pieces before joining.
   std::uint32_t finish(TriangleMesh walls) {
     if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged);
     const Complex cut = cut_by(walls);
     const Pieces pieces = find_pieces(cut);
     std::uint32_t count = pieces.count;
-    if (count > wanted() && !as_given()) {
+    if (count > wanted() && !is_given()) {
       join_small_pieces(walls, cut, model_.crack_count() + 1, pieces, wanted());
       count = find_pieces(cut_by(walls)).count;
     }
-    if (off(count) < off(best_.pieces)) {
+    if (distance_from_wanted(count) < distance_from_wanted(best_.pieces)) {
       best_.sheet = std::move(walls);
       best_.pieces = count;
     }

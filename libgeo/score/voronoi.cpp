@@ -14,9 +14,9 @@
 namespace geo {
 namespace {
 
-using Name = std::array<std::uint32_t, 4>;  // sites, then sides of the box (from count on), ascending
+using Name = std::array<std::uint32_t, 4>;  // ascending sites, then box sides as count + side
 
-// The diagram's corners by name: whoever asks gets the same point.
+// The vertices of the diagram, by name: each name has one position.
 class Corners {
  public:
   Corners(std::span<const Vec3> sites, const Box3& box) : sites_(sites), box_(box) {}
@@ -27,8 +27,8 @@ class Corners {
     return name;
   }
   const Vec3& at(const Name& name) {
-    const auto [entry, fresh] = places_.try_emplace(name, Vec3::Zero());
-    if (fresh) entry->second = place(name);
+    const auto [entry, is_new] = positions_.try_emplace(name, Vec3::Zero());
+    if (is_new) entry->second = position(name);
     return entry->second;
   }
   // Whether the corner is nearer to another site than to those that make it.
@@ -38,7 +38,7 @@ class Corners {
   }
 
  private:
-  Vec3 place(const Name& name) const {
+  Vec3 position(const Name& name) const {
     const Vec3& s = sites_[name[0]];
     Mat3 rows;
     Vec3 right;
@@ -60,11 +60,11 @@ class Corners {
 
   std::span<const Vec3> sites_;
   const Box3& box_;
-  std::map<Name, Vec3> places_;
+  std::map<Name, Vec3> positions_;
 };
 
-// A convex cell: a loop of corners for each plane that bounds it, each corner named by the two
-// planes beside this one.
+// A side of a convex cell: its plane, and its corners in order. The cell itself names one of the
+// planes at a corner.
 struct Side {
   std::uint32_t plane;
   std::vector<Name> loop;
@@ -84,39 +84,38 @@ Cell box_cell(std::uint32_t site, std::uint32_t count) {
   return cell;
 }
 
-// The third plane that two neighbouring corners of a side have in common, besides that side and the
-// cell's own site.
+// The plane, other than the side\'s own, that two consecutive corners of a side share.
 std::uint32_t shared_plane(const Name& a, const Name& b, std::uint32_t site, std::uint32_t plane) {
   for (const auto p : a)
     if (p != site && p != plane && std::find(b.begin(), b.end(), p) != b.end()) return p;
   return ~0u;
 }
 
-// Cuts off what is nearer to `other`. False when corners so close together that rounding misplaces
-// them make no polygon.
+// Clips a cell by the bisector of its site and `other`. False when rounding misplaces corners so
+// that they make no polygon.
 bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners) {
   std::map<Name, Name> next;  // along the new side
   bool any = false;
   for (auto& side : cell) {
     const auto& loop = side.loop;
-    std::vector<Name> left;
-    std::optional<Name> enters, leaves;
+    std::vector<Name> clipped;
+    std::optional<Name> entry, exit;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Name &a = loop[i], &b = loop[(i + 1) % loop.size()];
       const bool a_off = corners.beyond(a, other), b_off = corners.beyond(b, other);
-      if (!a_off) left.push_back(a);
+      if (!a_off) clipped.push_back(a);
       if (a_off == b_off) continue;
       const auto third = shared_plane(a, b, site, side.plane);
       if (third == ~0u) return false;
       const Name cut = Corners::name_of(site, side.plane, third, other);
-      auto& which = b_off ? leaves : enters;
+      auto& which = b_off ? exit : entry;
       if (which) return false;
       which = cut;
-      left.push_back(cut);
+      clipped.push_back(cut);
     }
-    any = any || left.size() != loop.size() || enters;
-    if (enters && leaves) next[*enters] = *leaves;
-    side.loop = std::move(left);
+    any = any || clipped.size() != loop.size() || entry;
+    if (entry && exit) next[*entry] = *exit;
+    side.loop = std::move(clipped);
   }
   std::erase_if(cell, [](const Side& s) { return s.loop.empty(); });
   if (!any) return true;
@@ -134,9 +133,8 @@ bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners)
   return true;
 }
 
-// All walls, or nothing when the sites are too regular for names of four: a corner's place follows
-// from the sites with about as many digits lost as the walls' edges there are short, and half of
-// all digits must be left.
+// All walls; none when the sites are in degenerate position for names of four. A vertex loses about
+// as many digits as the edges at it are short: half of all digits must remain.
 std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& box) {
   const auto count = static_cast<std::uint32_t>(sites.size());
   Corners corners(sites, box);
@@ -162,7 +160,7 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
         walls[{i, side.plane}] = std::move(side.loop);
         continue;
       }
-      // The cell before it must see the same wall.
+      // The cell on the other side must have the same wall.
       const auto found = walls.find({side.plane, i});
       if (found == walls.end()) return std::nullopt;
       auto mine = side.loop, theirs = found->second;
@@ -173,14 +171,14 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
   }
   if (matched != walls.size()) return std::nullopt;
   TriangleMesh mesh;
-  std::map<Name, std::uint32_t> rows;
+  std::map<Name, std::uint32_t> index;
   for (const auto& [pair, loop] : walls) {
     std::vector<std::uint32_t> polygon;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Name& name = loop[i];
       if ((corners.at(name) - corners.at(loop[(i + 1) % loop.size()])).norm() < 0x1p-26 * box.diagonal())
         return std::nullopt;
-      const auto [entry, fresh] = rows.try_emplace(name, static_cast<std::uint32_t>(mesh.vertices.size()));
+      const auto [entry, fresh] = index.try_emplace(name, static_cast<std::uint32_t>(mesh.vertices.size()));
       if (fresh) mesh.vertices.push_back(corners.at(name));
       polygon.push_back(entry->second);
     }

@@ -1,4 +1,4 @@
-// Voronoi cells, their walls shared to the bit.
+// Walls of Voronoi cells; adjacent walls share vertices exactly.
 #pragma once
 
 #include <span>
@@ -7,11 +7,11 @@
 
 namespace geo {
 
-/// The walls between the Voronoi cells of the sites, as far as the box reaches: convex polygons as
-/// triangles. A corner is named by the sites and sides of the box that make it, so that all walls
-/// at it share its row. Sites that stand too regularly for that (more than four cells meet in a
-/// point) are moved a little. Throws InputError for fewer than two sites, sites outside of the box,
-/// or two at one place.
+/// The walls between the Voronoi cells of the sites, clipped to the box: convex polygons as
+/// triangles. A vertex is identified by the sites and box sides that define it, so that all walls
+/// at it share its index. Sites in degenerate position (more than four cells meet in a point) are
+/// displaced slightly. Throws InputError for fewer than two sites, sites outside the box, or two
+/// equal ones; GeometryError where displacements do not help.
 TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box);
 
 }  // namespace geo

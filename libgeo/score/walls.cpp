@@ -45,9 +45,9 @@ void add_wall(TriangleMesh& walls, std::span<const std::uint32_t> corners) {
 TriangleMesh grid_walls(const std::array<std::vector<double>, 3>& at, const std::function<int(int, int, int)>& label,
                         const Mat3& frame) {
   TriangleMesh walls;
-  std::map<std::array<int, 3>, std::uint32_t> rows;
-  const auto row = [&](const std::array<int, 3>& c) {
-    const auto [entry, fresh] = rows.try_emplace(c, static_cast<std::uint32_t>(walls.vertices.size()));
+  std::map<std::array<int, 3>, std::uint32_t> index;
+  const auto vertex = [&](const std::array<int, 3>& c) {
+    const auto [entry, fresh] = index.try_emplace(c, static_cast<std::uint32_t>(walls.vertices.size()));
     if (fresh) {
       const Vec3 p(at[0][std::size_t(c[0])], at[1][std::size_t(c[1])], at[2][std::size_t(c[2])]);
       walls.vertices.push_back(frame * p);
@@ -64,7 +64,7 @@ TriangleMesh grid_walls(const std::array<std::vector<double>, 3>& at, const std:
           const auto u = std::size_t(axis + 1) % 3, v = std::size_t(axis + 2) % 3;
           std::array<std::array<int, 3>, 4> c{next, next, next, next};
           ++c[1][u], ++c[2][u], ++c[2][v], ++c[3][v];
-          const std::array<std::uint32_t, 4> corners{row(c[0]), row(c[1]), row(c[2]), row(c[3])};
+          const std::array<std::uint32_t, 4> corners{vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])};
           add_wall(walls, corners);
         }
   return walls;
@@ -94,17 +94,17 @@ TriangleMesh divided_by_each_other(const std::vector<TriangleMesh>& sheets, cons
   }
   insert_sheet(complex, all, 1);
   TriangleMesh walls;
-  std::vector<std::uint32_t> row(complex.vertex_count(), ~0u);
+  std::vector<std::uint32_t> index(complex.vertex_count(), ~0u);
   for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
     if (!complex.alive(FaceId(f)) || complex.face(FaceId(f)).crack == 0) continue;
     Triangle t;
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexId v = complex.face(FaceId(f)).v[k];
-      if (row[v.index()] == ~0u) {
-        row[v.index()] = static_cast<std::uint32_t>(walls.vertices.size());
+      if (index[v.index()] == ~0u) {
+        index[v.index()] = static_cast<std::uint32_t>(walls.vertices.size());
         walls.vertices.push_back(complex.point(v));
       }
-      t[k] = row[v.index()];
+      t[k] = index[v.index()];
     }
     walls.triangles.push_back(t);
   }

@@ -78,6 +78,7 @@ class Arrangement {
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct KeyHash {
+    /// Hash of both words.
     std::size_t operator()(const Key& k) const {
       return SpreadHash()(k.edge ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull);
     }

@@ -9,8 +9,9 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t few = 1 << 14;  // pairs of exits and faces that are asked one by one
+constexpr std::size_t few = 1 << 14;  // pairs of exits and faces that are tested without an index
 
+// The skin around the exits, after the edit.
 class Surroundings {
  public:
   Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits)
@@ -42,6 +43,7 @@ class Surroundings {
     return faces;
   }
 
+  /// Whether the line from v towards a point starts inside the skin around v.
   bool inside_at(VertexId v, const Vec3& towards) const {
     std::vector<std::array<Vec3, 3>> fan;
     const auto add = [&](const std::array<VertexId, 3>& f) {
@@ -56,7 +58,7 @@ class Surroundings {
     return begins_inside(point(v), towards, fan);
   }
 
-  // A face of the skin in between.
+  /// Whether an exit meets a face of the skin between its ends.
   bool meets(const FrontExit& exit) const {
     const Vec3 from = point(exit.from), to = end(exit);
     Box3 box{from, from};
@@ -100,14 +102,14 @@ class Surroundings {
 }  // namespace
 
 bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3, 3>> fan) {
-  // From the direction of q, in a plane, to that of a point w on a face: each other face in between
-  // changes sides.
-  constexpr std::size_t most_faces = 4;
+  // Parity along the arc, in a plane, from the direction of q to that of a point w on a face: each
+  // other face that the arc crosses changes sides.
+  constexpr std::size_t max_chosen = 4;
   std::vector<std::size_t> largest(fan.size());
   for (std::size_t i = 0; i < fan.size(); ++i) largest[i] = i;
   const auto area = [&](std::size_t i) { return (fan[i][1] - u).cross(fan[i][2] - u).squaredNorm(); };
   std::stable_sort(largest.begin(), largest.end(), [&](auto i, auto j) { return area(i) > area(j); });
-  largest.resize(std::min(largest.size(), most_faces));
+  largest.resize(std::min(largest.size(), max_chosen));
   for (const auto chosen : largest)
     for (const double share : {0.5, 0.375, 0.6875}) {
       const Vec3 w = fan[chosen][1] + share * (fan[chosen][2] - fan[chosen][1]);
@@ -119,8 +121,8 @@ bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3
         const int from = orient3d(u, a, b, q), to = orient3d(u, a, b, w), of_a = orient3d(u, q, w, a),
                   of_b = orient3d(u, q, w, b);
         if (from == 0 && of_a != of_b && (q - u).dot((a - u).normalized() + (b - u).normalized()) > 0)
-          return false;         // along it
-        if (to == 0) continue;  // w alone is in its plane, and in the chosen face
+          return false;         // along the face
+        if (to == 0) continue;  // w is in its plane: only the chosen face
         sure = of_a != 0 && of_b != 0;
         inside ^= from * to < 0 && of_a * of_b < 0 && of_a == to;
       }

@@ -36,7 +36,7 @@ struct FrontExit {
   std::span<const FaceId> near;  ///< faces of K that may be near
 };
 
-/// What the guard knows about an edit besides the edit itself.
+/// Facts about an edit that the guard needs in addition to the edit itself.
 struct GuardContext {
   std::span<const Family> families;  ///< list every new face once, in order
   /// Per new vertex: whether rounding moved it. Faces without such a vertex are as exact decisions

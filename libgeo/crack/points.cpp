@@ -1,3 +1,4 @@
+// Explicit and implicit points: floating-point filters, exact arithmetic (GMP) where these fail.
 #include <gmpxx.h>
 
 #include <bit>
@@ -97,7 +98,7 @@ Points::Points() = default;
 Points::~Points() = default;
 
 PointIndex Points::append(Vec3 p, double error) {
-  near_.push_back(p + Vec3::Zero());  // one zero
+  near_.push_back(p + Vec3::Zero());  // −0 becomes 0
   error_.push_back(error);
   definition_.push_back(~0u);
   return static_cast<PointIndex>(near_.size() - 1);
@@ -106,7 +107,7 @@ PointIndex Points::append(Vec3 p, double error) {
 PointIndex Points::add(Vec3 p) { return append(p, 0); }
 
 PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
-  // In extended precision the quotient is good to the last place of a double unless ab is nearly in
+  // In extended precision the quotient is accurate to an ulp of a double, unless ab is nearly in
   // the plane.
   using Long = long double;
   Long u[3], v[3], wa[3], wb[3];
@@ -131,11 +132,11 @@ PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
     size = std::max({size, std::abs(a[i]), std::abs(b[i])});
     length = std::max(length, std::abs(b[i] - a[i]));
   }
-  const double last = size * 0x1p-53, error = 1.01 * last + 1.01 * static_cast<double>(error_t) * length;
+  const double half_ulp = size * 0x1p-53, error = 1.01 * half_ulp + 1.01 * static_cast<double>(error_t) * length;
   const PointIndex l = append(x, error);
   definition_[l] = static_cast<std::uint32_t>(definitions_.size());
   definitions_.push_back({l, {a, b, p, q, r}});
-  if (!(error <= 8 * last) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest))
+  if (!(error <= 8 * half_ulp) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest))
     round(l);
   return l;
 }
@@ -250,7 +251,7 @@ std::uint64_t Points::hash(PointIndex l) const {
 std::uint64_t hash_of(const Vec3& p) {
   std::uint64_t h = 1469598103934665603ull;
   for (int i = 0; i < 3; ++i) {
-    h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: one zero
+    h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: −0 becomes 0
     h ^= h >> 29;
   }
   return h;

@@ -9,21 +9,21 @@ namespace {
 
 using Edge = std::pair<VertexId, VertexId>;  ///< first < second
 
-class RingOrder {
+class RadialOrderTest {
  public:
-  RingOrder(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved)
+  RadialOrderTest(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved)
       : complex_(complex), edit_(edit), moved_(moved) {}
 
   Fault first_fault() const {
     std::vector<Edge> given;
-    for (const auto& ring : edit_.radial_orders) {
-      given.push_back(std::minmax(ring.a, ring.b));
-      if (Fault fault = fault_around(ring.a, ring.b, ring.faces)) return fault;
+    for (const auto& order : edit_.radial_orders) {
+      given.push_back(std::minmax(order.a, order.b));
+      if (Fault fault = fault_around(order.a, order.b, order.faces)) return fault;
     }
     std::sort(given.begin(), given.end());
-    // Whole edges of K whose faces are in parts now keep their order, and their parts take the
-    // faces' places.
-    std::vector<std::pair<Edge, std::uint32_t>> parts;
+    // Undivided edges of K with divided faces keep their order; children take their parents\'
+    // places.
+    std::vector<std::pair<Edge, std::uint32_t>> children;
     for (std::uint32_t i = 0; i < edit_.new_faces.size(); ++i) {
       const auto& f = edit_.new_faces[i];
       if (!f.parent.valid()) continue;
@@ -31,20 +31,20 @@ class RingOrder {
         const Edge edge = std::minmax(f.v[e], f.v[(e + 1) % 3]);
         if (edge.second.value < complex_.vertex_count() && complex_.faces_around(edge.first, edge.second).size() > 2 &&
             !std::binary_search(given.begin(), given.end(), edge))
-          parts.push_back({edge, i});
+          children.push_back({edge, i});
       }
     }
-    std::sort(parts.begin(), parts.end());
-    std::vector<FaceId> ring;
-    for (auto from = parts.begin(), to = from; from != parts.end(); from = to) {
+    std::sort(children.begin(), children.end());
+    std::vector<FaceId> cycle;
+    for (auto from = children.begin(), to = from; from != children.end(); from = to) {
       const Edge edge = from->first;
-      to = std::find_if(from, parts.end(), [&](const auto& part) { return part.first != edge; });
-      ring.clear();
+      to = std::find_if(from, children.end(), [&](const auto& child) { return child.first != edge; });
+      cycle.clear();
       for (const FaceId f : complex_.faces_around(edge.first, edge.second)) {
-        const auto part = std::find_if(from, to, [&](const auto& p) { return edit_.new_faces[p.second].parent == f; });
-        ring.push_back(part == to ? f : FaceId(complex_.face_count() + part->second));
+        const auto child = std::find_if(from, to, [&](const auto& p) { return edit_.new_faces[p.second].parent == f; });
+        cycle.push_back(child == to ? f : FaceId(complex_.face_count() + child->second));
       }
-      if (Fault fault = fault_around(edge.first, edge.second, ring)) return fault;
+      if (Fault fault = fault_around(edge.first, edge.second, cycle)) return fault;
     }
     return {};
   }
@@ -56,11 +56,11 @@ class RingOrder {
   }
 
   // Faces listed counter-clockwise about a→b.
-  Fault fault_around(VertexId a, VertexId b, const std::vector<FaceId>& ring) const {
+  Fault fault_around(VertexId a, VertexId b, const std::vector<FaceId>& cycle) const {
     bool touched = is_moved(a) || is_moved(b);
     std::vector<Vec3> apex;
     Fault fault{"rounding would exchange faces around an edge", {}};
-    for (const FaceId f : ring) {
+    for (const FaceId f : cycle) {
       const bool fresh = f.value >= complex_.face_count();
       const auto& v = fresh ? edit_.new_faces[f.value - complex_.face_count()].v : complex_.face(f).v;
       if (fresh) fault.faces.push_back(f.value - complex_.face_count());
@@ -78,7 +78,7 @@ class RingOrder {
 }  // namespace
 
 Fault find_radial_fault(const Complex& complex, const ComplexEdit& edit, std::span<const std::uint8_t> moved) {
-  return RingOrder(complex, edit, moved).first_fault();
+  return RadialOrderTest(complex, edit, moved).first_fault();
 }
 
 }  // namespace geo

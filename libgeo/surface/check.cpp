@@ -1,3 +1,4 @@
+// Validity checks of meshes and crack complexes.
 #include "kerf/check.h"
 
 #include <algorithm>
@@ -14,11 +15,11 @@ namespace {
 
 std::string pair_name(std::size_t a, std::size_t b) { return std::to_string(a) + " and " + std::to_string(b); }
 
-void note(SurfaceReport& report, const std::string& problem) {
+void report_problem(SurfaceReport& report, const std::string& problem) {
   if (report.first_problem.empty()) report.first_problem = problem;
 }
 
-// Directed edges without their opposite, and pairs with the same direction, by rows.
+// Reports edges without two triangles of opposite directions.
 void check_edges(const TriangleMesh& mesh, SurfaceReport& report) {
   struct Uses {
     std::uint32_t up = 0, down = 0, first = 0;
@@ -39,15 +40,15 @@ void check_edges(const TriangleMesh& mesh, SurfaceReport& report) {
       const std::string where = "edge " + std::to_string(std::min(a, b)) + "-" + std::to_string(std::max(a, b));
       if (e.up + e.down == 1) {
         report.closed = false;
-        note(report, "the surface is open: " + where + " has one triangle only; close the holes first");
+        report_problem(report, "the surface is open: " + where + " has one triangle only; close the holes first");
       } else if (e.up + e.down > 2 && (e.up != e.down || !mesh.two_sided())) {
         report.manifold = false;
-        note(report, "the surface is not manifold: " + where + " has " + std::to_string(e.up + e.down) +
-                         " triangles; separate the parts that touch there");
+        report_problem(report, "the surface is not manifold: " + where + " has " + std::to_string(e.up + e.down) +
+                                   " triangles; separate the parts that touch there");
       } else if (e.up != e.down) {
         report.oriented = false;
-        note(report, "the surface is not consistently oriented: both triangles at " + where +
-                         " run the same way; orient it first");
+        report_problem(report, "the surface is not consistently oriented: both triangles at " + where +
+                                   " run the same way; orient it first");
       }
     }
 }
@@ -58,7 +59,7 @@ std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
     const auto& [a, b, c] = mesh.triangles[t];
     if (!collinear(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c])) continue;
     ++count;
-    note(report, "triangle " + std::to_string(t) + " is degenerate (no area); remove or repair it");
+    report_problem(report, "triangle " + std::to_string(t) + " is degenerate (no area); remove or repair it");
   }
   return count;
 }
@@ -72,7 +73,7 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
     for (int j = 0; j < 3; ++j)
       if (f[i] == g[j]) {
         for (int k = 0; k < shared; ++k)
-          if (shared_f[k] == i || shared_g[k] == j) return true;  // it is named twice
+          if (shared_f[k] == i || shared_g[k] == j) return true;  // a vertex occurs twice
         shared_f[shared] = i, shared_g[shared] = j, ++shared;
       }
   if (shared == 3) return true;
@@ -92,7 +93,8 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
     return coplanar_side(u, v, p[i], q[j]) >= 0;
   }
   if (shared == 1) {
-    // Both others strictly on one side of the other's plane: they touch at the shared corner only.
+    // Two corners strictly on one side of the other plane: the triangles touch at the shared corner
+    // alone.
     const int i = shared_f[0], j = shared_g[0];
     if (clear(p, q[(j + 1) % 3], q[(j + 2) % 3]) || clear(q, p[(i + 1) % 3], p[(i + 2) % 3]) || apart(p, q))
       return false;
@@ -124,11 +126,11 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   SurfaceReport report;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (!in_range(mesh.vertices[v])) {
-      note(report, "vertex " + std::to_string(v) +
-                       " has a coordinate that is not a finite number of sensible size; repair the file");
+      report_problem(report, "vertex " + std::to_string(v) +
+                                 " has a coordinate that is not a finite number of sensible size; repair the file");
       return report;
     }
-  if (mesh.triangles.empty()) note(report, "the surface is empty: it has no triangles");
+  if (mesh.triangles.empty()) report_problem(report, "the surface is empty: it has no triangles");
   report.degenerate_faces = count_degenerate(mesh, report);
   check_edges(mesh, report);
   if (!crossings) return report;
@@ -141,7 +143,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    if (a == b || b == c || c == a) continue;  // is degenerate, and noted
+    if (a == b || b == c || c == a) continue;  // degenerate, reported above
     const auto p = points(t);
     const Box3 box = box_of(p[0], p[1], p[2]);
     near.clear();
@@ -149,7 +151,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     for (const auto other : near)
       if (faces_cross(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
         if (count++ == 0)
-          note(report, "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
+          report_problem(report,
+                         "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
       }
     index.insert(t, box);
   }
@@ -191,33 +194,33 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
   const auto c = k.corners(FaceId(f));
   if (collinear(c[0], c[1], c[2])) {
     ++report.degenerate_faces;
-    note(report, "face " + std::to_string(f) + " is degenerate (no area)");
+    report_problem(report, "face " + std::to_string(f) + " is degenerate (no area)");
   }
   for (int e = 0; e < 3; ++e) {
     const VertexId a = face.v[e], b = face.v[(e + 1) % 3];
-    const auto ring = k.faces_around(a, b);
-    if (std::find(ring.begin(), ring.end(), FaceId(f)) == ring.end()) {
+    const auto cycle = k.faces_around(a, b);
+    if (std::find(cycle.begin(), cycle.end(), FaceId(f)) == cycle.end()) {
       report.manifold = false;
-      note(report, "face " + std::to_string(f) + " is missing around its edge " + edge_name(a, b));
+      report_problem(report, "face " + std::to_string(f) + " is missing around its edge " + edge_name(a, b));
       continue;
     }
     try {
-      check_wedges(std::vector<FaceId>(ring.begin(), ring.end()), std::min(a, b), std::max(a, b),
+      check_wedges(std::vector<FaceId>(cycle.begin(), cycle.end()), std::min(a, b), std::max(a, b),
                    [&](FaceId g) { return k.face(g); });
     } catch (const GeometryError& error) {
       report.closed = false;
-      note(report, error.what());
+      report_problem(report, error.what());
       continue;
     }
-    if (ring.size() > 2 && ring[0] == FaceId(f)) {
+    if (cycle.size() > 2 && cycle[0] == FaceId(f)) {
       const auto [low, high] = std::minmax(a, b);
       std::vector<Vec3> apex;
-      for (const FaceId g : ring)
+      for (const FaceId g : cycle)
         for (const VertexId v : k.face(g).v)
           if (v != a && v != b) apex.push_back(k.point(v));
       if (!in_radial_order(k.point(low), k.point(high), apex)) {
         report.manifold = false;
-        note(report, "the faces around edge " + edge_name(a, b) + " stand otherwise than they are listed");
+        report_problem(report, "the faces around edge " + edge_name(a, b) + " stand otherwise than they are listed");
       }
     }
     for (int which = 0; which < 2; ++which) {
@@ -232,13 +235,14 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
       if (!k.has(n) || k.neighbor(n, back) != s || k.surface_vertex(n, na) != k.surface_vertex(s, e) ||
           k.surface_vertex(n, nb) != k.surface_vertex(s, (e + 1) % 3)) {
         report.manifold = false;
-        note(report, "the two sides at edge " + edge_name(a, b) + " of face " + std::to_string(f) + " do not fit");
+        report_problem(report,
+                       "the two sides at edge " + edge_name(a, b) + " of face " + std::to_string(f) + " do not fit");
       }
       // Oriented: across the edge the derived triangles run in opposite directions.
       const bool up_s = runs_upwards(face, a, b) == (which == 0), up_n = runs_upwards(g, a, b) == (n.which == 0);
       if (up_s == up_n) {
         report.oriented = false;
-        note(report, "the derived surface is not oriented at edge " + edge_name(a, b));
+        report_problem(report, "the derived surface is not oriented at edge " + edge_name(a, b));
       }
     }
   }
@@ -265,7 +269,8 @@ SurfaceReport check_complex(const Complex& k, bool crossings) {
     const auto pairs = self_intersections(k);
     report.self_intersections = pairs.size();
     if (!pairs.empty())
-      note(report, "faces " + pair_name(pairs[0].first.value, pairs[0].second.value) + " intersect each other");
+      report_problem(report,
+                     "faces " + pair_name(pairs[0].first.value, pairs[0].second.value) + " intersect each other");
   }
   return report;
 }

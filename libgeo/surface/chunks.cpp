@@ -1,3 +1,4 @@
+// Bonds between pieces, and pieces as meshes for export.
 #include "kerf/pieces.h"
 
 #include <algorithm>
@@ -8,13 +9,14 @@ namespace {
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
+// The crack faces between two pieces. Sums over faces, weighted by area.
 struct Wall {
   double area = 0;
-  Vec3 normal = Vec3::Zero(), center = Vec3::Zero();  // not yet divided by what they weigh
+  Vec3 normal = Vec3::Zero(), center = Vec3::Zero();
 };
 
-// Cracks by the pieces on their sides, lower first; a crack inside of one piece has it twice. Where
-// vertices have moved, a face is half way between its sides, and weighs what it did before.
+// The walls by the pieces on their sides, the lower one first; a crack inside one piece has that
+// piece twice. Deformed faces lie half way between their sides, and keep their undeformed weight.
 std::map<Pair, Wall> walls_of(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {}) {
   std::map<Pair, Wall> walls;
   for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
@@ -47,6 +49,49 @@ Vec3 centroid_of(const TriangleMesh& mesh) {
   return volume > 0 ? Vec3(o + sum / volume) : o;
 }
 
+// The wall of a triangle of a piece, and whether the piece is on the wall's far side.
+struct WallSide {
+  const Wall* wall = nullptr;  // null: skin
+  bool flipped = false;
+};
+
+// The walls of the triangles of each piece, in the order of piece_mesh().
+std::vector<std::vector<WallSide>> walls_by_triangle(const Complex& complex, const Pieces& pieces,
+                                                     const std::map<Pair, Wall>& walls) {
+  std::vector<std::vector<WallSide>> result(pieces.count);
+  for (std::uint32_t f = 0; f < complex.face_count(); ++f)
+    for (std::uint32_t which = 0; which < 2; ++which) {
+      const auto piece = pieces.of_side[f * 2 + which];
+      if (piece < 0) continue;
+      const bool crack = complex.face(FaceId(f)).crack > 0;
+      const auto other = crack ? pieces.of_side[f * 2 + 1 - which] : piece;
+      result[std::size_t(piece)].push_back(
+          {crack ? &walls.at(std::minmax(std::uint32_t(piece), std::uint32_t(other))) : nullptr,
+           other < piece || (other == piece && which == 1)});
+    }
+  return result;
+}
+
+// Gives a piece groups and texture coordinates where it has none.
+void complete_attributes(TriangleMesh& mesh, const std::vector<WallSide>& walls, double tile) {
+  Attributes& a = mesh.attributes;
+  if (a.group.empty()) {
+    a.group_names = {"skin", crack_group};
+    for (const auto patch : mesh.patch) a.group.push_back(patch != 0);
+  }
+  if (a.uv.empty()) a.uv.assign(mesh.triangles.size(), {Vec2::Zero(), Vec2::Zero(), Vec2::Zero()});
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [wall, flipped] = walls[t];
+    if (!wall || !std::all_of(a.uv[t].begin(), a.uv[t].end(), [](const Vec2& uv) { return uv.isZero(0); })) continue;
+    const Vec3 n = wall->normal.norm() > 0 ? wall->normal.normalized() : Vec3::UnitZ();
+    const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& q = mesh.vertices[mesh.triangles[t][k]];
+      a.uv[t][k] = Vec2((flipped ? -u : u).dot(q), v.dot(q)) / tile;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved) {
@@ -60,44 +105,17 @@ std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::
 std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile,
                                std::span<const Vec3> moved) {
   const auto walls = walls_of(complex, pieces);
-  // The walls that the triangles of each piece belong to, in the order in which piece_mesh() gives
-  // them.
-  std::vector<std::vector<std::pair<const Wall*, bool>>> wall_at(pieces.count);
-  for (std::uint32_t f = 0; f < complex.face_count(); ++f)
-    for (std::uint32_t which = 0; which < 2; ++which) {
-      const auto piece = pieces.of_side[f * 2 + which];
-      if (piece < 0) continue;
-      const bool crack = complex.face(FaceId(f)).crack > 0;
-      const auto other = crack ? pieces.of_side[f * 2 + 1 - which] : piece;
-      wall_at[std::size_t(piece)].push_back(
-          {crack ? &walls.at(std::minmax(std::uint32_t(piece), std::uint32_t(other))) : nullptr,
-           other < piece || (other == piece && which == 1)});
-    }
+  const auto wall_at = walls_by_triangle(complex, pieces, walls);
   std::vector<Chunk> chunks;
-  std::vector<SurfaceVertexId> rows;
+  std::vector<SurfaceVertexId> vertex_of;
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
-    Chunk chunk{piece_mesh(complex, pieces, p, &rows), pieces.volume[p], Vec3::Zero()};
+    Chunk chunk{piece_mesh(complex, pieces, p, &vertex_of), pieces.volume[p], Vec3::Zero()};
     TriangleMesh& mesh = chunk.mesh;
     if (!original.triangles.empty()) transfer_attributes(original, mesh);
     mesh.site.clear();
-    Attributes& a = mesh.attributes;
-    if (a.group.empty()) {
-      a.group_names = {"skin", crack_group};
-      for (const auto patch : mesh.patch) a.group.push_back(patch != 0);
-    }
-    if (a.uv.empty()) a.uv.assign(mesh.triangles.size(), {Vec2::Zero(), Vec2::Zero(), Vec2::Zero()});
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [wall, turned] = wall_at[p][t];
-      if (!wall || !std::all_of(a.uv[t].begin(), a.uv[t].end(), [](const Vec2& uv) { return uv.isZero(0); })) continue;
-      const Vec3 n = wall->normal.norm() > 0 ? wall->normal.normalized() : Vec3::UnitZ();
-      const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& q = mesh.vertices[mesh.triangles[t][k]];
-        a.uv[t][k] = Vec2((turned ? -u : u).dot(q), v.dot(q)) / tile;
-      }
-    }
+    complete_attributes(mesh, wall_at[p], tile);
     if (!moved.empty()) {
-      for (std::size_t v = 0; v < rows.size(); ++v) mesh.vertices[v] = moved[rows[v].index()];
+      for (std::size_t v = 0; v < vertex_of.size(); ++v) mesh.vertices[v] = moved[vertex_of[v].index()];
       chunk.volume = signed_volume(mesh);
     }
     chunk.centroid = centroid_of(mesh);

@@ -14,10 +14,10 @@ namespace geo {
 namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
-using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the lesser first
+using Edge = std::pair<std::uint32_t, std::uint32_t>;  // lower corner first
 constexpr double most_triangles = 1e6;
 
-// The greatest cosine of a triangle's angles: of its least angle; 1 where it has no area.
+// The cosine of a triangle's smallest angle; 1 for a degenerate one.
 double sharpness(const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto cosine = [](const Vec3& u, const Vec3& v) {
     const double length = u.norm() * v.norm();
@@ -44,11 +44,11 @@ class Patch {
     }
   }
   void fair();
-  /// There are too many triangles, or, as their areas tell, will be.
+  /// Whether there are too many triangles, or will be, to judge by their areas.
   bool too_fine() const {
     double count = 0;
     for (const auto& [a, b, c] : triangles_) {
-      const double size = (size_[a] + size_[b] + size_[c]) / 3;  // of equilateral ones
+      const double size = (size_[a] + size_[b] + size_[c]) / 3;  // edge length of equilateral triangles
       count += std::max(1.0, 2 / std::numbers::sqrt3 * (at_[b] - at_[a]).cross(at_[c] - at_[a]).norm() / (size * size));
     }
     return !(count <= most_triangles);
@@ -59,7 +59,7 @@ class Patch {
   }
 
  private:
-  // Who is on both sides of each edge.
+  // Enters a triangle at its edges.
   void link(std::uint32_t t) {
     for (int k = 0; k < 3; ++k) sides_[std::minmax(triangles_[t][k], triangles_[t][(k + 1) % 3])].push_back(t);
   }
@@ -81,13 +81,13 @@ class Patch {
   const std::function<bool(std::uint32_t, std::uint32_t)>& joined_;
   std::uint32_t rim_;
   std::vector<Vec3> at_;
-  std::vector<double> size_;  // how long edges are to be at each corner
+  std::vector<double> size_;  // per corner: the wanted edge length
   std::vector<Corners> between_, triangles_;
-  std::map<Edge, std::vector<std::uint32_t>> sides_;
+  std::map<Edge, std::vector<std::uint32_t>> sides_;  // the triangles at each edge
 };
 
-// Exchanges an edge for the other diagonal where that makes the sharper of both triangles less
-// sharp, or the edge may not be: this ends.
+// Flips an edge where that makes the smallest angle of both triangles larger, or the edge must not
+// exist. Repeated flips terminate.
 bool Patch::flip(const Edge& edge) {
   const auto at = sides_.find(edge);
   if (at == sides_.end() || at->second.size() != 2) return false;
@@ -99,7 +99,7 @@ bool Patch::flip(const Edge& edge) {
   const auto& other = triangles_[t];
   const std::uint32_t d = *std::find_if(other.begin(), other.end(), [&](auto v) { return v != a && v != b; });
   if (c == d || sides_.count(std::minmax(c, d)) || (c < rim_ && d < rim_ && joined_(c, d))) return false;
-  // Seen along its normal the quad is convex: nothing folds.
+  // The quad must be convex seen along its normal, or the flip would fold it.
   const Vec3 normal = (at_[d] - at_[c]).cross(at_[b] - at_[a]);
   const auto faces = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
     return (at_[j] - at_[i]).cross(at_[k] - at_[i]).dot(normal) > 0;
@@ -153,8 +153,8 @@ bool Patch::divide() {
   return divided;
 }
 
-// The least sum of the squares of how far each vertex, on the rim or inside, is from the mean of
-// those around it.
+// Minimises the sum of squared distances of each vertex, on the rim or inside, from the weighted
+// mean of its neighbours.
 void Patch::fair() {
   const auto inner = static_cast<Eigen::Index>(at_.size() - rim_);
   if (inner == 0) return;
@@ -169,7 +169,7 @@ void Patch::fair() {
     for (const auto w : around[v]) sum += weight(at_[w]);
     if (v < rim_)
       for (const Vec3& p : beyond_[v]) sum += weight(p);
-    if (!std::isfinite(sum) || !(sum > 0)) continue;  // corners at one place: no mean
+    if (!std::isfinite(sum) || !(sum > 0)) continue;  // coincident corners have no mean
     const auto add = [&](std::uint32_t w, double share) {
       if (w >= rim_)
         entries.emplace_back(v, w - rim_, share);
@@ -196,7 +196,7 @@ void Patch::fair() {
 FairPatch fair_patch(const std::vector<Vec3>& rim, const std::vector<std::vector<Vec3>>& beyond,
                      const std::function<bool(std::uint32_t, std::uint32_t)>& joined) {
   Patch patch(rim, beyond, joined);
-  for (int round = 0; round < 2; ++round) {  // what was flat has become wider
+  for (int round = 0; round < 2; ++round) {  // fairing lengthens the edges of a flat patch
     if (patch.too_fine()) return {};
     patch.refine();
     if (patch.too_fine()) return {};

@@ -1,4 +1,4 @@
-// A patch over a hole that goes on from the surface around it.
+// Fills a hole by a fair patch that continues the surface around it.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace geo {
 
-/// Corners of a patch are numbered: first those of the rim, then its own vertices.
+/// A patch. Its corners are numbered: those of the rim first, then its inner vertices.
 struct FairPatch {
-  std::vector<Vec3> inner;  ///< its own vertices
-  std::vector<std::array<std::uint32_t, 3>>
-      between;  ///< of each, three corners with lesser numbers in whose middle it was put
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of corners; they run the rim's way
+  std::vector<Vec3> inner;  ///< positions of the inner vertices
+  /// Per inner vertex: the corners, of lower numbers, of the triangle that it divided.
+  std::vector<std::array<std::uint32_t, 3>> between;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of corners; oriented along the rim
 };
 
-/// Triangles as fine as the rim, on a surface that bends as little as it can and leaves the rim as
-/// the surface beyond it comes there (P. Liepa, Filling holes in meshes, 2003, from the second step
-/// on; weights are inverse lengths). `rim`: at least three corners; `beyond`: of each, the points
-/// that it has edges to other than along the rim; `joined`: whether two corners have an edge
-/// already. The patch may cross itself or something else: who takes it looks. Without triangles
-/// where it would have more than a million of them.
+/// A patch with triangles as fine as the rim, of least bending, that leaves the rim in the tangent
+/// plane of the surface (P. Liepa, Filling holes in meshes, 2003, from its second step on; weights
+/// are inverse lengths). `rim`: at least three corners; `beyond`: per corner, the neighbours other
+/// than along the rim; `joined`: whether two corners have an edge already. The patch may cross
+/// itself or other triangles: the caller checks. Empty where it would have more than a million
+/// triangles.
 FairPatch fair_patch(const std::vector<Vec3>& rim, const std::vector<std::vector<Vec3>>& beyond,
                      const std::function<bool(std::uint32_t, std::uint32_t)>& joined);
 

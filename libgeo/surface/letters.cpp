@@ -18,11 +18,11 @@ struct Stroke {
 // Pen strokes in a box of width 0.6 and height 0.8; round letters are drawn as polygons.
 std::vector<Stroke> strokes_of(char letter) {
   const double l = 0, r = 0.6, b = 0, t = 0.8, m = 0.4, c = 0.3;
-  const auto ring = [&](double from, double to) {
+  const auto arc_of = [&](double from, double to) {
     std::vector<Stroke> arc;
-    constexpr int parts = 24;
-    for (int i = 0; i < parts; ++i) {
-      const double a0 = from + (to - from) * i / parts, a1 = from + (to - from) * (i + 1) / parts;
+    constexpr int segments = 24;
+    for (int i = 0; i < segments; ++i) {
+      const double a0 = from + (to - from) * i / segments, a1 = from + (to - from) * (i + 1) / segments;
       arc.push_back({c + 0.3 * std::cos(a0), m + 0.4 * std::sin(a0), c + 0.3 * std::cos(a1), m + 0.4 * std::sin(a1)});
     }
     return arc;
@@ -35,7 +35,7 @@ std::vector<Stroke> strokes_of(char letter) {
     case 'B':
       return {left, top, middle, bottom, right};
     case 'C':
-      return ring(pi / 4, 7 * pi / 4);
+      return arc_of(pi / 4, 7 * pi / 4);
     case 'D':
       return {left, {l, t, c, t}, {c, t, r, 0.55}, {r, 0.55, r, 0.25}, {r, 0.25, c, b}, {c, b, l, b}};
     case 'E':
@@ -43,7 +43,7 @@ std::vector<Stroke> strokes_of(char letter) {
     case 'F':
       return {left, top, middle};
     case 'G': {
-      auto g = ring(pi / 4, 2 * pi);
+      auto g = arc_of(pi / 4, 2 * pi);
       g.push_back({r, m, c, m});
       return g;
     }
@@ -62,11 +62,11 @@ std::vector<Stroke> strokes_of(char letter) {
     case 'N':
       return {left, right, {l, t, r, b}};
     case 'O':
-      return ring(0, 2 * pi);
+      return arc_of(0, 2 * pi);
     case 'P':
       return {left, top, middle, {r, m, r, t}};
     case 'Q': {
-      auto q = ring(0, 2 * pi);
+      auto q = arc_of(0, 2 * pi);
       q.push_back({c, 0.25, r, b});
       return q;
     }
@@ -103,8 +103,8 @@ double distance_to(const std::vector<Stroke>& strokes, double x, double y) {
   return best;
 }
 
-// A planar region as convex cells; points are known by their grid corner or grid edge, so
-// neighbours share them.
+// A planar region as convex cells. A point is identified by its grid corner or grid edge, so
+// neighbours share it.
 struct Region {
   std::vector<std::array<double, 2>> points;
   std::vector<std::vector<std::uint32_t>> cells;             // counter-clockwise
@@ -116,8 +116,8 @@ Region contour(const std::vector<Stroke>& strokes, int resolution) {
   const double h = 1.0 / resolution;
   const int nx = static_cast<int>(std::ceil((0.6 + 2 * pad) / h)),
             ny = static_cast<int>(std::ceil((0.8 + 2 * pad) / h));
-  // Sampled off the strokes' own lines, so that no value is zero; a value is never left so small
-  // that a cell degenerates.
+  // The grid is offset from the strokes' lines, so that no sample is zero; small samples are
+  // enlarged, so that no cell degenerates.
   const auto value = [&](int i, int j) {
     const double v = pen - distance_to(strokes, i * h - pad + 0.37e-3, j * h - pad + 0.53e-3);
     return std::abs(v) < 0.02 * h ? (v < 0 ? -0.02 : 0.02) * h : v;
@@ -127,9 +127,9 @@ Region contour(const std::vector<Stroke>& strokes, int resolution) {
     for (int i = 0; i <= nx; ++i) field[j * (nx + 1) + i] = value(i, j);
 
   Region region;
-  std::map<std::array<int, 3>, std::uint32_t> rows;  // (i, j, 0: the corner, 1: edge to the right, 2: edge upwards)
+  std::map<std::array<int, 3>, std::uint32_t> index;  // (i, j, 0: the corner, 1: edge to the right, 2: edge upwards)
   const auto point = [&](int i, int j, int kind) {
-    const auto [it, fresh] = rows.try_emplace({i, j, kind}, static_cast<std::uint32_t>(region.points.size()));
+    const auto [it, fresh] = index.try_emplace({i, j, kind}, static_cast<std::uint32_t>(region.points.size()));
     if (fresh) {
       const int i1 = i + (kind == 1), j1 = j + (kind == 2);
       const double f0 = field[j * (nx + 1) + i], f1 = field[j1 * (nx + 1) + i1];

@@ -1,3 +1,4 @@
+// Pieces of material: connected regions, each with one outer shell and possibly inner ones.
 #include "kerf/pieces.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace geo {
 namespace {
 
-// One connected component of the derived surface.
+// A connected component of the derived surface S_A.
 struct Shell {
   std::vector<Side> sides;
   double volume = 0;
@@ -29,15 +30,15 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
       Shell shell;
       std::vector<Side> stack{start};
       of_side[f * 2 + which] = id;
-      double carry = 0;  // Kahan's compensation
+      double compensation = 0;  // Kahan summation
       while (!stack.empty()) {
         const Side s = stack.back();
         stack.pop_back();
         shell.sides.push_back(s);
         const auto c = k.corners(s.face);
         const double part = (c[0] - origin).dot((c[1] - origin).cross(c[2] - origin)) / 6;
-        const double y = (s.which == 0 ? part : -part) - carry, t = shell.volume + y;
-        carry = (t - shell.volume) - y;
+        const double y = (s.which == 0 ? part : -part) - compensation, t = shell.volume + y;
+        compensation = (t - shell.volume) - y;
         shell.volume = t;
         for (int e = 0; e < 3; ++e) {
           const Side n = k.neighbor(s, e);
@@ -51,7 +52,7 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
   return shells;
 }
 
-// Shells that share faces, in groups: the group of each shell.
+// Groups of shells that are connected by shared faces: the group of each shell.
 std::vector<std::uint32_t> group(std::size_t shells, const std::vector<std::int32_t>& of_side) {
   UnionFind joined(shells);
   for (std::size_t f = 0; f + 1 < of_side.size(); f += 2)
@@ -62,36 +63,37 @@ std::vector<std::uint32_t> group(std::size_t shells, const std::vector<std::int3
   return group;
 }
 
-// Of the shells of faces that hang together, one looks outwards at what is around them all: it has
-// corners at the extreme points. Where several have, it is the one with the most volume outside.
+// The shell of a group that looks outwards, at what surrounds the group: it has corners at the
+// extreme points. Among several such shells it is the one with the most volume outside.
 std::uint32_t outward(const Complex& k, const std::vector<Shell>& shells, std::vector<std::uint32_t> of_group) {
-  for (int way = 0; way < 6 && of_group.size() > 1; ++way) {
+  for (int direction = 0; direction < 6 && of_group.size() > 1; ++direction) {
     const auto farther = [&](VertexId a, VertexId b) {
       for (int i = 0; i < 3; ++i) {
-        const double xa = k.point(a)[(way + i) % 3], xb = k.point(b)[(way + i) % 3];
-        if (xa != xb) return way < 3 ? xa > xb : xa < xb;
+        const double xa = k.point(a)[(direction + i) % 3], xb = k.point(b)[(direction + i) % 3];
+        if (xa != xb) return direction < 3 ? xa > xb : xa < xb;
       }
       return a < b;
     };
     VertexId extreme;
-    std::vector<std::uint32_t> there;
+    std::vector<std::uint32_t> touching;
     for (const auto s : of_group)
       for (const Side side : shells[s].sides)
         for (const VertexId v : k.face(side.face).v) {
-          if (!extreme.valid() || farther(v, extreme)) extreme = v, there.clear();
-          if (v == extreme && (there.empty() || there.back() != s)) there.push_back(s);
+          if (!extreme.valid() || farther(v, extreme)) extreme = v, touching.clear();
+          if (v == extreme && (touching.empty() || touching.back() != s)) touching.push_back(s);
         }
-    of_group = there;
+    of_group = touching;
   }
   return *std::min_element(of_group.begin(), of_group.end(),
                            [&](auto a, auto b) { return shells[a].volume < shells[b].volume; });
 }
 
-// True for shells that bound a piece from outside. Faces that hang together divide space into one
-// region for each of the shells that they have, air included (Alexander's duality). All but one of
-// these regions are enclosed by them: a piece of material each, however thin, and whatever rounding
-// makes of its volume. The one around them is air where they have skin that encloses something,
-// else the inside of another piece.
+// True for shells that bound a piece from outside.
+//
+// Connected faces divide space into one region for each of their shells, air included (Alexander
+// duality). All regions but one are enclosed by the faces: each is a piece of material, however
+// thin, whatever volume rounding gives it. The region around them is air where the faces have skin
+// that encloses something, else the inside of another piece.
 std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>& shells,
                                      const std::vector<std::uint32_t>& root) {
   std::vector<std::vector<std::uint32_t>> groups(shells.size());
@@ -100,7 +102,7 @@ std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>&
   for (const auto& members : groups) {
     if (members.empty()) continue;
     bool skin = false;
-    double volume = 0;  // that the skin encloses: faces between shells do not count
+    double volume = 0;  // enclosed by the skin: faces between two shells cancel
     for (const auto s : members) {
       volume += shells[s].volume;
       for (const Side side : shells[s].sides) skin |= k.face(side.face).crack == 0;
@@ -110,19 +112,12 @@ std::vector<std::uint8_t> find_outer(const Complex& k, const std::vector<Shell>&
   return outer;
 }
 
-}  // namespace
-
-Pieces find_pieces(const Complex& k) {
-  std::vector<std::int32_t> shell_of;
-  const auto shells = find_shells(k, shell_of);
-  const auto root = group(shells.size(), shell_of);
-  const auto is_outer = find_outer(k, shells, root);
-  std::vector<std::uint32_t> outer;
-  for (std::uint32_t s = 0; s < shells.size(); ++s)
-    if (is_outer[s]) outer.push_back(s);
-
-  // Cavities and internal cracks belong to the smallest outer shell around them, which is none of
-  // those that they share faces with.
+// The outer shell of the piece that each shell bounds. Cavities and internal cracks belong to the
+// smallest outer shell around them, which is not of their group.
+std::vector<std::uint32_t> find_owners(const Complex& k, const std::vector<Shell>& shells,
+                                       const std::vector<std::uint32_t>& root,
+                                       const std::vector<std::uint8_t>& is_outer,
+                                       const std::vector<std::uint32_t>& outer) {
   std::vector<std::uint32_t> owner(shells.size());
   std::vector<TriangleBvh> trees(shells.size());
   for (std::uint32_t s = 0; s < shells.size(); ++s) {
@@ -136,7 +131,7 @@ Pieces find_pieces(const Complex& k) {
         for (const Side side : shells[o].sides) soup.push_back(k.corners(side.face));
         trees[o] = TriangleBvh(soup);
       }
-      // Any face will do, by its middle: two shells may touch at vertices and edges.
+      // Any face decides, by its centroid: two shells may touch at vertices and edges.
       for (const Side side : shells[s].sides) {
         const auto c = k.corners(side.face);
         const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
@@ -146,7 +141,21 @@ Pieces find_pieces(const Complex& k) {
       }
     }
   }
+  return owner;
+}
 
+}  // namespace
+
+Pieces find_pieces(const Complex& k) {
+  std::vector<std::int32_t> shell_of;
+  const auto shells = find_shells(k, shell_of);
+  const auto root = group(shells.size(), shell_of);
+  const auto is_outer = find_outer(k, shells, root);
+  std::vector<std::uint32_t> outer;
+  for (std::uint32_t s = 0; s < shells.size(); ++s)
+    if (is_outer[s]) outer.push_back(s);
+
+  const auto owner = find_owners(k, shells, root, is_outer, outer);
   Pieces pieces;
   pieces.shells = static_cast<std::uint32_t>(shells.size());
   std::vector<double> volume(shells.size(), 0);
@@ -163,10 +172,11 @@ Pieces find_pieces(const Complex& k) {
   return pieces;
 }
 
-TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t piece, std::vector<SurfaceVertexId>* of) {
+TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t piece,
+                        std::vector<SurfaceVertexId>* vertex_of) {
   TriangleMesh mesh;
-  if (of) of->clear();
-  std::vector<std::uint32_t> row(k.surface_vertex_count(), ~0u);
+  if (vertex_of) vertex_of->clear();
+  std::vector<std::uint32_t> index(k.surface_vertex_count(), ~0u);
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     for (int which = 0; which < 2; ++which) {
       if (pieces.of_side[f * 2 + which] != static_cast<std::int32_t>(piece)) continue;
@@ -174,13 +184,13 @@ TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t pi
       Triangle t;
       for (int c = 0; c < 3; ++c) {
         const SurfaceVertexId v = k.surface_vertex({FaceId(f), which}, c);
-        if (row[v.index()] == ~0u) {
-          row[v.index()] = static_cast<std::uint32_t>(mesh.vertices.size());
+        if (index[v.index()] == ~0u) {
+          index[v.index()] = static_cast<std::uint32_t>(mesh.vertices.size());
           mesh.vertices.push_back(k.point(k.site(v)));
           mesh.site.push_back(k.site(v).value);
-          if (of) of->push_back(v);
+          if (vertex_of) vertex_of->push_back(v);
         }
-        t[c] = row[v.index()];
+        t[c] = index[v.index()];
       }
       if (which == 1) std::swap(t[1], t[2]);
       mesh.triangles.push_back(t);

@@ -24,23 +24,23 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Vec3>& 
     return sense * orient2d(at(a), at(b), at(c), axis);
   };
   if (std::all_of(fan.begin(), fan.end(), [&](const auto& t) { return turn(t[0], t[1], t[2]) > 0; })) return fan;
-  std::vector<std::uint32_t> ring(n);
-  std::iota(ring.begin(), ring.end(), 0u);
-  for (std::size_t i = 0, tried = 0; ring.size() > 3; ++i) {
-    if (tried++ == ring.size()) return fan;  // it crosses itself, or has no area
-    const std::size_t middle = i % ring.size();
-    const auto a = ring[(middle + ring.size() - 1) % ring.size()], b = ring[middle],
-               c = ring[(middle + 1) % ring.size()];
-    const auto in_the_way = [&](std::uint32_t d) {
+  std::vector<std::uint32_t> rest(n);  // corners that are not cut off yet
+  std::iota(rest.begin(), rest.end(), 0u);
+  for (std::size_t i = 0, tried = 0; rest.size() > 3; ++i) {
+    if (tried++ == rest.size()) return fan;  // it crosses itself, or has no area
+    const std::size_t middle = i % rest.size();
+    const auto a = rest[(middle + rest.size() - 1) % rest.size()], b = rest[middle],
+               c = rest[(middle + 1) % rest.size()];
+    const auto blocks_ear = [&](std::uint32_t d) {
       return polygon[d] != polygon[a] && polygon[d] != polygon[b] && polygon[d] != polygon[c] && turn(a, b, d) >= 0 &&
              turn(b, c, d) >= 0 && turn(c, a, d) >= 0;
     };
-    if (turn(a, b, c) <= 0 || std::any_of(ring.begin(), ring.end(), in_the_way)) continue;
+    if (turn(a, b, c) <= 0 || std::any_of(rest.begin(), rest.end(), blocks_ear)) continue;
     ears.push_back({a, b, c});
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(middle));
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(middle));
     tried = 0;
   }
-  ears.push_back({ring[0], ring[1], ring[2]});
+  ears.push_back({rest[0], rest[1], rest[2]});
   return ears;
 }
 

@@ -1,3 +1,4 @@
+// Refinement of meshes by bisection of long edges.
 #include "kerf/repair.h"
 
 #include <algorithm>
@@ -8,14 +9,14 @@
 namespace geo {
 namespace {
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the lesser row first
+using Edge = std::pair<std::uint32_t, std::uint32_t>;  // lower vertex first
 
 constexpr std::size_t most_triangles = 20'000'000;
 constexpr std::uint32_t none = ~0u;
 
 Edge edge(const Triangle& t, int k) { return std::minmax(t[k], t[(k + 1) % 3]); }
 
-// Divides each edge that is too long once; false where there is none.
+// One pass: bisects each edge that is too long once.
 class Pass {
  public:
   Pass(TriangleMesh& mesh, double longest) : mesh_(mesh) {
@@ -28,6 +29,7 @@ class Pass {
     long_.erase(std::unique(long_.begin(), long_.end()), long_.end());
   }
 
+  // False when no edge is too long.
   bool divide() {
     if (long_.empty()) return false;
     first_ = static_cast<std::uint32_t>(mesh_.vertices.size());
@@ -51,29 +53,29 @@ class Pass {
     return at != long_.end() && *at == e ? first_ + static_cast<std::uint32_t>(at - long_.begin()) : none;
   }
 
-  void divide(const Triangle& t, std::vector<Triangle>& parts) const {
+  void divide(const Triangle& t, std::vector<Triangle>& children) const {
     std::array<std::uint32_t, 3> m{};
     for (int k = 0; k < 3; ++k) m[k] = vertex_of(edge(t, k));
     const auto whole = std::count(m.begin(), m.end(), none);
-    if (whole == 3) return parts.push_back(t);
-    // Turned so that the edge from 0 to 1 is divided, and, of two, that from 1 to 2 as well.
+    if (whole == 3) return children.push_back(t);
+    // Rotated so that edge 0–1 is divided, and, of two divided edges, 1–2 as well.
     int k = 0;
     while (m[k] == none || (whole == 1 && m[(k + 1) % 3] == none)) ++k;
     const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], ab = m[k], bc = m[(k + 1) % 3],
                         ca = m[(k + 2) % 3];
     if (whole == 2) {
-      parts.insert(parts.end(), {{a, ab, c}, {ab, b, c}});
+      children.insert(children.end(), {{a, ab, c}, {ab, b, c}});
     } else if (whole == 0) {
-      parts.insert(parts.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+      children.insert(children.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     } else {
-      parts.push_back({ab, b, bc});
+      children.push_back({ab, b, bc});
       const auto length = [&](std::uint32_t i, std::uint32_t j) {
         return (mesh_.vertices[i] - mesh_.vertices[j]).squaredNorm();
       };
       if (length(a, bc) < length(ab, c))
-        parts.insert(parts.end(), {{a, ab, bc}, {a, bc, c}});
+        children.insert(children.end(), {{a, ab, bc}, {a, bc, c}});
       else
-        parts.insert(parts.end(), {{a, ab, c}, {ab, bc, c}});
+        children.insert(children.end(), {{a, ab, c}, {ab, bc, c}});
     }
   }
 

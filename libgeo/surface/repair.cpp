@@ -1,3 +1,4 @@
+// Mesh repair: welds, orients, fills holes, arranges shells.
 #include "kerf/repair.h"
 
 #include <algorithm>
@@ -19,37 +20,38 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-struct Side {
+// An edge of a triangle.
+struct HalfEdge {
   Edge edge;  // ascending
   std::uint32_t triangle;
-  int corner;  // where it begins
-  friend bool operator<(const Side& a, const Side& b) {
+  int corner;  // where it starts
+  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
     return std::tie(a.edge, a.triangle, a.corner) < std::tie(b.edge, b.triangle, b.corner);
   }
 };
 
-// The sides of all triangles, those of one edge together.
-std::vector<Side> sides_of(const TriangleMesh& mesh) {
-  std::vector<Side> sides;
+// The half-edges of all triangles, sorted by edge.
+std::vector<HalfEdge> half_edges_of(const TriangleMesh& mesh) {
+  std::vector<HalfEdge> half_edges;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
-      sides.push_back({std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t, k});
-  std::sort(sides.begin(), sides.end());
-  return sides;
+      half_edges.push_back({std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t, k});
+  std::sort(half_edges.begin(), half_edges.end());
+  return half_edges;
 }
 
-// Calls with the sides of each edge.
+// Calls call(half-edges) for each edge.
 template <class Call>
-void each_edge(const std::vector<Side>& sides, const Call& call) {
-  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-    while (end < sides.size() && sides[end].edge == sides[i].edge) ++end;
-    call(std::span(sides).subspan(i, end - i));
+void each_edge(const std::vector<HalfEdge>& half_edges, const Call& call) {
+  for (std::size_t i = 0, end = 0; i < half_edges.size(); i = end) {
+    while (end < half_edges.size() && half_edges[end].edge == half_edges[i].edge) ++end;
+    call(std::span(half_edges).subspan(i, end - i));
   }
 }
 
-// Keeps the triangles of these rows, with all that belongs to them.
+// Removes the triangles that are not kept, with their attributes.
 void keep(TriangleMesh& mesh, const std::vector<char>& kept) {
-  const auto rows = [&](auto& values) {
+  const auto filter = [&](auto& values) {
     if (values.empty()) return;
     std::size_t count = 0;
     for (std::size_t t = 0; t < kept.size(); ++t)
@@ -57,10 +59,11 @@ void keep(TriangleMesh& mesh, const std::vector<char>& kept) {
     values.resize(count);
   };
   Attributes& a = mesh.attributes;
-  rows(mesh.triangles), rows(mesh.source), rows(a.uv), rows(a.normal), rows(a.color), rows(a.group);
+  filter(mesh.triangles), filter(mesh.source), filter(a.uv), filter(a.normal), filter(a.color), filter(a.group);
 }
 
-void turn(TriangleMesh& mesh, std::uint32_t t) {
+// Reverses the orientation of a triangle; its normals turn outwards.
+void flip(TriangleMesh& mesh, std::uint32_t t) {
   std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   Attributes& a = mesh.attributes;
   if (!a.uv.empty()) std::swap(a.uv[t][1], a.uv[t][2]);
@@ -73,12 +76,12 @@ void turn(TriangleMesh& mesh, std::uint32_t t) {
     if (n.dot(outwards) < 0) n = -n;
 }
 
-// Triangles with a vertex twice; of those with the same three vertices all but one, or all where as
-// many run one way as the other.
-std::size_t drop_void(TriangleMesh& mesh) {
+// Drops triangles with a vertex twice. Among triangles with the same vertices it keeps one, of the
+// majority's orientation, or none where the orientations cancel.
+std::size_t drop_degenerate(TriangleMesh& mesh) {
   std::map<Triangle, std::pair<int, std::vector<std::uint32_t>>> same;
   std::vector<char> kept(mesh.triangles.size(), 0);
-  const auto run = [&](std::uint32_t t) {  // the way around the sorted vertices
+  const auto orientation = [&](std::uint32_t t) {  // relative to ascending vertices
     const auto& [a, b, c] = mesh.triangles[t];
     return ((a > b) + (a > c) + (b > c)) % 2 == 0 ? 1 : -1;
   };
@@ -86,12 +89,12 @@ std::size_t drop_void(TriangleMesh& mesh) {
     Triangle sorted = mesh.triangles[t];
     std::sort(sorted.begin(), sorted.end());
     if (sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;
-    auto& [sum, rows] = same[sorted];
-    sum += run(t), rows.push_back(t);
+    auto& [sum, triangles] = same[sorted];
+    sum += orientation(t), triangles.push_back(t);
   }
   for (const auto& [sorted, found] : same)
     for (const auto t : found.second)
-      if (found.first * run(t) > 0) {
+      if (found.first * orientation(t) > 0) {
         kept[t] = 1;
         break;
       }
@@ -100,82 +103,80 @@ std::size_t drop_void(TriangleMesh& mesh) {
   return dropped;
 }
 
-// Triangles that hang together by edges of two; which part each belongs to.
-struct Parts {
-  std::vector<std::uint32_t> of;
+// Connected components of triangles, across edges of two triangles.
+struct Components {
+  std::vector<std::uint32_t> of;  // per triangle
   std::uint32_t count = 0;
 };
 
-// Makes neighbours run the same way; of the two ways the one that turns fewer.
-Parts orient(TriangleMesh& mesh, std::size_t& turned) {
+// Orients neighbours alike, each component in the path that flips fewer triangles.
+Components orient(TriangleMesh& mesh, std::size_t& flipped) {
   const std::size_t n = mesh.triangles.size();
   std::vector<std::array<std::uint32_t, 3>> beside(n, {~0u, ~0u, ~0u});
   std::vector<std::array<char, 3>> against(n, {0, 0, 0});
-  each_edge(sides_of(mesh), [&](std::span<const Side> s) {
+  each_edge(half_edges_of(mesh), [&](std::span<const HalfEdge> s) {
     if (s.size() != 2) return;
     const bool same = mesh.triangles[s[0].triangle][s[0].corner] == mesh.triangles[s[1].triangle][s[1].corner];
     beside[s[0].triangle][s[0].corner] = s[1].triangle, beside[s[1].triangle][s[1].corner] = s[0].triangle;
     against[s[0].triangle][s[0].corner] = against[s[1].triangle][s[1].corner] = same;
   });
-  Parts parts{std::vector<std::uint32_t>(n, ~0u)};
-  std::vector<char> flip(n, 0);
+  Components components{std::vector<std::uint32_t>(n, ~0u)};
+  std::vector<char> reversed(n, 0);
   for (std::uint32_t seed = 0; seed < n; ++seed) {
-    if (parts.of[seed] != ~0u) continue;
-    std::vector<std::uint32_t> part{seed};
-    parts.of[seed] = parts.count;
+    if (components.of[seed] != ~0u) continue;
+    std::vector<std::uint32_t> component{seed};
+    components.of[seed] = components.count;
     std::size_t flips = 0;
-    for (std::size_t i = 0; i < part.size(); ++i)
+    for (std::size_t i = 0; i < component.size(); ++i)
       for (int k = 0; k < 3; ++k) {
-        const auto t = part[i], next = beside[t][k];
-        if (next == ~0u || parts.of[next] != ~0u) continue;
-        parts.of[next] = parts.count;
-        flip[next] = flip[t] != against[t][k];
-        flips += flip[next], part.push_back(next);
+        const auto t = component[i], next = beside[t][k];
+        if (next == ~0u || components.of[next] != ~0u) continue;
+        components.of[next] = components.count;
+        reversed[next] = reversed[t] != against[t][k];
+        flips += reversed[next], component.push_back(next);
       }
-    const bool others = 2 * flips > part.size();
-    for (const auto t : part)
-      if (bool(flip[t]) != others) turn(mesh, t), ++turned;
-    ++parts.count;
+    const bool majority = 2 * flips > component.size();
+    for (const auto t : component)
+      if (bool(reversed[t]) != majority) flip(mesh, t), ++flipped;
+    ++components.count;
   }
-  return parts;
+  return components;
 }
 
-// Loops of edges with one triangle only, each as the sides that it runs along; a loop that passes a
-// vertex twice is two.
-std::vector<std::vector<Side>> rims_of(const TriangleMesh& mesh) {
-  std::multimap<std::uint32_t, Side>
-      from;  // a hole runs against its rim's triangles: by the vertex where it comes to a side
-  each_edge(sides_of(mesh), [&](std::span<const Side> s) {
+// The rims of holes: loops of edges with one triangle, as the half-edges along them. A loop that
+// passes a vertex twice is divided in two.
+std::vector<std::vector<HalfEdge>> rims_of(const TriangleMesh& mesh) {
+  std::multimap<std::uint32_t, HalfEdge> from;  // by the end of the half-edge: a hole runs against its rim
+  each_edge(half_edges_of(mesh), [&](std::span<const HalfEdge> s) {
     if (s.size() == 1) from.emplace(mesh.triangles[s[0].triangle][(s[0].corner + 1) % 3], s[0]);
   });
-  std::vector<std::vector<Side>> rims;
+  std::vector<std::vector<HalfEdge>> rims;
   while (!from.empty()) {
-    std::vector<Side> way;
-    std::map<std::uint32_t, std::size_t> place;  // of the vertices on the way
+    std::vector<HalfEdge> path;
+    std::map<std::uint32_t, std::size_t> position;  // of the vertices on the path
     for (std::uint32_t v = from.begin()->first;;) {
-      if (const auto seen = place.find(v); seen != place.end()) {
+      if (const auto seen = position.find(v); seen != position.end()) {
         const std::size_t first = seen->second;
-        rims.emplace_back(way.begin() + static_cast<std::ptrdiff_t>(first), way.end());
-        for (std::size_t i = first; i < way.size(); ++i)
-          place.erase(mesh.triangles[way[i].triangle][(way[i].corner + 1) % 3]);
-        way.resize(first);
+        rims.emplace_back(path.begin() + static_cast<std::ptrdiff_t>(first), path.end());
+        for (std::size_t i = first; i < path.size(); ++i)
+          position.erase(mesh.triangles[path[i].triangle][(path[i].corner + 1) % 3]);
+        path.resize(first);
       }
       const auto next = from.find(v);
       if (next == from.end()) break;  // also where edges of three triangles end a rim
-      place[v] = way.size();
-      way.push_back(next->second);
+      position[v] = path.size();
+      path.push_back(next->second);
       from.erase(next);
-      v = mesh.triangles[way.back().triangle][way.back().corner];
+      v = mesh.triangles[path.back().triangle][path.back().corner];
     }
   }
   return rims;
 }
 
-// Adds a patch over the hole that the rim runs along; what its corners have goes from the rim
-// inwards.
-void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch& patch) {
+// Adds a patch over the hole with this rim. Its attributes extend those of the rim inwards.
+void add_patch(TriangleMesh& mesh, const std::vector<HalfEdge>& rim, const FairPatch& patch) {
   const auto corners = static_cast<std::uint32_t>(rim.size()), first = static_cast<std::uint32_t>(mesh.vertices.size()),
-             rows = static_cast<std::uint32_t>(mesh.triangles.size());
+             first_triangle = static_cast<std::uint32_t>(mesh.triangles.size());
   mesh.vertices.insert(mesh.vertices.end(), patch.inner.begin(), patch.inner.end());
   const auto vertex_of = [&](std::uint32_t c) {
     return c < corners ? mesh.triangles[rim[c].triangle][(rim[c].corner + 1) % 3] : first + c - corners;
@@ -188,7 +189,7 @@ void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch
   const auto spread = [&](auto& values, const auto& at_inner) {
     if (values.empty()) return;
     std::vector<typename std::decay_t<decltype(values[0])>::value_type> at;
-    for (const Side& s : rim) at.push_back(values[s.triangle][(s.corner + 1) % 3]);
+    for (const HalfEdge& s : rim) at.push_back(values[s.triangle][(s.corner + 1) % 3]);
     at_inner(at);
     for (const auto& [a, b, c] : patch.triangles) values.push_back({at[a], at[b], at[c]});
   };
@@ -202,14 +203,14 @@ void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch
                        mesh.vertices[mesh.triangles[t][2]]);
   };
   if (patch.inner.empty()) {
-    for (auto t = rows; t < mesh.triangles.size() && !a.normal.empty(); ++t)
+    for (auto t = first_triangle; t < mesh.triangles.size() && !a.normal.empty(); ++t)
       a.normal.push_back({normal_of(t), normal_of(t), normal_of(t)});
   } else {
     spread(a.normal, [&](auto& at) {
       at.resize(corners + patch.inner.size(), Vec3::Zero());
       for (std::uint32_t t = 0; t < patch.triangles.size(); ++t)
         for (const auto c : patch.triangles[t])
-          if (c >= corners) at[c] += normal_of(rows + t);
+          if (c >= corners) at[c] += normal_of(first_triangle + t);
       for (std::size_t c = corners; c < at.size(); ++c) at[c].normalize();
     });
   }
@@ -219,24 +220,24 @@ void add_patch(TriangleMesh& mesh, const std::vector<Side>& rim, const FairPatch
   }
 }
 
-// Smooth patches in place of flat ones, as long as no triangle comes to cross another one, and no
-// edge has more than two.
+// Replaces flat patches by fair ones, where no triangles cross and no edge has more than two.
 class SmoothPatches {
  public:
   explicit SmoothPatches(TriangleMesh& mesh) : mesh_(mesh), around_(mesh.vertices.size()) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) add(t);
   }
-  /// The surface without patches: `rows` of it are there.
-  void look_around(std::uint32_t rows) {
-    for (std::uint32_t t = 0; t < rows; ++t)
+  /// Collects the neighbours of vertices in the first `count` triangles: the surface without
+  /// patches.
+  void collect_neighbours(std::uint32_t count) {
+    for (std::uint32_t t = 0; t < count; ++t)
       for (int k = 0; k < 3; ++k)
         around_[mesh_.triangles[t][k]].insert({mesh_.triangles[t][(k + 1) % 3], mesh_.triangles[t][(k + 2) % 3]});
   }
-  /// Adds one for the hole whose flat patch is in rows `first` to `last`, which count no longer
-  /// then; false: it does not fit.
-  bool replace(const std::vector<Side>& rim, const std::vector<std::uint32_t>& polygon, std::uint32_t first,
+  /// Adds a fair patch for the hole whose flat patch has triangles [first, last), which are ignored
+  /// from then on. False when it does not fit.
+  bool replace(const std::vector<HalfEdge>& rim, const std::vector<std::uint32_t>& polygon, std::uint32_t first,
                std::uint32_t last) {
-    for (auto t = first; t < last; ++t) forget(t);
+    for (auto t = first; t < last; ++t) remove(t);
     const FairPatch patch = fair_patch(positions(polygon), beyond(polygon), [&](std::uint32_t i, std::uint32_t j) {
       return edges_.count(std::minmax(polygon[i], polygon[j])) > 0;
     });
@@ -244,9 +245,9 @@ class SmoothPatches {
       for (auto t = first; t < last; ++t) add(t);
       return false;
     }
-    const auto rows = static_cast<std::uint32_t>(mesh_.triangles.size());
+    const auto added = static_cast<std::uint32_t>(mesh_.triangles.size());
     add_patch(mesh_, rim, patch);
-    for (auto t = rows; t < mesh_.triangles.size(); ++t) add(t);
+    for (auto t = added; t < mesh_.triangles.size(); ++t) add(t);
     return true;
   }
 
@@ -263,7 +264,7 @@ class SmoothPatches {
     index_.insert(t, box_of(p[0], p[1], p[2]));
     for (int k = 0; k < 3; ++k) ++edges_[edge(t, k)];
   }
-  void forget(std::uint32_t t) {
+  void remove(std::uint32_t t) {
     index_.erase(t);
     for (int k = 0; k < 3; ++k)
       if (const auto at = edges_.find(edge(t, k)); --at->second == 0) edges_.erase(at);
@@ -281,10 +282,10 @@ class SmoothPatches {
         if (v != polygon[(i + 1) % n] && v != polygon[(i + n - 1) % n]) points[i].push_back(mesh_.vertices[v]);
     return points;
   }
-  // Adds the patch for as long as it takes to look.
+  // Whether a patch crosses nothing; adds it for the time of the test.
   bool fits(const std::vector<std::uint32_t>& polygon, const FairPatch& patch) {
     const auto n = static_cast<std::uint32_t>(polygon.size()),
-               rows = static_cast<std::uint32_t>(mesh_.triangles.size());
+               first = static_cast<std::uint32_t>(mesh_.triangles.size());
     const auto vertices = mesh_.vertices.size();
     if (patch.triangles.empty()) return false;
     for (const auto& t : patch.triangles)
@@ -293,11 +294,11 @@ class SmoothPatches {
             i < n && j < n && (i + 1) % n != j && (j + 1) % n != i && edges_.count(std::minmax(polygon[i], polygon[j])))
           return false;
     mesh_.vertices.insert(mesh_.vertices.end(), patch.inner.begin(), patch.inner.end());
-    const auto row_of = [&](std::uint32_t c) {
+    const auto vertex_of = [&](std::uint32_t c) {
       return c < n ? polygon[c] : static_cast<std::uint32_t>(vertices) + c - n;
     };
-    for (const auto& [a, b, c] : patch.triangles) mesh_.triangles.push_back({row_of(a), row_of(b), row_of(c)});
-    auto t = rows;
+    for (const auto& [a, b, c] : patch.triangles) mesh_.triangles.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
+    auto t = first;
     for (bool fit = true; fit && t < mesh_.triangles.size(); t += fit) {
       const auto p = corners(t);
       near_.clear();
@@ -308,19 +309,19 @@ class SmoothPatches {
       if (fit) index_.insert(t, box_of(p[0], p[1], p[2]));
     }
     const bool all = t == mesh_.triangles.size();
-    while (t > rows) index_.erase(--t);
-    mesh_.vertices.resize(vertices), mesh_.triangles.resize(rows);
+    while (t > first) index_.erase(--t);
+    mesh_.vertices.resize(vertices), mesh_.triangles.resize(first);
     return all;
   }
 
   TriangleMesh& mesh_;
   TriangleIndex index_;
-  std::map<Edge, int> edges_;                    // how many triangles they have
-  std::vector<std::set<std::uint32_t>> around_;  // of the vertices of the surface without patches
+  std::map<Edge, int> edges_;                    // number of triangles
+  std::vector<std::set<std::uint32_t>> around_;  // neighbours on the surface without patches
   std::vector<std::uint32_t> near_;
 };
 
-void close_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
+void fill_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   auto rims = rims_of(mesh);
   std::erase_if(rims, [](const auto& rim) { return rim.size() < 3; });
   if (rims.empty()) return;
@@ -329,14 +330,14 @@ void close_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   std::vector<std::uint32_t> first{count()};
   for (const auto& rim : rims) {
     auto& polygon = polygons.emplace_back();
-    for (const Side& s : rim) polygon.push_back(mesh.triangles[s.triangle][(s.corner + 1) % 3]);
+    for (const HalfEdge& s : rim) polygon.push_back(mesh.triangles[s.triangle][(s.corner + 1) % 3]);
     add_patch(mesh, rim, {{}, {}, triangles_of(mesh.vertices, polygon)});
     first.push_back(count());
   }
   done.filled_holes += rims.size(), done.added_triangles += count() - first[0];
   if (!smooth) return;
   SmoothPatches patches(mesh);
-  patches.look_around(first[0]);
+  patches.collect_neighbours(first[0]);
   std::vector<char> kept(count(), 1);
   for (std::size_t hole = 0; hole < rims.size(); ++hole) {
     if (polygons[hole].size() == 3 || !patches.replace(rims[hole], polygons[hole], first[hole], first[hole + 1]))
@@ -349,22 +350,22 @@ void close_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   keep(mesh, kept);
 }
 
-// Shells outwards; those wholly inside another are cavities where they ran the other way than that
-// one, else hidden and left out.
-void arrange_shells(TriangleMesh& mesh, const Parts& parts, RepairStats& done) {
+// Orients shells outwards. A shell inside another one is a cavity where their orientations
+// differed, else it is hidden and dropped.
+void arrange_shells(TriangleMesh& mesh, const Components& components, RepairStats& done) {
   struct Shell {
-    std::vector<std::uint32_t> rows;
+    std::vector<std::uint32_t> triangles;
     std::vector<std::array<Vec3, 3>> corners;
     double volume = 0;
     Box3 box;
     std::uint32_t within = ~0u;
     int depth = 0;
   };
-  std::vector<Shell> shells(parts.count);
+  std::vector<Shell> shells(components.count);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    Shell& s = shells[parts.of[t]];
-    s.rows.push_back(t), s.corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+    Shell& s = shells[components.of[t]];
+    s.triangles.push_back(t), s.corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
     for (const Vec3& p : s.corners.back()) s.box.add(p);
   }
   for (Shell& s : shells)
@@ -388,38 +389,37 @@ void arrange_shells(TriangleMesh& mesh, const Parts& parts, RepairStats& done) {
   for (const Shell& s : shells) {
     const bool inner = s.depth % 2 == 1, hidden = inner && (s.volume > 0) == (shells[s.within].volume > 0);
     if (hidden) ++done.dropped_shells;
-    for (const auto t : s.rows)
+    for (const auto t : s.triangles)
       if (hidden)
         kept[t] = 0;
       else if ((s.volume > 0) == inner)
-        turn(mesh, t), ++done.flipped_triangles;
+        flip(mesh, t), ++done.flipped_triangles;
   }
   keep(mesh, kept);
 }
 
 void drop_loose_vertices(TriangleMesh& mesh) {
-  std::vector<std::uint32_t> row(mesh.vertices.size(), ~0u);
+  std::vector<std::uint32_t> index(mesh.vertices.size(), ~0u);
   for (const auto& t : mesh.triangles)
-    for (const auto v : t) row[v] = 0;
+    for (const auto v : t) index[v] = 0;
   std::uint32_t count = 0;
-  for (std::size_t v = 0; v < row.size(); ++v)
-    if (row[v] == 0) mesh.vertices[count] = mesh.vertices[v], row[v] = count++;
+  for (std::size_t v = 0; v < index.size(); ++v)
+    if (index[v] == 0) mesh.vertices[count] = mesh.vertices[v], index[v] = count++;
   mesh.vertices.resize(count);
   for (auto& t : mesh.triangles)
-    for (auto& v : t) v = row[v];
+    for (auto& v : t) v = index[v];
 }
 
 }  // namespace
 
-RepairStats repair(TriangleMesh& mesh, double reach, bool smooth) {
+RepairStats repair(TriangleMesh& mesh, double weld_distance, bool smooth_fill) {
   RepairStats done;
-  done.welded_vertices = weld_seams(mesh, reach);
-  done.dropped_triangles = drop_void(mesh);
-  Parts parts = orient(mesh, done.flipped_triangles);
-  close_holes(mesh, done, smooth);
-  if (done.filled_holes > 0)
-    parts = orient(mesh, done.flipped_triangles);  // what was apart may hang together by a patch
-  arrange_shells(mesh, parts, done);
+  done.welded_vertices = weld_seams(mesh, weld_distance);
+  done.dropped_triangles = drop_degenerate(mesh);
+  Components components = orient(mesh, done.flipped_triangles);
+  fill_holes(mesh, done, smooth_fill);
+  if (done.filled_holes > 0) components = orient(mesh, done.flipped_triangles);  // a patch may connect components
+  arrange_shells(mesh, components, done);
   drop_loose_vertices(mesh);
   return done;
 }

@@ -1,3 +1,4 @@
+// Procedural models: geodesic spheres with a radius function, and blocks.
 #include "kerf/shapes.h"
 
 #include <cmath>
@@ -27,10 +28,10 @@ double bump(double x) { return std::exp(-x * x); }
 TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& radius) {
   if (frequency < 1) throw InputError("a geodesic sphere needs a frequency of at least 1");
   TriangleMesh mesh;
-  // A grid point is known by its integer weights at the icosahedron's corners, so that neighbours
-  // share it exactly.
-  std::map<std::array<std::uint32_t, 6>, std::uint32_t> rows;
-  const auto row_of = [&](const std::uint32_t(&face)[3], int wa, int wb, int wc) {
+  // A grid point is identified by its integer weights at the icosahedron's corners, so that
+  // neighbours share it exactly.
+  std::map<std::array<std::uint32_t, 6>, std::uint32_t> index;
+  const auto vertex_at = [&](const std::uint32_t(&face)[3], int wa, int wb, int wc) {
     std::array<std::pair<std::uint32_t, std::uint32_t>, 3> weights{{{face[0], static_cast<std::uint32_t>(wa)},
                                                                     {face[1], static_cast<std::uint32_t>(wb)},
                                                                     {face[2], static_cast<std::uint32_t>(wc)}}};
@@ -45,7 +46,7 @@ TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& 
       key[filled++] = weight;
       sum += static_cast<double>(weight) * Vec3(icosahedron_points[corner]);
     }
-    const auto [it, fresh] = rows.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
+    const auto [it, fresh] = index.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
     if (fresh) {
       const Vec3 d = sum.normalized();
       mesh.vertices.push_back(radius(d) * d);
@@ -56,9 +57,10 @@ TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& 
     for (int i = 0; i < frequency; ++i)
       for (int j = 0; j < frequency - i; ++j) {
         const int k = frequency - i - j;
-        const auto a = row_of(face, k, i, j), b = row_of(face, k - 1, i + 1, j), c = row_of(face, k - 1, i, j + 1);
+        const auto a = vertex_at(face, k, i, j), b = vertex_at(face, k - 1, i + 1, j),
+                   c = vertex_at(face, k - 1, i, j + 1);
         mesh.triangles.push_back({a, b, c});
-        if (k >= 2) mesh.triangles.push_back({b, row_of(face, k - 2, i + 1, j + 1), c});
+        if (k >= 2) mesh.triangles.push_back({b, vertex_at(face, k - 2, i + 1, j + 1), c});
       }
   return mesh;
 }
@@ -122,9 +124,9 @@ TriangleMesh make_block(const Vec3& size, double edge) {
   if (!(size.minCoeff() > 0) || !(edge > 0)) throw InputError("a block needs a positive size and edge");
   TriangleMesh mesh;
   const Eigen::Vector3i n = (size / edge * (1 - 1e-12)).array().ceil().max(1.0).cast<int>();
-  std::map<std::array<int, 3>, std::uint32_t> rows;
-  const auto row_of = [&](std::array<int, 3> cell) {
-    const auto [it, fresh] = rows.try_emplace(cell, static_cast<std::uint32_t>(mesh.vertices.size()));
+  std::map<std::array<int, 3>, std::uint32_t> index;
+  const auto vertex_at = [&](std::array<int, 3> cell) {
+    const auto [it, fresh] = index.try_emplace(cell, static_cast<std::uint32_t>(mesh.vertices.size()));
     if (fresh)
       mesh.vertices.push_back({size.x() * cell[0] / n.x(), size.y() * cell[1] / n.y(), size.z() * cell[2] / n.z()});
     return it->second;
@@ -137,7 +139,7 @@ TriangleMesh make_block(const Vec3& size, double edge) {
           const auto at = [&](int di, int dj) {
             std::array<int, 3> cell{};
             cell[axis] = high ? n[axis] : 0, cell[u] = i + di, cell[v] = j + dj;
-            return row_of(cell);
+            return vertex_at(cell);
           };
           std::uint32_t a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);
           if (!high) std::swap(b, d);

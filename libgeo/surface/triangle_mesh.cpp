@@ -1,3 +1,4 @@
+// Measures of triangle meshes.
 #include "kerf/mesh.h"
 
 #include <Eigen/Geometry>

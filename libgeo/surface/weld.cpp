@@ -9,7 +9,7 @@
 namespace geo {
 namespace {
 
-// Vertices, ascending, that end an edge with one triangle only.
+// The vertices at edges with a single triangle, ascending.
 std::vector<std::uint32_t> open_vertices(const TriangleMesh& mesh) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -27,7 +27,7 @@ std::vector<std::uint32_t> open_vertices(const TriangleMesh& mesh) {
 }
 
 void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open, double reach, UnionFind& joined) {
-  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // of the size of the reach
+  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // with edges of length reach
   for (const auto v : open) {
     const Vec3& p = mesh.vertices[v];
     const Vec3 cell = (p / reach).array().floor();
@@ -55,17 +55,17 @@ std::size_t weld_seams(TriangleMesh& mesh, double reach) {
     for (std::size_t i = 1; i < open.size(); ++i)
       if (place(open[i]) == place(open[i - 1])) joined.unite(open[i], open[i - 1]);
   }
-  std::vector<std::uint32_t> row(mesh.vertices.size());
+  std::vector<std::uint32_t> index(mesh.vertices.size());
   std::uint32_t count = 0;
-  for (std::uint32_t v = 0; v < row.size(); ++v) {
+  for (std::uint32_t v = 0; v < index.size(); ++v) {
     const auto first = joined.find(v);
     if (first == v) mesh.vertices[count] = mesh.vertices[v];
-    row[v] = first == v ? count++ : row[first];
+    index[v] = first == v ? count++ : index[first];
   }
   const std::size_t gone = mesh.vertices.size() - count;
   mesh.vertices.resize(count);
   for (auto& t : mesh.triangles)
-    for (auto& v : t) v = row[v];
+    for (auto& v : t) v = index[v];
   return gone;
 }
 

@@ -1,16 +1,15 @@
-// Seams of a surface that its file has apart.
+// Welds seams: vertices that a file stores several times.
 #pragma once
 
 #include "kerf/mesh.h"
 
 namespace geo {
 
-/// Makes one vertex of those that are at one place (exactly, or up to `reach` apart, one after
-/// another) and each end an edge with a single triangle: exporters write a vertex for each texture
-/// coordinate or normal there, and STL three for each triangle. The lowest row stays, rows behind
-/// those that go move up; triangles and all that belongs to their corners stay. Nothing else is
-/// changed: parts that are closed and touch stay apart. The mesh has no sites. Returns how many
-/// vertices went.
+/// Merges vertices that coincide (exactly, or transitively up to `reach` apart, model units) and
+/// each end an edge with a single triangle: exporters write a vertex for each texture coordinate or
+/// normal at a seam, and STL three for each triangle. The lowest index stays; later vertices move
+/// up. Triangles and corner attributes stay. Closed parts that touch stay separate. Precondition: a
+/// mesh without sites. Returns the number of vertices removed.
 std::size_t weld_seams(TriangleMesh& mesh, double reach = 0);
 
 }  // namespace geo

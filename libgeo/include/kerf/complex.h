@@ -301,6 +301,7 @@ class Complex::FacesAt {
   std::uint32_t first_;
 };
 
+/// Declared in the class: needs FacesAt to be complete.
 inline Complex::FacesAt Complex::faces_at(VertexId v) const { return {next_corner_.data(), first_corner_[v.index()]}; }
 
 // ---- Queries

@@ -7,7 +7,7 @@
 
 namespace geo {
 
-/// What repair() changed, in its order.
+/// The changes that repair() made, in its order.
 struct RepairStats {
   std::size_t welded_vertices = 0;    ///< vertices merged into others
   std::size_t dropped_triangles = 0;  ///< degenerate (a vertex twice) or duplicate

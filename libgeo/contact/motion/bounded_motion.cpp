@@ -21,7 +21,7 @@ constexpr int max_projections = 240;   // in a round
 constexpr int patience = 6;            // projections without progress, after which pairs become rigid
 constexpr int max_growths = 20;        // of the fallback's set of vertices
 constexpr int growths_to_follow = 10;  // after which all vertices follow the field
-// Progress: so much fewer pairs are uncertified.
+// Progress: a quarter fewer pairs are uncertified.
 constexpr std::size_t progress_divisor = 4;
 // Margin of boxes in the broad phase, of an edge: what is projected further mostly stays within it.
 constexpr double box_margin = 0.05;

@@ -9,7 +9,7 @@
 
 namespace geo {
 
-/// What a motion took.
+/// Statistics of one motion.
 struct BoundedMotionStats {
   std::size_t planes = 0;    ///< separating planes between triangles that might have met
   std::size_t in_zones = 0;  ///< vertices that moved in rigid impact zones, at most at a time

@@ -30,7 +30,7 @@ class SeparationProjection {
       : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
 
   /// Adds constraints for pairs that the motion from the start to `next` does not certify; replaces
-  /// those of pairs that have some. Of the axes that separate a pair well at the start, the one
+  /// those of pairs that have some. Among the axes that separate a pair well at the start, the one
   /// that separates it most at the end is used. A pair so near that rounding hides all axes is made
   /// rigid.
   void add(std::span<const Pair> pairs, const std::vector<Vec3>& next);

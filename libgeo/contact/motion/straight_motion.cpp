@@ -50,8 +50,8 @@ class StraightMotion {
   }
 
  private:
-  // Of a pair: one axis separates it at both ends; may meet; or separated wherever on their paths
-  // its vertices are, so that it need not be judged again.
+  // One axis separates a pair at both ends; the pair may meet; or an axis separates it wherever on
+  // their paths its vertices are, so that it need not be judged again.
   enum Verdict : std::uint8_t { separated, meets, always_separated };
 
   void place_vertices() {

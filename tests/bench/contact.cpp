@@ -1,5 +1,5 @@
-// Self-contact of a sliced block that sags: what an implicit step costs with it, by number of
-// triangles; and of a folded sheet.
+// Self-contact of a sliced block that sags: the cost of implicit steps by number of triangles. Then
+// the parts of contact on a folded sheet.
 #include <cmath>
 
 #include "bench.h"

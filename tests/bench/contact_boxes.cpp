@@ -1,5 +1,5 @@
-// Which boxes of a folded sheet's triangles meet: beside CGAL's box intersection (Zomorodian,
-// Edelsbrunner 2002).
+// Pairs of boxes that meet: AabbTree beside CGAL's box intersection (Zomorodian, Edelsbrunner
+// 2002).
 #include <CGAL/box_intersection_d.h>
 
 #include "contact/detection/aabb_tree.h"

@@ -8,11 +8,12 @@
 
 namespace bench {
 
-/// A folded sheet of two sizes: pairs of boxes and motion without crossing.
+/// Benchmarks a folded sheet of two sizes: pairs of boxes, and motion without crossing.
 void contact_of_sheet(const Options& options);
 
-/// CPU seconds on one thread from boxes to a list of the pairs that meet.
+/// CPU seconds on one thread from boxes to the pairs that meet, whose number is written to `pairs`.
 double own_pairs_seconds(const std::vector<geo::Box3>& boxes, std::size_t& pairs);
+/// As own_pairs_seconds(), by CGAL.
 double cgal_pairs_seconds(const std::vector<geo::Box3>& boxes, std::size_t& pairs);
 
 }  // namespace bench

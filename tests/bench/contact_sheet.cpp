@@ -1,5 +1,5 @@
-// A sheet in folds that are pressed together: what it takes to find which boxes meet, and to move
-// it without crossing.
+// A folded sheet whose folds are pressed together: time to find the pairs of boxes that meet, and
+// to move the sheet without crossing.
 #include <cmath>
 
 #include "contact/detection/find_crossings.h"
@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t folds = 8;
 
-// n × n squares of edge 1 / n, bent in a zigzag whose folds open by `width`; in the middle each
-// bulges by `bulge` towards the next.
+// A sheet of n × n squares of edge 1 / n, bent in a zigzag. Folds open by `width`; the middle of
+// each bulges by `bulge` towards the next one.
 std::vector<geo::Vec3> folded(std::size_t n, double width, double bulge) {
   const auto hump = [](double part) { return 0.5 - 0.5 * std::cos(2 * M_PI * part); };
   std::vector<geo::Vec3> at;

@@ -52,6 +52,12 @@ void apply_map(const Indices& indices, const Centroids& m, const Mat3& map, cons
 
 }  // namespace
 
+Mat3 linear_fit(const Mat3& cross, const Mat3& own, double regularisation) {
+  if (!(regularisation > 0)) return cross * own.inverse();
+  const Mat3 regularised = own + regularisation * own.trace() * Mat3::Identity();
+  return cross * regularised.inverse();
+}
+
 void apply_rigid_fit(const Indices& indices, const Points& from, const Points& to, Points& at) {
   const Centroids m = centroids_of(indices, from, to);
   Mat3 cross = Mat3::Zero();
@@ -67,7 +73,7 @@ void apply_affine_fit(const Indices& indices, const Points& from, const Points& 
     const Vec3 arm = from[v] - m.from;
     sum.cross += (to[v] - m.to) * arm.transpose(), sum.own += arm * arm.transpose();
   });
-  const Mat3 map = sums.cross * sums.own.inverse();
+  const Mat3 map = linear_fit(sums.cross, sums.own);
   if (!map.allFinite() || !(map.determinant() > least_determinant && map.norm() < largest_norm))
     return apply_rigid_fit(indices, from, to, at);
   apply_map(indices, m, map, from, at);

@@ -8,6 +8,10 @@
 
 namespace geo {
 
+/// The linear map A that minimises Σ |y − A x|², from cross = Σ y xᵀ and own = Σ x xᵀ, both about
+/// the centroids. `regularisation`, a share of the trace of `own`, is added to its diagonal.
+Mat3 linear_fit(const Mat3& cross, const Mat3& own, double regularisation = 0);
+
 /// Fits a rigid motion to the motion from → to of the points with the given indices (Kabsch 1976)
 /// and writes the images of `from` under it to `at`. `at` may be `from` or `to`. Points have equal
 /// weights. The result does not depend on the number of threads.

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "geometry/distance.h"
-#include "mechanics/solver/node_sums.h"
+#include "mechanics/solver/nodal_averages.h"
 #include "simulation/strength.h"
 
 namespace geo {
@@ -34,16 +34,16 @@ class CrackTriangles {
 
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
   const auto sums =
-      node_sums(solid, body.nodes, motion,
-                [](const Material& material, const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
-                  if (!(all.determinant() > 0.01)) return false;
-                  const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
-                  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-                  const Mat3 s = rotation.transpose() * stress(material, elastic) * elastic.transpose() * rotation /
-                                 elastic.determinant();
-                  out = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
-                  return true;
-                });
+      nodal_stress_sums(solid, body.nodes, motion,
+                        [](const Material& material, const Mat3& all, const Mat3& elastic, std::array<double, 6>& out) {
+                          if (!(all.determinant() > 0.01)) return false;
+                          const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
+                          const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
+                          const Mat3 s = rotation.transpose() * stress(material, elastic) * elastic.transpose() *
+                                         rotation / elastic.determinant();
+                          out = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+                          return true;
+                        });
   std::vector<Mat3> mean(body.nodes.size(), Mat3::Zero());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const StressSums& s = sums[i];

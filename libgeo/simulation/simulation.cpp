@@ -11,6 +11,7 @@
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
 #include "mechanics/discretisation/deformation.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "simulation/collisions.h"
 #include "simulation/edge_runs.h"
 #include "simulation/fracture_step.h"
@@ -132,8 +133,8 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
   cut_since_build = true;
   parallel_invoke([&] { reset_environment(); },
                   [&] {
-                    solid.follow(body, delta, state.motion);
-                    if (scene.fracture.on) solid.settle(body, state.motion);
+                    solid.update_nodes(body, delta, state.motion);
+                    if (scene.fracture.on) solid.update_points(body, state.motion);
                   });
   for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
   stats.mechanics_seconds += watch.lap();
@@ -185,7 +186,7 @@ void Simulation::Impl::cut_at(std::size_t b, double time, FrameStats& stats) {
   const Pose pose = blade.motion.at(time);
   Box3 about;
   for (const Vec3& p : blade.points) about.add(pose * p);
-  const LazyNodalGradients gradient = solid.gradients_when_asked(state.motion.displacement);
+  const LazyNodalGradients gradient = lazy_gradients(solid.discretisation(), state.motion.displacement);
   const InverseDeformation map(body, state.motion.displacement, gradient, about);
   std::vector<std::vector<EdgePoint>> runs;
   if (blade.closed) {
@@ -250,7 +251,7 @@ std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats
 
 void Simulation::Impl::integrate(double dt, FrameStats& stats) {
   Stopwatch watch;
-  solid.settle(body, state.motion);
+  solid.update_points(body, state.motion);
   const StepReport report = scene.implicit ? solid.step_implicit(state.motion, dt, environment, scene.accuracy)
                                            : solid.step_explicit(state.motion, dt, environment);
   gripped.set_velocities(scene.grips, body.nodes, environment.fixed, state.time, dt, state.motion);

@@ -33,11 +33,11 @@ Material material(const Beam& beam) {
   return m;
 }
 
-Run bend(const Body& body, const Solid& solid, const Beam& beam) {
+Run bend(const Body& body, Solid& solid, const Beam& beam) {
   const Environment env = held(body, beam);
   State state = at_rest(body.nodes.size());
   Run run;
-  run.bent.nodes = body.nodes.size(), run.points = solid.points().size();
+  run.bent.nodes = body.nodes.size(), run.points = solid.point_count();
   const double start = cpu_seconds();
   for (int f = 0; f < beam.frames; ++f) {
     const StepReport r = solid.step_implicit(state, beam.dt, env);
@@ -62,7 +62,7 @@ int mechanics(const Options& options) {
     const Body body = block_body({4, 1, 1}, spacing, 0.5);
     set_threads(1);
     double built = cpu_seconds();
-    const Solid solid(body, material(beam));
+    Solid solid(body, material(beam));
     built = cpu_seconds() - built;
     const Run ours = bend(body, solid, beam);
     const Bent theirs = bend_with_bullet(beam);

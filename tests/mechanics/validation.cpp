@@ -6,6 +6,7 @@
 
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 namespace validation {
 namespace {
@@ -26,8 +27,8 @@ State at_rest(const Body& body) {
   return {zero, zero};
 }
 
-// A bar along x of unit section, as long as whole cells make it, held over the two cells at its foot, which come on
-// top.
+// A bar along x of unit section, as long as whole cells make it, held over the two cells at its
+// foot, which come on top.
 struct Bar {
   Body body;
   double foot, length;
@@ -51,11 +52,12 @@ struct Bar {
       if (at_tip(body.nodes.position[i])) environment.load[i] = body.nodes.volume[i] / total * force;
     return place / total;
   }
-  std::vector<Vec3> rest(const Solid& solid) const {
+  std::vector<Vec3> rest(Solid& solid) const {
     State state = at_rest(body);
     solid.step_implicit(state, 1e3, environment, 1e-7);
     return state.displacement;
   }
+  std::vector<Vec3> rest(Solid&& solid) const { return rest(solid); }
   // The work of the load, over its size: the mean displacement where it acts.
   double along_load(const std::vector<Vec3>& u) const {
     double work = 0;
@@ -85,7 +87,7 @@ double Finding::error() const { return absolute ? std::abs(measured - expected) 
 
 std::vector<Finding> rigid_motion(int size) {
   const Body body = block_body({1, 1, 1}, size ? 0.08 : 0.16);
-  const Solid solid(body, steel_like());
+  Solid solid(body, steel_like());
   const Mat3 turn = Eigen::AngleAxisd(2.1, Vec3(1, -1, 2).normalized()).toRotationMatrix();
   std::vector<Vec3> u;
   for (const Vec3& x : body.nodes.position) u.push_back(turn * x - x + Vec3(3, 2, 1));
@@ -101,14 +103,14 @@ std::vector<Finding> patch(int size) {
       for (int k = 1; k <= 3; ++k)
         split(body, front, blade_at({0.46, -0.2, 1.2}, {0.53, 1.2, 1.2}, {0.01, 0, -0.25}, k));
     }
-    const Solid solid(body, steel_like());
+    Solid solid(body, steel_like());
     Mat3 linear;
     linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
     std::vector<Vec3> u;
     for (const Vec3& x : body.nodes.position) u.push_back(linear * x);
     double worst = 0;
-    for (std::size_t b = 0; b < solid.points().blocks.size(); ++b) {
-      const auto g = solid.points().gradients(b, u);
+    for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
+      const auto g = solid.discretisation().points.gradients(b, u);
       for (std::size_t i = 0; i < g.size(); ++i) worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
     }
     found.push_back(
@@ -124,14 +126,14 @@ std::vector<Finding> tension(int size) {
   bar.hold();
   const double force = 1e-3 * m.young;
   bar.load_tip({force, 0, 0});
-  const Solid solid(bar.body, m);
+  Solid solid(bar.body, m);
   const auto u = bar.rest(solid);
   // The mean strain of the middle part.
   double strain = 0, across = 0, volume = 0;
-  for (std::size_t b = 0; b < solid.points().blocks.size(); ++b) {
-    const auto g = solid.points().gradients(b, u);
+  for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
+    const auto g = solid.discretisation().points.gradients(b, u);
     for (std::size_t i = 0; i < g.size(); ++i) {
-      const auto& p = solid.points().blocks[b].points[i];
+      const auto& p = solid.discretisation().points.blocks[b].points[i];
       if (std::abs(p.position.x() - bar.foot - 2.5) > 1) continue;
       volume += p.volume, strain += p.volume * g[i](0, 0), across += 0.5 * p.volume * (g[i](1, 1) + g[i](2, 2));
     }
@@ -160,7 +162,7 @@ std::vector<Finding> frequency(int size) {
   const Material m = steel_like();
   Bar bar(10, size ? 6 : 4);
   bar.hold();
-  const Solid solid(bar.body, m);
+  Solid solid(bar.body, m);
   // Inverse iteration: K u = M u₀, again and again, from a shape like the mode. λ = u·K u / u·M u.
   std::vector<Vec3> shape;
   for (const Vec3& x : bar.body.nodes.position) shape.push_back({0, 0, std::pow(std::max(0.0, x.x() - bar.foot), 2)});
@@ -243,8 +245,8 @@ std::vector<Finding> slit_bar(int size) {
            bar.along_load(bar.rest(Solid(bar.body, m))), expected, 0.1}};
 }
 
-// Cut half through across, near mid-length: how much that adds. Where the crack lies between nodes changes that, so at
-// four places.
+// Cut half through across, near mid-length: how much that adds. Where the crack lies between nodes
+// changes that, so at four places.
 std::vector<Finding> notched_bar(int) {
   const Material m = steel_like();
   const double force = 1e-5 * m.young;
@@ -259,8 +261,8 @@ std::vector<Finding> notched_bar(int) {
     for (int k = 1; k <= 3; ++k) split(bar.body, front, blade_at(a, b, step, k, 4));
     bar.hold();
     bar.load_tip({0, 0, -force});
-    // Rotation of an edge crack of half the depth in bending, plane strain to plane stress (Tada, Paris and Irwin
-    // 2000, 2.14).
+    // Rotation of an edge crack of half the depth in bending, plane strain to plane stress (Tada,
+    // Paris and Irwin 2000, 2.14).
     const double s = 5.93 - 19.69 * 0.5 + 37.14 * 0.25 - 35.84 * 0.125 + 13.12 * 0.0625, arm = at - place,
                  moment = force * arm;
     const double rotation = 4 * 6 * moment / m.young * s;

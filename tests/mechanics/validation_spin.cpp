@@ -14,9 +14,9 @@ using namespace geo;
 constexpr double dt = 0.04, rate = 2;
 constexpr int steps = 40;
 
-// Of what is rigid, backward Euler makes the turn that is nearest to where every node would go straight on. After one
-// by φ that is where it was once more, and on by as much: by tan φ' = sin φ / (2 − cos φ). Velocities are from where
-// nodes were, so the momentum is that of sin φ.
+// Of what is rigid, backward Euler makes the turn that is nearest to where every node would go
+// straight on. After one by φ that is where it was once more, and on by as much: by tan φ' = sin φ
+// / (2 − cos φ). Velocities are from where nodes were, so the momentum is that of sin φ.
 double kept() {
   double turn = std::atan(rate * dt);
   for (int k = 1; k < steps; ++k) turn = std::atan2(std::sin(turn), 2 - std::cos(turn));
@@ -28,7 +28,7 @@ double left(const Body& body, double young, double poisson, double accuracy) {
   const std::size_t n = body.nodes.size();
   Material material;
   material.young = young, material.poisson = poisson, material.density = 1000, material.damping = 0;
-  const Solid solid(body, material);
+  Solid solid(body, material);
   State state{std::vector<Vec3>(n, Vec3::Zero()), std::vector<Vec3>(n)};
   for (std::size_t i = 0; i < n; ++i) state.velocity[i] = Vec3(0, 0, rate).cross(body.nodes.position[i]);
   Environment env;

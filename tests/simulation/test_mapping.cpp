@@ -12,6 +12,7 @@
 #include "kerf/simulation.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/discretisation/inverse_deformation.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 using namespace geo;
 
@@ -22,7 +23,7 @@ struct Bent {
   Body body = block();
   Solid solid{body.nodes, body.graph, {}};
   std::vector<Vec3> u;
-  LazyNodalGradients gradient = solid.gradients_when_asked(u);
+  LazyNodalGradients gradient = lazy_gradients(solid.discretisation(), u);
   Bent() {
     for (const Vec3& x : body.nodes.position) {
       const double a = 0.6 * x.z(), r = 1 / 0.6 - x.x();
@@ -101,7 +102,7 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
     set_threads(0);
     std::size_t within = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const LazyNodalGradients fresh = b.solid.gradients_when_asked(b.u);
+      const LazyNodalGradients fresh = lazy_gradients(b.solid.discretisation(), b.u);
       const InverseDeformation::Location alone = InverseDeformation(b.body, b.u, fresh, all).to_material(points[i]);
       CHECK(found[i].position == alone.position);
       CHECK(found[i].nearest == alone.nearest);

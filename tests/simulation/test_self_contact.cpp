@@ -67,7 +67,7 @@ TEST_CASE("a block that is cut while it is pressed together and dropped has no c
 TEST_CASE("what a crack step needs of contact before it is made counts as contact's time") {
   const Scene scene = parse_scene(scene_text("2e4", "0.021"), "s.toml");
   Body body = Simulation(scene, make_block({1, 1, 1}, 0.25)).body();
-  const Solid solid(body, scene.material);
+  Solid solid(body, scene.material);
   const State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
   Collisions collisions(scene, body, solid, {});
   double seconds = 0;

@@ -12,6 +12,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/deformation.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 namespace geo {
 namespace {
@@ -38,7 +39,7 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
 class SurfaceEmbedder {
  public:
   explicit SurfaceEmbedder(const EmbeddingInput& input)
-      : in_(input), k_(input.after), gradient_(input.solid.gradients_when_asked(input.state.displacement)) {
+      : in_(input), k_(input.after), gradient_(lazy_gradients(input.solid.discretisation(), input.state.displacement)) {
     result_.surface = updated_contact_surface(in_.before, k_, in_.crack);
     result_.positions = in_.positions;
     result_.positions.resize(result_.surface.site.size(), Vec3::Zero());

@@ -7,6 +7,7 @@
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "mechanics/discretisation/inverse_deformation.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 namespace geo {
 namespace {
@@ -27,7 +28,7 @@ class BodyContactFinder {
     const auto& index = in_.body_index;
     const std::uint32_t bodies = index.empty() ? 0 : *std::max_element(index.begin(), index.end()) + 1;
     if (bodies < 2) return contacts_;
-    const LazyNodalGradients gradient = in_.solid.gradients_when_asked(in_.displacement);
+    const LazyNodalGradients gradient = lazy_gradients(in_.solid.discretisation(), in_.displacement);
     std::vector<Box3> box(bodies);
     for (std::uint32_t v = 0; v < complex().surface_vertex_count(); ++v) {
       const SurfaceVertexId id(v);

@@ -121,7 +121,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       for (const auto& [i, w] : bound) {
         sums.add(i, w / total);
         gradient.clear();
-        solid.gradient_row(i, gradient);
+        solid.gradient_stencil(i, gradient);
         for (const auto& [j, g] : gradient) sums.add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
       }
       sums.move_to(stencil);

@@ -1,5 +1,5 @@
-// Compiled once for each kind of vector, like point_lanes.cpp. Product and sum are one operation,
-// where the processor has it, only in the loop over pairs of slots.
+// Compiled once for each vector instruction set, like point_lanes.cpp. Products and sums are fused
+// only in the loop over pairs of slots.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/coarse_lanes.cpp"
 #include "base/simd_targets.h"
@@ -18,28 +18,29 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Eight = hn::CappedTag<float, 8>;
 constexpr std::size_t eight = hn::MaxLanes(Eight());
 
-// Of a slot: six rows of eight modes of strains and of stresses. `moment`: three times Σ arm g;
-// `turn`: what is to go with it, of each column of the rotation.
+// Six rows (xx yy zz xy xz yz) of eight modes: strains of a slot's rigid motions, and their
+// stresses. `moment`: three columns Σ arm g, g times the arm_numbers(); `turn`: the rotation's
+// columns in the same layout.
 HWY_INLINE void strain_and_stress(const float* HWY_RESTRICT moment, const float* HWY_RESTRICT turn, float w,
                                   const Moduli& moduli, float* HWY_RESTRICT strain, float* HWY_RESTRICT stress) {
   const Eight d;
   const auto twice = hn::Set(d, 2 * moduli.shear), bulk = hn::Set(d, moduli.bulk), weight = hn::Set(d, w),
              weighted = hn::Set(d, w * moduli.shear);
   for (std::size_t k = 0; k < 8; k += eight) {
-    // Row (a, b) of the gradient in the rotated frame, by modes: translations r_a g_b, rotations
-    // m_b × r_a.
-    const auto row = [&](std::size_t a, std::size_t b) HWY_ATTR {
+    // Entry (a, b) of the gradient in the rotated frame, of all modes: translations r_a g_b,
+    // rotations (m_b × r_a).
+    const auto entry = [&](std::size_t a, std::size_t b) HWY_ATTR {
       const float *const r = turn + 16 * a + k, *const m = moment + 16 * b + k;
       return hn::Sub(hn::Mul(hn::LoadU(d, m), hn::LoadU(d, r)), hn::Mul(hn::LoadU(d, m + 8), hn::LoadU(d, r + 8)));
     };
-    const hn::Vec<Eight> own[3] = {row(0, 0), row(1, 1), row(2, 2)},
-                         shared[3] = {hn::Add(row(0, 1), row(1, 0)), hn::Add(row(0, 2), row(2, 0)),
-                                      hn::Add(row(1, 2), row(2, 1))};
-    const auto trace = hn::Mul(bulk, hn::Add(hn::Add(own[0], own[1]), own[2]));
+    const hn::Vec<Eight> normal[3] = {entry(0, 0), entry(1, 1), entry(2, 2)},
+                         shear[3] = {hn::Add(entry(0, 1), entry(1, 0)), hn::Add(entry(0, 2), entry(2, 0)),
+                                     hn::Add(entry(1, 2), entry(2, 1))};
+    const auto trace = hn::Mul(bulk, hn::Add(hn::Add(normal[0], normal[1]), normal[2]));
     for (std::size_t q = 0; q < 3; ++q) {
-      hn::StoreU(own[q], d, strain + 8 * q + k), hn::StoreU(shared[q], d, strain + 24 + 8 * q + k);
-      hn::StoreU(hn::Mul(weight, hn::Add(hn::Mul(twice, own[q]), trace)), d, stress + 8 * q + k),
-          hn::StoreU(hn::Mul(weighted, shared[q]), d, stress + 24 + 8 * q + k);
+      hn::StoreU(normal[q], d, strain + 8 * q + k), hn::StoreU(shear[q], d, strain + 24 + 8 * q + k);
+      hn::StoreU(hn::Mul(weight, hn::Add(hn::Mul(twice, normal[q]), trace)), d, stress + 8 * q + k),
+          hn::StoreU(hn::Mul(weighted, shear[q]), d, stress + 24 + 8 * q + k);
     }
   }
 }
@@ -50,11 +51,11 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
   using Wide = hn::CappedTag<float, 16>;
   const Wide d;
   std::vector<float> moments(48 * slots, 0.0f), strain(tile * slots),
-      stress(tile * slots);  // the first per slot of the block, all zero between points; the others per slot of a point
+      stress(tile * slots);  // moments: per slot of the block, all zero between points; the others: per slot of a point
   std::vector<std::uint32_t> here(slots + 1);
-  std::vector<std::uint8_t> among(slots, 0);
+  std::vector<std::uint8_t> is_here(slots, 0);
   for (std::size_t i = 0; i < block.points.size(); i += stride) {
-    // Points so far apart are not fetched by themselves.
+    // The hardware does not prefetch points that are `stride` apart.
     if (const std::size_t ahead = i + 2 * stride; ahead < block.points.size()) {
       for (std::size_t q = 3 * block.entry_begin[ahead]; q < 3 * block.entry_begin[ahead + 1]; q += 16)
         hwy::Prefetch(&block.entry_gradient_single[q]);
@@ -66,7 +67,7 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
     const std::uint16_t* const to = block.entry_node.data();
     for (std::size_t q = block.entry_begin[i], last = block.entry_begin[i + 1]; q < last; ++q) {
       const std::uint32_t s = slot[to[q]];
-      here[count] = s, count += !among[s], among[s] = 1;
+      here[count] = s, count += !is_here[s], is_here[s] = 1;
       float* const m = &moments[48 * s];
       const float *const at = arm + 16 * to[q], *const g = &block.entry_gradient_single[3 * q];
       for (std::size_t k = 0; k < 16; k += hn::MaxLanes(d)) {
@@ -87,7 +88,7 @@ void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const 
       float* const m = &moments[48 * here[s]];
       strain_and_stress(m, turn, w, moduli[block.points[i].material], &strain[tile * s], &stress[tile * s]);
       for (std::size_t k = 0; k < 48; k += hn::MaxLanes(d)) hn::StoreU(hn::Zero(d), d, m + k);
-      among[here[s]] = 0;
+      is_here[here[s]] = 0;
     }
     for (std::size_t s = 0; s < count; ++s)
       for (std::size_t t = 0; t < count; ++t) {

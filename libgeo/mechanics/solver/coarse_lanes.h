@@ -1,4 +1,5 @@
-// What points have for the preconditioner's second level, in vectors.
+// Inner loop of the coarse correction in vectors: the stiffness of points for the rigid motions of
+// aggregates.
 #pragma once
 
 #include <array>
@@ -9,28 +10,29 @@
 
 #include "mechanics/discretisation/material_points.h"
 #include "mechanics/material/stiffness_lanes.h"
+#include "mechanics/material/stress_derivative.h"
 
 namespace geo {
 
-/// Tiles of six rows with eight numbers each: of three translations, the first again, of three
-/// rotations, the first again.
+/// Numbers of a tile: six rows of eight numbers, of which those of three translations stand at 0 to
+/// 2, repeated at 3, and those of three rotations at 4 to 6, repeated at 7.
 constexpr std::size_t tile = 48;
-/// Where a motion's number is among eight.
+/// Index among these eight numbers of motion 0 to 5.
 constexpr std::size_t mode_at(std::size_t motion) { return motion + motion / 3; }
 
-/// A node's arm, from the middle of its slot's nodes, in the order that motions' gradients take it:
-/// 1 for the translations, then what the rotations multiply and what they take off. All zero for a
-/// node that is held.
+/// A node's arm (from the centre of its aggregate) in the layout of rigid_stiffness(): two rows of
+/// eight factors, whose products with the columns of a rotation are subtracted; for translations 1
+/// and 0, for rotations those of a cross product. All zero for a fixed node.
 inline std::array<float, 16> arm_numbers(const Vec3& arm, bool free) {
   const float x = free ? float(arm.x()) : 0, y = free ? float(arm.y()) : 0, z = free ? float(arm.z()) : 0,
               one = free ? 1 : 0;
   return {one, one, one, one, y, z, x, y, 0, 0, 0, 0, z, x, y, z};
 }
 
-/// Adds, for each pair s ≥ t of the slots that nodes of a block belong to, the small-strain
-/// stiffness of their six rigid motions, corotated, to tile s (s + 1) / 2 + t; of every `stride`-th
-/// point, as many times. `moduli`: per material; `arm`: sixteen numbers a node of the block, as
-/// arm_numbers() makes them.
+/// Adds to tile s (s + 1) / 2 + t, for each pair s ≥ t of slots, the corotated small-strain
+/// stiffness between their rigid motions, summed over every `stride`-th point of a block with
+/// `stride` times its weight. `moduli`: per material; `slot`: per node of the block, the index of
+/// its aggregate; `arm`: per node of the block, arm_numbers().
 void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight,
                      std::span<const Moduli> moduli, std::size_t stride, std::span<const std::uint16_t> slot,
                      const float* arm, float* out);

@@ -1,98 +1,128 @@
+// The explicit time step: symplectic Euler with substeps that resolve the fastest wave.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "kerf/solid.h"
-#include "mechanics/solver/ground.h"
+#include "mechanics/solver/ground_contact.h"
+#include "mechanics/solver/solid_discretisation.h"
+#include "mechanics/terms/potential.h"
 
 namespace geo {
-
 namespace {
 
-// What contact does from now on for h seconds, the given shares of the step; returns how much
-// energy that can have brought.
-double touch(const Environment& env, State& s, double h, double from, double to,
-             const std::vector<double>& inverse_mass) {
-  if (env.contact.empty()) return 0;
-  const std::vector<Vec3> before = s.velocity;
-  for (Potential* p : env.contact) {
-    p->begin_substep(s.displacement, from, to);
-    p->apply_impulse(s.displacement, h, inverse_mass, s.velocity);
+// One step of dt seconds, tried with several numbers of substeps.
+struct ExplicitStep {
+  const SolidDiscretisation& solid;
+  const Environment& environment;
+  double dt;
+  std::vector<double> inverse_mass;               // per node; zero where fixed
+  std::vector<PointMatrices<double>> relaxation;  // of plastic strain
+};
+
+// Duration of a substep over which no wave crosses a third of the smallest neighbourhood of its
+// material, and no penalty oscillates by more than a third of a radian.
+double stable_duration(const ExplicitStep& step, const std::vector<Vec3>& u) {
+  const SolidDiscretisation& solid = step.solid;
+  const Environment& env = step.environment;
+  std::vector<double> finest(solid.materials.count(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < solid.size(); ++i) {
+    double& own = finest[solid.materials.index(i)];
+    own = std::min(own, solid.spacing[i]);
   }
-  double brought = 0;
+  double limit = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < finest.size(); ++k) {
+    const Material& m = solid.materials[k];
+    const double speed = std::sqrt((m.lambda() + 2 * m.mu() + m.volume_term) / m.density);
+    limit = std::min(limit, 0.3 * finest[k] / speed);
+    if (m.viscosity > 0) limit = std::min(limit, 0.1 * finest[k] * finest[k] * m.density / m.viscosity);
+  }
+  if (env.ground) limit = std::min(limit, 0.3 / std::sqrt(env.ground_stiffness));
+  for (Potential* p : env.contact) {
+    p->begin_substep(u, 0, 1);
+    if (const double firmest = p->eigenvalue_bound(step.inverse_mass); firmest > 0)
+      limit = std::min(limit, 0.3 / std::sqrt(firmest));
+  }
+  return limit;
+}
+
+// Contact impulses of a substep of h seconds, from one share of the step to another. Returns a
+// bound of the energy, J, that they have added.
+double apply_contact(const ExplicitStep& step, State& s, double h, double from, double to) {
+  if (step.environment.contact.empty()) return 0;
+  const std::vector<Vec3> before = s.velocity;
+  for (Potential* p : step.environment.contact) {
+    p->begin_substep(s.displacement, from, to);
+    p->apply_impulse(s.displacement, h, step.inverse_mass, s.velocity);
+  }
+  double added = 0;
   for (std::size_t i = 0; i < before.size(); ++i)
-    if (inverse_mass[i] > 0)
-      brought += std::abs((s.velocity[i] - before[i]).dot(s.velocity[i] + before[i])) / (2 * inverse_mass[i]);
-  return brought;
+    if (step.inverse_mass[i] > 0)
+      added += std::abs((s.velocity[i] - before[i]).dot(s.velocity[i] + before[i])) / (2 * step.inverse_mass[i]);
+  return added;
+}
+
+// Velocities after h seconds under elastic forces, loads and ground. Adds to `added` a bound of the
+// energy, J, that loads and ground have brought.
+void apply_forces(const ExplicitStep& step, const std::vector<Vec3>& force, double h, State& s, double& added) {
+  const SolidDiscretisation& solid = step.solid;
+  const Environment& env = step.environment;
+  for (std::size_t i = 0; i < solid.size(); ++i) {
+    if (is_fixed(env, i)) {
+      s.velocity[i].setZero();
+      continue;
+    }
+    Vec3& v = s.velocity[i];
+    Vec3 external = solid.mass[i] * env.gravity;
+    if (!env.load.empty()) external += env.load[i];
+    v += h * ((force[i] + external) / solid.mass[i] - solid.materials.of(i).damping * v);
+    if (env.ground) {
+      const double d = ground_depth(env, i, solid.position[i] + s.displacement[i]);
+      if (d > 0) {
+        const double normal = env.ground_normal.dot(v);
+        v = normal * env.ground_normal + std::max(0.0, 1 - env.friction * h / 0.01) * (v - normal * env.ground_normal);
+        v += h * env.ground_stiffness * d * env.ground_normal;
+        external += solid.mass[i] * env.ground_stiffness * d * env.ground_normal;
+      }
+    }
+    added += std::abs(h * external.dot(v));
+  }
 }
 
 }  // namespace
 
-StepReport Solid::step_explicit(State& state, double dt, const Environment& env) const {
-  // No wave crosses a third of the smallest neighbourhood of its material in one substep.
-  std::vector<double> finest(materials_.count(), std::numeric_limits<double>::infinity());
+StepReport Solid::step_explicit(State& state, double dt, const Environment& environment) const {
+  constexpr int most_attempts = 8;
+  const SolidDiscretisation& solid = *discretisation_;
+  ExplicitStep step{solid, environment, dt, std::vector<double>(size(), 0), {}};
   for (std::size_t i = 0; i < size(); ++i)
-    finest[materials_.index(i)] = std::min(finest[materials_.index(i)], spacing_[i]);
-  double limit = std::numeric_limits<double>::infinity(), stiffest = 0;
-  for (std::size_t k = 0; k < finest.size(); ++k) {
-    const Material& m = materials_[k];
-    const double speed = std::sqrt((m.lambda() + 2 * m.mu() + m.volume_term) / m.density);
-    limit = std::min(limit, 0.3 * finest[k] / speed), stiffest = std::max(stiffest, m.young);
-    if (m.viscosity > 0) limit = std::min(limit, 0.1 * finest[k] * finest[k] * m.density / m.viscosity);
-  }
-  if (env.ground) limit = std::min(limit, 0.3 / std::sqrt(env.ground_stiffness));
-  std::vector<double> inverse_mass(size(), 0);
-  for (std::size_t i = 0; i < size(); ++i)
-    if (!is_fixed(env, i)) inverse_mass[i] = 1 / mass_[i];
-  for (Potential* p : env.contact) {
-    p->begin_substep(state.displacement, 0, 1);
-    if (const double firmest = p->eigenvalue_bound(inverse_mass); firmest > 0)
-      limit = std::min(limit, 0.3 / std::sqrt(firmest));
-  }
+    if (!is_fixed(environment, i)) step.inverse_mass[i] = 1 / solid.mass[i];
   StepReport report;
-  report.substeps = std::max(1, static_cast<int>(std::ceil(dt / limit)));
-  const auto rest = relaxed(state);
-  std::vector<Vec3> force;
-  // Energy may only come from outside: where it rises beyond what loads and ground can have
-  // brought, the step was too long.
+  report.substeps = std::max(1, static_cast<int>(std::ceil(dt / stable_duration(step, state.displacement))));
+  step.relaxation = solid.relaxation_of(state);
+  double stiffest = 0;
+  for (const Material& m : solid.materials.all()) stiffest = std::max(stiffest, m.young);
+  const double rounding = 1e-12 * stiffest * solid.volume[0];  // of energies, J
+  // Only external actions bring energy. Where it rises by more than they can have brought, substeps
+  // are too long.
   for (int attempt = 0;; ++attempt, report.substeps *= 2) {
     State s = state;
+    std::vector<Vec3> force;
     const double h = dt / report.substeps;
     const auto total = [&] { return report.energy + kinetic_energy(s); };
-    bool rose = false;
-    double brought = 0;
-    report.energy = elastic_force(s.displacement, &force, rest);
-    const double begun = total();
-    for (int k = 0; k < report.substeps && !rose; ++k) {
-      if (k > 0) report.energy = elastic_force(s.displacement, &force, rest);
-      for (std::size_t i = 0; i < size(); ++i) {
-        if (is_fixed(env, i)) {
-          s.velocity[i].setZero();
-          continue;
-        }
-        Vec3& v = s.velocity[i];
-        Vec3 outside = mass_[i] * env.gravity;
-        if (!env.load.empty()) outside += env.load[i];
-        v += h * ((force[i] + outside) / mass_[i] - materials_.of(i).damping * v);
-        if (env.ground) {
-          const double d = depth(env, i, position_[i] + s.displacement[i]);
-          if (d > 0) {
-            const double normal = env.ground_normal.dot(v);
-            v = normal * env.ground_normal +
-                std::max(0.0, 1 - env.friction * h / 0.01) * (v - normal * env.ground_normal);
-            v += h * env.ground_stiffness * d * env.ground_normal;
-            outside += mass_[i] * env.ground_stiffness * d * env.ground_normal;
-          }
-        }
-        brought += std::abs(h * outside.dot(v));
-      }
-      brought += touch(env, s, h, double(k) / report.substeps, double(k + 1) / report.substeps, inverse_mass);
+    double added = 0;
+    report.energy = solid.elastic_energy(s.displacement, &force, step.relaxation);
+    const double initial = total();
+    for (int k = 0; k < report.substeps; ++k) {
+      if (k > 0) report.energy = solid.elastic_energy(s.displacement, &force, step.relaxation);
+      apply_forces(step, force, h, s, added);
+      added += apply_contact(step, s, h, double(k) / report.substeps, double(k + 1) / report.substeps);
       for (std::size_t i = 0; i < size(); ++i) s.displacement[i] += h * s.velocity[i];
     }
-    report.energy = elastic_force(s.displacement, nullptr, rest);
-    rose = !(total() <= 1.05 * (begun + brought) + 1e-12 * stiffest * volume_[0]);
-    if (rose && attempt < 8) continue;
-    update_plasticity(s, dt);
+    report.energy = solid.elastic_energy(s.displacement, nullptr, step.relaxation);
+    const bool rose = !(total() <= 1.05 * (initial + added) + rounding);
+    if (rose && attempt < most_attempts) continue;
+    solid.update_plasticity(s, dt);
     state = std::move(s);
     return report;
   }

@@ -1,19 +1,40 @@
-#include "kerf/solid.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "kerf/parallel.h"
+#include "kerf/solid.h"
 #include "mechanics/material/elastic_lanes.h"
 #include "mechanics/material/plasticity.h"
-#include "mechanics/solver/node_sums.h"
+#include "mechanics/solver/nodal_averages.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
+namespace {
+
+// The inverse plastic deformations of a block's points.
+PointMatrices<double> relaxation_of(const MaterialPoints& points, std::size_t block, const State& state) {
+  PointMatrices<double> result;
+  const std::size_t count = points.blocks[block].points.size();
+  result.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Mat3 inverse = inverse_plastic_stretch(state.plastic[points.first_point(block) + i]);
+    for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&result.column[c][4 * i]) = inverse.col(c);
+  }
+  return result;
+}
+
+double von_mises(const StressSums& sum) {
+  const double xy = sum[0] - sum[1], yz = sum[1] - sum[2], zx = sum[2] - sum[0];
+  return std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3 * (sum[3] * sum[3] + sum[4] * sum[4] + sum[5] * sum[5])) /
+         sum[6];
+}
+
+}  // namespace
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph,
                                         const State& state) {
-  const auto gradient = solid.gradient_columns(state.displacement);
+  const auto gradient = solid.discretisation().mls.padded_gradients(state.displacement);
   const std::vector<PaddedVec3> displacement = padded(state.displacement);
   std::vector<PaddedVec3> place = padded(nodes.position);
   for (std::size_t i = 0; i < place.size(); ++i) place[i].at[3] = 1 / (nodes.radius[i] * nodes.radius[i]);
@@ -32,38 +53,27 @@ std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes
 }
 
 std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, const State& state) {
-  const MaterialPoints& points = solid.points();
+  const MaterialPoints& points = solid.discretisation().points;
   std::vector<ElasticConstants> constants;  // per material
   for (const Material& m : solid.materials().all()) constants.push_back(elastic_constants(m));
-  const auto sums =
-      node_sums(solid, nodes, state, [&](std::size_t b, const PointMatrices<double>& gradient, float* own) {
-        const PointBlock& block = points.blocks[b];
-        PointMatrices<double> relaxed;
-        if (!state.plastic.empty()) {
-          relaxed.resize(block.points.size());
-          for (std::size_t i = 0; i < block.points.size(); ++i) {
-            const Mat3 back = inverse_plastic_stretch(state.plastic[points.first_point(b) + i]);
-            for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&relaxed.column[c][4 * i]) = back.col(c);
-          }
-        }
-        std::vector<float> aside(8 * ((block.points.size() + 7) / 8 * 8));
-        for (const MaterialRange& run : block.material_ranges) {
-          float* const to = run.uniform ? own : aside.data();
-          cauchy_stresses(constants[run.material], {run.begin, run.end}, state.plastic.empty() ? nullptr : &relaxed,
-                          gradient, to);
-          for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.uniform; ++i)
-            if (block.belongs_to(run, i)) std::copy_n(&aside[8 * i], 8, own + 8 * i);
-        }
-      });
+  const bool plastic = !state.plastic.empty();
+  const auto block_stress = [&](std::size_t b, const PointMatrices<double>& gradient, float* out) {
+    const PointBlock& block = points.blocks[b];
+    const PointMatrices<double> relaxation = plastic ? relaxation_of(points, b, state) : PointMatrices<double>();
+    // Where points of several materials stand among each other, each run computes all of them and
+    // keeps its own.
+    std::vector<float> scratch(8 * ((block.points.size() + 7) / 8 * 8));
+    for (const MaterialRange& run : block.material_ranges) {
+      cauchy_stresses(constants[run.material], {run.begin, run.end}, plastic ? &relaxation : nullptr, gradient,
+                      run.uniform ? out : scratch.data());
+      for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.uniform; ++i)
+        if (block.belongs_to(run, i)) std::copy_n(&scratch[8 * i], 8, out + 8 * i);
+    }
+  };
+  const auto sums = nodal_stress_sums(solid, nodes, state, BlockStress(block_stress));
   std::vector<double> result(nodes.size(), 0);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const StressSums& sum = sums[i];
-    if (!(sum[6] > 0)) continue;
-    const double xy = sum[0] - sum[1], yz = sum[1] - sum[2], zx = sum[2] - sum[0];
-    result[i] =
-        std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) + 3 * (sum[3] * sum[3] + sum[4] * sum[4] + sum[5] * sum[5])) /
-        sum[6];
-  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (sums[i][6] > 0) result[i] = von_mises(sums[i]);
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Rigid motions nearest to how the nodes of pieces move.
+// Rigid motions nearest to the motion of sets of nodes.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,32 @@
 
 namespace geo {
 
-/// About the middle of a piece's mass: this goes `way`, and the piece turns about it.
+/// A rigid motion of a set of nodes: a translation, and a rotation about the centre of mass.
 struct RigidMotion {
-  Vec3 middle = Vec3::Zero(), way = Vec3::Zero();
-  Mat3 turn = Mat3::Identity();  ///< by any angle: the nearest in the quadratic mean
-  Vec3 turning = Vec3::Zero();   ///< as velocities turn, rad: what is left has no angular momentum about the middle
-  double reach = 0;              ///< how far from the middle the piece's mass is, in the quadratic mean, m
+  Vec3 centre = Vec3::Zero();        ///< centre of mass before the motion
+  Vec3 translation = Vec3::Zero();   ///< of the centre
+  Mat3 rotation = Mat3::Identity();  ///< by any angle; the nearest to the nodes' motion in the quadratic mean
+  Vec3 angle = Vec3::Zero();  ///< rotation vector at first order, rad: leaves no angular momentum about the centre
+  double radius = 0;          ///< radius of gyration about the centre, m
 
-  /// Of what is at this place: by the way and the turn,
-  Vec3 displacement(const Vec3& at) const { return way + (turn * (at - middle) - (at - middle)); }
-  /// by the way and straight on as turning begins,
-  Vec3 straight(const Vec3& at) const { return way + turning.cross(at - middle); }
-  /// and what going round by `share` of turning adds to a way straight on, that much of a displacement: what it has
-  /// besides straight() is turned, too.
-  Vec3 bend(const Vec3& at, const Vec3& displacement, double share) const;
+  /// Displacement of a point by the translation and the finite rotation.
+  Vec3 displacement(const Vec3& at) const { return translation + (rotation * (at - centre) - (at - centre)); }
+  /// Displacement of a point at first order in the angle, along a straight line.
+  Vec3 linearised(const Vec3& at) const { return translation + angle.cross(at - centre); }
+  /// Correction that bends share · displacement, a straight line, to the arc of a rotation by share
+  /// · angle. What the displacement of the point has besides linearised() is rotated as well.
+  Vec3 arc_correction(const Vec3& at, const Vec3& displacement, double share) const;
 };
 
-/// What is known of a piece's motion.
-enum class Freedom : std::uint8_t { none, way, way_and_turn };
+/// The rigid motions that a set of nodes has.
+enum class Freedom : std::uint8_t { none, translation, rigid };
 
-/// Per piece; of one without freedom, no motion. `piece`: of each node, of as many as `freedom` has. Node i goes
-/// `way(i)` from `from(i)`. Sums are weighed by mass, in an order that no number of threads changes. What is on one
-/// line has no turning about it, and no turn.
-std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& piece, const std::vector<Freedom>& freedom,
+/// The rigid motion of each set of nodes, weighted by mass. `set`: per node, below freedom.size();
+/// node i moves by `displacement(i)` from `from(i)` on. Sets without freedom have no motion; sets
+/// on a line have no rotation about it. The order of sums depends on no number of threads. Both
+/// functions are called from several threads.
+std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& set, const std::vector<Freedom>& freedom,
                                        const std::vector<double>& mass, const std::function<Vec3(std::size_t)>& from,
-                                       const std::function<Vec3(std::size_t)>& way);
+                                       const std::function<Vec3(std::size_t)>& displacement);
 
 }  // namespace geo

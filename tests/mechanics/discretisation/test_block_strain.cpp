@@ -9,6 +9,7 @@
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/discretisation/elastic_block.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "simd_targets.h"
 
 using namespace geo;
@@ -72,8 +73,8 @@ TEST_CASE(
     "of themselves",
     "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
-  const Solid solid(body, steel());
-  const MaterialPoints& points = solid.points();
+  Solid solid(body, steel());
+  const MaterialPoints& points = solid.discretisation().points;
   const std::vector<std::uint32_t> whole(body.nodes.size(), 0);
   const BlockStrain exact(points);
   const auto [first_seed, count] = seeds(60);
@@ -96,8 +97,8 @@ TEST_CASE(
 
 TEST_CASE("forces in single precision are derivatives of the energies in single precision", "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
-  const Solid solid(body, steel());
-  const MaterialPoints& points = solid.points();
+  Solid solid(body, steel());
+  const MaterialPoints& points = solid.discretisation().points;
   const std::vector<std::uint32_t> whole(body.nodes.size(), 0);
   const auto [first_seed, count] = seeds(30);
   for (int k = 0; k < count; ++k) {
@@ -134,7 +135,7 @@ TEST_CASE("forces in single precision are derivatives of the energies in single 
 TEST_CASE("blocks with several components, or with points of poor quality, stay in double precision", "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
   Solid solid(body, steel());
-  MaterialPoints points = solid.points();
+  MaterialPoints points = solid.discretisation().points;
   std::vector<std::uint32_t> halves;
   for (const Vec3& x : body.nodes.position) halves.push_back(x.x() > 0.5);
   Random random(3);
@@ -165,7 +166,7 @@ TEST_CASE("a stiff bar that has turned stays at rest at any accuracy", "[mechani
     for (const double accuracy : {0.005, 0.02}) {
       Material m = steel();
       m.poisson = poisson;
-      const Solid solid(body, m);
+      Solid solid(body, m);
       State state{there, std::vector<Vec3>(n, Vec3::Zero())};
       Environment env;
       env.gravity.setZero();

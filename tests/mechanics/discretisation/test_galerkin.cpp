@@ -8,6 +8,7 @@
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "simd_targets.h"
 
 using namespace geo;
@@ -31,7 +32,8 @@ std::vector<Vec3> field(const Body& body, const std::function<Vec3(const Vec3&)>
 }
 
 bool same(const Solid& a, const Solid& b) {
-  return a.points().blocks == b.points().blocks && a.patches() == b.patches();
+  return a.discretisation().points.blocks == b.discretisation().points.blocks &&
+         a.discretisation().subdomains == b.discretisation().subdomains;
 }
 
 // A block with a slanting cut half way through it.
@@ -50,10 +52,10 @@ TEST_CASE("quadrature cells hold the body's volume and its first moments") {
   SampleOptions options;
   options.count = 800;
   const Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, options));
-  const Solid solid(body, soft());
+  Solid solid(body, soft());
   double volume = 0;
   Vec3 middle = Vec3::Zero();
-  for (const auto& b : solid.points().blocks)
+  for (const auto& b : solid.discretisation().points.blocks)
     for (const auto& p : b.points) volume += p.volume, middle += p.volume * p.position;
   CHECK(volume == Approx(signed_volume(mesh)).epsilon(1e-12));
   Vec3 exact = Vec3::Zero();
@@ -68,15 +70,15 @@ TEST_CASE("quadrature cells hold the body's volume and its first moments") {
 TEST_CASE("patch test: linear fields have constant strain at all points, with a crack and without") {
   const int steps = GENERATE(0, 3);
   const Body body = cut_block(steps);
-  const Solid solid(body, soft());
+  Solid solid(body, soft());
   Mat3 linear;
   linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
   const auto u = field(body, [&](const Vec3& x) { return Vec3(linear * x + Vec3(7, 8, 9)); });
   double worst = 0;
-  for (std::size_t b = 0; b < solid.points().blocks.size(); ++b) {
-    const auto g = solid.points().gradients(b, u);
+  for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
+    const auto g = solid.discretisation().points.gradients(b, u);
     for (std::size_t i = 0; i < g.size(); ++i)
-      if (solid.points().blocks[b].points[i].quality != MomentQuality::singular)
+      if (solid.discretisation().points.blocks[b].points[i].quality != MomentQuality::singular)
         worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
   }
   CHECK(worst < 1e-10);
@@ -87,8 +89,8 @@ TEST_CASE("no point uses a node beyond a crack that has cut through") {
   Body body = block_body({1, 1, 1}, 0.14);
   auto front = begin_front(blade_at({0.47, -0.2, 1.2}, {0.47, 1.2, 1.2}, {0, 0, -0.5}, 0), false, 1);
   for (int k = 1; k <= 3; ++k) split(body, front, blade_at({0.47, -0.2, 1.2}, {0.47, 1.2, 1.2}, {0, 0, -0.5}, k));
-  const Solid solid(body, soft());
-  for (const auto& b : solid.points().blocks) {
+  Solid solid(body, soft());
+  for (const auto& b : solid.discretisation().points.blocks) {
     for (std::size_t i = 0; i < b.points.size(); ++i)
       for (const auto j : b.shape_gradients(i).nodes)
         CHECK((b.points[i].position.x() < 0.47) == (body.nodes.position[j].x() < 0.47));
@@ -139,11 +141,11 @@ TEST_CASE("a solid that follows random cuts and other radii, several at once, eq
       const Vec3 step(0.04 * random.uniform(), 0.04 * random.uniform(), -0.1 - 0.1 * random.uniform());
       auto front = begin_front(blade_at(a, b, step, 0, 3), false, cut);
       for (int k = 1; k <= 5; ++k) {
-        solid.follow(body, split(body, front, blade_at(a, b, step, k, 3)), state);
+        solid.update_nodes(body, split(body, front, blade_at(a, b, step, k, 3)), state);
         if (seed % 2 == 0 && random.uniform() < 0.5)
-          solid.follow(body, resize_nodes(body, other_radii(body, random)), state);
+          solid.update_nodes(body, resize_nodes(body, other_radii(body, random)), state);
         if (random.uniform() < 0.4) continue;
-        solid.settle(body, state);
+        solid.update_points(body, state);
         CHECK(same(solid, Solid(body, soft())));
       }
     }
@@ -200,7 +202,7 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
     Material m = soft();
     m.model = model;
     if (model == ElasticModel::saint_venant_kirchhoff) m.volume_term = 2e4;
-    const Solid solid(body, m);
+    Solid solid(body, m);
     Random random(4);
     // A little larger in all directions: every point's stiffness is positive, and none is changed.
     auto u = field(body, [&](const Vec3& x) { return Vec3(0.08 * x + 0.002 * random.direction()); });
@@ -232,10 +234,10 @@ TEST_CASE(
   Environment env;
   for (const Vec3& x : body.nodes.position) env.fixed.push_back(x.x() < 0.15);
   const auto run = [&] {
-    const Solid solid(body, m);
+    Solid solid(body, m);
     State state = at_rest(body);
     for (int i = 0; i < 2; ++i) solid.step_implicit(state, 0.03, env);
-    return std::pair(solid.patches(), state.displacement);
+    return std::pair(solid.discretisation().subdomains, state.displacement);
   };
   const auto expected = run();
   REQUIRE(expected.first.count() > 128);
@@ -260,7 +262,7 @@ TEST_CASE(
 
 TEST_CASE("a crushed, an inverted and a torn block come back without NaN") {
   const Body body = block_body({1, 0.6, 0.6}, 0.2);
-  const Solid solid(body, soft());
+  Solid solid(body, soft());
   for (const double squeeze : {0.1, -0.5, 0.0}) {
     State state = at_rest(body);
     for (std::size_t i = 0; i < body.nodes.size(); ++i)
@@ -289,14 +291,14 @@ TEST_CASE("plastic material keeps a part of its strain, elastic none, and the pa
   for (std::size_t i = 0; i < body.nodes.size(); ++i) still.fixed.push_back(1);
   stretch(0.2);
   for (int k = 0; k < 20; ++k) solid.step_implicit(state, 0.02, still);
-  REQUIRE(state.plastic.size() == solid.points().size());
+  REQUIRE(state.plastic.size() == solid.point_count());
   const double kept = state.plastic[0](0, 0);
   CHECK(kept > 0.15);  // of 0.22: it flows until less than the yield is left
   CHECK(kept < 0.22);
   auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.3}, 0), false, 1);
   for (int k = 1; k <= 2; ++k)
     solid.update(body, split(body, front, blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.3}, k)), state);
-  REQUIRE(state.plastic.size() == solid.points().size());
+  REQUIRE(state.plastic.size() == solid.point_count());
   Environment free;
   free.gravity.setZero();
   for (int k = 0; k < 60; ++k) solid.step_implicit(state, 0.02, free);
@@ -313,7 +315,7 @@ TEST_CASE("plastic material keeps a part of its strain, elastic none, and the pa
 TEST_CASE("stress at a point is that of a uniform stretch") {
   const Body body = block_body({1, 0.6, 0.6}, 0.15);
   const Material m = soft();
-  const Solid solid(body, m);
+  Solid solid(body, m);
   State state = at_rest(body);
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
     state.displacement[i] = 1e-5 * Vec3(body.nodes.position[i].x(), 0, 0);

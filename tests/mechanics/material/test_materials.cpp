@@ -6,6 +6,7 @@
 #include "kerf/error.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "simd_targets.h"
 
 using namespace geo;
@@ -86,10 +87,10 @@ TEST_CASE(
   for (const auto discretisation : {Discretisation::galerkin, Discretisation::mueller04}) {
     Material first = soft(), second = other(discretisation);
     first.discretisation = discretisation;
-    const Solid mixed(body, Materials({first, second}, numbers(body))),
+    Solid mixed(body, Materials({first, second}, numbers(body))),
         uniform[2] = {Solid(body, first), Solid(body, second)};
     std::size_t among = 0;
-    for (const PointBlock& b : mixed.points().blocks)
+    for (const PointBlock& b : mixed.discretisation().points.blocks)
       for (const MaterialRange& run : b.material_ranges) among += !run.uniform;
     CHECK(among > 0);
     Random random(3);
@@ -98,7 +99,7 @@ TEST_CASE(
     for (std::size_t i = 0; i < u.size(); ++i)
       u[i] = 0.02 * random.direction(), p[i] = random.direction(), own[is_second(body, i)][i] = u[i];
     State strained{u, u}, flown = strained;
-    for (std::size_t k = 0; k < mixed.points().size(); ++k) {
+    for (std::size_t k = 0; k < mixed.point_count(); ++k) {
       const Vec3 by = 0.05 * random.direction();
       flown.plastic.push_back(by.asDiagonal());
     }
@@ -130,7 +131,7 @@ TEST_CASE("a body moves as if the other one were of its material, too, bit for b
   const Material first = soft(), second = other(Discretisation::galerkin);
   const Environment env = clamped(body);
   const auto run = [&](const Materials& materials) {
-    const Solid solid(body, materials);
+    Solid solid(body, materials);
     State state = at_rest(body);
     for (int k = 0; k < 6; ++k) solid.step_implicit(state, 0.03, env);
     return state;
@@ -146,11 +147,11 @@ TEST_CASE("a body moves as if the other one were of its material, too, bit for b
   CHECK(moved[0] > 0.01);
   CHECK(moved[1] > 1e-3);
   // Only the second one flows.
-  const Solid solid(body, Materials({first, second}, numbers(body)));
-  REQUIRE(mixed.plastic.size() == solid.points().size());
+  Solid solid(body, Materials({first, second}, numbers(body)));
+  REQUIRE(mixed.plastic.size() == solid.point_count());
   double flown[2] = {0, 0};
-  for (std::size_t b = 0, k = 0; b < solid.points().blocks.size(); ++b)
-    for (const MaterialPoint& p : solid.points().blocks[b].points) {
+  for (std::size_t b = 0, k = 0; b < solid.discretisation().points.blocks.size(); ++b)
+    for (const MaterialPoint& p : solid.discretisation().points.blocks[b].points) {
       CHECK(p.material == (p.position.y() > 0.4));
       flown[p.material] += mixed.plastic[k++].norm();
     }
@@ -165,7 +166,7 @@ TEST_CASE("a body among others hangs as it does alone") {
     of[0].damping = of[1].damping = 10, of[1].young = 1.2e5, of[1].density = 900;
     of[0].discretisation = of[1].discretisation = discretisation;
     const auto hang = [&](const Body& body, const Materials& materials) {
-      const Solid solid(body, materials);
+      Solid solid(body, materials);
       State state = at_rest(body);
       const Environment env = clamped(body);
       for (int k = 0; k < 80; ++k) solid.step_implicit(state, 0.1, env, 1e-5);
@@ -196,9 +197,9 @@ TEST_CASE("materials follow a cut through bodies as if they had been built of it
     for (int k = 1; k <= 6; ++k)
       solid.update(body, split(body, front, blade_at({0.52, -0.2, 0.7}, {0.49, 1, 0.7}, {0, 0, -0.15}, k)), state);
     REQUIRE(body.nodes.size() > nodes);
-    const Solid scratch(body, Materials({first, second}, numbers(body)));
-    CHECK(solid.points().blocks == scratch.points().blocks);
-    CHECK(solid.patches() == scratch.patches());
+    Solid scratch(body, Materials({first, second}, numbers(body)));
+    CHECK(solid.discretisation().points.blocks == scratch.discretisation().points.blocks);
+    CHECK(solid.discretisation().subdomains == scratch.discretisation().subdomains);
     double mass[2] = {0, 0};
     for (std::size_t i = 0; i < body.nodes.size(); ++i) {
       REQUIRE(solid.mass(NodeId(i)) == scratch.mass(NodeId(i)));
@@ -222,7 +223,7 @@ TEST_CASE("leapfrog steps are as short as the fastest wave of all materials asks
   const Environment env = clamped(body);
   std::size_t substeps = 0;
   const auto run = [&](const Materials& materials) {
-    const Solid solid(body, materials);
+    Solid solid(body, materials);
     State state = at_rest(body);
     for (int k = 0; k < 4; ++k) substeps = static_cast<std::size_t>(solid.step_explicit(state, 0.01, env).substeps);
     return state;

@@ -5,6 +5,7 @@
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/material/elastic_lanes.h"
+#include "mechanics/terms/potential.h"
 
 using namespace geo;
 
@@ -40,7 +41,7 @@ Halves two_halves() {
 
 TEST_CASE("no step brings energy, however little accuracy is asked for") {
   const Body body = block_body({1, 0.5, 0.5}, 0.1);
-  const Solid solid(body, rubber());
+  Solid solid(body, rubber());
   Environment env;
   env.gravity.setZero();
   for (const double accuracy : {1e-3, 0.03, 0.3, 3.0}) {

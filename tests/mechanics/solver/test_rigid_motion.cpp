@@ -1,5 +1,5 @@
-// Pieces that move as a whole: found out of their nodes' ways, and kept by time steps however stiff
-// they are.
+// Rigid motions: recovered from nodal displacements, and preserved by time steps however stiff the
+// material is.
 #include "mechanics/solver/rigid_motion.h"
 
 #include <Eigen/Geometry>
@@ -13,6 +13,7 @@
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 using namespace geo;
 
@@ -23,12 +24,12 @@ Mat3 turned(const Vec3& by) {
 }
 
 struct Nodes {
-  std::vector<Vec3> place, way;
+  std::vector<Vec3> position, displacement;
   std::vector<double> mass;
-  std::vector<std::uint32_t> piece;
+  std::vector<std::uint32_t> set;
   std::vector<RigidMotion> motions(const std::vector<Freedom>& freedom) const {
     return rigid_motions(
-        piece, freedom, mass, [&](std::size_t i) { return place[i]; }, [&](std::size_t i) { return way[i]; });
+        set, freedom, mass, [&](std::size_t i) { return position[i]; }, [&](std::size_t i) { return displacement[i]; });
   }
 };
 
@@ -38,86 +39,89 @@ Material stiff(double young, double poisson) {
   return m;
 }
 
-// A bar from the left end to the right one: its angle to the ground.
+// The angle of a bar to the ground.
 double slope(const Body& body, const State& state) {
-  Vec3 way = Vec3::Zero();
+  Vec3 axis = Vec3::Zero();
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
-    way += (body.nodes.position[i].x() > 1 ? 1 : -1) * (body.nodes.position[i] + state.displacement[i]);
-  return std::atan2(way.z(), way.x());
+    axis += (body.nodes.position[i].x() > 1 ? 1 : -1) * (body.nodes.position[i] + state.displacement[i]);
+  return std::atan2(axis.z(), axis.x());
 }
 
 }  // namespace
 
-TEST_CASE("rigid motions are found, whatever else the nodes do, and by any number of threads", "[mechanics]") {
+TEST_CASE("rigid motions are recovered from nodal displacements, the same by any number of threads", "[mechanics]") {
   const auto [first_seed, count] = seeds(300);
   for (int k = 0; k < count; ++k) {
     const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(k);
     CAPTURE(seed);
     Random random(seed);
-    const std::size_t pieces = 1 + random.below(5), n = pieces * (4 + random.below(k % 10 == 0 ? 3000 : 60));
+    const std::size_t sets = 1 + random.below(5), n = sets * (4 + random.below(k % 10 == 0 ? 3000 : 60));
     const double size = std::pow(10.0, random.uniform(-3, 3));
     const Vec3 far = 100 * size * random.direction();
     struct Truth {
-      Vec3 turn, way;
+      Vec3 angle, translation;
     };
-    std::vector<Truth> truth(pieces);
+    std::vector<Truth> truth(sets);
     for (auto& t : truth) t = {random.uniform(0, 3) * random.direction(), size * random.direction()};
     Nodes nodes;
     for (std::size_t i = 0; i < n; ++i) {
       const auto p =
-          static_cast<std::uint32_t>(i < 4 * pieces ? i % pieces : random.below(static_cast<std::uint32_t>(pieces)));
-      nodes.piece.push_back(p), nodes.mass.push_back(random.uniform(0.1, 2)),
-          nodes.place.push_back(far + size * random.direction());
-      nodes.way.push_back(turned(truth[p].turn) * (nodes.place[i] - far) + far + truth[p].way - nodes.place[i]);
+          static_cast<std::uint32_t>(i < 4 * sets ? i % sets : random.below(static_cast<std::uint32_t>(sets)));
+      nodes.set.push_back(p), nodes.mass.push_back(random.uniform(0.1, 2)),
+          nodes.position.push_back(far + size * random.direction());
+      nodes.displacement.push_back(turned(truth[p].angle) * (nodes.position[i] - far) + far + truth[p].translation -
+                                   nodes.position[i]);
     }
-    const std::vector<Freedom> all(pieces, Freedom::way_and_turn);
+    const std::vector<Freedom> all(sets, Freedom::rigid);
     const auto found = nodes.motions(all);
     for (std::size_t i = 0; i < n; ++i)
-      CHECK((found[nodes.piece[i]].displacement(nodes.place[i]) - nodes.way[i]).norm() < 1e-9 * size);
+      CHECK((found[nodes.set[i]].displacement(nodes.position[i]) - nodes.displacement[i]).norm() < 1e-9 * size);
 
-    // Of any ways: what is left beside straight() has neither momentum. bend() is what a turn of
-    // that axis and angle adds.
-    for (Vec3& way : nodes.way) way = 0.3 * size * random.direction();
+    // Random displacements less linearised() have neither momentum. arc_correction() is what a
+    // rotation by this axis and angle adds.
+    for (Vec3& d : nodes.displacement) d = 0.3 * size * random.direction();
     const auto mean = nodes.motions(all);
-    std::vector<Vec3> linear(pieces, Vec3::Zero()), angular = linear;
+    std::vector<Vec3> linear(sets, Vec3::Zero()), angular = linear;
     for (std::size_t i = 0; i < n; ++i) {
-      const RigidMotion& m = mean[nodes.piece[i]];
-      const Vec3 left = nodes.mass[i] * (nodes.way[i] - m.straight(nodes.place[i]));
-      linear[nodes.piece[i]] += left, angular[nodes.piece[i]] += (nodes.place[i] - m.middle).cross(left);
+      const RigidMotion& m = mean[nodes.set[i]];
+      const Vec3 residual = nodes.mass[i] * (nodes.displacement[i] - m.linearised(nodes.position[i]));
+      linear[nodes.set[i]] += residual, angular[nodes.set[i]] += (nodes.position[i] - m.centre).cross(residual);
       const double share = random.uniform(0, 1);
-      const Vec3 arm = nodes.place[i] - m.middle, rest = nodes.way[i] - m.straight(nodes.place[i]);
-      const Vec3 round = share * m.way + turned(share * m.turning) * (arm + share * rest) - arm;
-      CHECK((share * nodes.way[i] + m.bend(nodes.place[i], nodes.way[i], share) - round).norm() < 1e-12 * size);
+      const Vec3 arm = nodes.position[i] - m.centre, rest = nodes.displacement[i] - m.linearised(nodes.position[i]);
+      const Vec3 arc = share * m.translation + turned(share * m.angle) * (arm + share * rest) - arm;
+      CHECK((share * nodes.displacement[i] + m.arc_correction(nodes.position[i], nodes.displacement[i], share) - arc)
+                .norm() < 1e-12 * size);
     }
-    for (std::size_t p = 0; p < pieces; ++p) {
+    for (std::size_t p = 0; p < sets; ++p) {
       CHECK(linear[p].norm() < 1e-9 * size * double(n));
       CHECK(angular[p].norm() < 1e-9 * size * size * double(n));
     }
 
-    // A piece without freedom has no motion, one that only goes does not turn; others are as they
-    // were, with one thread, too.
+    // A set without freedom has no motion, one that is only translated no rotation; the others have
+    // the same motion as before, also with one thread.
     std::vector<Freedom> some(all);
-    some[0] = k % 2 ? Freedom::none : Freedom::way;
+    some[0] = k % 2 ? Freedom::none : Freedom::translation;
     set_threads(1);
     const auto other = nodes.motions(some);
     set_threads(0);
-    CHECK(other[0].way == (k % 2 ? Vec3(Vec3::Zero()) : mean[0].way));
-    CHECK((other[0].turning == Vec3(Vec3::Zero()) && other[0].turn == Mat3(Mat3::Identity())));
-    for (std::size_t p = 1; p < pieces; ++p)
-      CHECK((other[p].way == mean[p].way && other[p].turning == mean[p].turning && other[p].turn == mean[p].turn));
+    CHECK(other[0].translation == (k % 2 ? Vec3(Vec3::Zero()) : mean[0].translation));
+    CHECK((other[0].angle == Vec3(Vec3::Zero()) && other[0].rotation == Mat3(Mat3::Identity())));
+    for (std::size_t p = 1; p < sets; ++p)
+      CHECK((other[p].translation == mean[p].translation && other[p].angle == mean[p].angle &&
+             other[p].rotation == mean[p].rotation));
   }
 }
 
-TEST_CASE("nodes on a line or in one place turn about nothing", "[mechanics]") {
+TEST_CASE("nodes on a line have no rotation about it, coincident nodes none at all", "[mechanics]") {
   Nodes line{{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {5, 5, 5}},
              {{0, 0, 0}, {0, 1, 0}, {0, 3, 0}, {1, 2, 3}},
              {1, 1, 1, 1},
              {0, 0, 0, 1}};
-  const auto motion = line.motions({Freedom::way_and_turn, Freedom::way_and_turn});
-  CHECK((motion[0].turning - Vec3(0, 0, 1)).norm() < 1e-12);
-  CHECK(motion[0].turn == Mat3(Mat3::Identity()));
-  CHECK(motion[1].way == Vec3(1, 2, 3));
-  CHECK((motion[1].turning.isZero(0) && motion[1].reach == 0));
+  const auto motion = line.motions({Freedom::rigid, Freedom::rigid});
+  CHECK((motion[0].angle - Vec3(0, 0, 1)).norm() < 1e-12);
+  CHECK(motion[0].rotation == Mat3(Mat3::Identity()));
+  CHECK(motion[1].translation == Vec3(1, 2, 3));
+  CHECK((motion[1].angle.isZero(0) && motion[1].radius == 0));
 }
 
 TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its penalty alone, gains no energy by turning",
@@ -130,8 +134,8 @@ TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its pen
   graph.storage().add(nodes, 1u, 0u);
   build_neighborhoods(nodes, graph, TriangleBvh());
   for (const double young : {1e4, 1e7, 1e10}) {
-    const Solid solid(nodes, graph, stiff(young, 0.3));
-    REQUIRE(solid.moment_quality(NodeId(0u)) == MomentQuality::singular);
+    Solid solid(nodes, graph, stiff(young, 0.3));
+    REQUIRE(solid.discretisation().mls.quality(0) == MomentQuality::singular);
     State state{std::vector<Vec3>(2, Vec3::Zero()), {Vec3::Zero(), Vec3(-0.05, 0.5, 0)}};
     Environment env;
     env.gravity.setZero();
@@ -153,7 +157,7 @@ TEST_CASE("a stiff bar topples as a softer one does, and lies flat", "[mechanics
   const std::size_t n = body.nodes.size();
   const Mat3 tilted = turned({0, -0.6, 0});
   const auto fall = [&](double young, double accuracy) {
-    const Solid solid(body, stiff(young, 0.3));
+    Solid solid(body, stiff(young, 0.3));
     State state{std::vector<Vec3>(n), std::vector<Vec3>(n, Vec3::Zero())};
     for (std::size_t i = 0; i < n; ++i)
       state.displacement[i] = tilted * body.nodes.position[i] + Vec3(0, 0, 0.3) - body.nodes.position[i];

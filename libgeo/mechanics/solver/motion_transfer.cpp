@@ -1,0 +1,142 @@
+// Transfer of motion over a cut: to new and moved nodes, with the momenta of each component of the
+// graph.
+#include <algorithm>
+#include <utility>
+
+#include "geometry/principal_inertia.h"
+#include "kerf/parallel.h"
+#include "mechanics/solver/solid_discretisation.h"
+
+namespace geo {
+namespace {
+
+// Mass, momenta and inertia of a component, about the origin.
+struct Momenta {
+  double mass = 0;
+  Vec3 moment = Vec3::Zero(), linear = Vec3::Zero(), angular = Vec3::Zero();  // moment: Σ m x
+  Mat3 inertia = Mat3::Zero();
+  void add(double m, const Vec3& x, const Vec3& v) {
+    mass += m, moment += m * x, linear += m * v, angular += m * x.cross(v);
+    inertia += m * (x.squaredNorm() * Mat3::Identity() - x * x.transpose());
+  }
+};
+
+// A velocity field.
+struct RigidVelocity {
+  Vec3 centre, velocity, spin;
+  Vec3 at(const Vec3& x) const { return velocity + spin.cross(x - centre); }
+};
+
+// The rigid velocity that restores the momenta of a component: the linear one, and the angular one
+// about its centre of mass. About a fixed point the angular momentum may change, as mass is
+// redistributed: were that corrected, a component that only travels would begin to turn. A
+// component on a line has no inertia about it and gets no spin about it.
+RigidVelocity correction(const Momenta& before, const Momenta& after) {
+  constexpr double rounding = 1e-9;  // of the largest moment of inertia
+  const Vec3 c = after.moment / after.mass, linear = before.linear - after.linear;
+  const Vec3 angular =
+      before.angular - (before.moment / before.mass).cross(before.linear) - after.angular + c.cross(after.linear);
+  const PrincipalInertia inertia(after.inertia - after.mass * (c.squaredNorm() * Mat3::Identity() - c * c.transpose()));
+  const Vec3 spin = inertia.angular_velocity(angular, rounding * inertia.moments[2]);
+  return {c, linear / after.mass, inertia.axes * spin};
+}
+
+// A node whose mass is new or has moved: where that mass was, and its velocity. A new node's mass
+// was its donor's.
+struct MovedMass {
+  std::uint32_t node;
+  Vec3 position, velocity;
+};
+
+// Extends the motion to new nodes by their donors' affine motion and moves that of moved nodes with
+// them, by the gradients before the cut. Returns the masses that moved, ascending by node.
+std::vector<MovedMass> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes, std::size_t old_count,
+                                     std::span<const NodeId> donors, std::span<const NodeId> updated, State& state) {
+  std::vector<MovedMass> moved;
+  for (std::size_t i = old_count; i < nodes.size(); ++i) {
+    std::size_t d = donors[i - old_count].index();
+    while (d >= old_count) d = donors[d - old_count].index();
+    moved.push_back({static_cast<std::uint32_t>(i), before.position[d] + state.displacement[d], state.velocity[d]});
+    const Vec3 offset = nodes.position[i] - before.position[d];
+    const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
+    const Vec3 displacement = u[d] + before.mls.gradient(d, u) * offset,
+               velocity = v[d] + before.mls.gradient(d, v) * offset;
+    state.displacement.push_back(displacement), state.velocity.push_back(velocity);
+    if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[d]));
+  }
+  for (const NodeId id : updated) {
+    const std::size_t i = id.index();
+    if (i >= old_count || before.position[i] == nodes.position[i]) continue;
+    moved.push_back({id.value, before.position[i] + state.displacement[i], state.velocity[i]});
+    state.displacement[i] += before.mls.gradient(i, state.displacement) * (nodes.position[i] - before.position[i]);
+  }
+  std::sort(moved.begin(), moved.end(), [](const MovedMass& a, const MovedMass& b) { return a.node < b.node; });
+  return moved;
+}
+
+// Gives each component with moved mass the momenta back that it had before.
+void restore_momenta(const SolidDiscretisation& solid, const std::vector<MovedMass>& moved, State& state) {
+  const std::vector<std::uint32_t>& component = solid.component;
+  std::vector<char> has_moved(solid.components, 0);
+  for (const MovedMass& m : moved) has_moved[component[m.node]] = 1;
+  std::vector<Momenta> before(solid.components), after(solid.components);
+  std::vector<char> differs(solid.components, 0);  // up to the first moved mass of a component, both sums are one
+  auto next = moved.begin();
+  for (std::size_t i = 0; i < solid.size(); ++i) {
+    const auto c = component[i];
+    if (!has_moved[c]) continue;
+    const bool moves = next != moved.end() && next->node == i;
+    if (moves && !std::exchange(differs[c], 1)) before[c] = after[c];
+    const Vec3 x = solid.position[i] + state.displacement[i];
+    after[c].add(solid.mass[i], x, state.velocity[i]);
+    if (moves)
+      before[c].add(solid.mass[i], next->position, next->velocity), ++next;
+    else if (differs[c])
+      before[c].add(solid.mass[i], x, state.velocity[i]);
+  }
+  std::vector<RigidVelocity> corrections(solid.components);
+  for (std::uint32_t c = 0; c < solid.components; ++c)
+    if (has_moved[c]) corrections[c] = correction(before[c], after[c]);
+  for (std::size_t i = 0; i < solid.size(); ++i)
+    if (const auto c = component[i]; has_moved[c])
+      state.velocity[i] += corrections[c].at(solid.position[i] + state.displacement[i]);
+}
+
+}  // namespace
+
+// Without a component coming apart, new nodes belong to the component of any older node that they
+// see. The lowest node of each component decides its number, so all numbers stay.
+void SolidDiscretisation::number_new_components(const VisibilityGraph& graph, std::size_t first_new) {
+  for (std::size_t i = first_new; i < graph.node_count(); ++i) {
+    std::uint32_t own = ~0u;
+    for (const NodeId j : graph.edges(NodeId(i)))
+      if (j.index() < component.size()) own = component[j.index()];
+    if (own == ~0u) {  // it sees newer nodes only
+      components = graph.components(component);
+      return;
+    }
+    component.push_back(own);
+  }
+}
+
+void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new,
+                                       std::span<const NodeId> donors, std::span<const NodeId> updated, State& state,
+                                       bool parted) {
+  const std::size_t n = nodes.size(), old_count = first_new.index();
+  std::vector<MovedMass> moved;
+  if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
+  volume = nodes.volume, spacing = nodes.spacing, position = nodes.position;
+  mass.resize(n);
+  for (std::size_t i = old_count; i < n; ++i) materials.add_node(donors[i - old_count].index());
+  for (std::size_t i = 0; i < n; ++i) mass[i] = materials.of(i).density * volume[i];
+  parallel_invoke([&] { mls.update(nodes, graph, updated); },
+                  [&] {
+                    if (parted || component.size() != old_count)
+                      components = graph.components(component);
+                    else
+                      number_new_components(graph, old_count);
+                  });
+  if (!moved.empty()) restore_momenta(*this, moved, state);
+}
+
+}  // namespace geo

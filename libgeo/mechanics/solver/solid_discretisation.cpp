@@ -1,0 +1,126 @@
+#include "mechanics/solver/solid_discretisation.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "kerf/error.h"
+#include "kerf/parallel.h"
+#include "mechanics/discretisation/elastic_block.h"
+#include "mechanics/material/plasticity.h"
+
+namespace geo {
+
+void SolidDiscretisation::update_nodal_points(std::span<const NodeId> updated) {
+  constexpr std::size_t nodes_per_block = 256;
+  const std::size_t n = mls.size(), count = (n + nodes_per_block - 1) / nodes_per_block, before = points.blocks.size();
+  std::vector<char> stale(count, 0);
+  for (const NodeId i : updated) stale[i.index() / nodes_per_block] = 1;
+  points.blocks.resize(count);
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      std::vector<MaterialPoint> block_points;
+      std::vector<ShapeGradients> stencils;
+      for (std::size_t i = b * nodes_per_block; i < std::min(n, (b + 1) * nodes_per_block); ++i) {
+        block_points.push_back({position[i], volume[i], mls.quality(i), 0, false, 0, 0, volume[i]});
+        if (stale[b] || b >= before)
+          stencils.push_back(mls.quality(i) == MomentQuality::singular ? ShapeGradients{} : mls.shape_gradients(i));
+      }
+      if (stale[b] || b >= before)
+        points.blocks[b] = PointBlock(std::move(block_points), stencils);
+      else
+        points.blocks[b].points = std::move(block_points);  // volumes are halved without a change of neighbours
+    }
+  });
+  points.number_points(n);
+  points.set_materials(materials);
+  build_preconditioner_levels();
+  std::vector<double> weight;
+  for (std::size_t i = 0; i < n; ++i)
+    weight.push_back(materials.of(i).mode_penalty * materials.of(i).young * volume[i]);
+  penalty.emplace(mls, std::move(weight));
+}
+
+void SolidDiscretisation::update_quadrature_points(const Body& body, State& state, SubdomainInverses& inverses) {
+  PointChanges changes;
+  parallel_invoke([&] { aggregates = Aggregates(position, mls, component, components); },
+                  [&] {
+                    changes = galerkin->rebuild_changed(body, points);
+                    points.set_materials(materials);
+                    inverses.update(subdomains, subdomains.update({position, mls, spacing, points}, changed, changes));
+                  });
+  changed.clear();
+  const auto& point_before = changes.old_point;
+  if (state.plastic.empty() || point_before.empty()) return;
+  std::vector<Mat3> plastic(points.size(), Mat3::Zero());
+  for (std::size_t i = 0; i < plastic.size(); ++i)
+    if (point_before[i] != ~0u) plastic[i] = state.plastic[point_before[i]];
+  state.plastic.swap(plastic);
+}
+
+void SolidDiscretisation::build_preconditioner_levels() {
+  aggregates = Aggregates(position, mls, component, components);
+  subdomains = Subdomains({position, mls, spacing, points});
+}
+
+double SolidDiscretisation::elastic_energy(const std::vector<Vec3>& u, std::vector<Vec3>* force,
+                                           const std::vector<PointMatrices<double>>& relaxation) const {
+  std::vector<double> energy(points.blocks.size(), 0), block_sums(force ? 4 * points.scatter_size() : 0);
+  const BlockStrain strain(points);
+  parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
+    ElasticBlock::Scratch scratch;
+    ElasticBlock elastic(scratch, strain, materials);
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto& of_point = elastic.evaluate(b, u, {relaxation.empty() ? nullptr : &relaxation[b], nullptr}, nullptr,
+                                              force ? &block_sums[4 * points.scatter_offset(b)] : nullptr);
+      energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
+    }
+  });
+  if (force) {
+    force->resize(size());
+    parallel_for(size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        const auto sum = points.sum_at_node<4>(block_sums.data(), j);
+        (*force)[j] = {sum[0], sum[1], sum[2]};
+      }
+    });
+  }
+  double sum = std::accumulate(energy.begin(), energy.end(), 0.0);
+  if (penalty) sum += penalty->add(mls, u, force);
+  if (force)
+    for (Vec3& f : *force) f = -f;
+  return sum;
+}
+
+std::vector<PointMatrices<double>> SolidDiscretisation::relaxation_of(const State& state) const {
+  if (!state.plastic.empty() && state.plastic.size() != points.size())
+    throw InputError("the plastic strains are not those of this solid");
+  std::vector<PointMatrices<double>> all(is_plastic() && !state.plastic.empty() ? points.blocks.size() : 0);
+  parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      all[b].resize(points.blocks[b].points.size());
+      for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) {
+        const Mat3 inverse = inverse_plastic_stretch(state.plastic[points.first_point(b) + i]);
+        for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&all[b].column[c][4 * i]) = inverse.col(c);
+      }
+    }
+  });
+  return all;
+}
+
+void SolidDiscretisation::update_plasticity(State& state, double dt) const {
+  if (!is_plastic()) return;
+  state.plastic.resize(points.size(), Mat3::Zero());
+  parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto gradient = points.gradients(b, state.displacement);
+      for (std::size_t i = 0; i < gradient.size(); ++i) {
+        Mat3& plastic = state.plastic[points.first_point(b) + i];
+        const Material& material = materials[points.blocks[b].points[i].material];
+        if (material.yield > 0 && points.blocks[b].points[i].quality != MomentQuality::singular)
+          plastic = plastic_flow(material, plastic, Mat3::Identity() + gradient[i], dt);
+      }
+    }
+  });
+}
+
+}  // namespace geo

@@ -1,0 +1,87 @@
+// The discretisation of a solid, as contact, simulation and the time integrators read it. Solid
+// owns it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kerf/body.h"
+#include "kerf/material.h"
+#include "kerf/state.h"
+#include "mechanics/discretisation/galerkin.h"
+#include "mechanics/discretisation/nodal_gradients.h"
+#include "mechanics/discretisation/point_lanes.h"
+#include "mechanics/solver/aggregates.h"
+#include "mechanics/solver/subdomain_inverses.h"
+#include "mechanics/solver/subdomains.h"
+
+namespace geo {
+
+/// What the nodes, the material points and both levels of the preconditioner are made of.
+/// Everything lives in material space: a time step reads it, a split updates it.
+struct SolidDiscretisation {
+  /// Allocates nothing; update_nodes() fills it.
+  explicit SolidDiscretisation(Materials of_nodes) : materials(std::move(of_nodes)) {}
+
+  Materials materials;                   ///< of each node
+  std::vector<double> mass;              ///< per node, kg
+  std::vector<double> volume;            ///< per node, m³
+  std::vector<double> spacing;           ///< per node: distance to its neighbours, m
+  std::vector<Vec3> position;            ///< per node, material coordinates, m
+  std::vector<std::uint32_t> component;  ///< per node: its component of the visibility graph
+  std::uint32_t components = 0;          ///< number of components of the graph
+  NodalGradientOperator mls;             ///< moving least squares at nodes: gradients of nodal fields
+  Aggregates aggregates;                 ///< of the coarse space
+  Subdomains subdomains;                 ///< of the Schwarz preconditioner
+  MaterialPoints points;                 ///< quadrature points, or one point a node (mueller04)
+  std::optional<Galerkin> galerkin;      ///< quadrature cells; none with mueller04
+  std::optional<ModePenalty> penalty;    ///< on modes that nodal strains do not see; only with mueller04
+  std::vector<char> changed;  ///< per node: 1 if its position, spacing or gradient changed since update_points()
+
+  /// Number of nodes.
+  std::size_t size() const { return mass.size(); }
+  /// The coarse space sums every so many points, weighted by that number. Quadrature has four
+  /// points a cell: with a stride of 5 every cell but each fifth contributes one of its points in
+  /// turn. Convergence needs no more.
+  std::size_t coarse_point_stride() const { return galerkin ? 5 : 1; }
+  /// Whether any material yields.
+  bool is_plastic() const {
+    return materials.any([](const Material& m) { return m.yield > 0; });
+  }
+
+  /// Updates nodes, gradients and components after a change of nodes or graph, and transfers motion
+  /// to new and moved nodes (Solid::update). `parted`: whether components may have come apart.
+  void update_nodes(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new,
+                    std::span<const NodeId> donors, std::span<const NodeId> updated, State& state, bool parted = true);
+  /// Makes every node a material point (mueller04), of the same blocks where nothing changed.
+  void update_nodal_points(std::span<const NodeId> updated);
+  /// Updates quadrature points, subdomains and aggregates after splits. `inverses` of unchanged
+  /// subdomains stay valid; the plastic strain of `state` stays with its points. Precondition:
+  /// galerkin->has_changes().
+  void update_quadrature_points(const Body& body, State& state, SubdomainInverses& inverses);
+  /// Builds subdomains and aggregates from scratch.
+  void build_preconditioner_levels();
+
+  /// Elastic energy at displacements u, J; `force`, where given, becomes −∂U/∂u, N per node.
+  /// `relaxation`: as relaxation_of() returns it.
+  double elastic_energy(const std::vector<Vec3>& u, std::vector<Vec3>* force,
+                        const std::vector<PointMatrices<double>>& relaxation = {}) const;
+  /// Per block and point: the inverse of the plastic part of F, from `state.plastic`; empty where
+  /// nothing has flown. Throws InputError if `state` has plastic strains of another number of
+  /// points.
+  std::vector<PointMatrices<double>> relaxation_of(const State& state) const;
+  /// Lets plastic strain flow for dt seconds at the displacements of `state`.
+  void update_plasticity(State& state, double dt) const;
+
+ private:
+  void number_new_components(const VisibilityGraph& graph, std::size_t first_new);
+};
+
+/// Gradients ∇u at nodes, each computed on first use.
+inline LazyNodalGradients lazy_gradients(const SolidDiscretisation& solid, const std::vector<Vec3>& u) {
+  return {solid.mls, u};
+}
+
+}  // namespace geo

@@ -1,4 +1,4 @@
-// Partial cuts through a unit block, one after another: for the test of remeshing and for its benchmark.
+// Partial cuts through a unit block, in sequence: for the test of remeshing and its benchmark.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "kerf/crack_edits.h"
 
-/// A front from somewhere on the block's skin, where it begins and after each of four steps.
+/// A front from a random point of the block's skin: its start and four steps.
 inline std::vector<std::vector<geo::Vec3>> block_cut(geo::Random& random) {
   using geo::Vec3;
   Vec3 p(random.uniform(), random.uniform(), random.uniform());
@@ -21,7 +21,7 @@ inline std::vector<std::vector<geo::Vec3>> block_cut(geo::Random& random) {
   return rows;
 }
 
-/// The angle, in degrees, that all but one in a hundred faces have at least.
+/// The first percentile of the faces' smallest angles, in degrees.
 inline double low_angle(const geo::Complex& k) {
   std::vector<double> angles;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)

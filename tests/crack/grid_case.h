@@ -1,4 +1,4 @@
-// One case of fronts on an integer grid, as data: a block, and cracks that cut it one after another.
+// A test case of fronts on an integer grid, as data: a block, and cracks that cut it in sequence.
 #pragma once
 
 #include <fstream>
@@ -54,8 +54,8 @@ inline GridCase random_case(std::uint64_t seed) {
   return grid;
 }
 
-/// What does not hold after a step: structure and volumes of the whole, crossings of the faces that the step made,
-/// which are the only ones that can cross anything; without `made`, of all faces.
+/// The first invariant that a step violates: structure and volumes of the whole, crossings of the
+/// faces `made` by the step, which alone can cross anything; without `made`, of all faces.
 inline std::string fault_of(const geo::Complex& k, double volume, const std::vector<geo::FaceId>* made = nullptr) {
   const auto report = geo::check_complex(k, made == nullptr);
   if (!report.good()) return report.first_problem;
@@ -86,8 +86,8 @@ struct GridOutcome {
   std::map<std::string, std::size_t> reasons;  ///< of refusals, by kind
 };
 
-/// Makes the cracks of a case. A crack whose step is refused ends there. `strict`: a refused step leaves the derived
-/// surface as it was to the bit; else its counts alone are compared.
+/// Makes the cracks of a case. A crack whose step is refused ends there. `strict`: a refused step
+/// leaves the derived surface as it was to the bit; else its counts alone are compared.
 inline GridOutcome outcome(const GridCase& grid, bool strict = false) {
   using namespace geo;
   GridOutcome result;

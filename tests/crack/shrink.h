@@ -1,4 +1,4 @@
-// Makes a failing case small: whatever can go without the failure going, goes.
+// Test-case reduction: removes parts of a failing case while it still fails.
 #pragma once
 
 #include <cmath>
@@ -6,9 +6,10 @@
 
 #include "crack/grid_case.h"
 
-/// The smallest case that `fails` holds of and that is found by dropping cracks, steps and points, and by
-/// simplify(case, attempt), as long as any of these helps. attempt() takes a simpler case over where it fails, too, and
-/// returns whether it did; simplify() returns whether any attempt succeeded. `fails` holds of `small`.
+/// Reduces a case greedily by dropping cracks, steps and points, and by simplify(case, attempt), as
+/// long as any of these succeeds. attempt(simpler) replaces the case where the simpler one fails,
+/// too, and returns whether it did; simplify() returns whether any attempt succeeded. Precondition:
+/// `small` fails.
 template <class Case, class Simplify>
 Case shrink(Case small, const std::function<bool(const Case&)>& fails, const Simplify& simplify) {
   const auto attempt = [&](const Case& smaller) {
@@ -56,7 +57,7 @@ Case shrink(Case small, const std::function<bool(const Case&)>& fails, const Sim
   return small;
 }
 
-/// Also by undoing subdivision, and moving coordinates towards small integers.
+/// Also undoes subdivision and moves coordinates towards small integers.
 inline GridCase shrink(GridCase given, const std::function<bool(const GridCase&)>& fails) {
   const auto simplify = [](const GridCase& grid, const auto& attempt) {
     bool any = false;
@@ -75,7 +76,7 @@ inline GridCase shrink(GridCase given, const std::function<bool(const GridCase&)
         for (std::size_t p = 0; p < grid.cracks[c].rows[s].size(); ++p)
           for (int axis = 0; axis < 3; ++axis) {
             const double x = grid.cracks[c].rows[s][p][axis];
-            // Each is smaller than x, or an integer where x is none: this ends.
+            // Each is smaller than x, or an integer where x is none: the loop terminates.
             for (const double y : {0.0, std::trunc(x / 2), std::trunc(x), x - (x > 0 ? 1.0 : -1.0)}) {
               if (!(std::abs(y) < std::abs(x))) continue;
               GridCase smaller = grid;

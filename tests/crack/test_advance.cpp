@@ -159,7 +159,7 @@ TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
 
 namespace {
 
-// All that can be asked of a complex, and ids that are dead.
+// Compares all that two complexes have, dead ids included.
 void require_same(const Complex& a, const Complex& b) {
   REQUIRE(a.vertex_count() == b.vertex_count());
   REQUIRE(a.face_count() == b.face_count());
@@ -199,7 +199,7 @@ TEST_CASE("skin along the axes stays exactly flat") {
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
     CAPTURE(seed);
     Random random(seed);
-    // Doubles are dense about zero: what rounding leaves there of a plane is not flat.
+    // Doubles are dense around zero: a rounded plane is not flat there.
     const Vec3 corner(0, -2, random.uniform(-3, 3));
     TriangleMesh block = make_block({2, 2, 2}, 1);
     for (Vec3& p : block.vertices) p += corner;

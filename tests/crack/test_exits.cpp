@@ -85,7 +85,7 @@ TEST_CASE("a line along a face or an edge does not begin inside, one beside them
 
 TEST_CASE("a complete cut that grazes a valley separates", "[exits]") {
   // In some of these (the first is 50) rounding would move the front's line through the valley, a
-  // hundred last places long, into the material.
+  // hundred ulps long, into the material.
   const Seeds which = seeds(600);
   int refused = 0;
   for (int i = 0; i < which.count; ++i) {

@@ -1,5 +1,5 @@
-// Insertion on an integer grid: small bodies, fronts through grid points only, so that vertices, edges, faces, old
-// fronts and old cracks are met exactly, and sweeps fold back over themselves.
+// Insertion on an integer grid: small bodies, fronts through grid points only, so that vertices,
+// edges, faces, old fronts and old cracks are met exactly, and sweeps fold back over themselves.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -20,7 +20,7 @@ TEST_CASE("random fronts on an integer grid keep every invariant after every ste
   std::size_t steps = 0, refused = 0;
   std::map<std::string, std::size_t> reasons;
   Stopwatch watch;
-  // Cases know nothing of each other: they run on all cores, and are told of in order.
+  // Cases are independent: they run on all cores and are reported in order.
   constexpr int batch = 256;
   std::vector<GridOutcome> outcomes(batch);
   for (int c = 0; c < which.count; ++c) {
@@ -48,12 +48,13 @@ TEST_CASE("random fronts on an integer grid keep every invariant after every ste
   for (const auto& [reason, times] : reasons) WARN(times << " of " << steps << " steps refused: " << reason);
   if (std::getenv("KERF_CASES"))
     WARN(which.count / seconds << " cases and " << static_cast<double>(steps) / seconds << " steps a second");
-  // Where an older repair has left a point a last place beside a plane of the grid, a few steps cannot be rounded.
+  // Where an older repair has left a point an ulp beside a plane of the grid, a few steps cannot be
+  // rounded.
   CHECK(refused * 200 <= std::max<std::size_t>(steps, 200));
 }
 
 TEST_CASE("refusals of each kind, shrunk into files", "[.refusals]") {
-  // Not a test: where cases to keep come from. KERF_CASES=200 KERF_SEED=11 test_crack '[refusals]'.
+  // Not a test: the source of cases to keep. KERF_CASES=200 KERF_SEED=11 test_crack '[refusals]'.
   const Seeds which = seeds(150);
   std::map<std::string, int> known;
   for (int c = 0; c < which.count; ++c) {
@@ -72,7 +73,8 @@ TEST_CASE("refusals of each kind, shrunk into files", "[.refusals]") {
 }
 
 TEST_CASE("kept cases of degenerate fronts are as their files say") {
-  // "expect: good": every step is made; "expect: refused": one is refused, and leaves everything as it was.
+  // "expect: good": every step is made; "expect: refused": one is refused, and leaves everything as
+  // it was.
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(KERF_KEPT_FOLDER)) {
     if (entry.path().extension() != ".front") continue;
@@ -139,7 +141,8 @@ TEST_CASE("a sheet in one step cuts as its front does in twelve") {
                               (0.1 * std::sin(s * 0.7) + 0.1 * std::cos(i * 0.9)) * n);
       sheet.vertices.insert(sheet.vertices.end(), rows.back().begin(), rows.back().end());
     }
-    // The same triangles as the sweep's: a fan around the new left point, closed by the one that holds the new front.
+    // The same triangles as the sweep's: a fan around the new left point, closed by the one that
+    // holds the new front.
     for (std::uint32_t s = 0; s < 12; ++s)
       for (std::uint32_t i = 0; i < 10; ++i) {
         const std::uint32_t a = s * 11 + i, b = a + 1, c = a + 11, d = c + 1;

@@ -1,5 +1,5 @@
-// One case of cracks through a body, as data: a model, how it is sampled, and cracks that cut it
-// one after another.
+// A test case of cracks through a body, as data: a model, its sampling, and cracks that cut it in
+// sequence.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 struct BodyCase {
   std::string model = "block";  ///< "block": 4 × 4 × 4, nodes on a regular grid; "pumpkin", or the name of a file
-  int faces = 1500;             ///< decimated to about so many; of a block: divisions of its edges
+  int faces = 1500;             ///< target of decimation; of a block: divisions of its edges
   int nodes = 900;
   double jitter = 0.15;
   double guides = 0;  ///< how far apart, in spacings; 0: none
@@ -56,7 +56,7 @@ inline Body make_block_body(const BodyCase& c, const BodyOptions& options) {
                     options);
 }
 
-/// A model decimated to about so many faces; kept.
+/// A model decimated to about that many faces; cached.
 inline const TriangleMesh& coarse_model(const std::string& name, int faces) {
   static std::map<std::pair<std::string, int>, TriangleMesh> known;
   const auto [at, fresh] = known.try_emplace({name, faces});
@@ -80,7 +80,7 @@ inline Body make_body(const BodyCase& c) {
   return build_body(Complex::from_skin(coarse), std::move(nodes), options);
 }
 
-/// The body before the cracks; the last few are kept.
+/// The body before the cracks; the last few are cached.
 inline const Body& body_of(const BodyCase& c) {
   static std::list<std::pair<std::string, Body>> known;
   for (auto at = known.begin(); at != known.end(); ++at)
@@ -132,8 +132,8 @@ inline BodyCase read_body_case(const std::string& text, const std::string& name)
   return c;
 }
 
-/// Other radii for nodes in a ball, all by one factor or each by its own: what resampling may ask
-/// for, and more.
+/// Other radii for the nodes in a ball, all by one factor or each by its own: a superset of what
+/// resampling requests.
 inline std::vector<std::pair<NodeId, double>> other_radii(const Body& body, std::uint64_t seed) {
   Random random(seed);
   const NodeSet& nodes = body.nodes;

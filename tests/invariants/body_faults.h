@@ -1,5 +1,5 @@
-// What does not hold of a body after a step: everything is found again from scratch, as slowly as
-// it takes.
+// Violated invariants of a body after a step: everything is recomputed from scratch, by brute
+// force.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline NodeId carrier(const Body& body, std::size_t v) {
   return v < b.master.size() && b.master[v].valid() ? b.master_node[b.master[v].index()] : NodeId();
 }
 
-/// Components of G against pieces of material: one for each, but for crumbs that have no room for a
+/// Compares components of G with pieces of material: one for each, but for crumbs too thin for a
 /// node in doubles. A point is in a piece when a ray from it crosses the piece's boundary an odd
 /// number of times. No edge crosses a face.
 inline std::string fault_of_components(const Body& body, const Pieces& pieces,
@@ -71,8 +71,8 @@ inline std::string fault_of_components(const Body& body, const Pieces& pieces,
       };
       const double u = random.uniform(), v = random.uniform(), w = random.uniform();
       const Vec3 q = (1 - u) * corner() + u * ((1 - v) * corner() + v * ((1 - w) * corner() + w * corner()));
-      // Room is what is clear of the boundary by a few last places. In a crumb whose sheets
-      // rounding has exchanged, a point is less than outside.
+      // A node needs a clearance of a few ulps. In a crumb whose sheets rounding has exchanged,
+      // the winding number of a point is negative.
       if (boundary[p].inside(q) && boundary[p].closest(q).distance > 0x1p-48 * k.extent().diagonal() &&
           piece_containing(k, q, [&](Side s) {
             return pieces.of_side[s.face.index() * 2 + static_cast<std::size_t>(s.which)];
@@ -146,7 +146,7 @@ inline std::string fault_of(const Body& body, double volume) {
   mark_debris(marked, all);
   if (marked.debris != body.debris) return "debris is not that of scratch";
 
-  // What is kept for the next step.
+  // The cache for the next step.
   Body again;
   again.surface = k, again.binding = body.binding;
   prepare_cache(again);
@@ -167,9 +167,9 @@ inline std::string fault_of(const Body& body, double volume) {
   return {};
 }
 
-/// Nodes that are new or moved have edges to the nearest that they see, guides to all that they
-/// see. `mended`: how many of the new nodes came last, to join what was apart; what came after a
-/// node need not have an edge to it.
+/// New and moved nodes have edges to the nearest nodes that they see, guides to all that they see.
+/// `mended`: the number of new nodes that were added last, to connect components; nodes added later
+/// need no edge to a node.
 inline std::string fault_of_new_edges(const Body& before, const Body& body, const BodyDelta& delta, std::size_t mended,
                                       const TriangleBvh& faces) {
   const auto& x = body.nodes.position;
@@ -224,7 +224,7 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
   return {};
 }
 
-/// The same as of a body alone, and what a step made of `before`; see fault_of_new_edges().
+/// The invariants of a body, and those of the step from `before`; see fault_of_new_edges().
 inline std::string fault_of(const Body& before, const Body& body, const BodyDelta& delta, std::size_t mended,
                             double volume) {
   if (const auto fault = fault_of(body, volume); !fault.empty()) return fault;

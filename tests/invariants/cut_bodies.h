@@ -1,4 +1,4 @@
-// Bodies that random cuts go through.
+// Bodies with random cuts.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -9,8 +9,8 @@
 
 namespace random_cuts {
 
-/// Cuts copies of a body twice each, in one step or in twelve. `look` sees the body after every step that cut
-/// something, `finish` when it is done.
+/// Cuts copies of a body twice each, in one step or in twelve. `look` sees the body after every
+/// step that cut something, `finish` when it is done.
 inline void cut_bodies(
     const geo::Body& model, int count, std::uint64_t stream, const std::function<void(const geo::Body&)>& look,
     const std::function<void(const geo::Body&)>& finish = [](const geo::Body&) {}) {

@@ -1,4 +1,5 @@
-// The models that the invariants are tested on. They are never in the tree: Debian's libcgal-demo brings them.
+// Models for the tests of invariants. They are not in the tree: Debian's libcgal-demo provides
+// them.
 #pragma once
 
 #include <cstdlib>
@@ -11,7 +12,8 @@
 
 namespace invariants {
 
-/// "pumpkin", or a mesh from the folder KERF_MODELS, else from where the build unpacked them. Throws when it is absent.
+/// "pumpkin", or a mesh from the folder KERF_MODELS, else from where the build unpacked them.
+/// Throws when it is absent.
 inline geo::TriangleMesh model(const std::string& name) {
   if (name == "pumpkin") return geo::make_pumpkin(8);
   const char* named = std::getenv("KERF_MODELS");

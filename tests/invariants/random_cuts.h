@@ -1,4 +1,5 @@
-// Random cuts through a model: planes and curved sheets, partial and complete, in any number of steps.
+// Random cuts through a model: planes and curved sheets, partial and complete, in any number of
+// steps.
 #pragma once
 
 #include <cmath>
@@ -19,7 +20,8 @@ inline int cases(int count) {
   return count * std::max(1, text ? std::atoi(text) : 1);
 }
 
-/// A sheet: a polyline that is carried along a direction. Carried straight, any number of steps sweeps the same sheet.
+/// A sheet: a polyline that is carried along a direction. Carried straight, any number of steps
+/// sweeps the same sheet.
 struct Cut {
   std::vector<geo::Vec3> start;
   geo::Vec3 way;

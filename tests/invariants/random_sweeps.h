@@ -30,14 +30,14 @@ inline Vec3 snapped(const Complex& k, const Vec3& p, Random& random) {
   return best;
 }
 
-/// Where a front begins, and where each step takes it.
+/// The start of a front, and its position after each step.
 struct Sweep {
   std::string kind;
   bool closed = false;
   std::vector<std::vector<Vec3>> rows;
 };
 
-/// So many steps, or now and then a few.
+/// That number of steps, or occasionally a few.
 inline Sweep make_sweep(const Complex& k, Random& random, int usual = 12) {
   Sweep sweep;
   const double size = k.extent().diagonal();

@@ -1,4 +1,5 @@
-// What a score promises of pieces and bonds, for twenty models and five patterns: the hundred cases of CONTRIBUTING.md.
+// The guarantees of a score on pieces and bonds, for twenty models and five patterns: the hundred
+// cases of CONTRIBUTING.md.
 #include <catch2/catch.hpp>
 #include <iostream>
 
@@ -14,7 +15,7 @@ using namespace geo;
 
 namespace {
 
-// Small ones first, which the suite takes; those with lower-case names of files are real.
+// Small models first, which the suite uses; those named by lower-case files are scans.
 const std::vector<std::string> models{
     "joint",   "apple", "cactus",       "letter K", "helmet", "rotor", "polyp",       "spool", "plate",   "hand",
     "pumpkin", "knot1", "couplingdown", "elephant", "dino",   "femur", "triceratops", "homer", "retinal", "bear"};
@@ -33,8 +34,8 @@ double area_of(const TriangleMesh& mesh, std::size_t t) {
   return 0.5 * (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]).norm();
 }
 
-// The pieces of a model that was cut: each closed and without self-intersection; their volumes sum to the model's, the
-// bonds' areas to half that of all crack sheets, both within 1e-12.
+// The pieces of a model that was cut: each closed and without self-intersection; their volumes sum
+// to the model's, the bonds' areas to half that of all crack sheets, both within 1e-12.
 void check_pieces(const TriangleMesh& model, const Complex& cut, const Pieces& pieces) {
   const auto bonds = find_bonds(cut, pieces);
   const double had = signed_volume(model);

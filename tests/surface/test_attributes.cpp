@@ -62,8 +62,8 @@ struct Seen {
   std::size_t corners_kept = 0, corners_mixed = 0, crack = 0;
 };
 
-// Everything that carry promises, for one surface that was cut from `model`, whose sources are
-// composed already.
+// Checks all guarantees of transfer_attributes() for a surface that was cut from `model` and whose
+// sources are composed already.
 Seen require_carried(const TriangleMesh& model, const TriangleMesh& surface) {
   Seen seen;
   const Attributes &a = surface.attributes, &b = model.attributes;

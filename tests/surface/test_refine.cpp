@@ -1,4 +1,4 @@
-// Meshes with shorter edges.
+// Refinement of meshes.
 #include <catch2/catch.hpp>
 
 #include "base/random.h"

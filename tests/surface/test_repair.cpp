@@ -1,4 +1,4 @@
-// Solids from surfaces that are nearly ones.
+// Repair of surfaces that are nearly solid.
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
@@ -11,7 +11,7 @@ using namespace geo;
 
 namespace {
 
-// Texture coordinates that are where a corner is.
+// Texture coordinates equal to the corner's position.
 TriangleMesh dressed(TriangleMesh mesh) {
   for (const auto& t : mesh.triangles) {
     auto& row = mesh.attributes.uv.emplace_back();

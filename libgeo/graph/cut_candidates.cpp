@@ -34,18 +34,18 @@ class Plane {
   double length_, rounding_;
 };
 
-// Which nodes a face may cut something of: those within `reach` of it, and some more.
+// The surroundings of a face: all points within `reach` of it, and some more.
 struct Surroundings {
   Surroundings(const Corners& t, double reach)
       : plane(t), around(box_of(t[0], t[1], t[2]).grown(reach)), reach(reach) {}
-  /// False only for what is farther than `distance`, which is `reach` at most.
+  /// False only for points farther than `distance`, which is `reach` at most.
   bool holds(const Vec3& x, double distance) const {
     const double less = reach - distance;
     return x.x() >= around.lo.x() + less && x.x() <= around.hi.x() - less && x.y() >= around.lo.y() + less &&
            x.y() <= around.hi.y() - less && x.z() >= around.lo.z() + less && x.z() <= around.hi.z() - less &&
            plane.within(x, distance);
   }
-  /// True unless it holds nothing of the cube.
+  /// False only for cubes without a point of it.
   bool reaches(const Vec3& middle, double half) const {
     const Box3 cube{middle - Vec3::Constant(half), middle + Vec3::Constant(half)};
     return cube.meets(around) && plane.within(middle, reach + std::sqrt(3.0) * half);
@@ -79,10 +79,10 @@ class Search {
 
  private:
   struct Cube {
-    std::size_t begin, end;  // of the faces that reach into it
+    std::size_t begin, end;  // range of cube_faces_: faces that reach into it
     std::size_t region;
   };
-  // A cube, or a larger one about it and others, which share a slab.
+  // A cube of the grid, one for several of the small cubes, whose nodes share a slab.
   struct Region {
     Vec3 middle;
     double half;
@@ -92,17 +92,17 @@ class Search {
     std::uint32_t id, cube;
   };
 
-  // The rows of a grid, from `base` on, before `end`.
+  // Walks a grid whose indices below `end` are ids from `base` on.
   void walk(const NodeGrid& grid, std::uint32_t base, std::uint32_t end) {
     constexpr int none = std::numeric_limits<int>::max();
     faces_at_.resize(std::max<std::size_t>(faces_at_.size(), 1));
     faces_at_[0].resize(faces_.size());
     std::iota(faces_at_[0].begin(), faces_at_[0].end(), 0u);
-    std::size_t depth_of_cube = 0;  // of the one that was looked at last
+    std::size_t depth_of_cube = 0;  // of the last cube entered
     bool is_new = false;
-    int whole = none;  // depth of a cube so small that all in it is taken
+    int whole = none;  // depth of a cube so small that all nodes in it are suspects
     int depth_of_region = none;
-    const auto into = [&](int depth, const Vec3& middle, double half) {
+    const auto enter = [&](int depth, const Vec3& middle, double half) {
       if (depth > whole) return true;
       const auto at = static_cast<std::size_t>(depth) + 1;
       if (faces_at_.size() <= at) faces_at_.resize(at + 1);
@@ -119,8 +119,8 @@ class Search {
       }
       return true;
     };
-    grid.walk(into, [&](int, std::uint32_t row) {
-      if (row >= end) return;
+    grid.walk(enter, [&](int, std::uint32_t index) {
+      if (index >= end) return;
       if (is_new) {
         if (suspects_.size() >= batch) test_suspects();
         const auto& here = faces_at_[depth_of_cube];
@@ -128,13 +128,13 @@ class Search {
         cube_faces_.insert(cube_faces_.end(), here.begin(), here.end());
         is_new = false;
       }
-      suspects_.push_back({base + row, static_cast<std::uint32_t>(cubes_.size() - 1)});
-      __builtin_prefetch(&graph_.position(nodes_, base + row));
+      suspects_.push_back({base + index, static_cast<std::uint32_t>(cubes_.size() - 1)});
+      __builtin_prefetch(&graph_.position(nodes_, base + index));
     });
     test_suspects();
   }
 
-  // Takes those of the suspects that are near, and forgets them all.
+  // Keeps the suspects that are near a face, and empties the batch.
   void test_suspects() {
     far_edges_only_.clear();
     std::size_t count = 0;
@@ -166,16 +166,16 @@ class Search {
   const Slab& slab_of(Region& region) {
     if (region.slab == ~0u) {
       indices_.clear();
-      const Vec3 way = Vec3::Constant(region.half + reach_);
-      tree_.near({region.middle - way, region.middle + way}, indices_);
+      const Vec3 extent = Vec3::Constant(region.half + reach_);
+      tree_.near({region.middle - extent, region.middle + extent}, indices_);
       region.slab = static_cast<std::uint32_t>(found_.slab.size());
-      found_.slab.emplace_back(faces_, indices_, region.middle, 2 * way.x());
+      found_.slab.emplace_back(faces_, indices_, region.middle, 2 * extent.x());
     }
     return found_.slab[region.slab];
   }
 
   static constexpr double region_size = 1;   // half its edge at most, in supports
-  static constexpr std::size_t batch = 256;  // suspects: enough for what is known of them to be fetched meanwhile
+  static constexpr std::size_t batch = 256;  // suspects: enough for prefetches to arrive
   const NodeSet& nodes_;
   const GraphStorage& graph_;
   std::span<const Corners> faces_;

@@ -9,25 +9,24 @@
 
 namespace geo {
 
-void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& take) {
+void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& visit) {
   if (k < 0) throw InputError("nearest nodes: k is " + std::to_string(k) + ", give zero or more");
   if (tree.size() == 0) return;
-  // Nodes that search together: as many as make up for gathering candidates, as few as have most
-  // candidates in common.
-  constexpr std::uint32_t company = 48;
+  // Nodes that search together: enough to pay for gathering candidates, few enough to share most of them.
+  constexpr std::uint32_t group_size = 48;
   const auto cells = tree.cells();
-  // Along the Morton curve, so that each group can learn from the one before how far to look.
+  // Along the Morton curve: each group learns its reach from the one before.
   std::vector<std::uint32_t> groups, open{0};
   while (!open.empty()) {
     const auto c = open.back();
     open.pop_back();
-    if (cells[c].leaf() || cells[c].count() <= company)
+    if (cells[c].leaf() || cells[c].count() <= group_size)
       groups.push_back(c);
     else
       open.insert(open.end(), {cells[c].children + 1, cells[c].children});
   }
   parallel_for(groups.size(), 16, [&](std::size_t begin, std::size_t end) {
-    nearest_of_groups(tree, std::span(groups).subspan(begin, end - begin), static_cast<std::uint32_t>(k), take);
+    nearest_of_groups(tree, std::span(groups).subspan(begin, end - begin), static_cast<std::uint32_t>(k), visit);
   });
 }
 

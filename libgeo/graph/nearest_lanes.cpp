@@ -1,8 +1,9 @@
-// Nodes of a small cell search together. Candidates within `reach` of its box are gathered once, as
-// floats relative to it; each node then takes those within reach of itself, ranks them by counting,
-// and puts the first k in their exact order by doubles. A row holds when its last node is within
-// reach, since all nodes that were left out are farther (NodeTree::Cell::gap). The vectors' width
-// decides how fast that goes, never what comes out.
+// Nearest nodes by groups. The nodes of a small cell search together:
+//   1. Candidates within `reach` of the cell's box are gathered once, as floats relative to the box.
+//   2. Each node selects those within reach of itself and ranks them by counting.
+//   3. It puts the first k in exact order by doubles.
+// The result holds when the last node is within reach, since all nodes left out are farther
+// (NodeTree::Cell::gap). The width of the vectors changes the speed only.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/nearest_lanes.cpp"
 #include <hwy/foreach_target.h>
@@ -20,7 +21,7 @@
 namespace geo {
 namespace {
 
-using TakeRow = std::function<void(NodeId, std::span<const NodeId>)>;
+using Visit = std::function<void(NodeId, std::span<const NodeId>)>;
 
 // Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within
 // 2⁻²⁴ (1 + 2⁻²⁸) of the exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at
@@ -42,7 +43,7 @@ struct Gathered {
   std::vector<float> along[3];
   std::vector<std::uint32_t> slot;
   std::size_t size = 0;
-  void room(std::size_t more) {
+  void reserve(std::size_t more) {
     if (size + more <= slot.size()) return;
     const std::size_t n = 2 * (size + more);
     for (auto& a : along) a.resize(n);
@@ -61,8 +62,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 class GroupSearch {
  public:
-  GroupSearch(const NodeTree& tree, std::uint32_t k, const TakeRow& take)
-      : tree_(tree), k_(k), take_(take), row_(std::size_t(k) + 1) {
+  GroupSearch(const NodeTree& tree, std::uint32_t k, const Visit& visit)
+      : tree_(tree), k_(k), visit_(visit), row_(std::size_t(k) + 1) {
     wanted_ = static_cast<std::uint32_t>(std::min<std::size_t>(std::size_t(k) + 1, tree.size()));
   }
 
@@ -80,11 +81,11 @@ class GroupSearch {
     learned_ = 0;
     for (;;) {
       gather(home, reach);
-      std::size_t left = 0;
+      std::size_t open = 0;
       for (const auto slot : pending_)
-        if (!search(slot, reach)) pending_[left++] = slot;
-      pending_.resize(left);
-      if (left == 0) break;
+        if (!search(slot, reach)) pending_[open++] = slot;
+      pending_.resize(open);
+      if (open == 0) break;
       reach = std::min(reach > 0 ? 1.6 * reach : farthest, farthest);
     }
     learned_ *= 1.06;
@@ -108,7 +109,7 @@ class GroupSearch {
       const NodeTree::Cell& cell = cells[stack_.back()];
       stack_.pop_back();
       if (cell.leaf()) {
-        take_leaf(cell, home, reach);
+        gather_leaf(cell, home, reach);
         continue;
       }
       for (const auto child : {cell.children + 1, cell.children})
@@ -116,20 +117,20 @@ class GroupSearch {
     }
     // Whole vectors are read: those behind the last are far away.
     const hn::ScalableTag<float> d;
-    near_.room(hn::Lanes(d));
+    near_.reserve(hn::Lanes(d));
     for (auto& a : near_.along) std::fill_n(a.begin() + static_cast<std::ptrdiff_t>(near_.size), hn::Lanes(d), 1e15f);
   }
 
-  void take_leaf(const NodeTree::Cell& cell, const NodeTree::Cell& home, double reach) {
+  void gather_leaf(const NodeTree::Cell& cell, const NodeTree::Cell& home, double reach) {
     const hn::ScalableTag<double> dd;
     const hn::Rebind<float, decltype(dd)> df;
     const hn::Rebind<std::uint32_t, decltype(dd)> du;
     const std::size_t lanes = hn::Lanes(dd);
-    // Of nodes at one place the first k + 1 are enough: nobody has the others among its k nearest.
+    // The first k + 1 of nodes at one position suffice: no node has others among its k nearest.
     const auto end = cell.count() > NodeTree::leaf_size
                          ? std::min(cell.end, cell.begin + std::max(wanted_, NodeTree::leaf_size))
                          : cell.end;
-    near_.room(end - cell.begin + lanes);
+    near_.reserve(end - cell.begin + lanes);
     const auto limit = hn::Set(df, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
     const auto zero = hn::Zero(df);
     for (std::size_t at = cell.begin; at < end; at += lanes) {
@@ -204,7 +205,7 @@ class GroupSearch {
       row_[length] = NodeId(exact_[i].node);
       length += exact_[i].node != self;
     }
-    take_(NodeId(self), std::span<const NodeId>(row_.data(), length));
+    visit_(NodeId(self), std::span<const NodeId>(row_.data(), length));
     return true;
   }
 
@@ -236,7 +237,7 @@ class GroupSearch {
                                                    static_cast<float>(2 * float_error));
     std::uint32_t taken = wanted_;
     while (taken < count && order_[taken] <= last) ++taken;
-    // Floats nearly always have them in their order, and then nothing is asked of one at a time.
+    // As a rule floats give the exact order already.
     for (std::uint32_t i = 0; i < taken; ++i) exact_[i] = exact(order_[i] & (most_keyed - 1));
     bool ascend = true;
     for (std::uint32_t i = 1; i < taken; ++i) ascend &= exact_[i - 1].square < exact_[i].square;
@@ -251,7 +252,7 @@ class GroupSearch {
 
   const NodeTree& tree_;
   const std::uint32_t k_;
-  const TakeRow& take_;
+  const Visit& visit_;
   std::uint32_t wanted_;  // of the nearest, the node itself included
   double learned_ = 0;    // the farthest last of a row in the group before, squared
   double middle_[3], unit_ = 1, scale_ = 1;
@@ -263,8 +264,8 @@ class GroupSearch {
 };
 
 void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,
-                       const TakeRow& take) {
-  GroupSearch search(tree, k, take);
+                       const Visit& visit) {
+  GroupSearch search(tree, k, visit);
   for (const auto group : groups) search(group);
 }
 
@@ -276,8 +277,8 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(nearest_of_groups);
 void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,
-                       const TakeRow& take) {
-  HWY_DYNAMIC_DISPATCH(nearest_of_groups)(tree, groups, k, take);
+                       const Visit& visit) {
+  HWY_DYNAMIC_DISPATCH(nearest_of_groups)(tree, groups, k, visit);
 }
 }  // namespace geo
 #endif

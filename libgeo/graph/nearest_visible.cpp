@@ -11,8 +11,8 @@ namespace {
 
 using Group = std::span<std::uint32_t>;  // indices into `ids`
 
-// Into groups so small that what is near one of them is mostly near the others, too: a support
-// across.
+// Divides nodes into groups at most a support radius wide, so that nodes near one of a group are mostly
+// near the others.
 void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all, std::vector<Group>& groups) {
   Box3 box;
   double support = 0;
@@ -61,7 +61,7 @@ std::vector<std::vector<std::uint32_t>> nearest_visible(
     std::vector<std::uint8_t> blocked;
     for (std::size_t g = 0; g < group.size(); ++g) {
       auto& found = visible[group[g]];
-      // No more at a time than are wanted, since most are visible as a rule.
+      // k at a time, since most are visible as a rule.
       for (std::span<const std::uint32_t> rest = candidates[g]; !rest.empty() && found.size() < wanted;) {
         const auto some = rest.first(std::min(wanted, rest.size()));
         rest = rest.subspan(some.size());

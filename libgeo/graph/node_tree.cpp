@@ -22,21 +22,21 @@ std::uint32_t spread(std::uint32_t x) {
   return (x | x << 2) & 0x9249249;
 }
 
-std::size_t part_count(std::size_t nodes) { return (nodes + grain - 1) / grain; }
+std::size_t chunk_count(std::size_t nodes) { return (nodes + grain - 1) / grain; }
 
-// Calls body(p, begin, end) for the p-th part of [0, nodes). Parts are the same for any number of threads.
+// Calls body(c, begin, end) for the c-th chunk of [0, nodes). Chunks do not depend on the number of threads.
 template <class Body>
-void in_parts(std::size_t nodes, const Body& body) {
-  parallel_for(part_count(nodes), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) body(p, p * grain, std::min<std::size_t>(nodes, (p + 1) * grain));
+void in_chunks(std::size_t nodes, const Body& body) {
+  parallel_for(chunk_count(nodes), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) body(c, c * grain, std::min<std::size_t>(nodes, (c + 1) * grain));
   });
 }
 
 // `row(i)`: of the i-th node.
 template <class Row>
 Box3 box_of_nodes(std::span<const Vec3> positions, std::size_t count, const Row& row) {
-  std::vector<Box3> boxes(part_count(count));
-  in_parts(count, [&](std::size_t p, std::size_t begin, std::size_t end) {
+  std::vector<Box3> boxes(chunk_count(count));
+  in_chunks(count, [&](std::size_t p, std::size_t begin, std::size_t end) {
     Box3 box;
     for (std::size_t i = begin; i < end; ++i) box.add(positions[row(i)]);
     boxes[p] = box;
@@ -50,7 +50,7 @@ Box3 box_of_nodes(std::span<const Vec3> positions, std::size_t count, const Row&
 template <class Row>
 void encode(std::span<const Vec3> positions, const Box3& box, std::span<std::uint64_t> keyed, const Row& row) {
   const double extent = (box.hi - box.lo).maxCoeff();
-  in_parts(keyed.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+  in_chunks(keyed.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t r = row(i);
       std::uint32_t code = 0;
@@ -63,22 +63,22 @@ void encode(std::span<const Vec3> positions, const Box3& box, std::span<std::uin
   });
 }
 
-// By digits, lowest first: rows that ascend stay so among equal codes. Each part counts its digits, and then writes
-// where those of lower digits and of the parts before it end.
+// A stable radix sort, lowest digit first. Each chunk counts its digits, and then writes behind lower digits
+// and behind equal digits of earlier chunks.
 void sort_by_digits(UninitializedArray<std::uint64_t>& keyed) {
   constexpr int digit = 10, values = 1 << digit;
   UninitializedArray<std::uint64_t> other(keyed.size());
-  std::vector<std::array<std::uint32_t, values>> next(part_count(keyed.size()));
+  std::vector<std::array<std::uint32_t, values>> next(chunk_count(keyed.size()));
   for (int pass = 0; pass < code_bits / digit; ++pass) {
     const auto place = [&](std::uint64_t k) { return k >> (32 + digit * pass) & (values - 1); };
-    in_parts(keyed.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
+    in_chunks(keyed.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
       next[p].fill(0);
       for (std::size_t i = begin; i < end; ++i) ++next[p][place(keyed[i])];
     });
     std::uint32_t sum = 0;
     for (int value = 0; value < values; ++value)
       for (auto& part : next) sum += std::exchange(part[static_cast<std::size_t>(value)], sum);
-    in_parts(keyed.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
+    in_chunks(keyed.size(), [&](std::size_t p, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) other[next[p][place(keyed[i])]++] = keyed[i];
     });
     std::swap(keyed, other);
@@ -95,8 +95,8 @@ class Splitter {
   Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed)
       : positions_(positions), keyed_(keyed) {}
 
-  // Splits a cell at the highest bit in which its first code and the last differ, and appends the jobs that this makes,
-  // the first part's last. False when it stays a leaf.
+  // Splits a cell at the highest bit in which its first and last code differ, and appends the jobs of both
+  // children, the first child last. False when the cell stays a leaf.
   bool split(std::vector<Cell>& cells, Job job, std::vector<Job>& jobs) {
     const auto begin = cells[job.cell].begin, end = cells[job.cell].end;
     if (end - begin <= NodeTree::leaf_size) return false;
@@ -149,7 +149,7 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
   node_ = UninitializedArray<std::uint32_t>(n);
   for (auto& c : coordinate_) c = UninitializedArray<double>(n + 16), std::fill(c.end() - 16, c.end(), 0.0);
 
-  // Large cells are split one after another, what is in the others at the same time.
+  // Large cells are split one after another, the subtrees below them in parallel.
   std::vector<Cell> top{{{0, 0, 0}, {0, 0, 0}, 0, n, 0}};
   std::vector<Job> jobs{{0, code_bits - 1}}, small;
   while (!jobs.empty()) {
@@ -188,7 +188,7 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
     }
   });
 
-  // Behind the large cells those in each of the others, without its root.
+  // The cells of each subtree, without its root, follow the large cells.
   std::vector<std::uint32_t> place(trees.size() + 1, static_cast<std::uint32_t>(top.size()));
   for (std::size_t t = 0; t < trees.size(); ++t)
     place[t + 1] = place[t] + static_cast<std::uint32_t>(trees[t].size()) - 1;

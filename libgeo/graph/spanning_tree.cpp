@@ -1,8 +1,8 @@
-// Boruvka: each component's shortest way out, round by round. A node's nearest nodes are asked first. One that has none
-// of another component among them is searched for in the tree, unless its component knows a way out that is shorter
-// than the distance to the last of them: where nodes are spread evenly it always does. Where only edges beyond the
-// nearest nodes are asked for, all that is joined by shorter edges than any node's last nearest counts as one component
-// from the start. Where nodes are spread evenly that is everything, and nothing is left to do.
+// Borůvka's algorithm: in each round, the shortest edge out of each component. A node's k nearest nodes
+// are tested first. Where none of them is in another component, the tree of nodes is searched, unless the
+// component has an edge shorter than the distance to the k-th. For edges beyond the nearest nodes,
+// everything joined by edges shorter than any node's k-th nearest counts as one component from the start.
+// Where nodes are spread evenly that is all nodes, and no round is left.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::uint32_t none = ~0u;
 
-struct Way {
+struct TreeEdge {
   double square = std::numeric_limits<double>::infinity();
   std::uint32_t i = none, j = none;
-  bool operator<(const Way& o) const { return square != o.square ? square < o.square : i != o.i ? i < o.i : j < o.j; }
+  bool operator<(const TreeEdge& o) const { return square != o.square ? square < o.square : i != o.i ? i < o.i : j < o.j; }
 };
 
 class Boruvka {
@@ -34,9 +34,9 @@ class Boruvka {
     std::iota(component_.begin(), component_.end(), 0u);
   }
 
-  // Joins what edges of nearest nodes join that are shorter than those of every node's last nearest. Each such edge is
-  // in the rows of both its ends, and all other pairs of nodes come later in the tree.
-  void join_near() {
+  // Joins along edges to nearest nodes that are shorter than the distance of every node to its k-th
+  // nearest. Both ends have such an edge, and the tree has all other pairs later.
+  void join_nearest() {
     if (k_ == 0) return;
     double reach = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < x_.size(); ++i)
@@ -52,17 +52,17 @@ class Boruvka {
     for (std::uint32_t i = 0; i < x_.size(); ++i) component_[i] = component_[component_[i]];
   }
 
-  std::vector<Way> run() {
-    std::vector<Way> edges;
-    if (components_ > 1) best_.resize(x_.size()), asked_.resize(x_.size(), 0);
+  std::vector<TreeEdge> run() {
+    std::vector<TreeEdge> edges;
+    if (components_ > 1) best_.resize(x_.size()), tested_.resize(x_.size(), 0);
     while (components_ > 1) {
-      std::fill(best_.begin(), best_.end(), Way());
-      for (std::uint32_t i = 0; i < x_.size(); ++i) ask_near(i);
+      std::fill(best_.begin(), best_.end(), TreeEdge());
+      for (std::uint32_t i = 0; i < x_.size(); ++i) offer_nearest(i);
       search();
       for (std::uint32_t c = 0; c < best_.size(); ++c) {
-        const Way& way = best_[c];
-        if (way.i == none) continue;
-        if (join(way.i, way.j)) edges.push_back(way);
+        const TreeEdge& edge = best_[c];
+        if (edge.i == none) continue;
+        if (join(edge.i, edge.j)) edges.push_back(edge);
       }
       for (std::uint32_t i = 0; i < x_.size(); ++i) component_[i] = component_[component_[i]];  // roots come first
     }
@@ -84,47 +84,48 @@ class Boruvka {
     return true;
   }
   void offer(std::uint32_t i, std::uint32_t j) {
-    Way& way = best_[component_[i]];
-    way = std::min(way, Way{square(i, j), std::min(i, j), std::max(i, j)});
+    TreeEdge& edge = best_[component_[i]];
+    edge = std::min(edge, TreeEdge{square(i, j), std::min(i, j), std::max(i, j)});
   }
 
-  // What is in a node's component stays there, so a row is read once.
-  void ask_near(std::uint32_t i) {
-    auto& q = asked_[i];
+  // Nodes of one component stay in it, so the list of nearest nodes is read once.
+  void offer_nearest(std::uint32_t i) {
+    auto& q = tested_[i];
     while (q < k_ && near(i, q).valid() && component_[near(i, q).index()] == component_[i]) ++q;
     if (q < k_ && near(i, q).valid()) offer(i, near(i, q).value);
   }
 
-  // Ways out of nodes whose rows have none, where they may be the shortest.
+  // Searches from nodes whose nearest nodes are all in their component, where the result may be the
+  // shortest.
   void search() {
-    owner_.clear();
+    cell_component_.clear();
     for (const auto i : tree_.nodes()) {
-      if (asked_[i] < k_) continue;  // a way is in its row, or its row holds all nodes
+      if (tested_[i] < k_) continue;  // its list has an edge out, or holds all nodes
       if (k_ > 0 && square(i, near(i, k_ - 1).value) > best_[component_[i]].square) continue;
-      if (owner_.empty()) own_cells();
+      if (cell_component_.empty()) label_cells();
       search(0, i);
     }
   }
 
   // The component of all nodes of a cell, or none.
-  void own_cells() {
+  void label_cells() {
     const auto cells = tree_.cells();
-    owner_.resize(cells.size());
+    cell_component_.resize(cells.size());
     for (std::size_t c = cells.size(); c-- > 0;) {
       if (!cells[c].leaf()) {
-        const auto l = owner_[cells[c].children], r = owner_[cells[c].children + 1];
-        owner_[c] = l == r ? l : none;
+        const auto l = cell_component_[cells[c].children], r = cell_component_[cells[c].children + 1];
+        cell_component_[c] = l == r ? l : none;
         continue;
       }
-      owner_[c] = component_[tree_.nodes()[cells[c].begin]];
+      cell_component_[c] = component_[tree_.nodes()[cells[c].begin]];
       for (auto slot = cells[c].begin; slot < cells[c].end; ++slot)
-        if (component_[tree_.nodes()[slot]] != owner_[c]) owner_[c] = none;
+        if (component_[tree_.nodes()[slot]] != cell_component_[c]) cell_component_[c] = none;
     }
   }
 
   void search(std::uint32_t at, std::uint32_t i) {
     const auto cells = tree_.cells();
-    if (owner_[at] == component_[i]) return;
+    if (cell_component_[at] == component_[i]) return;
     if (cells[at].leaf()) {
       for (auto slot = cells[at].begin; slot < cells[at].end; ++slot)
         if (const auto j = tree_.nodes()[slot]; component_[j] != component_[i]) offer(i, j);
@@ -141,16 +142,16 @@ class Boruvka {
   std::span<const Vec3> x_;
   std::span<const NodeId> near_;
   const std::size_t k_;
-  std::vector<std::uint32_t> component_;  // its lowest node, between rounds
-  std::size_t components_;                // how many
-  std::vector<Way> best_;                 // of each component, by that node
-  std::vector<std::uint32_t> asked_;      // how many of a node's nearest are in its component
-  std::vector<std::uint32_t> owner_;
+  std::vector<std::uint32_t> component_;  // of each node: the lowest node of its component, between rounds
+  std::size_t components_;                // their number
+  std::vector<TreeEdge> best_;                 // of each component, by its lowest node
+  std::vector<std::uint32_t> tested_;      // number of its nearest nodes known to be in its component
+  std::vector<std::uint32_t> cell_component_;
 };
 
-std::vector<std::pair<NodeId, NodeId>> as_pairs(const std::vector<Way>& edges) {
+std::vector<std::pair<NodeId, NodeId>> as_pairs(const std::vector<TreeEdge>& edges) {
   std::vector<std::pair<NodeId, NodeId>> pairs;
-  for (const Way& e : edges) pairs.push_back({NodeId(e.i), NodeId(e.j)});
+  for (const TreeEdge& e : edges) pairs.push_back({NodeId(e.i), NodeId(e.j)});
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -167,14 +168,14 @@ std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> posit
 std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions,
                                                             std::span<const NodeId> near, int k) {
   Boruvka boruvka(tree, positions, near, k);
-  boruvka.join_near();
+  boruvka.join_nearest();
   auto edges = boruvka.run();
   const auto length = static_cast<std::size_t>(k);
   const auto has = [&](std::uint32_t i, std::uint32_t j) {
     const auto row = near.subspan(i * length, length);
     return std::find(row.begin(), row.end(), NodeId(j)) != row.end();
   };
-  std::erase_if(edges, [&](const Way& e) { return has(e.i, e.j) || has(e.j, e.i); });
+  std::erase_if(edges, [&](const TreeEdge& e) { return has(e.i, e.j) || has(e.j, e.i); });
   return as_pairs(edges);
 }
 

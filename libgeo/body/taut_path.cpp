@@ -1,6 +1,6 @@
-// Over the sides from one point's sight to the other's, across edges at points pulled tight, low
-// enough above both to meet nothing. What is found is only what exact predicates let through; all
-// the rest here is where to look.
+// The path leads over the sides of the surface, from one point's view to the other's. It crosses
+// edges at points pulled taut, and is lowered towards the surface until it touches nothing.
+// Floating point only proposes points; exact predicates decide.
 #include "body/taut_path.h"
 
 #include <algorithm>
@@ -14,35 +14,35 @@
 namespace geo {
 namespace {
 
-using Step = std::pair<Side, int>;  ///< out of a side over one of its edges
+using Step = std::pair<Side, int>;  // a side, and the edge over which the path leaves it
 
-// Sight along links of a way, as often as one search may ask: nearly all that are found take less
-// than a thousand.
-class Sight {
+// PathVisibility along segments, with a limit on the number of tests in one search: nearly all
+// paths that exist need less than a thousand.
+class PathVisibility {
  public:
-  explicit Sight(const Complex& k) : k_(k) {}
-  bool blocked(const Vec3& p, const Vec3& q) { return left_ == 0 || (--left_, is_blocked(k_, p, q)); }
-  bool spent() const { return left_ == 0; }
+  explicit PathVisibility(const Complex& k) : k_(k) {}
+  bool blocked(const Vec3& p, const Vec3& q) { return tests_left_ == 0 || (--tests_left_, is_blocked(k_, p, q)); }
+  bool spent() const { return tests_left_ == 0; }
 
  private:
   const Complex& k_;
-  int left_ = 100000;
+  int tests_left_ = 100000;
 };
 
-// Where one looks at each of the sides that are seen along the axes and at the middles of near
-// faces. One point may see several shells.
-std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) {
-  std::map<Side, Vec3> sights;
+// A visible point on each of the sides that x sees along the axes and at the middles of near faces.
+// One point may see several shells.
+std::map<Side, Vec3> visible_sides(const Complex& k, const Vec3& x, double reach) {
+  std::map<Side, Vec3> visible;
   std::vector<FaceId> faces;
-  // What is seen near an edge is no foothold: the other face there may be in the way.
+  // Points near an edge do not count: the other face there may block the path.
   const auto add = [&](Side s, const Vec3& at) {
     const auto t = k.corners(s.face);
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
     for (int e = 0; e < 3; ++e)
       if (n.dot((t[(e + 1) % 3] - t[e]).cross(at - t[e])) < 0.01 * n.squaredNorm()) return;
-    if (is_in_front(k, s, at, x)) sights.try_emplace(s, at);
+    if (is_in_front(k, s, at, x)) visible.try_emplace(s, at);
   };
-  const auto look = [&](const Vec3& to) {
+  const auto look_towards = [&](const Vec3& to) {
     Box3 box{x, x};
     box.add(to);
     faces.clear();
@@ -61,7 +61,7 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
   for (int i = 0; i < 6; ++i) {
     Vec3 to = x;
     to[i % 3] = i < 3 ? k.extent().hi[i % 3] + reach : k.extent().lo[i % 3] - reach;
-    look(to);
+    look_towards(to);
   }
   std::vector<FaceId> targets;
   k.faces_near(Box3{x, x}.grown(reach), targets);
@@ -69,11 +69,11 @@ std::map<Side, Vec3> look_around(const Complex& k, const Vec3& x, double reach) 
     const auto t = k.corners(targets[i]);
     add({targets[i], orient3d(t[0], t[1], t[2], x) > 0 ? 1 : 0}, (t[0] + t[1] + t[2]) / 3);
   }
-  return sights;
+  return visible;
 }
 
-// Over the fewest sides from one of `starts` to one of `ends`, not by `closed` steps; empty when
-// there is no such way. The last step's edge says nothing.
+// The path over the fewest sides from one of `starts` to one of `ends` without `closed` steps;
+// empty when there is none. The edge of the last step has no meaning.
 std::vector<Step> sides_between(const Complex& k, const std::map<Side, Vec3>& starts, const std::map<Side, Vec3>& ends,
                                 const std::set<Step>& closed) {
   std::map<Side, Step> before;
@@ -98,17 +98,17 @@ Vec3 normal_of(const Complex& k, Side s) {
   return (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
 }
 
-/// A place where the way is held: before a side at its ends, at an edge in between.
-struct Hold {
+// A support of the path: in front of a side at its ends, around an edge in between.
+struct Support {
   Vec3 at;
-  std::vector<Vec3> off;  ///< directions from `at`, one after another
+  std::vector<Vec3> off;  // directions from `at` to points of the path, in order
   double height;
-  std::size_t step = 0;  ///< of the path over sides: the one that it crosses last
-  Vec3 aim = at;         ///< what `at` is a few last places from
+  std::size_t step = 0;  // index of the last step that it crosses
+  Vec3 aim = at;         // the point that `at` is a few ulps from
   Vec3 point(std::size_t i) const { return at + height * off[i]; }
 };
 
-// From over one side to over another around the edge pq.
+// Directions from the edge pq to points of a path from above one side to above the other.
 std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, const Vec3& q) {
   const Vec3 along = (q - p).normalized(), rise = normal_of(k, a), land = normal_of(k, b);
   const auto into = [&](Side s) {  // from the edge into the face
@@ -117,21 +117,20 @@ std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, c
     return Vec3((w - w.dot(along) * along).normalized());
   };
   const Vec3 from = into(a), to = into(b);
-  // More than half a turn of material around the edge? A front's own face comes back on its other
-  // side.
+  // Does material span more than 180 degrees around the edge? At a crack front both sides are of
+  // one face.
   const auto t = k.corners(a.face);
   int behind = 0;
   for (const Vec3& c : k.corners(b.face))
     if (c != p && c != q) behind = orient3d(t[0], t[1], t[2], c) * (a.which ? -1 : 1);
   const bool reflex = a.face == b.face || behind > 0;
-  // The middle of the material's wedge, from whatever says it best: near half a turn the normals
-  // do.
+  // The bisector of the material's wedge; near 180 degrees the normals give it best.
   const Vec3 turn = (from.dot(to) < 0 ? Vec3(rise + land) : reflex ? Vec3(-(from + to)) : Vec3(from + to)).normalized();
   return reflex ? std::vector<Vec3>{rise, turn, land} : std::vector<Vec3>{turn};
 }
 
-// Where a way pulled tight crosses the edges of a path over sides, at least the share `clear` of
-// each from its ends.
+// Where a taut path crosses the edges of a path over sides, at least the share `clear` from their
+// ends.
 std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end,
                             double clear) {
   const std::size_t n = path.size() - 1;
@@ -154,78 +153,109 @@ std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, con
   return at;
 }
 
-// The way over such a path; where there is none, `blocked` is a step of the path that did not go.
-std::vector<Vec3> way_over(const Complex& k, Sight& sight, const std::vector<Step>& path, const Vec3& from,
-                           const Vec3& start, const Vec3& to, const Vec3& end, double reach, double clear,
-                           std::size_t& blocked) {
-  const double least = 1e-16 * k.extent().diagonal();
-  std::vector<Hold> holds{{start, {(from - start).normalized()}, std::min(0.25 * reach, (from - start).norm())}};
-  const auto at = crossings(k, path, start, end, clear);
-  for (std::size_t s = 0; s < at.size();) {
-    // A needle is crossed where its edges all but touch, as if it were not there: its own plane
-    // says nothing.
-    std::size_t last = s;
-    while (last + 1 < at.size() && (at[last + 1] - at[s]).norm() < 1e-9 * reach) ++last;
-    const auto t = k.corners(path[s].first.face);
-    holds.push_back({at[s],
-                     around_edge(k, path[s].first, path[last + 1].first, t[static_cast<std::size_t>(path[s].second)],
-                                 t[static_cast<std::size_t>((path[s].second + 1) % 3)]),
-                     0.25 * reach, last});
-    s = last + 1;
-  }
-  holds.push_back({end, {(to - end).normalized()}, std::min(0.25 * reach, (to - end).norm()), at.size()});
-  int tries = 0;
-  Random random(at.size());
-  for (std::size_t h = 0; h < holds.size() && !sight.spent();) {
-    // What is blocked is held lower, at its higher end; then what comes before is asked again.
-    bool open = true;
-    for (std::size_t i = 0; i + 1 < holds[h].off.size() && open; ++i)
-      open = !sight.blocked(holds[h].point(i), holds[h].point(i + 1));
-    if (open &&
-        (h + 1 == holds.size() || !sight.blocked(holds[h].point(holds[h].off.size() - 1), holds[h + 1].point(0)))) {
-      ++h;
-      continue;
+// An end of the path: a point in the material and a point that it sees on a side.
+struct PathEnd {
+  Vec3 point, foot;
+};
+
+// A taut path over given sides, as supports that are lowered until nothing blocks the path between
+// them.
+class SupportedPath {
+ public:
+  SupportedPath(const Complex& k, const std::vector<Step>& path, const PathEnd& from, const PathEnd& to, double reach,
+                double clear)
+      : from_(from), to_(to), lowest_(1e-16 * k.extent().diagonal()), random_(path.size() - 1) {
+    const auto support_end = [&](const PathEnd& end, std::size_t step) {
+      const Vec3 off = end.point - end.foot;
+      supports_.push_back({end.foot, {off.normalized()}, std::min(0.25 * reach, off.norm()), step});
+    };
+    support_end(from, 0);
+    const auto at = crossings(k, path, from.foot, to.foot, clear);
+    for (std::size_t s = 0; s < at.size();) {
+      // The plane of a needle has no meaning: where its edges nearly touch, both are crossed as
+      // one.
+      std::size_t last = s;
+      while (last + 1 < at.size() && (at[last + 1] - at[s]).norm() < 1e-9 * reach) ++last;
+      const auto t = k.corners(path[s].first.face);
+      supports_.push_back(
+          {at[s],
+           around_edge(k, path[s].first, path[last + 1].first, t[static_cast<std::size_t>(path[s].second)],
+                       t[static_cast<std::size_t>((path[s].second + 1) % 3)]),
+           0.25 * reach, last});
+      s = last + 1;
     }
-    Hold& high = open && holds[h + 1].height > holds[h].height ? holds[h + 1] : holds[h];
-    high.height *= 0.5;
-    if (high.height < least) {
-      if (tries++ == 250) {
-        blocked = high.step;
-        return {};
+    support_end(to, at.size());
+  }
+  /// Lowers supports until no segment is blocked. False when that fails; `blocked` is then a step
+  /// of the path that cannot be passed.
+  bool lower(PathVisibility& visibility, std::size_t& blocked) {
+    int tries = 0;
+    for (std::size_t h = 0; h < supports_.size() && !visibility.spent();) {
+      bool open = true;
+      for (std::size_t i = 0; i + 1 < supports_[h].off.size() && open; ++i)
+        open = !visibility.blocked(supports_[h].point(i), supports_[h].point(i + 1));
+      if (open && (h + 1 == supports_.size() ||
+                   !visibility.blocked(supports_[h].point(supports_[h].off.size() - 1), supports_[h + 1].point(0)))) {
+        ++h;
+        continue;
       }
-      // Where no point has room a link may have: what is between two points is finer than doubles.
-      for (Hold* hold : {&holds[h], open ? &holds[h + 1] : &holds[h]})
-        hold->at = hold->aim + 4 * least * random.uniform() * random.direction(),
-        hold->height = least * std::exp2(8 * random.uniform());
+      // The higher end of a blocked segment is lowered; then the segment before is tested again.
+      Support& high = open && supports_[h + 1].height > supports_[h].height ? supports_[h + 1] : supports_[h];
+      high.height *= 0.5;
+      if (high.height < lowest_) {
+        if (tries++ == 250) {
+          blocked = high.step;
+          return false;
+        }
+        // Below the resolution of doubles single points fail, but a segment between others may
+        // pass.
+        perturb(supports_[h]);
+        perturb(open ? supports_[h + 1] : supports_[h]);
+      }
+      h -= h > 0;
     }
-    h -= h > 0;
+    return true;
   }
-  std::vector<Vec3> way{from};
-  for (const Hold& hold : holds)
-    for (std::size_t i = 0; i < hold.off.size(); ++i) way.push_back(hold.point(i));
-  way.push_back(to);
-  for (std::size_t s = 0; s + 1 < way.size(); ++s)
-    if (sight.blocked(way[s], way[s + 1])) {
-      blocked = 0;
-      return {};
-    }
-  return way;
-}
+  /// The path, ends included; empty when a segment is blocked.
+  std::vector<Vec3> polyline(PathVisibility& visibility) const {
+    std::vector<Vec3> points{from_.point};
+    for (const Support& support : supports_)
+      for (std::size_t i = 0; i < support.off.size(); ++i) points.push_back(support.point(i));
+    points.push_back(to_.point);
+    for (std::size_t s = 0; s + 1 < points.size(); ++s)
+      if (visibility.blocked(points[s], points[s + 1])) return {};
+    return points;
+  }
+
+ private:
+  void perturb(Support& support) {
+    support.at = support.aim + 4 * lowest_ * random_.uniform() * random_.direction();
+    support.height = lowest_ * std::exp2(8 * random_.uniform());
+  }
+
+  PathEnd from_, to_;
+  double lowest_;  // height
+  Random random_;
+  std::vector<Support> supports_;
+};
 
 }  // namespace
 
 std::vector<Vec3> taut_path(const Complex& k, const Vec3& from, const Vec3& to, double reach) {
-  const auto starts = look_around(k, from, reach), ends = look_around(k, to, reach);
+  const auto starts = visible_sides(k, from, reach), ends = visible_sides(k, to, reach);
   std::set<Step> closed;
-  Sight sight(k);
-  for (int attempt = 0; attempt < 32 && !sight.spent(); ++attempt) {
+  PathVisibility visibility(k);
+  for (int attempt = 0; attempt < 32 && !visibility.spent(); ++attempt) {
     const auto path = sides_between(k, starts, ends, closed);
     if (path.empty()) return {};
     std::size_t blocked = 0;
+    const PathEnd first{from, starts.at(path.front().first)}, last{to, ends.at(path.back().first)};
     for (const double clear : {1.0 / 16, 1.0 / 4, 1.0 / 2}) {
-      auto way = way_over(k, sight, path, from, starts.at(path.front().first), to, ends.at(path.back().first), reach,
-                          clear, blocked);
-      if (!way.empty()) return way;
+      SupportedPath supported(k, path, first, last, reach, clear);
+      if (!supported.lower(visibility, blocked)) continue;
+      auto points = supported.polyline(visibility);
+      if (!points.empty()) return points;
+      blocked = 0;
     }
     if (path.size() == 1) return {};
     closed.insert(path[std::min(blocked, path.size() - 2)]);

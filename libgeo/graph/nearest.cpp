@@ -12,7 +12,8 @@ namespace geo {
 void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId, std::span<const NodeId>)>& visit) {
   if (k < 0) throw InputError("nearest nodes: k is " + std::to_string(k) + ", give zero or more");
   if (tree.size() == 0) return;
-  // Nodes that search together: enough to pay for gathering candidates, few enough to share most of them.
+  // Nodes that search together: enough to pay for gathering candidates, few enough to share most of
+  // them.
   constexpr std::uint32_t group_size = 48;
   const auto cells = tree.cells();
   // Along the Morton curve: each group learns its reach from the one before.

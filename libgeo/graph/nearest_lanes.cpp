@@ -1,5 +1,6 @@
 // Nearest nodes by groups. The nodes of a small cell search together:
-//   1. Candidates within `reach` of the cell's box are gathered once, as floats relative to the box.
+//   1. Candidates within `reach` of the cell's box are gathered once, as floats relative to the
+//   box.
 //   2. Each node selects those within reach of itself and ranks them by counting.
 //   3. It puts the first k in exact order by doubles.
 // The result holds when the last node is within reach, since all nodes left out are farther

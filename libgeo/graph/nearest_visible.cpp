@@ -11,8 +11,8 @@ namespace {
 
 using Group = std::span<std::uint32_t>;  // indices into `ids`
 
-// Divides nodes into groups at most a support radius wide, so that nodes near one of a group are mostly
-// near the others.
+// Divides nodes into groups at most a support radius wide, so that nodes near one of a group are
+// mostly near the others.
 void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all, std::vector<Group>& groups) {
   Box3 box;
   double support = 0;

@@ -24,7 +24,8 @@ std::uint32_t spread(std::uint32_t x) {
 
 std::size_t chunk_count(std::size_t nodes) { return (nodes + grain - 1) / grain; }
 
-// Calls body(c, begin, end) for the c-th chunk of [0, nodes). Chunks do not depend on the number of threads.
+// Calls body(c, begin, end) for the c-th chunk of [0, nodes). Chunks do not depend on the number of
+// threads.
 template <class Body>
 void in_chunks(std::size_t nodes, const Body& body) {
   parallel_for(chunk_count(nodes), 1, [&](std::size_t first, std::size_t last) {
@@ -63,8 +64,8 @@ void encode(std::span<const Vec3> positions, const Box3& box, std::span<std::uin
   });
 }
 
-// A stable radix sort, lowest digit first. Each chunk counts its digits, and then writes behind lower digits
-// and behind equal digits of earlier chunks.
+// A stable radix sort, lowest digit first. Each chunk counts its digits, and then writes behind
+// lower digits and behind equal digits of earlier chunks.
 void sort_by_digits(UninitializedArray<std::uint64_t>& keyed) {
   constexpr int digit = 10, values = 1 << digit;
   UninitializedArray<std::uint64_t> other(keyed.size());
@@ -95,8 +96,8 @@ class Splitter {
   Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed)
       : positions_(positions), keyed_(keyed) {}
 
-  // Splits a cell at the highest bit in which its first and last code differ, and appends the jobs of both
-  // children, the first child last. False when the cell stays a leaf.
+  // Splits a cell at the highest bit in which its first and last code differ, and appends the jobs
+  // of both children, the first child last. False when the cell stays a leaf.
   bool split(std::vector<Cell>& cells, Job job, std::vector<Job>& jobs) {
     const auto begin = cells[job.cell].begin, end = cells[job.cell].end;
     if (end - begin <= NodeTree::leaf_size) return false;

@@ -1,8 +1,9 @@
-// Borůvka's algorithm: in each round, the shortest edge out of each component. A node's k nearest nodes
-// are tested first. Where none of them is in another component, the tree of nodes is searched, unless the
-// component has an edge shorter than the distance to the k-th. For edges beyond the nearest nodes,
-// everything joined by edges shorter than any node's k-th nearest counts as one component from the start.
-// Where nodes are spread evenly that is all nodes, and no round is left.
+// Borůvka's algorithm: in each round, the shortest edge out of each component. A node's k nearest
+// nodes are tested first. Where none of them is in another component, the tree of nodes is
+// searched, unless the component has an edge shorter than the distance to the k-th. For edges
+// beyond the nearest nodes, everything joined by edges shorter than any node's k-th nearest counts
+// as one component from the start. Where nodes are spread evenly that is all nodes, and no round is
+// left.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>
@@ -19,7 +20,9 @@ constexpr std::uint32_t none = ~0u;
 struct TreeEdge {
   double square = std::numeric_limits<double>::infinity();
   std::uint32_t i = none, j = none;
-  bool operator<(const TreeEdge& o) const { return square != o.square ? square < o.square : i != o.i ? i < o.i : j < o.j; }
+  bool operator<(const TreeEdge& o) const {
+    return square != o.square ? square < o.square : i != o.i ? i < o.i : j < o.j;
+  }
 };
 
 class Boruvka {
@@ -144,8 +147,8 @@ class Boruvka {
   const std::size_t k_;
   std::vector<std::uint32_t> component_;  // of each node: the lowest node of its component, between rounds
   std::size_t components_;                // their number
-  std::vector<TreeEdge> best_;                 // of each component, by its lowest node
-  std::vector<std::uint32_t> tested_;      // number of its nearest nodes known to be in its component
+  std::vector<TreeEdge> best_;            // of each component, by its lowest node
+  std::vector<std::uint32_t> tested_;     // number of its nearest nodes known to be in its component
   std::vector<std::uint32_t> cell_component_;
 };
 

@@ -5,10 +5,10 @@
 
 namespace geo {
 
-void push_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free,
+void move_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free,
                 const Progress& progress) {
   constexpr int steps = 8;
-  constexpr double strength = 0.5, room = 0.5 - keep_off;
+  constexpr double strength = 0.5, range = 0.5 - keep_off;
   std::vector<Vec3> moved(nodes.size());
   for (int step = 0; step < steps; ++step) {
     report(progress, "blue noise", static_cast<std::size_t>(step), steps);
@@ -17,13 +17,13 @@ void push_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice,
         const Vec3& p = moved[i] = nodes.position[i];
         if (!free[i]) continue;
         const Cell cell = leaves.cell(i);
-        Vec3 push = Vec3::Zero();
+        Vec3 shift = Vec3::Zero();
         leaves.around(cell, cell.level, [&](std::uint32_t row) {
           const double wanted = 0.5 * (nodes.spacing[i] + nodes.spacing[row]), d = (p - nodes.position[row]).norm();
-          if (row != i && d > 0 && d < wanted) push += (wanted / d - 1) * (p - nodes.position[row]);
+          if (row != i && d > 0 && d < wanted) shift += (wanted / d - 1) * (p - nodes.position[row]);
         });
-        const Vec3 middle = lattice.middle(cell), reach = Vec3::Constant(room * nodes.spacing[i]);
-        moved[i] = (p + strength * push).cwiseMax(middle - reach).cwiseMin(middle + reach);
+        const Vec3 middle = lattice.middle(cell), reach = Vec3::Constant(range * nodes.spacing[i]);
+        moved[i] = (p + strength * shift).cwiseMax(middle - reach).cwiseMin(middle + reach);
       }
     });
     nodes.position.swap(moved);

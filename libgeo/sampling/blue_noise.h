@@ -1,4 +1,4 @@
-// Blue noise: nodes pushed apart within their leaves.
+// Blue noise: nodes move apart within their leaves.
 #pragma once
 
 #include "kerf/nodes.h"
@@ -7,10 +7,10 @@
 
 namespace geo {
 
-/// A few steps in which each node with `free` set moves away from those nearer than the spacing, but stays in the inner
-/// three quarters of its leaf, which must hold no surface. Row i of the nodes is leaf i. All nodes move at once, so
-/// that the order does not matter.
-void push_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free,
+/// In a few steps, moves each node with `free` set away from nodes nearer than the spacing. It
+/// stays in the inner three quarters of its leaf, which the surface must not cut. Node i is leaf i.
+/// All nodes move at once, so the order does not matter.
+void move_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free,
                 const Progress& progress);
 
 }  // namespace geo

@@ -9,9 +9,10 @@
 namespace geo {
 namespace {
 
-// Where the number of nodes is asked for, cells with more material than `surely` always have one and those with less
-// than `hardly` never: between them some have, so that the number is met. Models with flat faces across the axes lose
-// or gain all cells of a face at once, half filled: where nothing else helps some of those have none.
+// For a wanted number of nodes, cells with a share of material above `surely` always have one and
+// those below `hardly` never. Between them some have, so that the number is met. Models with flat
+// faces across the axes gain or lose all cells of a face at once, half filled; as a last resort
+// (`at_worst`) some of those have none.
 constexpr float surely = 0.35f, at_worst = 0.6f, hardly = 0.03f;
 
 std::size_t count_above(const LeafLists& lists, float share) {
@@ -21,14 +22,14 @@ std::size_t count_above(const LeafLists& lists, float share) {
   return n;
 }
 
-/// The rule that keeps `count` leaves, or as near to that as may be.
-Keep keep_count(const LeafLists& lists, std::size_t count, float surely) {
+/// The selection of `count` leaves, or of the nearest number possible.
+NodeSelection select_count(const LeafLists& lists, std::size_t count, float surely) {
   const std::size_t sure = count_above(lists, surely);
   std::vector<std::pair<float, std::uint64_t>> rest;
   for (const auto& list : lists)
     for (const Leaf& leaf : list)
       if (leaf.node && leaf.share <= surely && leaf.share >= hardly)
-        rest.push_back({leaf.share, Keep::ticket_of(leaf)});
+        rest.push_back({leaf.share, NodeSelection::ticket_of(leaf)});
   if (count <= sure) return {surely, ~std::uint64_t(0)};
   if (count - sure >= rest.size()) return {hardly, 0};
   const auto least = rest.begin() + static_cast<std::ptrdiff_t>(count - sure - 1);
@@ -36,7 +37,7 @@ Keep keep_count(const LeafLists& lists, std::size_t count, float surely) {
   return {least->first, least->second};
 }
 
-/// Numbers of nodes by spacing, as measured, and guesses between and beyond them: a power law in pieces.
+/// Numbers of nodes by spacing, as measured, with a piecewise power law between and beyond them.
 class CountCurve {
  public:
   void add(double spacing, double count) {
@@ -71,9 +72,10 @@ class CountCurve {
 
 }  // namespace
 
-std::uint64_t Keep::ticket_of(const Leaf& leaf) { return Random(morton(leaf.cell.corner)).bits(); }
+std::uint64_t NodeSelection::ticket_of(const Leaf& leaf) { return Random(morton(leaf.cell.corner)).bits(); }
 
-std::optional<Found> LeafFinder::at(double spacing, int thin_levels, std::size_t most, SampleReport& report) const {
+std::optional<SpacedLeaves> LeafFinder::at(double spacing, int thin_levels, std::size_t most,
+                                           SampleReport& report) const {
   if (!(spacing > box_.diagonal() * 1e-4))
     throw InputError("the spacing is less than 0.01 % of the model's diagonal; choose a larger one");
   Stopwatch clock;
@@ -87,7 +89,7 @@ std::optional<Found> LeafFinder::at(double spacing, int thin_levels, std::size_t
     shape.lattice.origin[i] = box_.center()[i] - 0.5 * cells * coarse;
     while (std::ldexp(1.0, shape.root - shape.top) < cells) ++shape.root;
   }
-  Found found{{}, shape.lattice, {}, {}};
+  SpacedLeaves found{{}, shape.lattice, {}, {}};
   report.spacing = spacing;
   const auto divided = plan_octree(tree_, shape, most, found.thin, progress_);
   report.octree_seconds += clock.lap();
@@ -97,13 +99,13 @@ std::optional<Found> LeafFinder::at(double spacing, int thin_levels, std::size_t
   return found;
 }
 
-Found LeafFinder::with_count(std::size_t count, double volume, SampleReport& report) const {
+SpacedLeaves LeafFinder::with_count(std::size_t count, double volume, SampleReport& report) const {
   const double target = double(count), most = 4 * target + 1000;
   CountCurve curve;
   int thin = thin_levels();
   // A large spacing first: it costs little, and it shows how fine thin material may be.
   double spacing = 2.5 * std::cbrt(volume / target);
-  std::optional<Found> found;
+  std::optional<SpacedLeaves> found;
   std::size_t nodes = 0;
   const auto look = [&] {
     found.reset();
@@ -116,12 +118,12 @@ Found LeafFinder::with_count(std::size_t count, double volume, SampleReport& rep
     curve.add(spacing, double(nodes));
     if (round == 6) sure = at_worst;
     if (found && count_above(found->lists, sure) <= count && count_above(found->lists, hardly) >= count) break;
-    // On the way to a large number a quarter of it shows where to go.
+    // A quarter of a large number costs less and brackets it.
     spacing = curve.guess(target > 20000 && round == 0 && nodes < target / 8 ? target / 4 : target);
     look();
   }
   if (!found) throw InputError("no spacing gives " + std::to_string(count) + " nodes; ask for more");
-  found->keep = keep_count(found->lists, count, sure);
+  found->selection = select_count(found->lists, count, sure);
   return std::move(*found);
 }
 

@@ -1,39 +1,45 @@
-// Leaves at a spacing, and the spacing that gives as many nodes as asked for.
+// Leaves at a given spacing, and the spacing that gives a wanted number of nodes.
 #pragma once
 
 #include "sampling/leaves.h"
 
 namespace geo {
 
-/// Which leaves get a node: those with enough material, ties decided at random.
-struct Keep {
+/// Decides which leaves get a node: those with enough material; a random ticket breaks ties.
+struct NodeSelection {
   float share = float(least_share);
   std::uint64_t ticket = 0;
+  /// The ticket of a leaf: a hash of its cell.
   static std::uint64_t ticket_of(const Leaf& leaf);
+  /// Does the leaf get a node?
   bool operator()(const Leaf& leaf) const {
     return leaf.node && (leaf.share != share ? leaf.share > share : ticket_of(leaf) >= ticket);
   }
 };
 
-struct Found {
-  LeafLists lists;
-  Lattice lattice;
-  ThinPlaces thin;
-  Keep keep;
+/// Leaves at one spacing.
+struct SpacedLeaves {
+  LeafLists lists;          ///< all leaves with material
+  Lattice lattice;          ///< of their cells
+  ThinPlaces thin;          ///< thinnest walls
+  NodeSelection selection;  ///< leaves that get a node
 };
 
-/// Leaves over one solid at any spacing.
+/// Finds leaves over one solid at any spacing.
 class LeafFinder {
  public:
+  /// Copies the solid.
   LeafFinder(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress)
       : tree_(solid), box_(bounding_box(solid)), options_(options), progress_(progress) {}
 
-  /// How many levels below the spacing the options let thin material have.
+  /// Levels below the spacing that the options permit in thin material.
   int thin_levels() const { return options_.across > 0 ? 5 : 0; }
-  /// At a spacing; nothing where more than `most` cells would have to be divided. Adds to the report's seconds.
-  std::optional<Found> at(double spacing, int thin_levels, std::size_t most, SampleReport& report) const;
-  /// With `count` nodes, if that can be reached; thin material as fine as the count affords.
-  Found with_count(std::size_t count, double volume, SampleReport& report) const;
+  /// Leaves at a spacing; empty where more than `most` cells would be divided. Adds to the report's
+  /// seconds.
+  std::optional<SpacedLeaves> at(double spacing, int thin_levels, std::size_t most, SampleReport& report) const;
+  /// Leaves with `count` nodes, if that number can be reached; thin material as fine as the count
+  /// affords.
+  SpacedLeaves with_count(std::size_t count, double volume, SampleReport& report) const;
 
  private:
   RegionTree tree_;

@@ -1,4 +1,4 @@
-// The cells of an octree: where they are, their neighbours' names, and their order along Morton's curve.
+// The cells of an octree: their positions, neighbours and order along the Morton curve.
 #pragma once
 
 #include <cstdint>
@@ -36,17 +36,21 @@ inline std::array<std::int32_t, 3> corner_of(std::uint64_t code) {
   return {gather(code), gather(code >> 1), gather(code >> 2)};
 }
 
-/// Places of cells. Neighbouring cells have their common corners at the same point, bit for bit.
+/// Positions of cells. Neighbouring cells have their common corners at the same point, bit for bit.
 struct Lattice {
   Vec3 origin;
   double size;  ///< edge of a cell of level 0, model units
 
+  /// Edge length of a cell.
   double edge(int level) const { return size * double(1 << level); }
+  /// A corner of the finest cells.
   Vec3 point(std::int32_t x, std::int32_t y, std::int32_t z) const { return origin + size * Vec3(x, y, z); }
+  /// The box of a cell.
   Box3 box(const Cell& c) const {
     const std::int32_t n = 1 << c.level;
     return {point(c.corner[0], c.corner[1], c.corner[2]), point(c.corner[0] + n, c.corner[1] + n, c.corner[2] + n)};
   }
+  /// The middle of a cell.
   Vec3 middle(const Cell& c) const {
     return point(c.corner[0], c.corner[1], c.corner[2]) + Vec3::Constant(0.5 * edge(c.level));
   }

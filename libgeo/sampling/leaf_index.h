@@ -1,4 +1,4 @@
-// Leaves of an octree by place: who is near one.
+// Leaves of an octree by position, for neighbour queries.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,29 @@ namespace geo {
 /// Leaves in Morton order, found by binary search within blocks of cells. Thread-safe.
 class LeafIndex {
  public:
-  /// Codes, ascending, of leaves that do not overlap, and their levels.
+  /// `codes`: Morton codes of leaves that do not overlap, ascending; `levels`: their levels.
   LeafIndex(std::vector<std::uint64_t> codes, std::vector<std::uint8_t> levels);
 
+  /// Number of leaves.
   std::size_t size() const { return codes_.size(); }
-  Cell cell(std::size_t row) const { return {corner_of(codes_[row]), levels_[row]}; }
-  /// Calls take(row), once each, for the leaves that meet the cell of level `level` that holds c, or one of the 26 of
-  /// that size around it; c is of that level or finer.
-  template <class Take>
-  void around(const Cell& c, int level, const Take& take) const;
+  /// The cell of a leaf.
+  Cell cell(std::size_t leaf) const { return {corner_of(codes_[leaf]), levels_[leaf]}; }
+  /// Calls visit(leaf), once each, for the leaves that meet the cell of level `level` that contains
+  /// c, or one of the 26 cells of that size around it. c is of that level or finer.
+  template <class Visit>
+  void around(const Cell& c, int level, const Visit& visit) const;
 
  private:
   std::vector<std::uint64_t> codes_;
   std::vector<std::uint8_t> levels_;
   int block_ = 0;                           // level of a block
   std::array<std::int32_t, 3> blocks_{};    // along each axis
-  std::vector<std::uint32_t> begin_, end_;  // rows of a block
+  std::vector<std::uint32_t> begin_, end_;  // range of leaves in each block
 };
 
-template <class Take>
-void LeafIndex::around(const Cell& c, int level, const Take& take) const {
+/// See above.
+template <class Visit>
+void LeafIndex::around(const Cell& c, int level, const Visit& visit) const {
   const std::int32_t edge = 1 << level, unit = 1 << std::min(level, block_);
   std::array<std::int32_t, 3> lo, hi;
   for (int i = 0; i < 3; ++i) {
@@ -48,19 +51,19 @@ void LeafIndex::around(const Cell& c, int level, const Take& take) const {
         const std::uint32_t begin = begin_[block], end = end_[block];
         if (begin == end) continue;
         const std::uint64_t first = morton(p), past = first + (std::uint64_t(1) << 3 * std::min(level, block_));
-        auto row = static_cast<std::uint32_t>(std::lower_bound(codes_.begin() + begin, codes_.begin() + end, first) -
-                                              codes_.begin());
-        if (row > begin && (row == end || codes_[row] != first)) {
+        auto leaf = static_cast<std::uint32_t>(std::lower_bound(codes_.begin() + begin, codes_.begin() + end, first) -
+                                               codes_.begin());
+        if (leaf > begin && (leaf == end || codes_[leaf] != first)) {
           // A larger leaf may hold this cell: it is taken at the first of the cells that it holds.
-          const int large = levels_[row - 1];
-          if (codes_[row - 1] >> 3 * large == first >> 3 * large) {
-            const auto corner = corner_of(codes_[row - 1]);
+          const int large = levels_[leaf - 1];
+          if (codes_[leaf - 1] >> 3 * large == first >> 3 * large) {
+            const auto corner = corner_of(codes_[leaf - 1]);
             if (p[0] == std::max(corner[0], lo[0]) && p[1] == std::max(corner[1], lo[1]) &&
                 p[2] == std::max(corner[2], lo[2]))
-              take(row - 1);
+              visit(leaf - 1);
           }
         }
-        for (; row < end && codes_[row] < past; ++row) take(row);
+        for (; leaf < end && codes_[leaf] < past; ++leaf) visit(leaf);
       }
 }
 

@@ -7,35 +7,35 @@ NodeGrid::NodeGrid(double cell, std::span<const Vec3> positions) : cell_(cell) {
   for (const Vec3& p : positions) box.add(p);
   if (positions.empty()) return;
   next_.reserve(positions.size());
-  begin_anew(positions, box);
+  rebuild(positions, box);
   for (std::uint32_t i = 0; i < positions.size(); ++i) put(positions, i);
 }
 
-NodeGrid::Place NodeGrid::leaf_of(const Vec3& p) const {
-  Place at = root();
+NodeGrid::CellBounds NodeGrid::leaf_of(const Vec3& p) const {
+  CellBounds at = root();
   while (cells_[at.cell].count == inner) at = child(at, at.octant(p));
   return at;
 }
 
-void NodeGrid::begin_anew(std::span<const Vec3> positions, const Box3& box) {
-  std::vector<std::uint32_t> rows;
+void NodeGrid::rebuild(std::span<const Vec3> positions, const Box3& box) {
+  std::vector<std::uint32_t> indices;
   for (const Cell& cell : cells_)
     if (cell.count != inner)
-      for (auto row = cell.first; row != none; row = next_[row]) rows.push_back(row);
+      for (auto index = cell.first; index != none; index = next_[index]) indices.push_back(index);
   middle_ = box.center();
   half_ = std::max(0.5 * (box.hi - box.lo).maxCoeff(), 0.5 * cell_);
   cells_.assign(1, {});
   size_ = 0;
-  for (const auto row : rows) put(positions, row);
+  for (const auto index : indices) put(positions, index);
 }
 
-void NodeGrid::put(std::span<const Vec3> positions, std::uint32_t row) {
-  if (next_.size() <= row) next_.resize(row + 1, none);
+void NodeGrid::put(std::span<const Vec3> positions, std::uint32_t index) {
+  if (next_.size() <= index) next_.resize(index + 1, none);
   ++size_;
-  for (Place at = leaf_of(positions[row]);; at = child(at, at.octant(positions[row]))) {
+  for (CellBounds at = leaf_of(positions[index]);; at = child(at, at.octant(positions[index]))) {
     Cell& cell = cells_[at.cell];
-    if (cell.count < most_in_leaf || at.depth == deepest) {
-      next_[row] = std::exchange(cell.first, row);
+    if (cell.count < leaf_capacity || at.depth == max_depth) {
+      next_[index] = std::exchange(cell.first, index);
       ++cell.count;
       return;
     }
@@ -53,23 +53,24 @@ void NodeGrid::put(std::span<const Vec3> positions, std::uint32_t row) {
   }
 }
 
-void NodeGrid::insert(std::span<const Vec3> positions, std::uint32_t row) {
-  const Vec3& p = positions[row];
+void NodeGrid::insert(std::span<const Vec3> positions, std::uint32_t index) {
+  const Vec3& p = positions[index];
   const double out = cells_.empty() ? 0 : (p - middle_).cwiseAbs().maxCoeff();
   if (cells_.empty() || out > half_) {
-    // Points outside would be found all the same, but in leaves too large. Twice as far as needed: seldom again.
+    // Outside points would be found, but in leaves too large. Twice the extent needed: rebuilds are
+    // rare.
     Box3 box{p, p};
     if (!cells_.empty()) box = Box3{middle_, middle_}.grown(2 * out);
-    begin_anew(positions, box);
+    rebuild(positions, box);
   }
-  put(positions, row);
+  put(positions, index);
 }
 
-void NodeGrid::erase(std::uint32_t row, const Vec3& p) {
+void NodeGrid::erase(std::uint32_t index, const Vec3& p) {
   Cell& cell = cells_[leaf_of(p).cell];
   auto* link = &cell.first;
-  while (*link != row) link = &next_[*link];
-  *link = next_[row];
+  while (*link != index) link = &next_[*link];
+  *link = next_[index];
   --cell.count;
   --size_;
 }
@@ -79,8 +80,8 @@ void NodeGrid::within(std::span<const Vec3> positions, const Vec3& p, double rad
   if (cells_.empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(out.size());
   const double reach = radius * radius;
-  visit(root(), p, Vec3::Zero(), reach, [&](std::uint32_t row) {
-    if ((positions[row] - p).squaredNorm() <= reach) out.push_back(row);
+  visit_near(root(), p, Vec3::Zero(), reach, [&](std::uint32_t index) {
+    if ((positions[index] - p).squaredNorm() <= reach) out.push_back(index);
   });
   std::sort(out.begin() + first, out.end());
 }

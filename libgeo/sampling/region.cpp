@@ -81,8 +81,8 @@ RegionTree::RegionTree(const TriangleMesh& solid) {
 Region RegionTree::root(const Lattice& lattice, const Cell& cell) const {
   Region region{cell, lattice.middle(cell), false, {}};
   region.inside = tree_.inside(region.probe);
-  region.rows.resize(corners_.size());
-  for (std::uint32_t i = 0; i < region.rows.size(); ++i) region.rows[i] = i;
+  region.triangles.resize(corners_.size());
+  for (std::uint32_t i = 0; i < region.triangles.size(); ++i) region.triangles[i] = i;
   return region;
 }
 
@@ -90,10 +90,11 @@ Region RegionTree::at(const Lattice& lattice, const Cell& cell) const {
   Region region{cell, lattice.middle(cell), false, {}};
   region.inside = tree_.inside(region.probe);
   const Box3 box = lattice.box(cell);
-  tree_.near(box, region.rows);
-  std::erase_if(region.rows,
-                [&](auto row) { return !may_meet(box, corners_[row][0], corners_[row][1], corners_[row][2]); });
-  std::sort(region.rows.begin(), region.rows.end());
+  tree_.near(box, region.triangles);
+  std::erase_if(region.triangles, [&](auto row) {
+    return !may_meet(box, corners_[triangle][0], corners_[triangle][1], corners_[triangle][2]);
+  });
+  std::sort(region.triangles.begin(), region.triangles.end());
   return region;
 }
 
@@ -101,16 +102,16 @@ Region RegionTree::child(const Lattice& lattice, const Region& region, const Cel
   Region part{cell, lattice.middle(cell), region.inside, {}};
   if (!region.cut()) return part;
   const Box3 box = lattice.box(cell);
-  for (const auto row : region.rows)
-    if (const auto& t = corners_[row]; may_meet(box, t[0], t[1], t[2])) part.rows.push_back(row);
+  for (const auto triangle : region.triangles)
+    if (const auto& t = corners_[triangle]; may_meet(box, t[0], t[1], t[2])) part.triangles.push_back(triangle);
   part.inside = inside(region, part.probe);
   return part;
 }
 
 bool RegionTree::inside(const Region& region, const Vec3& p) const {
   bool odd = false;
-  for (const auto row : region.rows) {
-    const auto& t = corners_[row];
+  for (const auto triangle : region.triangles) {
+    const auto& t = corners_[triangle];
     const int n =
         crossings(region.probe, p, orient3d(t[0], t[1], t[2], region.probe), orient3d(t[0], t[1], t[2], p), t);
     if (n < 0) return tree_.inside(p);
@@ -120,8 +121,8 @@ bool RegionTree::inside(const Region& region, const Vec3& p) const {
 }
 
 void RegionTree::inside(const Region& region, std::span<const Vec3> points, std::span<char> answers) const {
-  // From each point to the next, the first from the probe; a triangle with both on one side of its
-  // plane is not between them. A bit a point.
+  // Walks from each point to the next, the first from the probe. A triangle with both on one side
+  // of its plane is not between them. One bit a point.
   const std::size_t count = points.size(), words = (count + 63) / 64;
   const auto padded = 64 * words;
   std::vector<double> coordinates(3 * padded);
@@ -137,8 +138,8 @@ void RegionTree::inside(const Region& region, std::span<const Vec3> points, std:
   std::uint64_t *const above = &bits[0], *const below = &bits[words], *const odd = &bits[2 * words],
                        *const unknown = &bits[3 * words], *const ask = &bits[4 * words];
   const auto bit = [](const std::uint64_t* of, std::size_t i) { return int(of[i / 64] >> i % 64 & 1); };
-  for (const auto row : region.rows) {
-    const auto& t = corners_[row];
+  for (const auto triangle : region.triangles) {
+    const auto& t = corners_[triangle];
     const int first = orient3d(t[0], t[1], t[2], region.probe);
     filtered_orientations(t, at, words, above, below);
     bool clear = first != 0;

@@ -1,4 +1,4 @@
-// Boxes with what is known of the material in them: the triangles that may meet them and, exactly, the side of one
+// Regions of a solid: boxes with the triangles that may meet them and, exactly, the side of one
 // point.
 #pragma once
 
@@ -11,28 +11,30 @@
 
 namespace geo {
 
-/// A cell, the rows of all triangles that may meet its closed box, and whether `probe`, a point of the box, is strictly
-/// inside. Without triangles the whole box is on the probe's side.
+/// A cell, the triangles that may meet its closed box, and whether `probe`, a point of the box, is
+/// strictly inside the solid. Without triangles the whole box is on the side of the probe.
 struct Region {
   Cell cell;
   Vec3 probe = Vec3::Zero();
   bool inside = false;
-  std::vector<std::uint32_t> rows;
-  bool cut() const { return !rows.empty(); }
+  std::vector<std::uint32_t> triangles;  ///< indices into the solid's triangles
+  /// May the surface cut the cell?
+  bool cut() const { return !triangles.empty(); }
 };
 
-/// A closed surface, asked from coarse cells to fine ones: each answer costs a walk from a point whose side is known,
-/// past the few triangles of one cell. Thread-safe.
+/// Point location in a closed surface from coarse cells to fine ones. Each answer costs a walk from
+/// a point whose side is known past the few triangles of one cell. Thread-safe.
 class RegionTree {
  public:
   /// `solid` is closed; its triangles are copied.
   explicit RegionTree(const TriangleMesh& solid);
 
-  /// A region for a cell that holds the whole surface.
+  /// The region of a cell that contains the whole surface.
   Region root(const Lattice& lattice, const Cell& cell) const;
-  /// A region for any cell: as one that is come to from the root.
+  /// The region of any cell: equal to that reached from the root by divide().
   Region at(const Lattice& lattice, const Cell& cell) const;
-  /// Calls each(Region&&) for the parts of a region that hold material, in Morton order.
+  /// Calls each(Region&&) for those of the eight parts of a region that hold material, in Morton
+  /// order.
   template <class Each>
   void divide(const Lattice& lattice, const Region& region, const Each& each) const {
     const std::int32_t half = 1 << (region.cell.level - 1);
@@ -46,13 +48,15 @@ class RegionTree {
   }
   /// Whether a point of the region's box is strictly inside the surface: exact.
   bool inside(const Region& region, const Vec3& p) const;
-  /// The same for points of its box, one after the other; cheap where many are asked. `answers` has one entry a point.
+  /// The same for many points of its box, at less cost a point. `answers` has one entry a point.
   void inside(const Region& region, std::span<const Vec3> points, std::span<char> answers) const;
 
+  /// The tree over the solid's triangles.
   const TriangleBvh& tree() const { return tree_; }
-  const std::array<Vec3, 3>& corners(std::uint32_t row) const { return corners_[row]; }
-  /// Outward unit normal; zero for a triangle without area.
-  const Vec3& normal(std::uint32_t row) const { return normals_[row]; }
+  /// Corners of a triangle.
+  const std::array<Vec3, 3>& corners(std::uint32_t triangle) const { return corners_[triangle]; }
+  /// Outward unit normal of a triangle; zero where it has no area.
+  const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
 
  private:
   Region child(const Lattice& lattice, const Region& region, const Cell& cell) const;

@@ -1,4 +1,5 @@
-// New sample points near fresh cracks (§ 6.4): offset from both sides, thinned to the wanted spacing.
+// New sample points near fresh cracks (§ 6.4): offset from both sides, thinned to the wanted
+// spacing.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,7 @@
 
 namespace geo {
 
-/// A proposed node and the point of the crack, with the row of its face, that it was offset from.
+/// A proposed node, and the point of a crack face that it was offset from.
 struct OffsetSample {
   Vec3 position, base;
   double spacing = 0;  ///< wanted at `base`
@@ -18,9 +19,10 @@ struct OffsetSample {
   int side = 0;  ///< 1: offset along the face's normal, 0: against it
 };
 
-/// Points at half the spacing from both sides of the faces, no two closer than 0.8 spacing to each other; `spacing_at`
-/// tells the spacing wanted at a point of a face, model units, > 0. Deterministic: faces in order, random points on
-/// each. The caller keeps those that lie in material and see their base.
+/// Points at half the spacing from both sides of the faces, no two closer than 0.8 spacings.
+/// `spacing_at` gives the spacing wanted at a point of a face, positive, model units.
+/// Deterministic: faces in order, random points on each. The caller keeps the samples that lie in
+/// material and see their base.
 std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces,
                                          const std::function<double(const Vec3&)>& spacing_at, std::uint64_t seed);
 

@@ -12,8 +12,8 @@
 namespace geo {
 namespace {
 
-/// Material of leaves without a node goes to the nearest node; what cut leaves hold, which is an estimate, is scaled so
-/// that all together have the body's volume.
+/// Material of leaves without a node goes to the nearest node; what cut leaves hold, which is an
+/// estimate, is scaled so that all together have the body's volume.
 void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole,
                   const std::vector<Leaf>& orphans, double volume) {
   double exact = 0, estimate = 0;
@@ -39,14 +39,14 @@ void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice
   for (std::size_t k = 0; k < orphans.size(); ++k) nodes.volume[heir[k]] += scale * volume_of(orphans[k]);
 }
 
-NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double volume, const SampleOptions& options,
-               const Progress& progress, SampleReport& found) {
+NodeSet gather(LeafLists lists, const Lattice& lattice, const NodeSelection& selected, double volume,
+               const SampleOptions& options, const Progress& progress, SampleReport& found) {
   Stopwatch clock;
   std::vector<std::size_t> first(lists.size() + 1, 0);
   std::vector<Leaf> orphans;
   for (std::size_t l = 0; l < lists.size(); ++l) {
     first[l + 1] = first[l];
-    for (const Leaf& leaf : lists[l]) keep(leaf) ? void(++first[l + 1]) : orphans.push_back(leaf);
+    for (const Leaf& leaf : lists[l]) selected(leaf) ? void(++first[l + 1]) : orphans.push_back(leaf);
   }
   const std::size_t n = first.back();
   NodeSet nodes;
@@ -60,7 +60,7 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double
     for (std::size_t l = begin; l < end; ++l) {
       std::size_t i = first[l];
       for (const Leaf& leaf : lists[l]) {
-        if (!keep(leaf)) continue;
+        if (!selected(leaf)) continue;
         const double edge = lattice.edge(leaf.cell.level);
         nodes.position[i] = leaf.position, nodes.spacing[i] = edge, nodes.volume[i] = leaf.share * edge * edge * edge;
         codes[i] = morton(leaf.cell.corner), levels[i] = static_cast<std::uint8_t>(leaf.cell.level),
@@ -72,7 +72,7 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const Keep& keep, double
   });
   const LeafIndex index(std::move(codes), std::move(levels));
   share_volume(nodes, index, lattice, whole, orphans, volume);
-  if (options.pattern == NodePattern::blue) push_apart(nodes, index, lattice, whole, progress);
+  if (options.pattern == NodePattern::blue) move_apart(nodes, index, lattice, whole, progress);
   found.node_seconds += clock.lap();
   set_support_radii(nodes, index, options.support, progress);
   found.support_seconds += clock.lap();
@@ -91,21 +91,22 @@ NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, co
   if (options.across < 0 || options.across > 100) throw InputError("nodes across thin material must be from 0 to 100");
   const LeafFinder finder(solid, options, progress);
   SampleReport found;
-  Found leaves;
+  SpacedLeaves leaves;
   if (options.count > 0) {
     leaves = finder.with_count(options.count, volume, found);
   } else {
     const double spacing = options.spacing > 0 ? options.spacing : 0.03 * diagonal;
     leaves = finder.at(spacing, finder.thin_levels(), ~std::size_t(0), found).value();
   }
-  const NodeSet nodes = gather(std::move(leaves.lists), leaves.lattice, leaves.keep, volume, options, progress, found);
+  const NodeSet nodes =
+      gather(std::move(leaves.lists), leaves.lattice, leaves.selection, volume, options, progress, found);
   if (nodes.size() == 0)
     throw InputError("no node fits inside at spacing " + std::to_string(found.spacing) + "; choose a smaller one");
-  const auto tell = [](const Wall& wall, double& thickness, Vec3& at) {
+  const auto copy_wall = [](const Wall& wall, double& thickness, Vec3& at) {
     thickness = std::isfinite(wall.thickness) ? wall.thickness : 0, at = wall.at;
   };
-  tell(leaves.thin.thinnest, found.thinnest, found.thinnest_at);
-  tell(leaves.thin.unresolved, found.unresolved, found.unresolved_at);
+  copy_wall(leaves.thin.thinnest, found.thinnest, found.thinnest_at);
+  copy_wall(leaves.thin.unresolved, found.unresolved, found.unresolved_at);
   if (report) *report = found;
   return nodes;
 }

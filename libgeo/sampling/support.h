@@ -1,4 +1,4 @@
-// Support radii, from the nodes around.
+// Support radii from the spacing of the nodes around.
 #pragma once
 
 #include "kerf/nodes.h"
@@ -7,9 +7,10 @@
 
 namespace geo {
 
-/// Support radii (§ 3.1): `support` times a node's spacing, or the mean of its twelve nearest and its own (weighted by
-/// the spacings) where that is less, so that radii change gradually where the spacing halves; wide enough for a dozen
-/// others within three spacings: fewer seldom span all directions. Row i of the nodes is leaf i.
+/// Sets support radii (§ 3.1): `support` times a node's spacing or, where less, the mean spacing of
+/// its twelve nearest nodes and itself, weighted by the spacings. So radii change gradually where
+/// the spacing halves. A radius covers at least a dozen other nodes within three spacings, since
+/// fewer seldom span space. Node i is leaf i.
 void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, const Progress& progress);
 
 }  // namespace geo

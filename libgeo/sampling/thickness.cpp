@@ -8,11 +8,12 @@ namespace {
 constexpr double facing = 0.9;
 constexpr double none = std::numeric_limits<double>::infinity();
 
-/// Where the ray from p leaves the material, `from` being the row it starts on; infinite where it
-/// does not within `length`, or not through a face across its way. Looks for triangles in boxes
-/// about so many parts of the ray: the one box of a slanting ray holds most of what is near.
-double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from,
-               int parts) {
+/// The distance at which the ray from p leaves the material; infinite where that is beyond
+/// `length`, or where the ray meets a face at a small angle. The ray starts on triangle `from`. It
+/// is searched in `parts` boxes: one box around a slanting ray would contain most triangles near
+/// it.
+double exit_distance(const RegionTree& tree, const Vec3& p, const Vec3& direction, double length, std::uint32_t from,
+                     int parts) {
   std::vector<std::uint32_t> rows;
   for (int part = 0; part < parts; ++part) {
     Box3 box;
@@ -33,14 +34,14 @@ double way_out(const RegionTree& tree, const Vec3& p, const Vec3& direction, dou
       if (x < 0 || y < 0 || x + y > 1 || !(t > 0) || t > length || t >= first) continue;
       first = t, across = tree.normal(row).dot(direction) >= facing;
     }
-    // A hit beyond this part may have another before it.
+    // A hit beyond this part may not be the first.
     if (first <= length * (part + 1) / parts) return across ? first : none;
   }
   return none;
 }
 
-/// The middle of the corners of the part of a triangle that is in a box, and that part's area;
-/// false where there is none.
+/// The centroid of the corners, and the area, of the part of a triangle that is in a box; false
+/// where there is none.
 bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, double& area) {
   Vec3 polygon[2][10];  // each of six planes adds one corner at most
   int n = 3, now = 0;
@@ -73,18 +74,17 @@ bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, do
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit) {
   Wall wall;
   const Box3 box = lattice.box(cut.cell);
-  // Of very many small triangles some: a wall worth cells of its own is made of more than a few of
-  // them.
-  const std::size_t step = 1 + cut.rows.size() / 64;
-  const int parts = cut.rows.size() < 8 ? 1 : 8;
-  for (std::size_t i = 0; i < cut.rows.size(); i += step) {
-    const std::uint32_t row = cut.rows[i];
+  // A sample of very many small triangles suffices: walls worth finer cells consist of many.
+  const std::size_t step = 1 + cut.triangles.size() / 64;
+  const int parts = cut.triangles.size() < 8 ? 1 : 8;
+  for (std::size_t i = 0; i < cut.triangles.size(); i += step) {
+    const std::uint32_t triangle = cut.triangles[i];
     Vec3 p;
     double area;
-    if (!part_in_box(tree.corners(row), box, p, area)) continue;
-    const double t = way_out(tree, p, -tree.normal(row), limit, row, parts);
+    if (!part_in_box(tree.corners(triangle), box, p, area)) continue;
+    const double t = exit_distance(tree, p, -tree.normal(triangle), limit, triangle, parts);
     if (t < none) wall.area += area;
-    if (t < wall.thickness) wall.thickness = t, wall.at = p - 0.5 * t * tree.normal(row);
+    if (t < wall.thickness) wall.thickness = t, wall.at = p - 0.5 * t * tree.normal(triangle);
   }
   return wall;
 }
@@ -93,7 +93,7 @@ Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Close
   if (!(closest.distance > 0)) return {};
   const Vec3 direction = (p - closest.point) / closest.distance;
   if (tree.normal(closest.triangle).dot(direction) > -facing) return {};
-  const double rest = way_out(tree, p, direction, limit - closest.distance, closest.triangle, 2);
+  const double rest = exit_distance(tree, p, direction, limit - closest.distance, closest.triangle, 2);
   if (!(rest < none)) return {};
   return {closest.distance + rest, p + 0.5 * (rest - closest.distance) * direction, 0};
 }

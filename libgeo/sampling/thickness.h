@@ -1,19 +1,21 @@
-// How thick the material is: the other side of a wall, seen along the normal.
+// Thickness of the material: the other side of a wall along the normal.
 #pragma once
 
 #include "sampling/region.h"
 
 namespace geo {
 
+/// A wall of material.
 struct Wall {
-  double thickness = std::numeric_limits<double>::infinity();  ///< infinite: no wall that is thinner than asked for
+  double thickness = std::numeric_limits<double>::infinity();  ///< infinite: no wall below the limit
   Vec3 at = Vec3::Zero();                                      ///< a point in its middle
-  double area = 0;                                             ///< of both its sides, as far as looked at
+  double area = 0;                                             ///< of both its sides, as far as searched
 };
 
-/// The thinnest wall of those thinner than `limit` that a triangle of a cut cell belongs to, looking inwards from the
-/// middle of its part in the cell. The two sides of a wall face away from each other within 26° (cosine −0.9): a
-/// sharper edge than that counts as a wall that tapers off, a blunter one as an edge.
+/// The thinnest wall of those thinner than `limit` that a triangle of a cut cell belongs to,
+/// looking inwards from the middle of its part in the cell. The two sides of a wall face away from
+/// each other within 26° (cosine −0.9): a sharper edge than that counts as a wall that tapers off,
+/// a blunter one as an edge.
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit);
 
 /// The same for a wall that point p is inside, of which `closest` (within limit / 2) is one side.

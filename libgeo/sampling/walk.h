@@ -1,4 +1,4 @@
-// A walk through a solid from coarse cells to fine ones, on all threads, with its findings in Morton order.
+// Traversal of a solid from coarse cells to fine ones on all threads, with results in Morton order.
 #pragma once
 
 #include <utility>
@@ -10,13 +10,13 @@
 
 namespace geo {
 
-/// Calls visit(region, found), from any thread, for the region of `root` and for the parts with material of each region
-/// for which it returned true. Returns the lists of what was found, which one after the other are in the order of a
-/// serial walk in depth.
+/// Calls visit(region, found) for the region of `root`, and for the parts with material of each
+/// region for which it returned true; from any thread. Returns lists of what was found;
+/// concatenated, they have the order of a serial depth-first traversal.
 template <class Found, class Visit>
 std::vector<std::vector<Found>> walk(const RegionTree& tree, const Lattice& lattice, const Cell& root,
                                      const char* phase, const Progress& progress, const Visit& visit) {
-  constexpr std::size_t enough = 1024;  // tasks, for a smooth bar and even threads
+  constexpr std::size_t enough = 1024;  // tasks: for a smooth progress bar and balanced threads
   struct Task {
     Region region;
     std::vector<Found> found;

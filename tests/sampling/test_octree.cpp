@@ -10,7 +10,7 @@ using namespace geo;
 
 namespace {
 
-Found leaves_of(const TriangleMesh& mesh, const SampleOptions& options) {
+SpacedLeaves leaves_of(const TriangleMesh& mesh, const SampleOptions& options) {
   const LeafFinder finder(mesh, options, {});
   SampleReport report;
   return *finder.at(options.spacing, finder.thin_levels(), ~std::size_t(0), report);

@@ -44,8 +44,8 @@ void check(Command& w) {
 
 class Cutting {
  public:
-  Cutting(const Command& wishes, const tool::Tool& t)
-      : w_(wishes),
+  Cutting(const Command& command, const tool::Tool& t)
+      : w_(command),
         t_(t),
         file_(tool::read_solid(w_.model)),
         complex_(tool::complex_of(file_, w_.model)),

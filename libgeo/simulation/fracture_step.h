@@ -15,7 +15,7 @@ namespace geo {
 /// Makes one step of a crack in the body and updates the mechanics; false where it cannot be made.
 using SplitStep = std::function<bool(FrontState& front, const std::vector<Vec3>& next)>;
 
-/// What a step of fracture reads. `body`, `body_index` and `motion` change through SplitStep only.
+/// Input of a step of fracture. `body`, `body_index` and `motion` change through SplitStep only.
 struct FractureInput {
   const FractureOptions& options;
   const std::vector<std::uint32_t>& body_index;  ///< per node: its body of the scene

@@ -1,4 +1,4 @@
-// What libFuzzer calls: a reader that may refuse its input by an InputError, and do nothing else.
+// Entry point of libFuzzer: a reader may refuse its input by InputError only.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ int attempt(const std::uint8_t* data, std::size_t size, const Read& read) {
   return 0;
 }
 
-/// The first folder of the command line, where it is empty, is filled with samples.
+/// Writes samples to the first folder of the command line where it is empty.
 inline void begin_with(int argc, char** argv, const std::vector<std::string>& samples) {
   for (int i = 1; i < argc; ++i)
     if (const std::filesystem::path folder = argv[i];

@@ -1,4 +1,4 @@
-// A campaign of damaged files: each is read, or refused in one line that begins with its name; nothing else may happen.
+// A campaign of damaged files: each must be read, or refused in one line that begins with its name.
 #pragma once
 
 #include <sys/resource.h>
@@ -19,7 +19,7 @@
 #include "kerf/error.h"
 #include "kerf/stream.h"
 
-// What sanitizers call, where there are any: a case that they stop is told of, too.
+// Callback of the sanitizers, if any: reports the case that they stop.
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());
 extern "C" const char* __ubsan_default_options();
 extern "C" __attribute__((used)) inline const char* __ubsan_default_options() {
@@ -34,7 +34,7 @@ constexpr double slower = 10, larger = 4;
 constexpr double slower = 1, larger = 1;
 #endif
 
-/// The case at hand, for whoever has to tell of it.
+/// The current case, for error reports.
 struct Case {
   std::string family, bytes;
   std::uint64_t seed = 0;
@@ -61,7 +61,7 @@ inline void on_signal(int signal) {
   _exit(1);
 }
 
-// A case that does not come back is stopped after twenty seconds of processor time.
+// A case that does not end is stopped after twenty seconds of processor time.
 inline void guard_time() {
   const itimerval limit{{0, 0}, {static_cast<time_t>(20 * slower), 0}};
   setitimer(ITIMER_PROF, &limit, nullptr);
@@ -82,7 +82,7 @@ inline std::string fault_of_message(const std::string& message, const std::strin
   return {};
 }
 
-using Use = std::function<void()>;  ///< what is done with what was read
+using Use = std::function<void()>;                                                   ///< use of the value that was read
 using Read = std::function<Use(const std::string& bytes, const std::string& name)>;  ///< may throw InputError only
 using Damage = std::function<std::string(geo::Random&)>;
 
@@ -115,7 +115,7 @@ inline Outcome outcome_of(const std::string& bytes, const std::string& name, con
   } catch (const std::exception& e) {
     o.fault = std::string(o.read ? "in use: " : "in reading: ") + e.what();
   }
-  // What is read may be hard to cut, so that its use may take longer than any reading.
+  // Cutting the value may take longer than any reading.
   const double done = seconds();
   if (o.fault.empty() && (read_by > 2 * slower || done > 8 * slower))
     o.fault = "took " + std::to_string(read_by) + " s to read, " + std::to_string(done) + " s in all";
@@ -145,7 +145,7 @@ inline void campaign(const std::string& family, int base, const Read& read, cons
   const itimerval none{};
   setitimer(ITIMER_PROF, &none, nullptr);
   for (const auto& [s, handler] : before) std::signal(s, handler);
-  // Damage that nothing survives would test the first check of each reader only.
+  // If no damaged file were read, only the first check of each reader would be tested.
   if (which.count >= 100) {
     CHECK(read_count * 50 > which.count);
     CHECK(used_count * 100 > which.count);

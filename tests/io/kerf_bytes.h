@@ -1,4 +1,4 @@
-// `.kerf` files taken apart and sealed again, so that damage gets past the hashes.
+// Changes `.kerf` files and recomputes their hashes, so that damage passes the checks of hashes.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ inline LastSegment last_segment(const std::string& bytes) {
   return last;
 }
 
-/// The bytes with another table in the last segment, all hashes but the sections' own fitting.
+/// The bytes with another table in the last segment. All hashes fit but those of the sections.
 inline std::string with_table(const std::string& bytes, const std::string& table) {
   LastSegment last = last_segment(bytes);
   last.head.table_length = table.size();
@@ -44,8 +44,7 @@ inline std::string with_table(const std::string& bytes, const std::string& table
   return out.append(reinterpret_cast<const char*>(&commit), sizeof commit);
 }
 
-/// The bytes with every hash, number and commit record made to fit what else they say, as far as
-/// that makes sense.
+/// The bytes with every hash, number and commit record recomputed, where possible.
 inline std::string resealed(std::string bytes) {
   using namespace geo::kerf;
   std::map<std::string, std::string> state;
@@ -103,7 +102,7 @@ inline std::string resealed(std::string bytes) {
   return bytes;
 }
 
-/// What a file says: type, shape and bytes of each section.
+/// The content of a file: type, shape and bytes of each section.
 using KerfState = std::map<std::string, std::pair<std::string, std::string>>;
 inline KerfState state_of(const geo::KerfFile& file) {
   KerfState state;

@@ -1,4 +1,4 @@
-// Arrays as a body has them, that change as those of a body do; a folder for files of them.
+// Arrays like those of a body, and changes like those of a cut; a folder for their files.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@
 #include "kerf/body_file.h"
 #include "kerf/stream.h"
 
-/// Some of fixed rows, some of rows of any length.
+/// Arrays with rows of fixed and of variable length.
 struct Values {
   std::vector<double> position;
   std::vector<std::uint32_t> count, to;
@@ -48,7 +48,7 @@ inline Values random_values(geo::Random& random, std::size_t rows) {
   return v;
 }
 
-/// A few rows become longer, shorter or others; some are appended.
+/// Changes a few rows, in values and length; appends some.
 inline void change(Values& v, geo::Random& random, int changes) {
   while (changes-- > 0) {
     const std::uint32_t row = random.below(static_cast<std::uint32_t>(v.count.size()));

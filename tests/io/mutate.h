@@ -13,7 +13,7 @@ class Mutator {
  public:
   explicit Mutator(geo::Random& random) : random_(random) {}
 
-  /// One to four changes; `others` are files that it may be spliced with. At least one byte remains.
+  /// Makes one to four changes; `others` are files to splice with. At least one byte remains.
   std::string damaged(std::string bytes, const std::vector<std::string>& others) {
     const std::size_t most = 2 * bytes.size() + 4096;
     for (auto changes = 1 + random_.below(2) * random_.below(4); changes-- > 0;) {
@@ -24,7 +24,7 @@ class Mutator {
     return bytes;
   }
 
-  /// One number of an array of numbers of `width` bytes becomes another of its numbers, or an interesting one.
+  /// Replaces one number in an array of numbers of `width` bytes, by another of them or an extreme one.
   void damage_number(std::string& s, std::size_t width) {
     const std::size_t rows = s.size() / width;
     if (rows == 0) return;
@@ -87,7 +87,7 @@ class Mutator {
     }
   }
 
-  // An interesting number over the bytes, of a random type and byte order.
+  // Overwrites bytes with an extreme number of random type and byte order.
   void put_number(std::string& s, std::size_t at) { put_number(s, at, random_.below(4)); }
   void put_number(std::string& s, std::size_t at, std::uint32_t type) {
     static constexpr double numbers[] = {
@@ -119,7 +119,7 @@ class Mutator {
     for (std::size_t i = 0; i < size && at + i < s.size(); ++i) s[at + i] = raw[i];
   }
 
-  // An interesting number, or word, in place of a word of text.
+  // Replaces a word of text by an extreme number or another word.
   void write_number(std::string& s, std::size_t at) {
     static constexpr const char* words[] = {"0",
                                             "-1",

@@ -1,4 +1,4 @@
-// Attributes of surfaces in files: every format's own way to say them, and the way back.
+// Attributes of surfaces in files of every format, written and read back.
 #include <catch2/catch.hpp>
 #include <sstream>
 

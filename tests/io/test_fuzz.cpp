@@ -1,4 +1,4 @@
-// Readers under fire: valid files, damaged at random, are read or refused in one line.
+// Fuzzing of readers: valid files with random damage are read, or refused in one line.
 //   KERF_CASES=100 KERF_SEED=3 test_io '[fuzz]'; one case: KERF_CASE=3000123 test_io '[fuzz]'.
 #include "io/fuzz.h"
 

@@ -1,4 +1,4 @@
-// `.kerf` files cut off at every byte, damaged at every bit, with impossible tables, on a full disk.
+// `.kerf` files truncated at every byte, with every bit flipped, with impossible tables, on a full disk.
 #include <sys/resource.h>
 
 #include <catch2/catch.hpp>
@@ -53,7 +53,7 @@ TEST_CASE("an appended file cut off at any byte is in the state before, and can 
   for (std::size_t n = a.before.size(); n < a.after.size(); ++n) {
     CAPTURE(n);
     REQUIRE(state_of(a.after.substr(0, n)) == a.old_state);
-    // Room that the system made, and did not fill.
+    // Space that the system has allocated and not filled.
     if (n + 64 <= a.after.size() && n % 64 == 0)
       REQUIRE(state_of(a.after.substr(0, n) + std::string(a.after.size() - n, '\0')) == a.old_state);
   }

@@ -1,4 +1,4 @@
-// The container of `.kerf` files: what is written is read, appended and folded.
+// The container of `.kerf` files: writing, reading, appending and compacting.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -173,7 +173,7 @@ TEST_CASE("two updates of a file at a time, and files put in its place, are refu
   {
     KerfUpdate first(path);
     CHECK_THROWS_WITH(KerfUpdate(path), Catch::Contains("a.kerf: is being updated by another program"));
-    CHECK(state_of(KerfFile(Input(path))) == state_of(v.bytes()));  // readers are not kept out
+    CHECK(state_of(KerfFile(Input(path))) == state_of(v.bytes()));  // readers are not locked out
     change(v, random, 3);
     folder.file("a.kerf", v.bytes());
     CHECK_THROWS_WITH(first.commit(v.arrays()), Catch::Contains("was replaced by another program"));

@@ -1,4 +1,4 @@
-// Volumes: what OpenVDB wrote is read as a solid that nodes fit into.
+// Volumes: files of OpenVDB are read as solids that can be sampled.
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 

@@ -1,4 +1,4 @@
-// A run written as kerf-sim keeps it, and taken up again from those bytes.
+// Checkpoints of a run as bytes, and runs resumed from them.
 #pragma once
 
 #include <sstream>
@@ -9,7 +9,7 @@
 
 namespace geo {
 
-/// Without the seconds that it took: the same for the same run.
+/// The checkpoint without statistics: equal for equal runs.
 inline std::string bytes(const Simulation& sim) {
   std::ostringstream out;
   RunState state = sim.state();

@@ -15,7 +15,7 @@ struct Middle {
   double mass = 0;
   Vec3 place = Vec3::Zero(), momentum = Vec3::Zero(), turning = Vec3::Zero();
 };
-// Of one body of the scene, or of all; turning: about the origin.
+// Mass, centre, momentum and angular momentum (about the origin) of one body of the scene, or of all.
 Middle middle_of(const Simulation& sim, int part) {
   Middle m;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
@@ -46,8 +46,7 @@ TEST_CASE("of two blocks, one on the other, each carries what is above it") {
   for (int i = 0; i < 24; ++i) work = sim.advance_frame();
   const Middle lower = middle_of(sim, 0), upper = middle_of(sim, 1);
   CHECK(-work.obstacle_force.at(0).z() == Approx(9.81 * (lower.mass + upper.mass)).epsilon(0.01));
-  // The penalty gives way by g / stiffness times the cells on top of each other, the blocks by
-  // their own weight.
+  // The penalty yields by g / stiffness times the number of layers, the blocks by their own weight.
   CHECK(upper.place.z() - lower.place.z() == Approx(0.5).margin(0.025));
   CHECK((upper.momentum / upper.mass).norm() < 0.01);
   CHECK((upper.place - lower.place).head<2>().norm() ==

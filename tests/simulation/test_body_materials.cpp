@@ -1,4 +1,4 @@
-// Bodies of a scene with materials of their own.
+// Scenes whose bodies have different materials.
 #include <catch2/catch.hpp>
 
 #include "kerf/error.h"
@@ -10,7 +10,7 @@ using namespace geo;
 
 namespace {
 
-// A pit of hard stuff beside something soft that flows, both cut by a blade.
+// A hard body beside a soft plastic one, both cut by a blade.
 const char* two = R"(
 gravity = [0, 0, -2]
 [material]
@@ -109,8 +109,8 @@ TEST_CASE("cut bodies of two materials keep theirs, and a run taken up goes on w
   }
   CHECK(mass[0] == Approx(1000).epsilon(1e-12));
   CHECK(mass[1] == Approx(3000).epsilon(1e-12));
-  CHECK(deepest[0] < 2 * deepest[1]);  // the soft one gives way
-  // A checkpoint of more bodies than the scene has, and one that says too little about them.
+  CHECK(deepest[0] < 2 * deepest[1]);  // the soft one yields
+  // Checkpoints with more bodies than the scene, and with too few indices.
   RunState wrong = sim.state();
   wrong.body_index.back() = 2;
   CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));

@@ -1,4 +1,4 @@
-// Bodies that break by their own stress.
+// Fracture by stress.
 #include <catch2/catch.hpp>
 
 #include <numbers>

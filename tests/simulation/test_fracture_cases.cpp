@@ -1,4 +1,4 @@
-// Random bodies that break: every invariant after every frame, and the same bytes with other
+// Fracture of random bodies: all invariants after every frame, and the same bytes for other numbers of
 // threads and after a checkpoint.
 #include <catch2/catch.hpp>
 

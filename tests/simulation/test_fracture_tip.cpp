@@ -1,4 +1,4 @@
-// The stress about a crack's tip, told from nodes that move as linear elasticity says.
+// The stress field at a crack tip, fitted to nodes that move as linear elasticity predicts.
 #include <catch2/catch.hpp>
 
 #include <numbers>

@@ -1,4 +1,4 @@
-// From the world back to the material, and the fronts that blades leave.
+// The map from the world to the material, and the fronts of blades.
 #include <catch2/catch.hpp>
 
 #include "base/random.h"

@@ -131,13 +131,11 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     Simulation again = read_back(scene, half);
     for (int i = 4; i < 8; ++i) again.advance_frame();
     CHECK(bytes(again) == bytes(sim));
-    // One that goes on untouched remembers more of its steps than a checkpoint has, and makes the
-    // same of them.
+    // A run without checkpoints keeps more data of its steps than a checkpoint has, with the same result.
     Simulation untouched(scene, model);
     for (int i = 0; i < 8; ++i) untouched.advance_frame();
     CHECK(bytes(untouched) == bytes(sim));
-    // One that takes itself up before, while and after it is cut is as others that are taken up
-    // there.
+    // A run that restores itself before, during and after a cut equals new runs from these checkpoints.
     Simulation kept(scene, model);
     for (int i = 0; i < 8; ++i) {
       Simulation other = read_back(scene, bytes(kept));

@@ -57,7 +57,7 @@ TEST_CASE("a block that is cut while it is pressed together and dropped has no c
   for (const Vec3& p : sim.surface().vertices) lowest = std::min(lowest, p.z());
   CHECK(lowest < -0.05);  // it lies on the ground, and presses
   CHECK(lowest > -0.12);
-  // One that is taken up goes on as the one that was never stopped.
+  // A resumed run equals one that was not stopped.
   Simulation taken_up(scene, sim.body(), sim.state());
   CHECK(taken_up.surface().vertices == sim.surface().vertices);
   taken_up.advance_frame(), sim.advance_frame();

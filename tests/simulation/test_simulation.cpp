@@ -43,7 +43,7 @@ TEST_CASE("a scene is read, overridden, and refused with line and column") {
                     Catch::Contains("s.toml:4:"));
   CHECK_THROWS_WITH(parse_scene("[body\n", "s.toml"), Catch::Contains("s.toml:1:"));
   CHECK_THROWS_AS(parse_scene("", "s.toml"), InputError);
-  // What was meant, where a key is misspelt; what a number may be; what cannot be given together.
+  // Errors: misspelt keys, numbers out of range, keys that exclude each other.
   CHECK_THROWS_WITH(parse_scene("[body]\nmsh = \"a\"\n", "s.toml"),
                     "s.toml:2:7: unknown key 'body.msh'; did you mean 'mesh'?");
   CHECK_THROWS_WITH(parse_scene("[body]\nmesh = \"a\"\n[fracture]\nstrenght = 1\n", "s.toml"),
@@ -92,7 +92,7 @@ TEST_CASE("a falling cube is halved and both halves go on falling as one") {
   CHECK(signed_volume(surface) == Approx(1).epsilon(0.05));
 }
 
-TEST_CASE("a thick blade pushes the sheets apart, and feels them") {
+TEST_CASE("a thick blade presses the sheets apart, and the material exerts a force on it") {
   const auto run = [](const std::string& thickness) {
     const Scene scene = parse_scene(
         "gravity = [0, 0, 0]\n[body]\nmesh = 'a'\nspacing = 0.2\nfixed = [[-1, -1, -1, 2, 2, "
@@ -171,4 +171,45 @@ TEST_CASE("bodies with velocities and prescored fronts begin as the scene says")
       turning += (sim.body().nodes.position[i] - Vec3(2.75, 0.25, 0.25)).cross(v);
   }
   CHECK(turning.z() > 0);
+}
+
+TEST_CASE("a program can move blades, grips and obstacles from frame to frame") {
+  // The same straight cut, by keyframes and by poses for each frame.
+  const int frames = 6;
+  Scene scene;
+  scene.bodies.resize(1);
+  scene.bodies[0].sampling.spacing = 0.25;
+  scene.gravity = Vec3::Zero();
+  scene.dt = 1 / scene.frame_rate;
+  scene.grips.push_back({Vec3(-0.01, -0.01, -0.01), Vec3(0.2, 1.01, 1.01), {}, false});
+  Blade blade;
+  blade.points = {{0.52, -0.2, 1.2}, {0.51, 1.2, 1.2}};
+  blade.motion.keys = {{0, Vec3::Zero()}, {frames / scene.frame_rate, Vec3(0, 0, -1.5)}};
+  scene.blades.push_back(blade);
+  Simulation keyed(scene, make_block({1, 1, 1}, 0.25));
+  scene.blades[0].motion.keys = {{0, Vec3::Zero()}, {1 / scene.frame_rate, Vec3::Zero()}};
+  Simulation steered(scene, make_block({1, 1, 1}, 0.25));
+  for (int f = 1; f <= frames; ++f) {
+    keyed.advance_frame();
+    Pose pose;
+    pose.position.z() = -1.5 * f / frames;
+    steered.move_blade(0, pose);
+    steered.advance_frame();
+    CHECK((steered.scene().blades[0].motion.at(1e9).position - pose.position).norm() < 1e-15);
+  }
+  CHECK(find_pieces(steered.body().surface).count == 2);
+  CHECK(find_pieces(keyed.body().surface).count == 2);
+  // Without a call the blade is gone; a grip keeps its last pose.
+  steered.move_grip(0, {Vec3(0, 0, 0.1), Eigen::Quaterniond::Identity()});
+  const auto fronts = steered.advance_frame().fronts;
+  CHECK(fronts == 0);
+  for (int extra = 0; extra < 2; ++extra) {
+    double highest = 0;
+    for (std::size_t i = 0; i < steered.body().nodes.size(); ++i)
+      if ((steered.body().nodes.position[i].array() <= Vec3(0.2, 1.01, 1.01).array()).all())
+        highest = std::max(highest, std::abs(steered.state().motion.displacement[i].z() - 0.1));
+    CHECK(highest < 1e-12);
+    steered.advance_frame();
+  }
+  CHECK_THROWS_AS(steered.move_obstacle(0, {}), std::out_of_range);
 }

@@ -24,7 +24,8 @@ class Mutator {
     return bytes;
   }
 
-  /// Replaces one number in an array of numbers of `width` bytes, by another of them or an extreme one.
+  /// Replaces one number in an array of numbers of `width` bytes, by another of them or an extreme
+  /// one.
   void damage_number(std::string& s, std::size_t width) {
     const std::size_t rows = s.size() / width;
     if (rows == 0) return;

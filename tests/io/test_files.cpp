@@ -387,8 +387,8 @@ TEST_CASE("a run as USD has each frame's triangles where they are others than be
       }
       frames[i].vertices.assign(3, Vec3(double(i), 0.5, -1e-3));
     }
-    // The samples of each list at frames with new triangles. Equal samples are left out, and the last one is
-    // repeated before the next change.
+    // The samples of each list at frames with new triangles. Equal samples are left out, and the
+    // last one is repeated before the next change.
     std::string indices, patches, last[2];
     std::size_t written[2] = {0, 0};
     const auto add = [&](int which, std::string& text, std::size_t i, const std::string& list) {

@@ -1,4 +1,5 @@
-// `.kerf` files truncated at every byte, with every bit flipped, with impossible tables, on a full disk.
+// `.kerf` files truncated at every byte, with every bit flipped, with impossible tables, on a full
+// disk.
 #include <sys/resource.h>
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,5 @@
-// Surfaces as other programs write them: separate seams, polygons that are not convex, other formats.
+// Surfaces as other programs write them: separate seams, polygons that are not convex, other
+// formats.
 #include <catch2/catch.hpp>
 #include <sstream>
 
@@ -41,8 +42,8 @@ TEST_CASE("what is closed and touches stays apart") {
 }
 
 TEST_CASE("a polygon that is not convex becomes triangles that do not fold over") {
-  // Prisms over an L whose first corner is next to the concave one, over a comb, and over a square with a
-  // vertex inside a side.
+  // Prisms over an L whose first corner is next to the concave one, over a comb, and over a square
+  // with a vertex inside a side.
   const std::vector<std::vector<std::array<double, 2>>> outlines{
       {{1, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 1}, {1, 1}},
       {{0, 0}, {5, 0}, {5, 3}, {4, 1}, {3, 3}, {2.5, 1}, {2, 3}, {1, 1}, {0, 3}},

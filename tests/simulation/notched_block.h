@@ -11,8 +11,8 @@ struct Notched {
   geo::GrowingFront front;
 };
 
-/// The block [0, size], cut in the plane y = `height` from x = 0 to x = `depth`. The front runs along −z,
-/// its normal is +y.
+/// The block [0, size], cut in the plane y = `height` from x = 0 to x = `depth`. The front runs
+/// along −z, its normal is +y.
 inline Notched notched_block(const geo::Vec3& size, double spacing, double depth, double height,
                              std::uint64_t seed = 1) {
   using namespace geo;

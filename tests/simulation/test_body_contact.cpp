@@ -15,7 +15,8 @@ struct Middle {
   double mass = 0;
   Vec3 place = Vec3::Zero(), momentum = Vec3::Zero(), turning = Vec3::Zero();
 };
-// Mass, centre, momentum and angular momentum (about the origin) of one body of the scene, or of all.
+// Mass, centre, momentum and angular momentum (about the origin) of one body of the scene, or of
+// all.
 Middle middle_of(const Simulation& sim, int part) {
   Middle m;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {

@@ -1,5 +1,5 @@
-// Fracture of random bodies: all invariants after every frame, and the same bytes for other numbers of
-// threads and after a checkpoint.
+// Fracture of random bodies: all invariants after every frame, and the same bytes for other numbers
+// of threads and after a checkpoint.
 #include <catch2/catch.hpp>
 
 #include "base/random.h"

@@ -131,11 +131,13 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
     Simulation again = read_back(scene, half);
     for (int i = 4; i < 8; ++i) again.advance_frame();
     CHECK(bytes(again) == bytes(sim));
-    // A run without checkpoints keeps more data of its steps than a checkpoint has, with the same result.
+    // A run without checkpoints keeps more data of its steps than a checkpoint has, with the same
+    // result.
     Simulation untouched(scene, model);
     for (int i = 0; i < 8; ++i) untouched.advance_frame();
     CHECK(bytes(untouched) == bytes(sim));
-    // A run that restores itself before, during and after a cut equals new runs from these checkpoints.
+    // A run that restores itself before, during and after a cut equals new runs from these
+    // checkpoints.
     Simulation kept(scene, model);
     for (int i = 0; i < 8; ++i) {
       Simulation other = read_back(scene, bytes(kept));

@@ -91,7 +91,7 @@ Region RegionTree::at(const Lattice& lattice, const Cell& cell) const {
   region.inside = tree_.inside(region.probe);
   const Box3 box = lattice.box(cell);
   tree_.near(box, region.triangles);
-  std::erase_if(region.triangles, [&](auto row) {
+  std::erase_if(region.triangles, [&](auto triangle) {
     return !may_meet(box, corners_[triangle][0], corners_[triangle][1], corners_[triangle][2]);
   });
   std::sort(region.triangles.begin(), region.triangles.end());

@@ -60,7 +60,7 @@ void update_contacts(FrontState& front, const Complex& complex) {
 
 using Chain = std::vector<crack::PointIndex>;
 
-// Joins chains of points, which may run either way, into one that starts at `from`.
+// Joins chains of points, of either direction, into one that starts at `from`.
 Chain join_chains(std::vector<Chain>& chains, const Vec3& from, const crack::Points& points) {
   Chain joined;
   Vec3 end = from;
@@ -235,13 +235,13 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   CrackStats done;
   std::string reason;
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
-  std::vector<Vec3> wanted(next.begin(), next.end());
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i] != old.points[i].position)
-      wanted[i] = offset_from_faces(complex, wanted[i], options.face_offset * size);
+  std::vector<Vec3> offset_next(next.begin(), next.end());
+  for (std::size_t i = 0; i < offset_next.size(); ++i)
+    if (offset_next[i] != old.points[i].position)
+      offset_next[i] = offset_from_faces(complex, offset_next[i], options.face_offset * size);
   for (int number = 0; number <= options.attempts; ++number) {
     const crack::Attempt attempt = crack::attempt_at(number, options, size);
-    std::vector<Vec3> target = wanted;
+    std::vector<Vec3> target = offset_next;
     FrontState from = old;
     if (number > 0) displace_front(from, target, attempt.jitter, random);
     ++done.attempts;

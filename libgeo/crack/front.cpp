@@ -1,3 +1,4 @@
+// Fronts as given: resampling and substeps.
 #include "kerf/crack.h"
 
 #include <algorithm>
@@ -21,10 +22,10 @@ std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::v
   std::size_t segment = 0;
   for (std::size_t i = 0; i < previous.size(); ++i) {
     const double fraction = from.back() > 0 ? from[i] / from.back() : double(i) / double(previous.size());
-    const double wanted = fraction * to.back();
-    while (segment + 2 < to.size() && to[segment + 1] < wanted) ++segment;
+    const double target = fraction * to.back();
+    while (segment + 2 < to.size() && to[segment + 1] < target) ++segment;
     const double length = to[segment + 1] - to[segment];
-    const double t = length > 0 ? std::clamp((wanted - to[segment]) / length, 0.0, 1.0) : 0.0;
+    const double t = length > 0 ? std::clamp((target - to[segment]) / length, 0.0, 1.0) : 0.0;
     const Vec3 &a = next[segment % next.size()], &b = next[(segment + 1) % next.size()];
     points.push_back(t == 0 ? a : t == 1 ? b : Vec3(a + t * (b - a)));
   }
@@ -33,10 +34,10 @@ std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::v
 
 int substep_count(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit) {
   if (!(limit > 0)) throw InputError("the largest motion of a front point must be positive");
-  double most = 0;
+  double largest = 0;
   for (std::size_t i = 0; i < std::min(previous.size(), next.size()); ++i)
-    most = std::max(most, (next[i] - previous[i]).norm());
-  return std::max(1, static_cast<int>(std::min(1e6, std::ceil(most / limit * (1 - 1e-12)))));
+    largest = std::max(largest, (next[i] - previous[i]).norm());
+  return std::max(1, static_cast<int>(std::min(1e6, std::ceil(largest / limit * (1 - 1e-12)))));
 }
 
 }  // namespace geo

@@ -21,8 +21,7 @@ class RadialOrderTest {
       if (Fault fault = fault_around(order.a, order.b, order.faces)) return fault;
     }
     std::sort(given.begin(), given.end());
-    // Undivided edges of K with divided faces keep their order; children take their parents\'
-    // places.
+    // Undivided edges of K with divided faces keep their order; children replace their parents.
     std::vector<std::pair<Edge, std::uint32_t>> children;
     for (std::uint32_t i = 0; i < edit_.new_faces.size(); ++i) {
       const auto& f = edit_.new_faces[i];
@@ -61,9 +60,9 @@ class RadialOrderTest {
     std::vector<Vec3> apex;
     Fault fault{"rounding would exchange faces around an edge", {}};
     for (const FaceId f : cycle) {
-      const bool fresh = f.value >= complex_.face_count();
-      const auto& v = fresh ? edit_.new_faces[f.value - complex_.face_count()].v : complex_.face(f).v;
-      if (fresh) fault.faces.push_back(f.value - complex_.face_count());
+      const bool is_new = f.value >= complex_.face_count();
+      const auto& v = is_new ? edit_.new_faces[f.value - complex_.face_count()].v : complex_.face(f).v;
+      if (is_new) fault.faces.push_back(f.value - complex_.face_count());
       for (const VertexId c : v)
         if (c != a && c != b) apex.push_back(point(c)), touched |= is_moved(c);
     }

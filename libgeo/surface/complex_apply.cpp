@@ -91,7 +91,7 @@ class Complex::Commit {
   }
 
   // The faces that an edge keeps, with the children of divided faces in their parents' places, then
-  // the faces it gains. Faces that found a place are erased from `gained`.
+  // the faces it gains. Faces that replace a parent are erased from `gained`.
   void inherit_cycle(VertexId lo, VertexId hi, std::vector<FaceId>& gained, std::vector<FaceId>& cycle) const {
     cycle.clear();
     if (hi.value < old_vertices_)

@@ -53,8 +53,8 @@ void Complex::FanBuilder::claim_id(const Fan& fan, VertexId v, CrackDelta* delta
   SurfaceVertexId id;
   for (auto c = fan.first_candidate; c < fan.end_candidate && !id.valid(); ++c)
     if (std::find(claimed_.begin(), claimed_.end(), candidates_[c]) == claimed_.end()) id = candidates_[c];
-  const bool fresh = !id.valid();
-  if (fresh) {
+  const bool is_new = !id.valid();
+  if (is_new) {
     id = SurfaceVertexId(k_.site_.size());
     k_.site_.push_back(v);
     k_.fan_side_.emplace_back();
@@ -69,7 +69,7 @@ void Complex::FanBuilder::claim_id(const Fan& fan, VertexId v, CrackDelta* delta
     k_.corner_vertex_[s.face.index() * 6 + s.which * 3 + k] = id;
   }
   if (!delta) return;
-  if (fresh) {
+  if (is_new) {
     delta->new_surface_vertices.push_back(id);
     delta->copied_from.push_back(fan.first_candidate == fan.end_candidate ? SurfaceVertexId()
                                                                           : candidates_[fan.first_candidate]);

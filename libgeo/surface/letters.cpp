@@ -129,8 +129,8 @@ Region contour(const std::vector<Stroke>& strokes, int resolution) {
   Region region;
   std::map<std::array<int, 3>, std::uint32_t> index;  // (i, j, 0: the corner, 1: edge to the right, 2: edge upwards)
   const auto point = [&](int i, int j, int kind) {
-    const auto [it, fresh] = index.try_emplace({i, j, kind}, static_cast<std::uint32_t>(region.points.size()));
-    if (fresh) {
+    const auto [it, is_new] = index.try_emplace({i, j, kind}, static_cast<std::uint32_t>(region.points.size()));
+    if (is_new) {
       const int i1 = i + (kind == 1), j1 = j + (kind == 2);
       const double f0 = field[j * (nx + 1) + i], f1 = field[j1 * (nx + 1) + i1];
       const double s = kind == 0 ? 0.0 : std::clamp(f0 / (f0 - f1), 0.1, 0.9);
@@ -196,8 +196,8 @@ TriangleMesh make_letter(char letter, double depth, int resolution) {
   const auto wall = [&](std::uint32_t p, int layer) {
     if (layer == 0) return p;
     if (layer == layers) return n + p;
-    const auto [it, fresh] = between.try_emplace({p, layer}, static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (fresh) mesh.vertices.push_back({region.points[p][0], region.points[p][1], depth * layer / layers});
+    const auto [it, is_new] = between.try_emplace({p, layer}, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.push_back({region.points[p][0], region.points[p][1], depth * layer / layers});
     return it->second;
   };
   for (const auto& [a, b] : region.rim)

@@ -46,8 +46,8 @@ TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& 
       key[filled++] = weight;
       sum += static_cast<double>(weight) * Vec3(icosahedron_points[corner]);
     }
-    const auto [it, fresh] = index.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (fresh) {
+    const auto [it, is_new] = index.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) {
       const Vec3 d = sum.normalized();
       mesh.vertices.push_back(radius(d) * d);
     }
@@ -126,8 +126,8 @@ TriangleMesh make_block(const Vec3& size, double edge) {
   const Eigen::Vector3i n = (size / edge * (1 - 1e-12)).array().ceil().max(1.0).cast<int>();
   std::map<std::array<int, 3>, std::uint32_t> index;
   const auto vertex_at = [&](std::array<int, 3> cell) {
-    const auto [it, fresh] = index.try_emplace(cell, static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (fresh)
+    const auto [it, is_new] = index.try_emplace(cell, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new)
       mesh.vertices.push_back({size.x() * cell[0] / n.x(), size.y() * cell[1] / n.y(), size.z() * cell[2] / n.z()});
     return it->second;
   };

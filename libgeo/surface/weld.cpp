@@ -45,15 +45,15 @@ void join_near(const TriangleMesh& mesh, const std::vector<std::uint32_t>& open,
 std::size_t weld_seams(TriangleMesh& mesh, double reach) {
   auto open = open_vertices(mesh);
   UnionFind joined(mesh.vertices.size());  // the vertex that each becomes
-  const auto place = [&](std::uint32_t v) {
+  const auto position = [&](std::uint32_t v) {
     return std::tie(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z());
   };
   if (reach > 0) {
     join_near(mesh, open, reach, joined);
   } else {
-    std::sort(open.begin(), open.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+    std::sort(open.begin(), open.end(), [&](std::uint32_t a, std::uint32_t b) { return position(a) < position(b); });
     for (std::size_t i = 1; i < open.size(); ++i)
-      if (place(open[i]) == place(open[i - 1])) joined.unite(open[i], open[i - 1]);
+      if (position(open[i]) == position(open[i - 1])) joined.unite(open[i], open[i - 1]);
   }
   std::vector<std::uint32_t> index(mesh.vertices.size());
   std::uint32_t count = 0;
@@ -62,11 +62,11 @@ std::size_t weld_seams(TriangleMesh& mesh, double reach) {
     if (first == v) mesh.vertices[count] = mesh.vertices[v];
     index[v] = first == v ? count++ : index[first];
   }
-  const std::size_t gone = mesh.vertices.size() - count;
+  const std::size_t removed = mesh.vertices.size() - count;
   mesh.vertices.resize(count);
   for (auto& t : mesh.triangles)
     for (auto& v : t) v = index[v];
-  return gone;
+  return removed;
 }
 
 }  // namespace geo

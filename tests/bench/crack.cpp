@@ -1,4 +1,4 @@
-// Progressive cutting: a curved sheet of 12 steps × 40 front points through a model, ours beside
+// Progressive cutting: a curved sheet of 12 steps × 40 front points through a model, Kerf against
 // CGAL's corefine.
 #include <cmath>
 #include <cstdio>
@@ -17,8 +17,7 @@ namespace {
 
 constexpr int steps = 12, points = 40;
 
-// The front after `s` steps: a wavy sheet across the box, turned off the axes so that nothing is
-// special.
+// The front after `s` steps: a wavy sheet across the box, in general position relative to the axes.
 std::vector<geo::Vec3> front_at(const geo::Box3& box, int s) {
   const geo::Vec3 u = geo::Vec3(0.62, -0.47, 0.31).normalized(), v = u.cross(geo::Vec3(0.2, 0.3, -0.9)).normalized(),
                   n = u.cross(v);
@@ -51,7 +50,7 @@ struct Row {
   std::string name;
   std::size_t triangles = 0, cut = 0, pieces = 0;
   double progressive = 0, oneshot = 0, idle = 0, restarted = 0, corefine = 0, floor = 0;
-  geo::CrackStats work;
+  geo::CrackStats stats;
 };
 
 Row measure(const std::string& name, const geo::TriangleMesh& model) {
@@ -72,17 +71,17 @@ Row measure(const std::string& name, const geo::TriangleMesh& model) {
   row.progressive = row.oneshot = row.idle = row.restarted = row.corefine = row.floor = 1e300;
   const auto lower = [](double& least_yet, double t) { least_yet = std::min(least_yet, t); };
   geo::Complex k;
-  // All of them in turn and again: a machine that others use has slow moments, and nobody should
-  // have them alone.
+  // All variants in turn, repeatedly: slow moments of a shared machine must not fall on one
+  // variant.
   const int rounds = row.triangles > 300000 ? 2 : 4;
   for (int round = 0; round < rounds; ++round) {
     for (int run = 0; run < 5; ++run) {
       k = geo::Complex::from_skin(model);
-      geo::CrackStats work;
+      geo::CrackStats stats;
       geo::FrontState front = geo::begin_front(fronts[0], false, 1);
       const double start = cpu_seconds();
-      for (int s = 1; s <= steps; ++s) geo::advance(k, front, fronts[static_cast<std::size_t>(s)], {}, &work);
-      if (const double t = cpu_seconds() - start; t < row.progressive) row.progressive = t, row.work = work;
+      for (int s = 1; s <= steps; ++s) geo::advance(k, front, fronts[static_cast<std::size_t>(s)], {}, &stats);
+      if (const double t = cpu_seconds() - start; t < row.progressive) row.progressive = t, row.stats = stats;
     }
     row.pieces = geo::find_pieces(k).count;
     lower(row.oneshot, least([&] { k = geo::Complex::from_skin(model); }, [&] { geo::insert_sheet(k, whole, 1); }, 5));
@@ -115,10 +114,10 @@ int crack(const Options& options) {
       std::printf(
           "%-18s %7zu %6zu | %8.2f = %5.2f %5.2f %5.2f %5.2f %6.2f %5.2f | %8.2f %6.3f | %9.1f %9.1f %7.2f | %9.1f "
           "%9.2f %7.2f\n",
-          r.name.c_str(), r.cut, r.pieces, 1e3 * r.progressive, 1e3 * r.work.near_seconds, 1e3 * r.work.meet_seconds,
-          1e3 * r.work.split_seconds, 1e3 * r.work.keep_seconds, 1e3 * r.work.stitch_seconds,
-          1e3 * r.work.guard_seconds, 1e3 * r.oneshot, 1e3 * r.idle, 1e3 * r.restarted, 1e3 * r.corefine, 1e3 * r.floor,
-          r.restarted / r.progressive, r.corefine / r.oneshot, r.progressive / r.floor);
+          r.name.c_str(), r.cut, r.pieces, 1e3 * r.progressive, 1e3 * r.stats.near_seconds, 1e3 * r.stats.meet_seconds,
+          1e3 * r.stats.split_seconds, 1e3 * r.stats.keep_seconds, 1e3 * r.stats.stitch_seconds,
+          1e3 * r.stats.guard_seconds, 1e3 * r.oneshot, 1e3 * r.idle, 1e3 * r.restarted, 1e3 * r.corefine,
+          1e3 * r.floor, r.restarted / r.progressive, r.corefine / r.oneshot, r.progressive / r.floor);
   }
   Figures figures;
   const auto size_name = [](std::size_t n) {

@@ -5,7 +5,6 @@
 #include "cases.h"
 #include "contact/response/obstacle_penalty.h"
 #include "contact/response/self_contact_penalty.h"
-#include "geometry/distance.h"
 #include "kerf/nodes.h"
 #include "kerf/shapes.h"
 
@@ -33,42 +32,6 @@ struct Block {
 };
 
 }  // namespace
-
-TEST_CASE("the distance field of a mesh against brute force: distance, side, derivatives") {
-  const auto [first, count] = seeds(6);
-  const std::vector<TriangleMesh> models{make_block({1, 0.6, 0.1}, 0.5), make_apple(4), make_letter('K', 0.3, 12),
-                                         make_pumpkin(5)};
-  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
-    INFO("KERF_CASE=" << seed);
-    Random random(seed);
-    for (const TriangleMesh& mesh : models) {
-      const RigidShape shape(mesh);
-      const auto corners = corners_of(mesh);
-      const TriangleBvh bvh(corners);
-      const Box3 box = bvh.box().grown(0.2);
-      for (int i = 0; i < 200; ++i) {
-        const Vec3 x(random.uniform(box.lo.x(), box.hi.x()), random.uniform(box.lo.y(), box.hi.y()),
-                     random.uniform(box.lo.z(), box.hi.z()));
-        const auto field = shape.at(x);
-        double least = 1e300;
-        for (const auto& t : corners)
-          least = std::min(least, (closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm());
-        CHECK(std::abs(field.distance) == Approx(least).margin(1e-14));
-        CHECK((field.distance < 0) == bvh.inside(x));
-        CHECK(field.normal.norm() == Approx(1));
-        // Where the nearest feature does not change, half the squared distance is a quadratic
-        // function.
-        const Vec3 step = 1e-7 * random.direction();
-        const auto other = shape.at(x + step);
-        const double change = 0.5 * (std::pow(other.distance, 2) - std::pow(field.distance, 2));
-        const double second =
-            field.distance * field.normal.dot(step) + 0.5 * step.dot(field.half_square_hessian * step);
-        if ((other.half_square_hessian - field.half_square_hessian).norm() < 1e-12)
-          CHECK(change == Approx(second).margin(1e-15));
-      }
-    }
-  }
-}
 
 TEST_CASE("an obstacle's force is minus its energy's derivative, and its Hessian bounds the force's") {
   const Block block(0.3);

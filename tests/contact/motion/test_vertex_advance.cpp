@@ -1,0 +1,75 @@
+#include "contact/motion/vertex_advance.h"
+
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "base/random.h"
+#include "cases.h"
+#include "contact/detection/find_crossings.h"
+
+using namespace geo;
+
+namespace {
+
+// Two flat sheets of n × n squares of edge 1, one a little above the other.
+struct TwoSheets {
+  static constexpr int n = 6;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> at;
+  explicit TwoSheets(double distance) {
+    for (const int side : {0, 1}) {
+      const auto first = static_cast<std::uint32_t>(at.size());
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) at.push_back({double(i), double(j), side * distance});
+      const auto v = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (n + 1) + j); };
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          triangles.push_back({v(i, j), v(i + 1, j), v(i + 1, j + 1)});
+          triangles.push_back({v(i, j), v(i + 1, j + 1), v(i, j + 1)});
+        }
+    }
+  }
+  std::size_t crossings() const {
+    std::vector<std::uint32_t> representative(at.size());
+    std::iota(representative.begin(), representative.end(), 0u);
+    const std::vector<std::uint8_t> all(triangles.size(), 1);
+    return find_crossings(triangles, at, representative, false, &all).size();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("vertices advance to free targets, ignore negligible errors, and stop before what is in the way") {
+  TwoSheets sheets(0.5);
+  const double edge = 1, gap = 0.01;
+  std::vector<Vec3> to = sheets.at;
+  for (std::size_t v = to.size() / 2; v < to.size(); ++v) to[v].z() += 0.3;  // upwards, free
+  to[0].x() -= 0.005;                                                        // negligible
+  const Vec3 corner = sheets.at[0];
+  advance_vertices(sheets.triangles, to, edge, gap, sheets.at);
+  for (std::size_t v = to.size() / 2; v < to.size(); ++v) CHECK(sheets.at[v] == to[v]);
+  CHECK(sheets.at[0] == corner);
+
+  const auto [first, count] = seeds(20);
+  std::size_t planes = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    TwoSheets pressed(0.05);
+    const std::vector<Vec3> start = pressed.at;
+    std::vector<Vec3> wanted = start;
+    // Every vertex wants to be somewhere beyond the other sheet.
+    for (std::size_t v = 0; v < wanted.size(); ++v)
+      wanted[v] += Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2),
+                        (v < wanted.size() / 2 ? 1 : -1) * random.uniform(0.02, 0.3));
+    planes += advance_vertices(pressed.triangles, wanted, edge, gap, pressed.at);
+    REQUIRE(pressed.crossings() == 0);
+    double before = 0, after = 0;
+    for (std::size_t v = 0; v < wanted.size(); ++v) {
+      before += (start[v] - wanted[v]).norm(), after += (pressed.at[v] - wanted[v]).norm();
+      CHECK((pressed.at[v] - wanted[v]).norm() <= (start[v] - wanted[v]).norm() + 0.1 * edge);
+    }
+    CHECK(after < before);
+  }
+  REQUIRE(planes > 0);
+}

@@ -69,6 +69,7 @@ const std::map<std::string, std::string> public_headers{
     {"shapes", "surface"},
     {"simulation", "simulation"},
     {"solid", "mechanics/solver"},
+    {"state", "mechanics/terms"},
     {"stream", "io"},
     {"surface_file", "io"},
     {"vec", "base"},

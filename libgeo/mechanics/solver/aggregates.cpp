@@ -37,7 +37,7 @@ struct Boxes {
   }
 };
 
-// What the number of an aggregate follows from.
+// Sort key of an aggregate, from which its number follows.
 struct Placement {
   std::uint32_t component;
   double coordinate = 0;  // mean along the longest side of the component

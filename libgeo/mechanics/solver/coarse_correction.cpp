@@ -19,7 +19,7 @@ bool is_zero(const float* tile_numbers) {
 
 }  // namespace
 
-// What the points of one block contribute to aggregates.
+// The contribution of one block's points to the matrix.
 struct CoarseCorrection::BlockTiles {
   std::vector<std::uint32_t> aggregates;  // ascending
   std::vector<float> tiles;               // of pairs s ≥ t of indices there, at s (s + 1) / 2 + t
@@ -64,7 +64,7 @@ CoarseCorrection::BlockTiles CoarseCorrection::block_tiles(const PointBlock& blo
     arm.insert(arm.end(), numbers.begin(), numbers.end());
   }
   result.tiles.assign(tile * own.size() * (own.size() + 1) / 2, 0);
-  rigid_stiffness(block, stiffness.modes[b], stiffness.weight[b], moduli, stride, slot, arm.data(),
+  rigid_stiffness({block, stiffness.modes[b], stiffness.weight[b], moduli, stride}, slot, arm.data(),
                   result.tiles.data());
   return result;
 }

@@ -45,8 +45,11 @@ HWY_INLINE void strain_and_stress(const float* HWY_RESTRICT moment, const float*
   }
 }
 
-void RigidStiffness(const PointBlock& block, const StiffnessModes& modes, const float* weight, const Moduli* moduli,
-                    std::size_t stride, const std::uint16_t* slot, std::size_t slots, const float* arm, float* out) {
+void RigidStiffness(const CorotatedPoints& points, const std::uint16_t* slot, std::size_t slots, const float* arm,
+                    float* out) {
+  const auto& [block, modes, weights, all_moduli, stride] = points;
+  const float* const weight = weights.data();
+  const Moduli* const moduli = all_moduli.data();
   const Eight d8;
   using Wide = hn::CappedTag<float, 16>;
   const Wide d;
@@ -118,12 +121,9 @@ HWY_AFTER_NAMESPACE();
 namespace geo {
 HWY_EXPORT(RigidStiffness);
 
-void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight,
-                     std::span<const Moduli> moduli, std::size_t stride, std::span<const std::uint16_t> slot,
-                     const float* arm, float* out) {
+void rigid_stiffness(const CorotatedPoints& points, std::span<const std::uint16_t> slot, const float* arm, float* out) {
   const std::size_t slots = slot.empty() ? 0 : std::size_t(*std::max_element(slot.begin(), slot.end())) + 1;
-  HWY_DYNAMIC_DISPATCH(RigidStiffness)
-  (block, modes, weight.data(), moduli.data(), stride, slot.data(), slots, arm, out);
+  HWY_DYNAMIC_DISPATCH(RigidStiffness)(points, slot.data(), slots, arm, out);
 }
 
 }  // namespace geo

@@ -29,12 +29,18 @@ inline std::array<float, 16> arm_numbers(const Vec3& arm, bool free) {
   return {one, one, one, one, y, z, x, y, 0, 0, 0, 0, z, x, y, z};
 }
 
+/// Points of one block whose stiffness is summed. Refers to everything.
+struct CorotatedPoints {
+  const PointBlock& block;
+  const StiffnessModes& modes;       ///< rotations of the points
+  const std::vector<float>& weight;  ///< per point: volume, m³
+  std::span<const Moduli> moduli;    ///< per material, of an isotropic stiffness
+  std::size_t stride;                ///< every `stride`-th point counts, `stride` times
+};
+
 /// Adds to tile s (s + 1) / 2 + t, for each pair s ≥ t of slots, the corotated small-strain
-/// stiffness between their rigid motions, summed over every `stride`-th point of a block with
-/// `stride` times its weight. `moduli`: per material; `slot`: per node of the block, the index of
-/// its aggregate; `arm`: per node of the block, arm_numbers().
-void rigid_stiffness(const PointBlock& block, const StiffnessModes& modes, const std::vector<float>& weight,
-                     std::span<const Moduli> moduli, std::size_t stride, std::span<const std::uint16_t> slot,
-                     const float* arm, float* out);
+/// stiffness between their rigid motions, summed over the points. `slot`: per node of the block,
+/// the index of its aggregate; `arm`: per node of the block, arm_numbers().
+void rigid_stiffness(const CorotatedPoints& points, std::span<const std::uint16_t> slot, const float* arm, float* out);
 
 }  // namespace geo

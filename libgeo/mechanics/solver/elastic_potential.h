@@ -40,7 +40,7 @@ class ElasticPotential {
     const auto sum = solid_.points.sum_at_node<4>(block_products_.data(), node);
     return {sum[0], sum[1], sum[2]};
   }
-  /// Of the last linearise().
+  /// The stiffness of the last linearise().
   const PointStiffness& stiffness() const { return stiffness_; }
 
  private:

@@ -21,8 +21,8 @@ struct RigidMotion {
   Vec3 displacement(const Vec3& at) const { return translation + (rotation * (at - centre) - (at - centre)); }
   /// Displacement of a point at first order in the angle, along a straight line.
   Vec3 linearised(const Vec3& at) const { return translation + angle.cross(at - centre); }
-  /// Correction that bends share · displacement, a straight line, to the arc of a rotation by share
-  /// · angle. What the displacement of the point has besides linearised() is rotated as well.
+  /// Correction that bends share · displacement, a straight line, to the arc of a rotation by
+  /// share · angle. The part of the displacement that is not linearised() rotates, too.
   Vec3 arc_correction(const Vec3& at, const Vec3& displacement, double share) const;
 };
 

@@ -16,12 +16,12 @@ namespace geo {
 
 class SchwarzPreconditioner {
  public:
-  /// What the stiffness of subdomains is made of besides their outer products.
+  /// Data that the stiffness of subdomains is computed from, with their outer products.
   struct Input {
     const Materials& materials;                ///< of nodes
     std::span<const Moduli> moduli;            ///< per material, of an isotropic stiffness
     const std::vector<StiffnessModes>& modes;  ///< per block: rotations of points now
-    const std::vector<Mat3>& blocks;           ///< per node: its diagonal block besides elasticity, N/m
+    const std::vector<Mat3>& blocks;           ///< per node: its diagonal block without elasticity, N/m
     const std::vector<std::uint8_t>& fixed;    ///< as in Environment
   };
   /// Computes all inverses but those in `inverses` that are valid. Refers to subdomains, materials,

@@ -19,8 +19,8 @@
 
 namespace geo {
 
-/// What the nodes, the material points and both levels of the preconditioner are made of.
-/// Everything lives in material space: a time step reads it, a split updates it.
+/// Nodes, material points and the geometry of both levels of the preconditioner. Everything lives
+/// in material space: a time step reads it, a split updates it.
 struct SolidDiscretisation {
   /// Allocates nothing; update_nodes() fills it.
   explicit SolidDiscretisation(Materials of_nodes) : materials(std::move(of_nodes)) {}
@@ -42,9 +42,9 @@ struct SolidDiscretisation {
 
   /// Number of nodes.
   std::size_t size() const { return mass.size(); }
-  /// The coarse space sums every so many points, weighted by that number. Quadrature has four
-  /// points a cell: with a stride of 5 every cell but each fifth contributes one of its points in
-  /// turn. Convergence needs no more.
+  /// Stride of the points over which the coarse space is summed, weighted by the stride. Quadrature
+  /// has four points per cell: a stride of 5 takes another point from cell to cell and skips every
+  /// fifth cell. Results agree to the accuracy of the step, at a fifth of the work.
   std::size_t coarse_point_stride() const { return galerkin ? 5 : 1; }
   /// Whether any material yields.
   bool is_plastic() const {

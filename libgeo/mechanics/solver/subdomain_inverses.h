@@ -15,7 +15,8 @@ namespace geo {
 
 class SubdomainInverses {
  public:
-  /// Per node of a subdomain: what its inverse is made of besides the subdomain's outer products.
+  /// Term of the matrix' diagonal, per node of a subdomain; with the outer products it determines
+  /// the inverse.
   struct DiagonalTerm {
     float inertia;             ///< the same in all directions, N/m; negative: the node is fixed
     std::uint32_t subdomains;  ///< number of subdomains that the node is in

@@ -13,7 +13,7 @@
 
 namespace geo {
 
-/// What the points of one block contribute to subdomains.
+/// The contribution of one block's points to the outer products of subdomains.
 struct BlockOuterProducts {
   /// The first point that sees the largest number of a subdomain's nodes.
   struct BestPoint {
@@ -38,7 +38,7 @@ constexpr std::size_t padded(std::size_t size) { return (size + 15) / 16 * 16; }
 struct EightSubdomains {
   std::size_t nodes = 0;         ///< of each
   std::vector<float> tiles;      ///< of nodes a ≥ b at a (a + 1) / 2 + b: Σ w g_a g_bᵀ by rows; later −K⁻¹
-  std::vector<float> blocks;     ///< nine per node: the diagonal block besides elasticity, by columns
+  std::vector<float> blocks;     ///< nine per node: the diagonal block without elasticity, by columns
   std::vector<float> share;      ///< per node: factor of its rows and columns of the inverse
   std::array<float, 72> turn{};  ///< rotation by columns, whose inverse is applied to `blocks`
   std::array<float, 8> shear{};  ///< shear modulus, Pa

@@ -16,7 +16,7 @@ constexpr std::size_t most_in_leaf = 6;
 constexpr double overlap = 0.9;  // spacings
 constexpr int most_depth = 180;  // 60 halvings of each axis: nodes closer together share a leaf
 
-// Numbers of outer products of so many nodes.
+// The count of numbers in the outer products of a subdomain.
 std::size_t outer_size(std::size_t nodes) { return 12 * (nodes * (nodes + 1) / 2); }
 
 using Leaves = std::vector<std::span<std::uint32_t>>;  // the nodes of each

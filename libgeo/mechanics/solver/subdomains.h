@@ -12,7 +12,7 @@
 
 namespace geo {
 
-/// What subdomains are computed from. Refers to everything.
+/// Input of subdomains. Refers to everything.
 struct SubdomainInput {
   const std::vector<Vec3>& position;   ///< per node, material coordinates
   const NodalGradientOperator& mls;    ///< neighbours of nodes

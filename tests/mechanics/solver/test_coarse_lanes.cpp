@@ -107,7 +107,7 @@ TEST_CASE("Rigid motions of groups have the stiffness of their strains, in all v
       for (const float x : arm_numbers(c.arm[j], c.free[j])) arms.push_back(x);
     for_each_simd_target([&] {
       std::vector<float> tiles(tile * slots * (slots + 1) / 2, 0);
-      rigid_stiffness(c.block, c.modes, c.weight, c.moduli, c.stride, c.slot, arms.data(), tiles.data());
+      rigid_stiffness({c.block, c.modes, c.weight, c.moduli, c.stride}, c.slot, arms.data(), tiles.data());
       const float* at = tiles.data();
       for (std::size_t s = 0; s < slots; ++s)
         for (std::size_t t = 0; t <= s; ++t, at += tile)

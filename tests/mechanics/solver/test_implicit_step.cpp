@@ -89,7 +89,7 @@ TEST_CASE("what one part does is nothing to another") {
 
 namespace {
 
-// Holds nodes above where they were at y = 0.1, by springs of so many N/m.
+// Holds nodes above where they were at y = 0.1, by springs of `k` N/m.
 struct Bed : Potential {
   const std::vector<Vec3>& at;
   std::vector<NodeWeight> on;

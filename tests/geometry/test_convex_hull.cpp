@@ -10,8 +10,8 @@ using namespace geo;
 
 namespace {
 
-// Closed, of one shell (Euler), and nothing before any triangle among those of its own corners
-// or, where `all`, of the points.
+// Checks that a hull is closed and of one shell (Euler), and that no point is in front of a
+// triangle: no corner of the hull or, with `all`, no point at all.
 void check_hull(const std::vector<Vec3>& points, const std::vector<Triangle>& hull, bool all) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   std::vector<char> used(points.size());
@@ -33,7 +33,7 @@ void check_hull(const std::vector<Vec3>& points, const std::vector<Triangle>& hu
 
 }  // namespace
 
-TEST_CASE("Nothing is outside of a convex hull", "[hull]") {
+TEST_CASE("no point is outside its convex hull", "[hull]") {
   const auto [first, count] = seeds(60);
   for (int c = 0; c < count; ++c) {
     const auto seed = first + static_cast<std::uint64_t>(c);
@@ -59,7 +59,7 @@ TEST_CASE("Nothing is outside of a convex hull", "[hull]") {
   }
 }
 
-TEST_CASE("What lies in a plane has no hull of volume", "[hull]") {
+TEST_CASE("coplanar points have no hull", "[hull]") {
   CHECK(convex_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).empty());
   CHECK(convex_hull(std::vector<Vec3>(7, Vec3(1, 2, 3))).empty());
   CHECK(convex_hull(std::vector<Vec3>{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {5, 5, 5}}).empty());

@@ -50,11 +50,11 @@ TEST_CASE("orient3d is exact on random, nearly coplanar and scaled points") {
   CHECK(orient3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}) == 1);
 }
 
-TEST_CASE("sides of many points at once are those of each, or not told") {
+TEST_CASE("filtered orientations of many points are exact or undecided") {
   const std::uint64_t seed = GENERATE(4, 5);
   CAPTURE(seed);
   Random random(seed);
-  std::size_t told = 0, asked = 0, flat = 0;
+  std::size_t decided = 0, queried = 0, coplanar = 0;
   for (int i = 0; i < cases(100); ++i) {
     const bool grid = random.below(2);
     const double scale = std::pow(10.0, random.uniform(-6, 6)), shift = random.below(3) ? 0 : 1e6;
@@ -76,11 +76,11 @@ TEST_CASE("sides of many points at once are those of each, or not told") {
                 under = below[k / 64] >> k % 64 & 1;
       CAPTURE(i, k);
       CHECK((over + under == 0 || over - under == side));
-      ++asked, told += static_cast<std::size_t>(over + under), flat += side == 0;
+      ++queried, decided += static_cast<std::size_t>(over + under), coplanar += side == 0;
     }
   }
-  CHECK(told > asked / 3);
-  CHECK(flat > 0);
+  CHECK(decided > queried / 3);
+  CHECK(coplanar > 0);
 }
 
 TEST_CASE("a closed segment meets a closed triangle where it touches it") {
@@ -144,7 +144,7 @@ TEST_CASE("the triangle index finds what a scan finds, whatever the sizes") {
   }
 }
 
-TEST_CASE("the tree blocks, measures and tells inside from outside as a scan does") {
+TEST_CASE("a segment is blocked by the tree if a triangle of the soup meets it") {
   Random random(9);
   std::vector<std::array<Vec3, 3>> soup;
   for (int i = 0; i < 200; ++i) {

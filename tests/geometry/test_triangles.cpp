@@ -53,11 +53,11 @@ TEST_CASE("two triangles meet when CGAL says so") {
   CHECK(met > 500);
 }
 
-TEST_CASE("triangles that are said to share corners only have nothing else in common") {
+TEST_CASE("the filter for shared corners is right where it is conclusive") {
   const std::uint64_t seed = GENERATE(4, 5, 6);
   CAPTURE(seed);
   Random random(seed);
-  int said = 0;
+  int conclusive = 0;
   for (int i = 0; i < cases(4000); ++i) {
     CAPTURE(i);
     Vec3 s[3], t[3];
@@ -66,7 +66,7 @@ TEST_CASE("triangles that are said to share corners only have nothing else in co
       for (auto* x : {&s, &t})
         for (Vec3& p : *x) p.z() = 0;  // in one plane
     if (collinear(s[0], s[1], s[2]) || collinear(t[0], t[1], t[2]) || !share_corners_only(s, t)) continue;
-    ++said;
+    ++conclusive;
     std::vector<Vec3> shared;
     for (const Vec3& p : s)
       for (const Vec3& q : t)
@@ -86,7 +86,7 @@ TEST_CASE("triangles that are said to share corners only have nothing else in co
       REQUIRE((is_shared(segment->source()) && is_shared(segment->target())));
     }
   }
-  CHECK(said > 200);
+  CHECK(conclusive > 200);
 }
 
 TEST_CASE("the index finds every box that a triangle meets") {
@@ -117,7 +117,7 @@ TEST_CASE("the index finds every box that a triangle meets") {
   }
 }
 
-TEST_CASE("the index is right while boxes of all sizes come, go and come again") {
+TEST_CASE("the index is right while boxes of all sizes are inserted and erased") {
   const std::uint64_t seed = GENERATE(11, 12, 13, 14);
   CAPTURE(seed);
   Random random(seed);

@@ -1,0 +1,83 @@
+// A closed two-sided sheet opens where its targets come apart.
+#include <catch2/catch.hpp>
+
+#include "contact/detection/find_crossings.h"
+#include "contact/surface/open_sheets.h"
+
+using namespace geo;
+
+namespace {
+
+// The two coincident sides of a flat sheet of n × n squares, joined along its rim. The upper side
+// has its material above, so its triangles face down.
+struct ClosedSheet {
+  ContactSurface surface;
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> upper;  // copies of inner vertices
+
+  explicit ClosedSheet(std::uint32_t n) {
+    const auto at = [&](std::uint32_t i, std::uint32_t j) { return i * (n + 1) + j; };
+    std::vector<std::uint32_t> copy;
+    for (std::uint32_t i = 0; i <= n; ++i)
+      for (std::uint32_t j = 0; j <= n; ++j) {
+        positions.push_back(Vec3(i, j, 0)), surface.site.push_back(at(i, j)), copy.push_back(at(i, j));
+      }
+    for (std::uint32_t i = 1; i < n; ++i)
+      for (std::uint32_t j = 1; j < n; ++j) {
+        copy[at(i, j)] = static_cast<std::uint32_t>(positions.size());
+        upper.push_back(copy[at(i, j)]);
+        positions.push_back(Vec3(i, j, 0)), surface.site.push_back(at(i, j));
+      }
+    std::uint32_t face = 0;
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = 0; j < n; ++j)
+        for (const Triangle& t :
+             {Triangle{at(i, j), at(i + 1, j), at(i, j + 1)}, Triangle{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}}) {
+          surface.triangles.push_back(t), surface.side.push_back(2 * face);
+          surface.triangles.push_back({copy[t[0]], copy[t[2]], copy[t[1]]}), surface.side.push_back(2 * face + 1);
+          ++face;
+        }
+    surface.edge = 1;
+  }
+  std::size_t open(const std::vector<Vec3>& to, double gap, double opening) {
+    const VertexFans fans(surface.triangles, positions.size());
+    const CoincidentVertices coincident(coincident_representatives(surface.site, positions));
+    return open_sheets(surface, fans, coincident, to, gap, opening, positions);
+  }
+  std::size_t crossings() const {
+    return find_crossings(surface.triangles, positions, coincident_representatives(surface.site, positions), true)
+        .size();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("vertices whose targets come apart are separated into their own material", "[open-sheets]") {
+  constexpr double gap = 1e-3, opening = 1e-2;
+  ClosedSheet sheet(6);
+  std::vector<Vec3> to = sheet.positions;
+  for (const auto v : sheet.upper) to[v].z() = 0.1;
+  CHECK(sheet.open(to, gap, opening) == 25);
+  CHECK(sheet.crossings() == 0);
+  for (const auto v : sheet.upper) {
+    CHECK((sheet.positions[v].z() > 0 && sheet.positions[v].z() <= 0.5 * gap));
+    const double below = sheet.positions[sheet.surface.site[v]].z();
+    CHECK((below < 0 && below >= -0.5 * gap));
+  }
+}
+
+TEST_CASE("vertices stay closed if their targets overlap or hardly differ", "[open-sheets]") {
+  constexpr double gap = 1e-3, opening = 1e-2;
+  ClosedSheet sheet(4);
+  const std::vector<Vec3> before = sheet.positions;
+  for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(0, 0, 0.5 * opening), Vec3(0, 0, -0.1), Vec3(2 * opening, 0, 0)}) {
+    std::vector<Vec3> to = before;
+    for (const auto v : sheet.upper) to[v] += shift;
+    CHECK(sheet.open(to, gap, opening) == 0);
+    CHECK(sheet.positions == before);
+  }
+  std::vector<Vec3> to = before;  // slip by more than three times the opening distance
+  for (const auto v : sheet.upper) to[v].x() += 4 * opening;
+  CHECK(sheet.open(to, gap, opening) == 9);
+  CHECK(sheet.crossings() == 0);
+}

@@ -23,8 +23,8 @@ struct ClosestPoints {
   Vec3 difference = Vec3::Zero();  ///< point of a − point of b
 };
 
-/// The closest points of two disjoint simplices, given by 1 to 3 corners each. Triangles must have an
-/// area. Floating point.
+/// The closest points of two disjoint simplices, given by 1 to 3 corners each. Triangles must
+/// have an area. Floating point.
 ClosestPoints closest_points(const Vec3* a, int a_size, const Vec3* b, int b_size);
 
 /// The separation of a from b along direction n: min n · x over a minus max n · x over b. If it is

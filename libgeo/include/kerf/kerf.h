@@ -29,6 +29,7 @@
 #include "kerf/shapes.h"
 #include "kerf/simulation.h"
 #include "kerf/solid.h"
+#include "kerf/state.h"
 #include "kerf/stream.h"
 #include "kerf/surface_file.h"
 #include "kerf/vec.h"

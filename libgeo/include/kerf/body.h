@@ -98,7 +98,7 @@ struct SplitStats {
   double binding_seconds = 0;     ///< binding
 };
 
-/// What a split changed, for the mechanics. All lists are ascending.
+/// Changes of a body by a split, for the mechanics. All lists are ascending.
 struct BodyDelta {
   CrackDelta crack;                                      ///< changes of K
   NodeId first_new_node;                                 ///< nodes from here on are new

@@ -69,7 +69,7 @@ bool operator==(const AdjacencyRow& a, const AdjacencyRow& b);
 
 /// An undirected graph over nodes with the neighbours of each node. Edges persist however long they
 /// are: connectivity does not depend on support radii. Neighbours are symmetric.
-/// build_neighborhoods() finds them, update_graph() keeps them. Besides nodes the graph may have
+/// build_neighborhoods() finds them, update_graph() keeps them. The graph may also have
 /// guides (§ 8): Steiner points that shortest paths pass through. Edges, neighbours, components and
 /// counts leave guides out.
 class VisibilityGraph {

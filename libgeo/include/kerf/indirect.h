@@ -1,4 +1,5 @@
-// A value of a type that only sources know: classes keep private members out of public headers with it.
+// A value of a type that only sources know: classes keep private members out of public headers with
+// it.
 #pragma once
 
 #include <memory>
@@ -6,8 +7,9 @@
 
 namespace geo {
 
-/// Owns one T, which may be incomplete where an Indirect<T> is a member. Copies copy the T, moves move the pointer;
-/// a const Indirect gives a const T. Empty only after a move. T must be complete where of() is called.
+/// Owns one T, which may be incomplete where an Indirect<T> is a member. Copies copy the T, moves
+/// move the pointer; a const Indirect gives a const T. Empty only after a move. T must be complete
+/// where of() is called.
 template <class T>
 class Indirect {
  public:

@@ -10,7 +10,7 @@ namespace geo::crack {
 
 /// A child of the strip.
 struct ChildRef {
-  std::uint32_t element, child;  ///< indices into Arrangement::elements and ::children
+  std::uint32_t element, child;  ///< indices of an element of the arrangement and of its child
 };
 
 /// The strip's children that lie in the material and on no face, in order of children. A child with

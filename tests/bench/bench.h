@@ -19,7 +19,8 @@ inline double cpu_seconds() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// The least CPU time of some runs of `work`, each after an untimed `prepare`: at least three, until a second is spent.
+/// The least CPU time of some runs of `work`, each after an untimed `prepare`: at least three,
+/// until a second is spent.
 inline double least(const std::function<void()>& prepare, const std::function<void()>& work, int most = 15) {
   double best = 1e300, spent = 0;
   for (int i = 0; i < most && (i < 3 || spent < 1.0); ++i) {
@@ -37,8 +38,8 @@ inline double growth(double time, double later, double size, double larger) {
   return std::log(later / time) / std::log(larger / size);
 }
 
-/// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn, with an untimed
-/// `prepare` before each. Leaves one thread.
+/// Wall-clock time of `work` on one thread over that on two, the best of some runs of each in turn,
+/// with an untimed `prepare` before each. Leaves one thread.
 double threads_speedup(
     const std::function<void()>& work, const std::function<void()>& prepare = [] {});
 

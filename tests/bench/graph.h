@@ -7,8 +7,8 @@
 
 namespace bench {
 
-/// A ribbed ball of about 9,600 triangles with a thin slit down to its axis, concave at every scale, and jittered nodes
-/// inside it in Morton order: about 53 of them within a support radius.
+/// A ribbed ball of about 9,600 triangles with a thin slit down to its axis, concave at every
+/// scale, and jittered nodes inside it in Morton order: about 53 of them within a support radius.
 struct GraphCase {
   geo::TriangleMesh surface;
   geo::NodeSet nodes;

@@ -1,4 +1,5 @@
-// Nearest nodes beside nanoflann, both in doubles, the index and all rows counted; the spanning tree.
+// Nearest nodes beside nanoflann, both in doubles, the index and all rows counted; the spanning
+// tree.
 #include <cstdio>
 #include <nanoflann.hpp>
 

@@ -1,6 +1,6 @@
-// Visibility of the edges of the graph of nearest nodes: ours beside Embree's occlusion (floats, robust) and CGAL's
-// tree of boxes (exact). Trees of boxes are made before the clock starts, for all three; there is nothing else to
-// prepare.
+// Visibility of the edges of the graph of nearest nodes: ours beside Embree's occlusion (floats,
+// robust) and CGAL's tree of boxes (exact). Trees of boxes are made before the clock starts, for
+// all three; there is nothing else to prepare.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -106,7 +106,8 @@ bool touched(const Soup& soup, const geo::Vec3& p, const geo::Vec3& q) {
   });
 }
 
-// Nodes on a lattice and, over it, the triangles of all its planes: segments through corners, along edges, in planes.
+// Nodes on a lattice and, over it, the triangles of all its planes: segments through corners, along
+// edges, in planes.
 std::size_t degenerate_disagreements(std::size_t& asked) {
   constexpr int cells = 8;
   std::vector<geo::Vec3> x;
@@ -134,7 +135,8 @@ std::size_t degenerate_disagreements(std::size_t& asked) {
   return wrong;
 }
 
-// As the case, but every node of some is put on the surface: at a corner, within an edge, or within a triangle.
+// As the case, but every node of some is put on the surface: at a corner, within an edge, or within
+// a triangle.
 geo::NodeSet on_surface(const GraphCase& c) {
   geo::NodeSet nodes = c.nodes;
   for (std::size_t i = 0; i < nodes.size(); i += 7) {
@@ -177,7 +179,8 @@ void measure_visibility(const GraphCase& c, const Options& options, Figures& fig
     lower(t_embree, least([] {}, [&] { embree.blocked(x, pairs, of_embree); }, 3));
   }
   lower(t_cgal, least([] {}, [&] { cgal.blocked(x, pairs, stride, of_cgal); }, 3) * double(stride));
-  // Against exact predicates: on all edges by CGAL's tree (a tenth of very many), on some by a scan of all triangles.
+  // Against exact predicates: on all edges by CGAL's tree (a tenth of very many), on some by a scan
+  // of all triangles.
   std::size_t wrong = differences(ours, of_cgal, stride), asked = 0;
   for (std::size_t e = 0; e < pairs.size(); e += pairs.size() / 20000 + 1)
     wrong += (ours[e] != 0) != touched(soup, x[pairs[e].first.index()], x[pairs[e].second.index()]);

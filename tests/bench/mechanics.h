@@ -1,4 +1,5 @@
-// The beam that mechanics are measured on: 4 × 1 × 1, held at one end, bending under its own weight.
+// The beam that mechanics are measured on: 4 × 1 × 1, held at one end, bending under its own
+// weight.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Bullet's deformable body: linear tetrahedra, backward Euler, as its own example of a neo-Hookean body sets it up.
+// Bullet's deformable body: linear tetrahedra, backward Euler, as its own example of a neo-Hookean
+// body sets it up.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>

@@ -8,8 +8,8 @@
 
 namespace geo {
 
-/// A disk about the y axis, of diameter 1, from 0 to 1 along x and z: a square whose rings become circles (Shirley and
-/// Chiu 1997).
+/// A disk about the y axis, of diameter 1, from 0 to 1 along x and z: a square whose rings become
+/// circles (Shirley and Chiu 1997).
 inline TriangleMesh make_disk(double thickness, double edge) {
   TriangleMesh mesh = make_block({1, thickness, 1}, edge);
   for (Vec3& p : mesh.vertices) {

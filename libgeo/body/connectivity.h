@@ -27,7 +27,7 @@ struct ConnectivityMismatch {
 ConnectivityMismatch find_mismatch(const Body& body, const std::vector<std::uint32_t>& component);
 
 /// Compares after a step only what may have changed: at `cut` edges, `detached` pieces, nodes from
-/// `first_new` on, and faces at `touched` vertices. Of two parts the one with fewer nodes is
+/// `first_new` on, and faces at `touched` vertices. The part with fewer nodes is
 /// visited. Parts that are still connected around the crack front cost little more than the cut.
 ConnectivityMismatch find_mismatch(const Body& body, std::span<const NodePair> cut,
                                    std::span<const DetachedPiece> detached, std::span<const SurfaceVertexId> touched,

@@ -39,6 +39,7 @@ class Regions {
     std::uint32_t parent, lowest;
     std::vector<std::uint32_t> inside, edge;  // edge[begin…]: elements whose neighbours may be missing
     std::size_t begin = 0;
+    /// Elements so far, for comparison.
     std::size_t size() const { return inside.size() + edge.size() - begin; }
   };
   static constexpr std::uint32_t none = ~0u;

@@ -66,8 +66,8 @@ class Search {
         tree_(tree),
         reach_(graph.longest_edge() * (1 + 1e-6)),
         support_(std::min(graph.largest_support() * (1 + 1e-6), reach_)) {
-    // What a face cuts has one end within half its length. A millionth more covers the rounding of
-    // these distances.
+    // One end of a cut edge is within half the edge's length of the face. A millionth more covers
+    // the rounding of these distances.
     for (const Corners& face : faces) around_.emplace_back(face, 0.5 * reach_);
   }
   CutCandidates run(const NodeGrid& grid, NodeId first_new) {

@@ -17,8 +17,8 @@ namespace geo {
 /// the same plane touches none of them. Heights are measured from `origin` along the normal of the
 /// largest face, in units of the normal's length.
 struct Slab {
-  /// Of faces[f] for the f in `indices`. Valid for points at most `reach` from the origin along
-  /// each axis.
+  /// The slab of faces[f] for the f in `indices`. Valid for points at most `reach` from the origin
+  /// along each axis.
   Slab(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> indices, const Vec3& origin,
        double reach);
   /// Height of a point.

@@ -29,8 +29,8 @@ using Visit = std::function<void(NodeId, std::span<const NodeId>)>;
 // most. For a distance d ≤ 1 the sum of squares is then off by 2 η √3 d + 3 η² from the coordinates
 // and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
 constexpr double float_error = 0x1p-19;
-// Candidates are told apart by the low bits of their squares, whose place is then the candidate's:
-// that takes away a share of key_error at most.
+// A candidate's index replaces the low bits of its squared distance, so that all keys differ. That
+// changes the distance by a share of key_error at most.
 constexpr std::uint32_t most_keyed = 2048, most_ranked = 255;
 constexpr double key_error = 0x1p-12;
 

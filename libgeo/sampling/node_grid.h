@@ -93,6 +93,7 @@ class NodeGrid {
   std::vector<std::uint32_t> next_;  // by index: the next in its leaf
 };
 
+/// See the declaration.
 template <class Visit>
 void NodeGrid::visit_near(const CellBounds& at, const Vec3& p, const Vec3& gap, const double& reach,
                           const Visit& visit) const {
@@ -113,6 +114,7 @@ void NodeGrid::visit_near(const CellBounds& at, const Vec3& p, const Vec3& gap, 
   }
 }
 
+/// See the declaration.
 template <class Enter, class Visit>
 void NodeGrid::walk(const CellBounds& at, const Enter& enter, const Visit& visit) const {
   // Middles were rounded once a level: 40 roundings of numbers no larger than the farthest corner.
@@ -125,6 +127,7 @@ void NodeGrid::walk(const CellBounds& at, const Enter& enter, const Visit& visit
     for (auto index = cell.first; index != none; index = next_[index]) visit(at.depth, index);
 }
 
+/// See the declaration.
 template <class Accept>
 std::vector<std::uint32_t> NodeGrid::nearest(std::span<const Vec3> positions, const Vec3& p, std::size_t k,
                                              std::uint32_t self, const Accept& accept) const {

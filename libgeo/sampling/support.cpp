@@ -18,7 +18,7 @@ struct Near {
 /// The twelve nodes nearest to node i of those that can be within three spacings.
 void find_dozen(const NodeSet& nodes, const LeafIndex& leaves, std::size_t i, std::vector<Near>& near) {
   const Cell cell = leaves.cell(i);
-  // Two cells of the next level reach two spacings far, which does nearly always, those of the one after that four.
+  // Cells one level coarser cover two spacings, which nearly always suffices; two levels, four.
   for (int up = 1; up <= 2; ++up) {
     near.clear();
     const double reach = up * 2 * nodes.spacing[i];

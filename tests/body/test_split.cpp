@@ -189,7 +189,7 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
   for (std::size_t i = before.size(); i < all; ++i) {
     const Vec3& x = body.nodes.position[i];
     const double spacing = body.nodes.spacing[i];
-    // Of those that were there before: at least half as far apart as the closest ones, no farther
+    // Among the original nodes: at least half as far apart as the closest ones, no farther
     // than the farthest.
     double least = coarsest, most = 0;
     for (std::size_t j = 0; j < before.size(); ++j)

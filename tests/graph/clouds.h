@@ -6,7 +6,8 @@
 
 #include "base/random.h"
 
-/// Even, graded, clustered, on lines and planes, on a lattice, at few places, far from the origin, of extreme size.
+/// Even, graded, clustered, on lines and planes, on a lattice, at few places, far from the origin,
+/// of extreme size.
 constexpr int cloud_kinds = 12;
 inline std::vector<geo::Vec3> cloud(geo::Random& random, int kind, int count) {
   using geo::Vec3;

@@ -10,8 +10,8 @@
 
 using Soup = std::vector<std::array<geo::Vec3, 3>>;
 
-/// n³ nodes around the points of a grid in the unit cube, off them by up to `jitter` spacings; supports 1.8 to 2.2
-/// wide, times up to `graded` along x.
+/// n³ nodes around the points of a grid in the unit cube, off them by up to `jitter` spacings;
+/// supports 1.8 to 2.2 wide, times up to `graded` along x.
 inline geo::NodeSet jittered(geo::Random& random, int n, double jitter, double graded = 1) {
   geo::NodeSet nodes;
   const double h = 1.0 / n;

@@ -62,7 +62,7 @@ TEST_CASE("rows come back as they were put in, however often they grow and shrin
       REQUIRE(store.row(i) == model[i].view());
       live += 10 * model[i].to.size();
     }
-    // What rows leave behind is used again.
+    // Memory that rows release is used again.
     CHECK(store.bytes() < 4 * live + (6u << 20));
   }
 }

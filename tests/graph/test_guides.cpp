@@ -52,7 +52,7 @@ TEST_CASE("every method, vector width and number of threads gives the same rows 
     REQUIRE(rows == guided(nodes, tree, guides));
     set_threads(0);
 
-    // Guides are nobody's neighbours, and take none away.
+    // Guides are no neighbours, and remove none.
     REQUIRE(rows.edge_count() == bare.edge_count());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       std::vector<std::uint32_t> edges, bare_edges;
@@ -108,7 +108,8 @@ TEST_CASE("guides stand beside concave edges, inside, and nowhere else") {
     CHECK_THROWS_AS(place_guides(edges_of(mesh), nodes, grid, blocked, {0, 20}), InputError);
     CHECK_THROWS_AS(place_guides(edges_of(mesh), nodes, grid, blocked, {0.5, 0.0 / 0.0}), InputError);
   }
-  // An edge that turns by 90 degrees is left out when more is asked for; a crack's front never is.
+  // An edge that turns by 90 degrees is left out when the option exceeds that; a crack's front
+  // never is.
   const auto prisms = concave_prisms();
   for (const std::size_t p : {0, 3}) {
     const auto mesh = walls_of(prisms[p]);

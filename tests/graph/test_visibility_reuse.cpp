@@ -1,4 +1,4 @@
-// What an old row tells of a new one, beside looking each entry up.
+// Visibility reused from an old row, against a search for each entry.
 #include <algorithm>
 #include <catch2/catch.hpp>
 

@@ -26,7 +26,8 @@ bool same(const NodeSet& a, const NodeSet& b) {
   return a.position == b.position && a.radius == b.radius && a.spacing == b.spacing && a.volume == b.volume;
 }
 
-/// The distance from each node to the nearest other, over the smaller of their spacings: the least and the mean.
+/// The distance from each node to the nearest other, over the smaller of their spacings: the least
+/// and the mean.
 std::pair<double, double> nearest_other(const NodeSet& nodes) {
   double least = 1e300, sum = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {

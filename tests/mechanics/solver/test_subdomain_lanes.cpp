@@ -1,4 +1,4 @@
-// Inverses of the stiffness of eight patches side by side, beside dense ones.
+// Inverses of the stiffness of eight subdomains side by side, beside dense ones.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
@@ -14,8 +14,8 @@ using namespace geo;
 
 namespace {
 
-struct Patch {
-  Eigen::MatrixXf stiffness;  // as its tiles and blocks say; zero for nodes that are held
+struct DenseSubdomain {
+  Eigen::MatrixXf stiffness;  // as its tiles and blocks say; zero for fixed nodes
   Eigen::VectorXf share;
 };
 
@@ -23,9 +23,9 @@ Eigen::Vector3f any_vector(Random& random) {
   return Eigen::Vector3f::NullaryExpr([&] { return static_cast<float>(random.uniform(-1, 1)); });
 }
 
-// Points with gradients at random of up to all nodes; a block for each node that is not held; sizes
-// far apart from patch to patch.
-Patch put_any(Random& random, std::size_t lane, EightSubdomains& to) {
+// Points with gradients at random of up to all nodes; a block for each free node; magnitudes
+// far apart from subdomain to subdomain.
+DenseSubdomain put_any(Random& random, std::size_t lane, EightSubdomains& to) {
   const auto nodes = 1 + random.below(to.nodes);
   const float scale = static_cast<float>(std::pow(10, random.uniform(-3, 6)));
   const Eigen::Matrix3f turn =
@@ -35,16 +35,16 @@ Patch put_any(Random& random, std::size_t lane, EightSubdomains& to) {
   for (std::size_t k = 0; k < 9; ++k) to.turn[8 * k + lane] = turn.data()[k];
   const float shear = to.shear[lane] = scale * static_cast<float>(random.uniform(0.1, 1)),
               bulk = to.bulk[lane] = scale * static_cast<float>(random.uniform(0, 5));
-  Patch p{Eigen::MatrixXf::Zero(Eigen::Index(3 * nodes), Eigen::Index(3 * nodes)),
-          Eigen::VectorXf::Zero(Eigen::Index(nodes))};
-  std::vector<bool> held;
+  DenseSubdomain p{Eigen::MatrixXf::Zero(Eigen::Index(3 * nodes), Eigen::Index(3 * nodes)),
+                   Eigen::VectorXf::Zero(Eigen::Index(nodes))};
+  std::vector<bool> fixed;
   std::vector<Eigen::MatrixXf> points;  // gradients as columns
-  for (std::size_t a = 0; a < nodes; ++a) held.push_back(random.below(5) == 0);
+  for (std::size_t a = 0; a < nodes; ++a) fixed.push_back(random.below(5) == 0);
   for (std::size_t k = 0; k < 2 * nodes; ++k)
     points.push_back(Eigen::MatrixXf::NullaryExpr(3, Eigen::Index(nodes),
                                                   [&] { return static_cast<float>(random.uniform(-1, 1)); }));
   for (std::size_t a = 0; a < nodes; ++a) {
-    if (held[a]) continue;
+    if (fixed[a]) continue;
     const Eigen::Index i = Eigen::Index(a);
     p.share[i] = to.share[8 * a + lane] = static_cast<float>(random.uniform(0.1, 1));
     const Eigen::Vector3f any = any_vector(random);
@@ -52,7 +52,7 @@ Patch put_any(Random& random, std::size_t lane, EightSubdomains& to) {
     for (std::size_t k = 0; k < 9; ++k) to.blocks[72 * a + 8 * k + lane] = block.data()[k];
     p.stiffness.block<3, 3>(3 * i, 3 * i) += turn.transpose() * block * turn;
     for (std::size_t b = 0; b <= a; ++b) {
-      if (held[b]) continue;
+      if (fixed[b]) continue;
       const Eigen::Index j = Eigen::Index(b);
       Eigen::Matrix3f outer = Eigen::Matrix3f::Zero();
       for (const auto& g : points) outer += g.col(i) * g.col(j).transpose();
@@ -79,8 +79,8 @@ Eigen::MatrixXd got(const EightSubdomains& from, std::size_t lane, Eigen::Index 
   return m;
 }
 
-// By eigenvectors, without those of nodes that are held.
-Eigen::MatrixXd expected(const Patch& p) {
+// By eigenvectors, without those of fixed nodes.
+Eigen::MatrixXd expected(const DenseSubdomain& p) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> s(p.stiffness.cast<double>());
   const Eigen::VectorXd over =
       s.eigenvalues().unaryExpr([&](double x) { return x > 1e-6 * s.eigenvalues().maxCoeff() ? 1 / x : 0; });
@@ -92,7 +92,7 @@ Eigen::MatrixXd expected(const Patch& p) {
 
 }  // namespace
 
-TEST_CASE("Eight patches are inverted as each on its own, in all vectors, and held nodes have no part in it",
+TEST_CASE("Eight subdomains are inverted as each on its own, in all vectors, and fixed nodes have no part in it",
           "[mechanics]") {
   const auto [first_seed, count] = seeds(100);
   for (int i = 0; i < count; ++i) {
@@ -101,25 +101,26 @@ TEST_CASE("Eight patches are inverted as each on its own, in all vectors, and he
     Random random(seed);
     EightSubdomains made;
     made.begin(1 + random.below(12));
-    std::vector<Patch> patches;
-    for (std::size_t lane = random.below(3); lane < 8; ++lane) patches.push_back(put_any(random, lane, made));
+    std::vector<DenseSubdomain> subdomains;
+    for (std::size_t lane = random.below(3); lane < 8; ++lane) subdomains.push_back(put_any(random, lane, made));
     for_each_simd_target([&] {
       EightSubdomains eight = made;
       invert_positive(eight);
-      for (std::size_t k = 0; k < patches.size(); ++k) {
-        const Eigen::MatrixXd wanted = expected(patches[k]),
-                              inverse = got(eight, 8 - patches.size() + k, wanted.rows());
+      for (std::size_t k = 0; k < subdomains.size(); ++k) {
+        const Eigen::MatrixXd wanted = expected(subdomains[k]),
+                              inverse = got(eight, 8 - subdomains.size() + k, wanted.rows());
         const Eigen::VectorXd size = wanted.diagonal().cwiseSqrt();
         for (Eigen::Index r = 0; r < wanted.rows(); ++r)
           for (Eigen::Index c = 0; c <= r; ++c)
             if (!(std::abs(inverse(r, c) - wanted(r, c)) <= 0.005 * size[r] * size[c]))
-              FAIL_CHECK("patch " << k << ", " << r << " " << c << ": " << inverse(r, c) << ", not " << wanted(r, c));
+              FAIL_CHECK("subdomain " << k << ", " << r << " " << c << ": " << inverse(r, c) << ", not "
+                                      << wanted(r, c));
       }
     });
   }
 }
 
-TEST_CASE("A row of a patch that another one says, too, is taken out", "[mechanics]") {
+TEST_CASE("A linearly dependent row of a subdomain is left out", "[mechanics]") {
   EightSubdomains eight;
   eight.begin(2);
   eight.shear.fill(1), std::fill(eight.share.begin(), eight.share.end(), 1.0f);

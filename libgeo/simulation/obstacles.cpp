@@ -97,7 +97,7 @@ Obstacles::Obstacles(const Scene& scene) {
 
 const SurfaceWeights& Obstacles::weights_of(const ObjectContactStep& step) {
   if (step.weights) return *step.weights;
-  if (!own_weights_) own_weights_.emplace().update(step.body, step.solid);
+  if (!own_weights_) own_weights_.emplace().rebuild(step.body, step.solid);
   return *own_weights_;
 }
 

@@ -1,4 +1,4 @@
-// What the benchmarks share: CPU time, the least of several runs, figures by name.
+// Shared by the benchmarks: CPU time, the least of several runs, figures by name.
 #pragma once
 
 #include <algorithm>

@@ -17,7 +17,7 @@ struct Changes {
   int cuts = 0;
 };
 
-// Blocks that are strained at random, linearly and by so much of a bend, and cut at random in
+// Blocks that are strained at random, linearly and by a bend, and cut at random in
 // steps.
 Changes cut_at_random(double spacing, double most_bend, std::uint64_t first, int bodies) {
   Changes all;

@@ -14,7 +14,7 @@ using namespace geo;
 constexpr double dt = 0.04, rate = 2;
 constexpr int steps = 40;
 
-// Of what is rigid, backward Euler makes the turn that is nearest to where every node would go
+// For a rigid body, backward Euler makes the turn that is nearest to where every node would go
 // straight on. After one by φ that is where it was once more, and on by as much: by tan φ' = sin φ
 // / (2 − cos φ). Velocities are from where nodes were, so the momentum is that of sin φ.
 double kept() {

@@ -36,14 +36,15 @@ HWY_INLINE void quad_divergence(const PointBlock& block, std::size_t quad, const
                                 float* HWY_RESTRICT out) {
   for (std::size_t k = block.quad_begin[quad]; k < block.quad_begin[quad + 1]; ++k)
     for (std::size_t r = 0; r < 3; ++r) {
-      const auto of = [&](std::size_t i) {
-        const auto part = [&](std::size_t c) {
+      const auto force_of_point = [&](std::size_t i) {
+        const auto term = [&](std::size_t c) {
           return stress[batch * (3 * c + r) + i] *
                  float(block.quad_gradient[12 * (k - k % 2) + 8 * c + 4 * (k % 2) + i]);
         };
-        return part(0) + part(1) + part(2);
+        return term(0) + term(1) + term(2);
       };
-      out[4 * std::size_t(block.quad_node[k]) + r] += (of(0) + of(2)) + (of(1) + of(3));
+      out[4 * std::size_t(block.quad_node[k]) + r] +=
+          (force_of_point(0) + force_of_point(2)) + (force_of_point(1) + force_of_point(3));
     }
 }
 #else
@@ -52,18 +53,20 @@ HWY_INLINE void quad_divergence(const PointBlock& block, std::size_t quad, const
 using Eight = hn::CappedTag<float, 8>;
 using Four = hn::CappedTag<float, 4>;
 
+// The quantised gradients of four points per node, one coordinate.
 template <class Wide>
 HWY_INLINE hn::Vec<Wide> load_gradient(const std::int16_t* HWY_RESTRICT at) {
   return hn::ConvertTo(
       Wide(), hn::PromoteTo(hn::Rebind<std::int32_t, Wide>(), hn::LoadU(hn::Rebind<std::int16_t, Wide>(), at)));
 }
 
+// Adds u gᵀ of a node, or of two, to the gradients `sum` of four points.
 template <class Wide>
 HWY_INLINE void add_node(hn::Vec<Wide> u, const std::int16_t* HWY_RESTRICT at, hn::Vec<Wide>* HWY_RESTRICT sum) {
-  const hn::Vec<Wide> of[3] = {hn::Broadcast<0>(u), hn::Broadcast<1>(u), hn::Broadcast<2>(u)};
+  const hn::Vec<Wide> component[3] = {hn::Broadcast<0>(u), hn::Broadcast<1>(u), hn::Broadcast<2>(u)};
   for (std::size_t c = 0; c < 3; ++c) {
     const auto g = load_gradient<Wide>(at + 8 * c);
-    for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] = hn::MulAdd(of[r], g, sum[3 * c + r]);
+    for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] = hn::MulAdd(component[r], g, sum[3 * c + r]);
   }
 }
 
@@ -130,15 +133,16 @@ HWY_INLINE void quad_divergence(const PointBlock& block, std::size_t quad, const
 }
 #endif
 
-HWY_INLINE V<float> fused(V<float> a0, V<float> b0, V<float> a1, V<float> b1, V<float> a2, V<float> b2) {
+// a0 b0 + a1 b1 + a2 b2.
+HWY_INLINE V<float> fused_dot(V<float> a0, V<float> b0, V<float> a1, V<float> b1, V<float> a2, V<float> b2) {
   return hn::MulAdd(a2, b2, hn::MulAdd(a1, b1, hn::Mul(a0, b0)));
 }
-// a · b
+// Matrix product a · b.
 HWY_INLINE Matrix<float> fused_product(const Matrix<float>& a, const Matrix<float>& b) {
   Matrix<float> m;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)
-      m.at[c][r] = fused(a.at[0][r], b.at[c][0], a.at[1][r], b.at[c][1], a.at[2][r], b.at[c][2]);
+      m.at[c][r] = fused_dot(a.at[0][r], b.at[c][0], a.at[1][r], b.at[c][1], a.at[2][r], b.at[c][2]);
   return m;
 }
 
@@ -169,7 +173,8 @@ HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes
       for (auto& x : column) x = hn::Mul(x, quantum);
     const V<float> a[3][3] = {
         {number(0), number(3), number(4)}, {number(3), number(1), number(5)}, {number(4), number(5), number(2)}};
-    for (int k = 0; k < 3; ++k) out.at[k][k] = fused(a[k][0], in.at[0][0], a[k][1], in.at[1][1], a[k][2], in.at[2][2]);
+    for (int k = 0; k < 3; ++k)
+      out.at[k][k] = fused_dot(a[k][0], in.at[0][0], a[k][1], in.at[1][1], a[k][2], in.at[2][2]);
     for (std::size_t k = 0; k < 3; ++k) {
       const int p = k == 2 ? 1 : 0, q = k == 0 ? 1 : 2;
       const auto diagonal = number(6 + 2 * k), off_diagonal = number(7 + 2 * k);

@@ -33,10 +33,11 @@ namespace geo::HWY_NAMESPACE {
 using Tag = Lanes<double>;
 using Vector = V<double>;
 
+// x in all lanes.
 HWY_INLINE Vector number(double x) { return hn::Set(Tag(), x); }
 
-// log(1 + x), to an ulp or two. 1 + x = 2ᵏ (1 + f) with 1 + f about 1, and log(1 + f) = 2 artanh(f
-// / (2 + f)).
+// log(1 + x), to an ulp or two: 1 + x = 2ᵏ (1 + f) with 1 + f about 1, and
+// log(1 + f) = 2 artanh(s) with s = f / (2 + f).
 HWY_INLINE Vector log1p_lanes(Vector x) {
   const hn::RebindToSigned<Tag> d64;
   const auto one = number(1), y = hn::Add(one, x);

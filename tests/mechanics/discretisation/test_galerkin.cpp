@@ -1,5 +1,5 @@
-// The Galerkin discretisation: exact for linear fields, cracks or not; follows cuts as if built
-// anew.
+// The Galerkin discretisation: exact for linear fields with and without cracks; incremental updates
+// equal builds from scratch.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -100,7 +100,7 @@ TEST_CASE("no point uses a node beyond a crack that has cut through") {
   CHECK(energy < 1e-20 * soft().young);
 }
 
-TEST_CASE("a solid that follows cuts equals one built anew, bit for bit") {
+TEST_CASE("a solid updated after cuts equals one built from scratch, bit for bit") {
   Body body = block_body({1, 1, 1}, 0.13);
   Solid solid(body, soft());
   State state = at_rest(body);
@@ -126,7 +126,7 @@ std::vector<std::pair<NodeId, double>> other_radii(const Body& body, Random& ran
   return radii;
 }
 
-TEST_CASE("a solid that follows random cuts and other radii, several at once, equals one built anew, bit for bit") {
+TEST_CASE("a solid updated after several random cuts and other radii equals one built from scratch, bit for bit") {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     CAPTURE(seed);
     Random random(seed);
@@ -167,7 +167,7 @@ TEST_CASE("linear and angular momentum and mass carry over cuts and insertions")
     return sum;
   };
   const double before = mass();
-  // Angular momentum is that about the centre of mass where there is no linear one.
+  // Without linear momentum, the angular momentum is that about the centre of mass.
   const Vec3 mean = solid.momentum(state) / before, drift = GENERATE(Vec3(0, 0, 0), Vec3(1, -2, 3));
   for (Vec3& v : state.velocity) v += drift - mean;
   const Vec3 angular = solid.angular_momentum(state);
@@ -177,13 +177,13 @@ TEST_CASE("linear and angular momentum and mass carry over cuts and insertions")
     solid.update(body, split(body, front, blade_at({0.47, -0.2, 1.2}, {0.53, 1.2, 1.2}, {0.01, 0, -0.25}, k)), state);
     CHECK((solid.momentum(state) - before * drift).norm() < 1e-12 * angular.norm());
     if (k < 5 && drift.isZero())
-      CHECK((solid.angular_momentum(state) - angular).norm() < 1e-12 * angular.norm());  // one part yet
+      CHECK((solid.angular_momentum(state) - angular).norm() < 1e-12 * angular.norm());  // still one component
   }
   CHECK(body.nodes.size() > nodes);
   CHECK(mass() == Approx(before).epsilon(1e-13));
 }
 
-TEST_CASE("a body that only travels does so after a cut, without turning") {
+TEST_CASE("a body in translation keeps its velocity over a cut") {
   Body body = block_body({1, 1, 1}, 0.14);
   Solid solid(body, soft());
   State state = at_rest(body);
@@ -204,7 +204,7 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
     if (model == ElasticModel::saint_venant_kirchhoff) m.volume_term = 2e4;
     Solid solid(body, m);
     Random random(4);
-    // A little larger in all directions: every point's stiffness is positive, and none is changed.
+    // Under tension every point's stiffness is positive, so that projection changes none.
     auto u = field(body, [&](const Vec3& x) { return Vec3(0.08 * x + 0.002 * random.direction()); });
     std::vector<Vec3> p, plus = u, minus = u;
     for (std::size_t i = 0; i < u.size(); ++i)
@@ -215,18 +215,19 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
       const Vec3 difference = (backward[i] - forward[i]) / 2e-5;
       error += (product[i] - difference).squaredNorm(), size += difference.squaredNorm();
     }
-    CHECK(std::sqrt(error / size) < 4e-5);  // numbers of 16 bits
-    // And the forces that of the energy.
-    double along = 0;
+    CHECK(std::sqrt(error / size) < 4e-5);  // 16-bit shape gradients
+    // Forces are the negative derivative of the energy.
+    double slope = 0;
     const auto force = solid.forces(u);
-    for (std::size_t i = 0; i < u.size(); ++i) along -= force[i].dot(p[i]);
-    CHECK(along == Approx((solid.energy(plus) - solid.energy(minus)) / 2e-5).epsilon(1e-6));
+    for (std::size_t i = 0; i < u.size(); ++i) slope -= force[i].dot(p[i]);
+    CHECK(slope == Approx((solid.energy(plus) - solid.energy(minus)) / 2e-5).epsilon(1e-6));
   }
 }
 
 TEST_CASE(
-    "steps give the same bytes for any number of threads and all vectors that multiply and add at once, others the "
-    "same to the accuracy") {
+    "steps give the same bits for any number of threads and on all vector targets with fused multiply-add, and agree "
+    "to "
+    "the accuracy on others") {
   constexpr double spacing = 0.08;  // several ranges of patches' boxes for threads
   const Body body = block_body({1, 0.6, 0.6}, spacing);
   Material m = soft();
@@ -276,7 +277,7 @@ TEST_CASE("a crushed, an inverted and a torn block come back without NaN") {
   }
 }
 
-TEST_CASE("plastic material keeps a part of its strain, elastic none, and the part follows a cut") {
+TEST_CASE("plastic strain remains after unloading, and stays with its points over a cut") {
   Body body = block_body({1, 0.6, 0.6}, 0.2);
   Material m = soft();
   m.damping = 20, m.yield = 0.02, m.creep = 10, m.max_plastic = 0.3;
@@ -293,7 +294,7 @@ TEST_CASE("plastic material keeps a part of its strain, elastic none, and the pa
   for (int k = 0; k < 20; ++k) solid.step_implicit(state, 0.02, still);
   REQUIRE(state.plastic.size() == solid.point_count());
   const double kept = state.plastic[0](0, 0);
-  CHECK(kept > 0.15);  // of 0.22: it flows until less than the yield is left
+  CHECK(kept > 0.15);  // of 0.22: it flows until the elastic strain is below the yield
   CHECK(kept < 0.22);
   auto front = begin_front(blade_at({0.5, -0.2, 0.9}, {0.5, 0.9, 0.9}, {0, 0, -0.3}, 0), false, 1);
   for (int k = 1; k <= 2; ++k)

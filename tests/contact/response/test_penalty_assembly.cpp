@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "assembled_potential.h"
 #include "contact/cut_body.h"
 #include "contact/response/impulse_response.h"
 #include "kerf/nodes.h"
@@ -50,19 +51,17 @@ TEST_CASE("sides of a closed sheet get contacts where the free motion presses th
     for (std::size_t i = 0; i < solid.size(); ++i)
       state.velocity[i] = {0, 0, body.nodes.position[i].z() < 0.5 ? velocity : -velocity};
     ContactStep step = contact.begin_step(body, solid, state, 0.1, {0, 0, 0}, {});
+    std::vector<Vec3> u = state.displacement;
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.1 * state.velocity[i];
     if (velocity < 0) {
-      // Opens by 0.1: more than the distance below which pairs are candidates.
-      CHECK(step.potential() == nullptr);
+      // The sides lose contact: what the sheet's rim has left has no energy.
+      if (step.potential()) CHECK(energy_of(*step.potential(), u) == Approx(0).margin(1e-6));
       continue;
     }
     REQUIRE(step.potential() != nullptr);
     Potential& penalty = *step.potential();
-    REQUIRE(penalty.size() > 0);
     penalty.begin_substep(state.displacement, 0, 1);
-    // At rest nothing is deeper than the clearance asks for; pressed together, lower nodes are
-    // pushed down.
-    std::vector<Vec3> u = state.displacement;
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.1 * state.velocity[i];
+    REQUIRE(energy_of(penalty, u) > 1);
     Vec3 lower = Vec3::Zero(), sum = Vec3::Zero();
     for (std::size_t k = 0; k < penalty.size(); ++k) {
       const Vec3 force = penalty.derivatives(k, weighted_sum(penalty.stencil(k), u)).force;
@@ -72,7 +71,7 @@ TEST_CASE("sides of a closed sheet get contacts where the free motion presses th
       }
     }
     CHECK(lower.z() < 0);
-    CHECK(std::abs(lower.x()) < 0.1 * std::abs(lower.z()));
+    CHECK(std::abs(lower.x()) < 0.5 * std::abs(lower.z()));
     CHECK(sum.norm() < 1e-9 * lower.norm());
   }
 }

@@ -38,7 +38,7 @@ TEST_CASE("coincident vertices follow the positions: groups form, and dissolve w
 }
 
 TEST_CASE("remembered targets are those computed anew, after moves and after a cut") {
-  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+  const TriangleMesh mesh = make_block({5, 1, 1}, 0.25);
   SampleOptions sampling;
   sampling.spacing = 0.3;
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), {26, NeighborMethod::automatic});
@@ -54,9 +54,9 @@ TEST_CASE("remembered targets are those computed anew, after moves and after a c
   for (std::size_t i = 0; i < solid.size(); ++i)
     state.displacement[i] = 0.1 * body.nodes.position[i].cwiseProduct(Vec3(1, 2, 3));
   CHECK(cache.at(body, weights, state.displacement) == surface_targets(body, weights, state.displacement));
-  auto front = begin_front(std::vector<Vec3>{{-0.3, 0.5, 1.3}, {1.3, 0.5, 1.3}}, false, 1);
+  auto front = begin_front(std::vector<Vec3>{{0.5, -0.3, 1.3}, {0.5, 1.3, 1.3}}, false, 1);
   for (const double z : {0.8, 0.5}) {
-    const BodyDelta delta = split(body, front, {{-0.3, 0.51, z}, {1.3, 0.49, z}});
+    const BodyDelta delta = split(body, front, {{0.51, -0.3, z}, {0.49, 1.3, z}});
     solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
     const auto changed = weights.apply_delta(body, solid, delta);
     REQUIRE_FALSE(changed.empty());

@@ -1,3 +1,5 @@
+// Adapter: surface vertices are stored in checkpoints without dead ones, in contact with them.
+// Implicit steps add a potential, explicit steps get impulses afterwards.
 #include "simulation/collisions.h"
 
 #include <stdexcept>

@@ -1,3 +1,6 @@
+// Adaptive sampling by bisection of the edge parameter: a segment is halved while its midpoint in
+// the material is off the chord by more than a tenth of a spacing. Runs are split where
+// neighbouring samples are torn.
 #include "simulation/edge_runs.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A plan has three phases: move live points, carry points in air with them, extend the ends along
+// the surface. It is then resampled to about the point interval.
 #include "simulation/fracture_front.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Borders of a crack are its edges with a single face. They are traced into open lines, then loops,
+// and cut straight ahead, with both ends splayed into the air.
 #include "simulation/fracture_ligaments.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Stress in material axes: Rᵀ (P Fᵀ / J) R with the polar rotation R = U Vᵀ, averaged at nodes.
+// Starts are then taken greedily by falling ratio of principal stress to strength.
 #include "simulation/fracture_start.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,5 @@
+// Crack speed v = c_max (1 − (σ_c / σ)²) along the direction of the largest hoop stress. Ratio σ /
+// σ_c and direction are smoothed together, as the tensor (σ / σ_c) n nᵀ with n the plane's normal.
 #include "simulation/fracture_step.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,6 @@
+// Near-tip fields of a sharp crack in plane strain (Williams 1957; mode III: antiplane shear). A
+// weighted least-squares fit finds a uniform gradient and K_I, K_II, K_III from the nodes'
+// displacements.
 #include "simulation/fracture_tip.h"
 
 #include <Eigen/QR>

@@ -1,3 +1,5 @@
+// Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
+// spacing². Contacts are sought within twice the motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>

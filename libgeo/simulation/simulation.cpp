@@ -1,3 +1,5 @@
+// A time step: cut by blades, place grips, add contact, integrate, move the surface, grow cracks by
+// stress. Each crack step is vetoed by contact before it is committed.
 #include "kerf/simulation.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Loose blocks: ∇u = A + Σ_j (u_j − u_0 − A (x_j − x_0)) g_jᵀ with the sum in single precision. A
+// is the displacement gradient of one point of the block at the start of the step, g_j the shape
+// gradients.
 #include "mechanics/discretisation/block_strain.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Incremental update: equal cells before and after a cut are matched in Morton order. A point of
+// such a cell keeps its shape gradients unless a changed support or face touches what they depend
+// on.
 #include "mechanics/discretisation/galerkin.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Newton-like iteration for y = x + u(x), u by Eq. 1: x ← x + F⁻¹ (y − x − u(x)), while the
+// residual falls. F blends the nodes' gradients and leaves out the derivatives of the weights.
 #include "mechanics/discretisation/inverse_deformation.h"
 
 #include <Eigen/LU>

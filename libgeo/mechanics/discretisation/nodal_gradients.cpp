@@ -1,3 +1,6 @@
+// Moment matrices A_i = Σ_j w_ij x_ij x_ijᵀ are inverted by their eigenvalues (pseudo-inverse), so
+// nodes on a plane or line keep the gradient along it. The mode penalty is differentiated by the
+// chain rule through ∇u_i.
 #include "mechanics/discretisation/nodal_gradients.h"
 
 #include <Eigen/Eigenvalues>

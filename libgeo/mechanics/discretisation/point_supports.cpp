@@ -1,3 +1,5 @@
+// Each point tries the support factors in turn until it sees enough nodes with a well-conditioned
+// moment matrix. Exact segment–triangle tests decide which nodes a point sees.
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Moving least squares with linear basis p and the quartic spline weight w(s), s = distance/support
+// (Belytschko et al. 1996). The gradients are full derivatives, unlike the diffuse derivative of
+// nodal_gradients.cpp.
 #include "mechanics/discretisation/shape_functions.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,5 @@
+// Right-looking block Cholesky A = RᵀR, tile row by tile row: factor R_gg, then R_gh = R_gg⁻ᵀ A_gh,
+// then A_hk ← A_hk − R_ghᵀ R_gk. Diagonal blocks that nothing couples are factored in parallel.
 #include "mechanics/solver/band_cholesky.h"
 
 #include <algorithm>

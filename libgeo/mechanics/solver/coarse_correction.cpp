@@ -1,3 +1,6 @@
+// An aggregate moves by u_i = t + ω × a_i, a_i the arm from its centre. Pᵀ K P is summed in tiles
+// of 6×6 per pair of aggregates, within each block of points in parallel, then over blocks in
+// order.
 #include "mechanics/solver/coarse_correction.h"
 
 #include <algorithm>

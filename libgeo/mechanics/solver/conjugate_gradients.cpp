@@ -1,3 +1,6 @@
+// Hestenes and Stiefel (1952) with preconditioner M, each island with its own α = r · z / p · Hp
+// and β = r' · z' / r · z, where z = M⁻¹ r. An island that is done is left out of all later
+// products.
 #include "mechanics/solver/conjugate_gradients.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Matrix-free: each block of points writes its nodal sums to slots of its own, then each node adds
+// up its slots. K p = Σ Bᵀ D B p, with B the displacement gradient at a point and D its projected
+// stiffness.
 #include "mechanics/solver/elastic_potential.h"
 
 #include <algorithm>

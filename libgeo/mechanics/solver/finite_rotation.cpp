@@ -1,3 +1,6 @@
+// Rigid motions per free-floating island from mass-weighted moments of its nodes
+// (rigid_motion.cpp). Momentum: the direction gets the rigid motion nearest to what it lacks of the
+// ballistic one.
 #include "mechanics/solver/finite_rotation.h"
 
 #include <algorithm>

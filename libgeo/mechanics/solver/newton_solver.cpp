@@ -1,3 +1,5 @@
+// Inexact Newton method with backtracking by the parabola through E(0), E'(0) and E(s), the step
+// kept between 0.2 and 0.5 of the last (Nocedal and Wright 2006, § 3.5, § 7.1).
 #include "mechanics/solver/newton_solver.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// u₀ + Δt v₀ + Δt² a, with the acceleration a of the last step where an affine field explains it.
+// Then the minimiser of a parabola towards u₀, or the finite rotation, where the potential is less
+// there.
 #include "mechanics/solver/predictor.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A bisection tree over a cube about the origin, halved at its centre along x, y, z in turn. Each
+// leaf's connected sets are cores; outer products are summed per block of points, then over blocks
+// in order.
 #include "mechanics/solver/subdomains.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// With w_k the stencil and H_k the Hessian of term k: force −Σ_k w_ki ∂E_k/∂d and product Σ_k w_ki
+// H_k (Σ_j w_kj p_j) at node i. Only terms that have been active enter; the others have zero
+// derivatives.
 #include "mechanics/terms/potential_sum.h"
 
 #include <algorithm>

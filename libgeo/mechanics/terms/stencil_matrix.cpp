@@ -1,3 +1,5 @@
+// The copy by node is made by a parallel counting sort of the copy by stencil; its order is that of
+// the stencils for any number of threads.
 #include "mechanics/terms/stencil_matrix.h"
 
 #include <algorithm>

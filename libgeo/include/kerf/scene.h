@@ -46,8 +46,9 @@ struct Motion {
 };
 
 // ---- Fracture by stress: cracks that start and grow without a blade. Initiation by the largest
-// principal stress (O'Brien and Hodgins 1999), growth by stress intensity at the front (Pauly et
-// al. 2005). Symbols: K_Ic critical stress intensity, h support radius of the nodes.
+// principal stress (O'Brien and Hodgins 1999), growth by the largest hoop stress of the stress
+// intensities at the front (Erdogan and Sih 1963). Symbols: K_Ic critical stress intensity, h
+// support radius of the nodes.
 
 /// Resistance of a material to fracture.
 struct Strength {

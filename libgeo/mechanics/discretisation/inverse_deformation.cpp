@@ -14,10 +14,10 @@
 namespace geo {
 namespace {
 
-// Crushed or inverted material is treated as undeformed.
+// Material crushed to less than a twentieth of its volume, or inverted, is treated as undeformed.
 Mat3 safe_inverse(const Mat3& f) { return f.determinant() > 0.05 ? Mat3(f.inverse()) : Mat3::Identity(); }
 
-// Smoothstep from 1 at a to 0 at b.
+// Smoothstep t² (3 − 2 t), from 1 at a to 0 at b.
 double fade(double x, double a, double b) {
   const double t = std::clamp((b - x) / (b - a), 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -100,8 +100,8 @@ Vec3 InverseDeformation::deformed_vertex(SurfaceVertexId v, VertexCache& cache) 
 }
 
 // The difference between the map that is linear on deformed triangles of the skin near y and the
-// inverse of Eq. 1. Weights grow without bound towards a triangle, so one that holds y decides
-// alone.
+// inverse of Eq. 1. A triangle at distance d < range has the weight (range / d − 1)², which grows
+// without bound: one that holds y decides alone. The whole fades by (1 − d_min / range)².
 Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, double range, VertexCache& cache) const {
   const Vec3& y = near.world;
   Vec3 to;

@@ -150,8 +150,8 @@ void PotentialSum::multiply_hessian(const std::vector<Vec3>& p) {
 }
 
 void PotentialSum::add_diagonal_blocks(std::vector<Mat3>& blocks) const {
-  // Block solves move a node with its neighbours: the neighbours' share of a stencil's weight
-  // counts as this much.
+  // Block solves move a node with its neighbours: a stencil with weight w at a node counts as
+  // |w| max(|w|, 0.2) instead of w². Measured in docs/decisions/047.
   constexpr float joint_weight = 0.2f;
   parallel_for(blocks.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {

@@ -1,5 +1,5 @@
-// Adapter: surface vertices are stored in checkpoints without dead ones, in contact with them.
-// Implicit steps add a potential, explicit steps get impulses afterwards.
+// Checkpoints hold the positions of living surface vertices alone; SelfContact holds one per index,
+// dead ones included. Implicit steps add a potential, explicit steps get impulses afterwards.
 #include "simulation/collisions.h"
 
 #include <stdexcept>

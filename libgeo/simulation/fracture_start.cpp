@@ -34,6 +34,7 @@ class CrackTriangles {
 
 }  // namespace
 
+// Points below a hundredth of their volume, or inverted, are left out.
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
   const auto sums =
       nodal_stress_sums(solid, body.nodes, motion,

@@ -241,7 +241,8 @@ void Simulation::Impl::add_wedges(double dt) {
   if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
 
-// Adds obstacles, contact between bodies, and self-contact. The result owns the latter's potential.
+// Adds obstacles, contact between bodies, and self-contact. The result owns the potential of
+// self-contact.
 std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
   const std::span<const Vec3> surface =

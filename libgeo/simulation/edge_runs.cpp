@@ -1,6 +1,5 @@
-// Adaptive sampling by bisection of the edge parameter: a segment is halved while its midpoint in
-// the material is off the chord by more than a tenth of a spacing. Runs are split where
-// neighbouring samples are torn.
+// Adaptive bisection of the edge parameter: a segment is halved while its midpoint in the material
+// is off the chord by more than 0.1 spacings. Runs are split where neighbouring samples are torn.
 #include "simulation/edge_runs.h"
 
 #include <algorithm>
@@ -103,8 +102,8 @@ std::size_t after_outliers(const std::vector<Sample>& samples, std::size_t i, co
   return i;
 }
 
-// True where a run continues a front: their edge parameters overlap, and there a point of the run
-// is within four spacings of the front's nearest point in the material.
+// True where a run continues a front. Their edge parameters overlap, and there a point of the run
+// is within four spacings, in the material, of the front's point nearest in parameter.
 bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
   if (from > to) return false;

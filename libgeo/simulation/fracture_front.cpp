@@ -174,8 +174,9 @@ void FrontPlanner::carry_points_in_air() {
   next_ = carried;
 }
 
-// Widens an open front at a live end: from the end's next position along the front to the surface
-// if that is within three intervals, else by one. New points on the way are an interval apart.
+// Widens an open front at a live end, from the end's next position along the front. It reaches to
+// the surface if that is within three intervals, else one interval; new points are an interval
+// apart.
 void FrontPlanner::extend_end(std::size_t end, std::size_t neighbor, std::vector<ExtraPoint>& beyond) const {
   const std::size_t base = g_.live(end) ? end : neighbor;
   if (!g_.live(base) || !moves(base) || ended_[base]) return;

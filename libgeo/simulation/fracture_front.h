@@ -45,8 +45,8 @@ std::vector<GrowingFront> fronts_after(const GrowingFront& before, const FrontPl
                                        std::span<const Vec3> direction);
 
 /// A new penny-shaped crack: a closed front of size zero at `center`, and the plan that opens it to
-/// `radius`, model units, in the plane of `normal`, through the surface where that is nearer than
-/// 1.5 radii. `crack`: its number, which no other crack has.
+/// `radius`, model units, in the plane of `normal`. It cuts through the surface where that is
+/// within 1.5 radii. `crack`: its number, which no other crack has.
 std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal,
                                              double radius, std::int32_t crack);
 

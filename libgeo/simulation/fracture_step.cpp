@@ -92,8 +92,8 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
     if (!g.live(i) || separation[i].isZero() || !may_break(in.options, frame[i].at)) continue;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(separation[i]);
     load.ratio[i] = eigen.eigenvalues()[2];
-    // In the new plane, across the front, away from the crack behind. Where that plane is nearly
-    // across the front (|ahead| ≤ 0.1, within 6°), the old direction stays.
+    // In the new plane, across the front, away from the crack behind. Where that plane is within
+    // 6° of normal to the front (|ahead| ≤ 0.1), the old direction stays.
     const Vec3 tangent = frame[i].normal.cross(frame[i].ahead);
     Vec3 ahead = tangent.cross(eigen.eigenvectors().col(2));
     if (ahead.dot(frame[i].ahead) < 0) ahead = -ahead;

@@ -165,8 +165,7 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   field.uniform = stress(material, stretch) * stretch / stretch.determinant();
   if (modes == 0) return field;
   field.k = scale * c.tail<3>();
-  // Crack faces carry no traction σ n: only the share of uncracked material behind the tip keeps
-  // it.
+  // Crack faces carry no traction σ n: only the uncracked share behind the tip keeps it.
   const double open = 1 - crack_behind(body.surface, tip, near.support);
   const Vec3 traction = open * field.uniform.col(1);
   field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();

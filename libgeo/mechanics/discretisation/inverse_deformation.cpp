@@ -133,8 +133,8 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
   const std::size_t a = nearest[0];
   const auto& nodes = body_.nodes;
   if (!((y - world_[a]).norm() < nodes.radius[a])) return {y - u_[a], NodeId(a), false};
-  // Each node's own inverse affine map counts as far as it agrees with the nearest node's: fully up
-  // to half a support radius apart, not at all from one on.
+  // Each node's own inverse affine map counts as far as it agrees with the nearest node's. It
+  // counts fully up to half a support radius apart, not at all from one on.
   const auto affine_inverse = [&](std::size_t i) {
     return Vec3(nodes.position[i] + safe_inverse(Mat3::Identity() + gradient_[i]) * (y - world_[i]));
   };

@@ -19,9 +19,9 @@ class FiniteRotation {
   /// full rank) is only translated.
   explicit FiniteRotation(const IncrementalPotential& potential);
 
-  /// Displacements after finite rigid motions of the free-floating islands, each nearest in the
-  /// quadratic mean to the straight motion from the start of the step to u. rotates[island] becomes
-  /// 1 if a free-floating island in it turns by a noticeable angle, else 0. Empty if none turns.
+  /// Displacements after finite rigid motions of the free-floating islands. Each is the nearest, in
+  /// the quadratic mean, to the straight motion from the start of the step to u. Empty if none
+  /// turns noticeably. rotates[island] becomes 1 if a free-floating island in it does, else 0.
   std::vector<Vec3> predict(const std::vector<Vec3>& u, std::vector<char>& rotates) const;
   /// Per free-floating island: the rigid motion nearest to a direction from u on, zero where its
   /// angle is negligible.

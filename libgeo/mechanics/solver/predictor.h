@@ -1,5 +1,5 @@
-// Where Newton's method begins: an inertial predictor with affine accelerations of the last step,
-// and a search back from it: along the line to the start of the step, or to a finite rotation.
+// Where Newton's method begins: the inertial prediction with affine accelerations of the last step.
+// A search leads back from it, along the line to the start of the step, or to a finite rotation.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // Whole cell of edge a: four alternate corners of the cube of half edge a/√12, half of the 2³ Gauss
-// rule. Cut cell: stratified samples give volume, mean m and covariance C; its points are m + C^½
-// t_k, with t_k the alternate corners of [−1, 1]³.
+// rule. Cut cell: stratified samples give volume, mean m and covariance C; its points are
+// m + C^½ t_k, with t_k the alternate corners of [−1, 1]³.
 #include "mechanics/discretisation/quadrature.h"
 
 #include <Eigen/Eigenvalues>

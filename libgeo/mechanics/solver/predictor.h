@@ -17,9 +17,10 @@ struct NewtonIterate {
   std::vector<Vec3> force;    ///< per node, −gradient of the potential at u, N
 };
 
-/// The initial iterate of a step, evaluated at all islands. Contains the line search: an island
-/// begins wherever its potential is less, see predictor.cpp. `rotation`: the finite rotations that
-/// compete with the straight prediction. `all`: every island selected; passed by value as scratch.
+/// The initial iterate of a step, evaluated at all islands: the prediction, then the search back
+/// from it (predictor.cpp). `rotation`: finite rotations, which compete with the straight
+/// prediction. `all`: every island is selected; passed by value, as the function changes the
+/// selection.
 NewtonIterate predict(IncrementalPotential& potential, const FiniteRotation& rotation, ActiveIslands all);
 
 }  // namespace geo

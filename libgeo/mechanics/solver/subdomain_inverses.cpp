@@ -1,5 +1,5 @@
-// An inverse is reused as long as diagonal terms and moduli equal those it was made of, bit for
-// bit, and the subdomain's outer products are unchanged.
+// An inverse is reused while its inputs are unchanged, bit for bit: diagonal terms, moduli, and the
+// subdomain's outer products.
 #include "mechanics/solver/subdomain_inverses.h"
 
 #include <algorithm>

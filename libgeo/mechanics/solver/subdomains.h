@@ -57,9 +57,9 @@ class Subdomains {
     return {&incidence_[begin_[node]], begin_[node + 1] - begin_[node]};
   }
 
-  /// For slots a ≥ b of a subdomain, twelve numbers at 12 (a (a + 1) / 2 + b): the rows of Σ w g_a
-  /// g_bᵀ over material points, each followed by a zero, so that a row is one vector of four lanes.
-  /// w: a point's unscaled_volume, which no cut elsewhere changes; g: its shape gradients.
+  /// For slots a ≥ b of a subdomain, twelve numbers at 12 (a (a + 1) / 2 + b): the rows of
+  /// Σ w g_a g_bᵀ over material points. A zero follows each row, so that it is one vector of four
+  /// lanes. w: a point's unscaled_volume, which no cut elsewhere changes; g: its shape gradients.
   const float* outer_products(std::size_t subdomain) const { return outer_[subdomain].data(); }
   /// The material point that sees most nodes of a subdomain: block, and index there. Block ~0u: no
   /// point sees any.

@@ -1,5 +1,5 @@
-// With w_k the stencil and H_k the Hessian of term k: force −Σ_k w_ki ∂E_k/∂d and product Σ_k w_ki
-// H_k (Σ_j w_kj p_j) at node i. Only terms that have been active enter; the others have zero
+// With w_k the stencil and H_k the Hessian of term k: at node i the force is −Σ_k w_ki ∂E_k/∂d, the
+// product Σ_k w_ki H_k (Σ_j w_kj p_j). Only terms that have been active enter; the others have zero
 // derivatives.
 #include "mechanics/terms/potential_sum.h"
 

@@ -143,15 +143,15 @@ struct Scene {
   bool ground = false;  ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
   double ground_stiffness = 1e5;  ///< penalty: acceleration per depth, 1/s²
-  double friction = 0.5;  ///< of the ground: with self_contact Coulomb's coefficient, else as Environment::friction
-  Vec3 gravity = {0, 0, -9.81};  ///< model units per s²
-  double frame_rate = 24;        ///< frames per second
-  double dt = 1.0 / 96;          ///< largest time step, s
-  double accuracy = 1e-3;        ///< of displacements in an implicit step, in node spacings
-  int frames = 24;               ///< length of the run
-  int checkpoint_every = 8;      ///< frames between two checkpoints
-  bool implicit = true;          ///< backward Euler; else symplectic Euler
-  std::uint64_t seed = 1;        ///< of sampling and of jitter
+  double friction = 0.5;          ///< of the ground: Coulomb's with self_contact, else as in Environment
+  Vec3 gravity = {0, 0, -9.81};   ///< model units per s²
+  double frame_rate = 24;         ///< frames per second
+  double dt = 1.0 / 96;           ///< largest time step, s
+  double accuracy = 1e-3;         ///< of displacements in an implicit step, in node spacings
+  int frames = 24;                ///< length of the run
+  int checkpoint_every = 8;       ///< frames between two checkpoints
+  bool implicit = true;           ///< backward Euler; else leapfrog (symplectic Euler)
+  std::uint64_t seed = 1;         ///< of sampling and of jitter
   std::vector<Blade> blades;
   std::vector<SceneObstacle> obstacles;
   FractureOptions fracture;

@@ -152,7 +152,7 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
   }
   Neighborhood near;
   near.world = y;
-  // The tolerance is at rounding: iterations end where the residual no longer falls.
+  // The tolerance is close to rounding, so the result depends little on the initial guess.
   const Vec3 x = solve(near, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a]);
   return {x + skin_correction(near, x, 0.5 * nodes.spacing[a], cache), NodeId(a), true};
 }

@@ -1,3 +1,5 @@
+// Checkpoints hold the positions of living surface vertices alone; SelfContact holds one per index,
+// dead ones included. Implicit steps add a potential, explicit steps get impulses afterwards.
 #include "simulation/collisions.h"
 
 #include <stdexcept>

@@ -30,7 +30,8 @@ class Collisions {
   /// adds its time to `seconds`. Refers to all arguments. Empty without self-contact.
   StepVeto embedding_check(const Body& body, const Solid& solid, const State& motion,
                            std::optional<EmbeddingPlan>& plan, double& seconds);
-  /// Follows a crack step that embedding_check() has planned.
+  /// Updates the surface after a crack step, by the plan of its embedding_check(). Throws
+  /// std::logic_error if the step cut something and there is no plan.
   void commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid, const BodyDelta& delta);
 
   /// Whether the scene has self-contact; otherwise the surface is where Eq. 1 has it.

@@ -1,3 +1,5 @@
+// Resampling by edge parameters: a new parameter duplicates the nearest point of the front before
+// the step. A dropped one moves onto its neighbour during the step and is erased after it.
 #include "simulation/edge_front.h"
 
 #include <algorithm>

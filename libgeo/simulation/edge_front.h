@@ -18,7 +18,8 @@ struct EdgePoint {
   double spacing = 0;  ///< of the nodes there, model units
 };
 
-/// A new front at the given points, at least two.
+/// A new front at the given points, at least two. `crack`: number of the crack that it makes, > 0;
+/// `name`: of the blade.
 EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name,
                      bool closed = false);
 

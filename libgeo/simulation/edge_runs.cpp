@@ -1,3 +1,5 @@
+// Adaptive bisection of the edge parameter: a segment is halved while its midpoint in the material
+// is off the chord by more than 0.1 spacings. Runs are split where neighbouring samples are torn.
 #include "simulation/edge_runs.h"
 
 #include <algorithm>
@@ -40,7 +42,8 @@ class EdgeSampler {
     return s;
   }
 
-  // Appends samples strictly between two, by bisection where the map is not straight.
+  // Appends samples strictly between two, by bisection where the map is not straight: the midpoint
+  // is off the chord by more than 0.1 spacings. Ends of a run are found to a quarter of a spacing.
   void refine(const Sample& a, const Sample& b, int depth, std::vector<Sample>& out) {
     if (depth == 0) return;
     const double length = (b.world - a.world).norm(), spacing = std::min(a.spacing, b.spacing);
@@ -82,7 +85,8 @@ std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body,
   return samples;
 }
 
-// True where the edge is in disconnected material on either side of these samples.
+// True where the edge is in disconnected material at these samples: with X material and x world
+// positions, |ΔX| > 4 |Δx| + ½ spacing. A map of stretch below 4 never exceeds that.
 bool torn(const Sample& a, const Sample& b) {
   return (b.material - a.material).norm() > 4 * (b.world - a.world).norm() + 0.5 * std::min(a.spacing, b.spacing);
 }
@@ -98,8 +102,8 @@ std::size_t after_outliers(const std::vector<Sample>& samples, std::size_t i, co
   return i;
 }
 
-// True where a run continues a front: they overlap on the edge, and are close there in the
-// material.
+// True where a run continues a front. Their edge parameters overlap, and there a point of the run
+// is within four spacings, in the material, of the front's point nearest in parameter.
 bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
   if (from > to) return false;

@@ -12,8 +12,9 @@ namespace geo {
 
 /// The runs of an open edge within the support of nodes, mapped into the material. Between the
 /// blade's own points, samples are inserted where the map bends the edge by more than a tenth of a
-/// node spacing, and at the ends of a run; points closer than a twentieth are left out. A run ends
-/// where no node is near, and where the edge continues in material that is disconnected from it.
+/// node spacing, and at the ends of a run. Points closer than a twentieth of a spacing, in the
+/// material, replace the one before. A run ends where no node is near, and where the edge continues
+/// in material that is disconnected from it.
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose);
 

@@ -1,3 +1,5 @@
+// A plan has three phases: move live points, carry points in air with them, extend the ends along
+// the surface. It is then resampled to about the point interval.
 #include "simulation/fracture_front.h"
 
 #include <algorithm>
@@ -16,8 +18,8 @@ constexpr double point_interval = 0.7;  // between the points of a front
 constexpr double ligament = 0.5;        // thickness below which a front cuts through to the surface
 constexpr double overhang = 1.0 / 7;    // of a front beyond the surface
 
-// How far along the unit direction d from p a face is met first, beyond what p itself touches;
-// beyond `reach`: infinity.
+// Distance from p along the unit direction d to the first face; infinity if it exceeds `reach`. The
+// first thousandth of the way is skipped, since p may lie on a face.
 double distance_to_face(const Complex& complex, const Vec3& p, const Vec3& d, double reach) {
   const Vec3 from = p + 1e-3 * reach * d, to = p + reach * d;
   Box3 box{from, from};
@@ -172,8 +174,9 @@ void FrontPlanner::carry_points_in_air() {
   next_ = carried;
 }
 
-// Widens an open front at a live end: from the end's next position along the front to the surface,
-// with new points on the way.
+// Widens an open front at a live end, from the end's next position along the front. It reaches to
+// the surface if that is within three intervals, else one interval; new points are an interval
+// apart.
 void FrontPlanner::extend_end(std::size_t end, std::size_t neighbor, std::vector<ExtraPoint>& beyond) const {
   const std::size_t base = g_.live(end) ? end : neighbor;
   if (!g_.live(base) || !moves(base) || ended_[base]) return;
@@ -190,7 +193,8 @@ void FrontPlanner::extend_end(std::size_t end, std::size_t neighbor, std::vector
 
 // An end in air leaves a border of the crack that no front follows, so its path must stay in air.
 // Where the path would not, at an edge of the body, the end moves to a position that sees its new
-// place, and both belong to the front.
+// place, and both belong to the front. Trials: one to three intervals away, at 0° to 67.5° from
+// straight ahead outwards; failing those, one interval straight outwards.
 void FrontPlanner::detour_around_edge(std::size_t end, std::vector<ExtraPoint>& beyond) const {
   const Vec3 &from = g_.front.points[end].position, to = beyond.empty() ? next_[end] : beyond.back().position;
   if (g_.live(end) || from == to || !is_blocked(complex_, from, to)) return;
@@ -221,7 +225,8 @@ void FrontPlanner::bridge_edge(std::size_t i, std::size_t j) {
   }
 }
 
-// Inserts points between neighbours that have moved apart, and merges those that have come close.
+// Inserts points between neighbours that have moved apart by more than 1.6 intervals, and merges
+// those closer than 0.4. Parts of a divided gap are longer than 0.8 intervals, so that none merges.
 void FrontPlanner::resample_between(std::size_t i, std::size_t j) {
   const double gap = (next_[i] - next_[j]).norm();
   if ((i == 0 && replaced(i)) || (j + 1 == g_.size() && !tail_.empty() && !g_.live(j))) return;

@@ -15,8 +15,8 @@ namespace geo {
 /// The frame at point i of a front.
 TipFrame tip_frame(const GrowingFront& front, std::size_t i);
 
-/// A front as begin_front() or a blade leaves it, with a crack normal for each point. Throws
-/// InputError where their numbers differ.
+/// A growing front from one that begin_front() or a blade leaves, with a unit crack normal for each
+/// point, material coordinates. Throws InputError where their numbers differ.
 GrowingFront growing(FrontState front, std::vector<Vec3> normals);
 
 /// Next positions of a front. Entry k starts at point from[k] of the front and moves to next[k].
@@ -45,7 +45,8 @@ std::vector<GrowingFront> fronts_after(const GrowingFront& before, const FrontPl
                                        std::span<const Vec3> direction);
 
 /// A new penny-shaped crack: a closed front of size zero at `center`, and the plan that opens it to
-/// `radius` in the plane of `normal`, through the surface where that is near.
+/// `radius`, model units, in the plane of `normal`. It cuts through the surface where that is
+/// within 1.5 radii. `crack`: its number, which no other crack has.
 std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3& center, const Vec3& normal,
                                              double radius, std::int32_t crack);
 

@@ -1,3 +1,5 @@
+// Borders of a crack are its edges with a single face. They are traced into open lines, then loops,
+// and cut straight ahead, with both ends splayed into the air.
 #include "simulation/fracture_ligaments.h"
 
 #include <algorithm>
@@ -82,6 +84,7 @@ std::vector<Vec3> across_ligament(const Complex& complex, const FrontState& fron
   for (std::size_t k = 1; k < n; ++k) ahead += ahead_of(complex, front.points[k - 1].id, front.points[k].id);
   if (!(ahead.squaredNorm() > 0)) return {};
   ahead.normalize();
+  // A fifth more than the thickness, so that the cut passes through the far side.
   std::vector<Vec3> next;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3& p = front.points[k].position;
@@ -95,6 +98,7 @@ std::vector<Vec3> across_ligament(const Complex& complex, const FrontState& fron
   return next;
 }
 
+// The segment starts 1e-4 spacings ahead, since the point itself lies on crack faces.
 bool is_ligament(const Complex& complex, const TipFrame& tip, double spacing) {
   return is_blocked(complex, tip.at + 1e-4 * spacing * tip.ahead, tip.at + 0.5 * spacing * tip.ahead);
 }

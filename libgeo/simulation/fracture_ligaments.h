@@ -20,7 +20,8 @@ std::vector<FrontState> unfollowed_borders(const Complex& complex, std::int32_t 
 /// material.
 std::vector<Vec3> across_ligament(const Complex& complex, const FrontState& front, double thickness);
 
-/// True where less than half of `spacing` of material is ahead of a front point.
+/// True where less than half of `spacing`, the node spacing there, of material is ahead of a front
+/// point.
 bool is_ligament(const Complex& complex, const TipFrame& tip, double spacing);
 
 }  // namespace geo

@@ -1,3 +1,5 @@
+// Stress in material axes: Rᵀ (P Fᵀ / J) R with the polar rotation R = U Vᵀ, averaged at nodes.
+// Starts are then taken greedily by falling ratio of principal stress to strength.
 #include "simulation/fracture_start.h"
 
 #include <Eigen/Eigenvalues>
@@ -32,6 +34,7 @@ class CrackTriangles {
 
 }  // namespace
 
+// Points below a hundredth of their volume, or inverted, are left out.
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion) {
   const auto sums =
       nodal_stress_sums(solid, body.nodes, motion,

@@ -20,7 +20,7 @@ struct CrackStart {
 
 /// Cauchy stress at each node, Pa, rotated back to material coordinates. It is the mean over the
 /// material points that have the node in their support, weighted by volume and kernel, so it never
-/// averages across a crack. Zero where a node has no such point, or all are inverted.
+/// averages across a crack. Zero where a node has no such point, or all are inverted or crushed.
 std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const State& motion);
 
 /// At most `limit` starts, the largest ratio first. No start is within `fracture.separation` node

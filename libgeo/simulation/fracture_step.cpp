@@ -1,3 +1,5 @@
+// Crack speed v = c_max (1 − (σ_c / σ)²) along the direction of the largest hoop stress. Ratio σ /
+// σ_c and direction are smoothed together, as the tensor (σ / σ_c) n nᵀ with n the plane's normal.
 #include "simulation/fracture_step.h"
 
 #include <Eigen/Eigenvalues>
@@ -15,8 +17,8 @@
 namespace geo {
 namespace {
 
-// Growth is made once a front owes this share of a spacing, and points that owe less than the
-// second share wait: shorter steps would add faces that nodes do not resolve.
+// In spacings. A front moves once a point owes the first; points that owe less than the second
+// wait. Smaller: more steps, with faces that nodes do not resolve.
 constexpr double least_growth = 0.25, least_point_growth = 0.05;
 // Least number of nodes for a stress field around a point.
 constexpr std::size_t least_nodes = 4;
@@ -40,7 +42,7 @@ double resistance(const Strength& own, std::uint64_t seed, const Body& body, con
   return stress * strength_factor(own, seed, body.surface.extent().diagonal(), x);
 }
 
-// Averages a tensor along the front twice, with the weights 1, 2, 1 of live neighbours.
+// Averages a tensor along the front twice: (T_i−1 + 2 T_i + T_i+1) / 4, live neighbours only.
 void smooth_along(const GrowingFront& g, std::vector<Mat3>& tensor) {
   const std::size_t n = g.size();
   for (int pass = 0; pass < 2; ++pass) {
@@ -90,7 +92,8 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
     if (!g.live(i) || separation[i].isZero() || !may_break(in.options, frame[i].at)) continue;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(separation[i]);
     load.ratio[i] = eigen.eigenvalues()[2];
-    // In the new plane, across the front, away from the crack behind.
+    // In the new plane, across the front, away from the crack behind. Where that plane is within
+    // 6° of normal to the front (|ahead| ≤ 0.1), the old direction stays.
     const Vec3 tangent = frame[i].normal.cross(frame[i].ahead);
     Vec3 ahead = tangent.cross(eigen.eigenvectors().col(2));
     if (ahead.dot(frame[i].ahead) < 0) ahead = -ahead;
@@ -232,7 +235,7 @@ void FractureStep::start_cracks() {
   const auto stress = averaged_stress(body, in_.solid, in_.motion);
   for (const CrackStart& s : find_starts(body, stress, in_.options, in_.body_index, static_cast<std::size_t>(limit))) {
     const double spacing = body.nodes.spacing[s.node.index()];
-    // Beside the node, which must not lie in the crack.
+    // A twentieth of a spacing beside the node, which must not lie in the crack.
     auto [g, plan] = plan_flaw(body.surface, body.nodes.position[s.node.index()] + 0.05 * spacing * s.normal, s.normal,
                                spacing, unused_crack(body, state_.fronts, {}));
     FrontState moved = with_planned_points(g, plan);

@@ -1,3 +1,6 @@
+// Near-tip fields of a sharp crack in plane strain (Williams 1957; mode III: antiplane shear). A
+// weighted least-squares fit finds a uniform gradient and K_I, K_II, K_III from the nodes'
+// displacements.
 #include "simulation/fracture_tip.h"
 
 #include <Eigen/QR>
@@ -11,6 +14,8 @@
 
 namespace geo {
 
+// Williams 1957, plane strain: κ = 3 − 4 ν, scale √(r / 2π) / (2 μ). Modes by column: I opening, II
+// in-plane shear, III out-of-plane shear.
 Mat3 mode_displacement(const Material& m, double r, double angle) {
   const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson,
                scale = std::sqrt(r / (2 * std::numbers::pi)) / (2 * m.mu());
@@ -21,6 +26,7 @@ Mat3 mode_displacement(const Material& m, double r, double angle) {
   return u;
 }
 
+// The same fields' stress, f(angle) / √(2 π r); σ_zz = ν (σ_xx + σ_yy) in plane strain.
 Mat3 mode_stress(double poisson, int mode, double r, double angle) {
   const double c = std::cos(angle / 2), s = std::sin(angle / 2), c3 = std::cos(1.5 * angle), s3 = std::sin(1.5 * angle);
   double xx = 0, yy = 0, xy = 0, xz = 0, yz = 0;
@@ -32,6 +38,7 @@ Mat3 mode_stress(double poisson, int mode, double r, double angle) {
   return stress / std::sqrt(2 * std::numbers::pi * r);
 }
 
+// Mode III has no hoop stress. Poisson's ratio affects only σ_zz, which is not used: 0 is passed.
 double TipField::hoop(double angle) const {
   const Vec3 across(-std::sin(angle), std::cos(angle), 0);
   double sum = across.dot(uniform * across);
@@ -40,8 +47,8 @@ double TipField::hoop(double angle) const {
 }
 
 TipField::Strongest TipField::strongest() const {
-  // There are one or two maxima between the crack faces: a scan by degrees finds the larger one,
-  // bisection its angle.
+  // There are one or two maxima: a scan by degrees over ±85° finds the larger one, step halving its
+  // angle to 1e-9 rad.
   constexpr double degree = std::numbers::pi / 180;
   double best = 0;
   for (int a = -85; a <= 85; ++a)
@@ -61,7 +68,10 @@ struct Neighborhood {
   double support = 0;
 };
 
-// The nodes within two support radii of the tip that a point just ahead of the tip sees.
+// The nodes within two support radii of the tip that a point just ahead of the tip sees. That
+// point, `eye`, is the first of five that is not behind a face: a quarter of a support ahead, an
+// eighth, …, down to 1/64. The test begins 2 % of the way ahead, since crack faces meet at the tip
+// itself. While eye == tip.at none has been found.
 Neighborhood nodes_about(const Body& body, const TipFrame& tip) {
   Neighborhood found;
   const auto nearest = body.cache->grid.nearest(body.nodes.position, tip.at, 1, ~0u, [](auto) { return true; });
@@ -116,7 +126,7 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
     b.segment<3>(3 * j) = w * (frame.transpose() * v[static_cast<std::size_t>(j)]);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-4);  // relative: drops directions in which the nodes hardly extend
+  solver.setThreshold(1e-4);  // of the largest pivot: drops directions in which the nodes hardly extend
   solver.compute(a);
   return solver.solve(b);
 }
@@ -129,7 +139,7 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   field.nodes = near.nodes.size();
   field.support = near.support;
   if (field.nodes < 4) return field;
-  field.node = near.nodes[0];
+  field.node = near.nodes[0];  // the lowest index; all nodes seen are in one body, so it decides the material
   const Material& material = materials.of(field.node);
   const Mat3 frame = (Mat3() << tip.ahead, tip.normal, tip.along()).finished();
   std::vector<Vec3> v;
@@ -143,15 +153,19 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
     const Vec3 x = body.nodes.position[near.nodes[j]] - tip.at;
     v[j] = rotation.transpose() * (x + v[j]) - x;
   }
+  // Fifteen unknowns, three equations per node: five nodes determine them, eight leave nine more
+  // equations for the fit.
   const int modes = field.nodes >= 8 ? 3 : 0;
   const double scale = 2 * material.mu() * std::sqrt(2 * std::numbers::pi / near.support);
   const Eigen::VectorXd c = fit(body, v, material, tip, near, modes, scale);
   const Mat3 g = gradient(c), stretch = Mat3::Identity() + 0.5 * (g + g.transpose());
+  // Cauchy stress σ = P Fᵀ / J with F the symmetric stretch. Below a hundredth of its volume, or
+  // inverted, the fit is taken as failed: the zero field, as if no node were there.
   if (!(stretch.determinant() > 0.01)) return {};
   field.uniform = stress(material, stretch) * stretch / stretch.determinant();
   if (modes == 0) return field;
   field.k = scale * c.tail<3>();
-  // A traction on the crack faces is an error of the fit, as far as there is a crack behind.
+  // Crack faces carry no traction σ n: only the uncracked share behind the tip keeps it.
   const double open = 1 - crack_behind(body.surface, tip, near.support);
   const Vec3 traction = open * field.uniform.col(1);
   field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();

@@ -28,12 +28,13 @@ struct TipField {
   Mat3 uniform = Mat3::Zero();  ///< Pa
   Vec3 k = Vec3::Zero();        ///< K_I, K_II, K_III; Pa √m
   double support = 0;           ///< support radius h of the nodes here, model units
-  std::size_t nodes = 0;        ///< number of nodes fitted; the field is zero below four
-  std::uint32_t node = 0;       ///< one of them: it is in the same body as the tip
+  std::size_t nodes = 0;        ///< number of nodes fitted; the stress is zero below four, K below eight
+  std::uint32_t node = 0;       ///< the lowest of their indices: a node of the tip's body
 
   /// Hoop stress, Pa, across the half-plane at `angle` (radians, towards +normal from straight
   /// ahead), at r = h/4: there K / √(2πr) is its own mean over 0 < r < h.
   double hoop(double angle) const;
+  /// The direction in which a crack grows, and the stress that decides whether it does.
   struct Strongest {
     double angle, stress;  ///< radians; Pa
   };

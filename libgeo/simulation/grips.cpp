@@ -1,3 +1,5 @@
+// A held node follows its grip: u = c + pose · (x − c) − x with c the centre of the grip's box. Its
+// velocity is the difference of two poses over the time step.
 #include "simulation/grips.h"
 
 #include <algorithm>

@@ -19,8 +19,8 @@ class GrippedNodes {
   /// The nodes in each grip's box, by their material positions.
   GrippedNodes(const std::vector<Grip>& grips, const NodeSet& nodes);
 
-  /// Marks held nodes in `fixed` (per node, 1: held), and puts those of moving grips where the grip
-  /// is at `time`. Their effect on other nodes is that of the time step.
+  /// Marks held nodes in `fixed` (per node, 1: held). Nodes held by a moving grip get the
+  /// displacement that the grip has at `time`; the time step then moves all other nodes.
   void place(const std::vector<Grip>& grips, const NodeSet& nodes, double time, std::vector<std::uint8_t>& fixed,
              State& motion) const;
 

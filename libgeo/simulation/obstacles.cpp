@@ -1,3 +1,5 @@
+// Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
+// spacing². Contacts are sought within twice the motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>
@@ -31,8 +33,8 @@ std::vector<std::uint8_t> near_nodes(const RigidShape& shape, const Eigen::Isome
   return near;
 }
 
-// Whether boxes that contain each body during the step meet. `fall`: velocity that gravity adds in
-// a step, model units / s.
+// Whether boxes that contain each body during the step meet: twice the nodes' motion at their
+// present speed, plus a spacing. `fall`: velocity that gravity adds in a step, model units / s.
 bool bodies_may_meet(const ObjectContactStep& step, double fall) {
   const NodeSet& nodes = step.body.nodes;
   std::vector<Box3> box;
@@ -57,9 +59,9 @@ struct ContactScale {
   double fall = 0;                      // velocity that gravity adds in the step
 };
 
-// Scenes give stiffness as acceleration over depth. The pressure that accelerates a layer of nodes
-// so is that times its areal density: mass of a node over spacing². All current nodes count, so
-// that a restored run computes the same.
+// Scenes give stiffness k as acceleration over depth, 1/s². The pressure that accelerates a layer
+// of nodes by k d is k ρ_A d, with the areal density ρ_A the mean of mass / spacing². All current
+// nodes count, so that a restored run computes the same.
 ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
   const Materials& materials = step.solid.materials();
   const NodeSet& nodes = step.body.nodes;
@@ -120,7 +122,7 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
       from = isometry(scene.obstacles[k].pose(step.time)), to = isometry(scene.obstacles[k].pose(step.time + dt));
     const double moved = (to.translation() - from.translation()).norm() +
                          shapes_[k]->extent() * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
-    // Twice what nodes go at their present speed, since forces of the step may accelerate them.
+    // Twice the way of nodes at their present speed, since forces of the step may accelerate them.
     const double reach = 2 * dt * (scale.fastest + scale.fall) + moved + scale.spacing;
     obstacles_.emplace_back(shapes_[k], options, from, to);
     if (const auto near = near_nodes(*shapes_[k], from.inverse(), step.body.nodes, step.motion.displacement, reach);

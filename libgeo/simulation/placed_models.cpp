@@ -1,3 +1,5 @@
+// A vertex x of a model stands at pose · (scale · x). Models that stay where they were modelled
+// keep their coordinates bit for bit.
 #include <algorithm>
 
 #include "kerf/error.h"
@@ -13,7 +15,8 @@ void append(TriangleMesh& to, const TriangleMesh& from) {
   for (const Triangle& t : from.triangles) to.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
-// A square that stands for a plane in pictures, in the coordinates of the obstacle.
+// A square that stands for a plane in pictures, in the coordinates of the obstacle. Its centre is
+// the foot of the bodies' centre, its sides are 1.5 diagonals of their box.
 TriangleMesh square_of(const SceneObstacle& plane, const Box3& bodies) {
   const Pose placed = plane.pose(0);
   const Vec3 n = plane.normal.normalized(),

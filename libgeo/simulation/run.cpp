@@ -1,3 +1,4 @@
+// Sums of statistics, member by member. Energy, forces and torques are those of the later frame.
 #include "kerf/run.h"
 
 namespace geo {

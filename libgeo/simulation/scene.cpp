@@ -1,3 +1,4 @@
+// World = motion · place: a keyframed motion is applied after the pose at rest.
 #include "kerf/scene.h"
 
 namespace geo {

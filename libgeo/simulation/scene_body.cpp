@@ -1,3 +1,5 @@
+// Each model is sampled on its own, then one Body is built of all nodes and skins. Equal materials
+// share an entry of the table.
 #include "simulation/scene_body.h"
 #include "body/incremental_cache.h"
 

@@ -1,3 +1,6 @@
+// A time step: cut by blades, place grips, add contact, integrate, move the surface, grow cracks by
+// stress. Self-contact may veto a crack step before its commit; the step is then counted as
+// refused.
 #include "kerf/simulation.h"
 
 #include <algorithm>
@@ -22,7 +25,8 @@
 namespace geo {
 namespace {
 
-// Most cuts of one blade in a time step.
+// Bound on the cuts of one blade in a time step. Beyond it, a cut moves the edge by more than
+// Blade::limit.
 constexpr double most_cuts = 64;
 
 // The state with a body index for each node. Throws InputError where it does not fit.
@@ -160,7 +164,8 @@ bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& ne
   }
 }
 
-// Moves all blades through a time step, in several cuts where an edge point moves far (§ 5.1).
+// Moves all blades through a time step in ⌈farthest / (limit · finest)⌉ cuts (§ 5.1): farthest is
+// the longest way of an edge point, finest the smallest node spacing.
 void Simulation::Impl::cut(double dt, FrameStats& stats) {
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
@@ -236,7 +241,8 @@ void Simulation::Impl::add_wedges(double dt) {
   if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
 
-// Adds obstacles, contact between bodies, and self-contact. The result owns the latter's potential.
+// Adds obstacles, contact between bodies, and self-contact. The result owns the potential of
+// self-contact.
 std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
   const std::span<const Vec3> surface =
@@ -345,6 +351,7 @@ void Simulation::move_obstacle(std::size_t obstacle, const Pose& pose) {
   motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
 }
 
+// ⌈frame / dt⌉ equal steps; 1e-9 keeps rounding from adding one where dt divides the frame.
 FrameStats Simulation::advance_frame(const Progress& progress) {
   Impl& run = *impl_;
   FrameStats stats;
@@ -364,7 +371,7 @@ FrameStats Simulation::advance_frame(const Progress& progress) {
 
 TriangleMesh Simulation::surface(const TriangleMesh* model) const {
   const Impl& run = *impl_;
-  std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
+  std::vector<std::uint32_t> rows;  // per surface vertex: its index in the mesh, ~0u for none
   TriangleMesh mesh = run.body.surface.two_sided(&rows);
   if (model) transfer_attributes(*model, mesh);
   mesh.attributes.normal.clear();

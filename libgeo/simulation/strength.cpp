@@ -1,3 +1,5 @@
+// Strength varies by gradient noise with the material position. The Rayleigh speed is a rational
+// fit in Poisson's ratio; toughness becomes a stress by the line method (see strength.h).
 #include "simulation/strength.h"
 
 #include <algorithm>

@@ -9,8 +9,9 @@
 
 namespace geo {
 
-/// Factor on strength and toughness at material point x: 1 + variation · noise, at least 0.05.
-/// `diagonal`: of all bodies, the default length scale of the noise.
+/// Factor on strength and toughness at material point x: max(0.05, 1 + variation · noise), so that
+/// no variation makes strength negative. `diagonal`: of the box of all bodies, model units; a tenth
+/// of it is the default length scale of the noise.
 double strength_factor(const Strength& strength, std::uint64_t seed, double diagonal, const Vec3& x);
 
 /// False where material point x is in a box without fracture.

@@ -46,8 +46,9 @@ struct Motion {
 };
 
 // ---- Fracture by stress: cracks that start and grow without a blade. Initiation by the largest
-// principal stress (O'Brien and Hodgins 1999), growth by stress intensity at the front (Pauly et
-// al. 2005). Symbols: K_Ic critical stress intensity, h support radius of the nodes.
+// principal stress (O'Brien and Hodgins 1999), growth by the largest hoop stress of the stress
+// intensities at the front (Erdogan and Sih 1963). Symbols: K_Ic critical stress intensity, h
+// support radius of the nodes.
 
 /// Resistance of a material to fracture.
 struct Strength {
@@ -86,7 +87,7 @@ struct SceneBody {
   double scale = 1;                  ///< of the model, applied before the pose
   Pose place;                        ///< of the scaled model in the world
   Vec3 velocity = Vec3::Zero();      ///< initial, model units per second
-  Vec3 spin = Vec3::Zero();          ///< initial angular velocity about the centre of its box, rad/s
+  Vec3 spin = Vec3::Zero();          ///< initial angular velocity about the centre of its nodes' box, rad/s
   std::optional<Material> material;  ///< its own; none: the scene's
 };
 
@@ -142,14 +143,14 @@ struct Scene {
   bool ground = false;  ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
   double ground_stiffness = 1e5;  ///< penalty: acceleration per depth, 1/s²
-  double friction = 0.5;          ///< of the ground
+  double friction = 0.5;          ///< of the ground: Coulomb's with self_contact, else as in Environment
   Vec3 gravity = {0, 0, -9.81};   ///< model units per s²
   double frame_rate = 24;         ///< frames per second
   double dt = 1.0 / 96;           ///< largest time step, s
   double accuracy = 1e-3;         ///< of displacements in an implicit step, in node spacings
   int frames = 24;                ///< length of the run
   int checkpoint_every = 8;       ///< frames between two checkpoints
-  bool implicit = true;           ///< backward Euler; else leapfrog
+  bool implicit = true;           ///< backward Euler; else leapfrog (symplectic Euler)
   std::uint64_t seed = 1;         ///< of sampling and of jitter
   std::vector<Blade> blades;
   std::vector<SceneObstacle> obstacles;

@@ -56,9 +56,9 @@ class Simulation {
   Simulation& operator=(Simulation&& other) noexcept;
   ~Simulation();
 
-  /// Continues this run from its own checkpoint, as read back from a file. The result is that of a
-  /// new Simulation, but shape functions are kept where no cut has changed them. Throws InputError
-  /// as the constructor.
+  /// Continues this run from its own checkpoint, as read back from a file. The result equals that
+  /// of a new Simulation(scene, body, state); shape functions are kept if nothing was cut since
+  /// they were built. Throws InputError as the constructor.
   void restore(Body body, RunState state);
 
   /// Makes time steps up to the next frame. A crack step that cannot be made is counted, and tried

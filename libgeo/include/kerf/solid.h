@@ -28,11 +28,12 @@ struct StepReport {
   double energy = 0;  ///< elastic energy after the step, J; of the implicit step to second order in the last direction
 };
 
-/// Numbers of nodes and of material points by the rank of their moment matrix: 0 full, 1
-/// regularised, 2 rigid (no strain).
+/// Numbers of nodes and of material points by the quality of their moment matrix: 0
+/// well-conditioned, 1 ill-conditioned (at nodes: of lower rank), 2 singular, so that they carry no
+/// strain.
 struct MomentQualityCounts {
-  std::size_t nodes[3] = {};   ///< by rank
-  std::size_t points[3] = {};  ///< by rank
+  std::size_t nodes[3] = {};   ///< by quality
+  std::size_t points[3] = {};  ///< by quality
   std::size_t widened = 0;     ///< points whose support had to be widened
 };
 
@@ -69,7 +70,7 @@ class Solid {
   const Materials& materials() const;
   /// Number of material points.
   std::size_t point_count() const;
-  /// Counts nodes and material points by the rank of their moment matrix.
+  /// Counts nodes and material points by the quality of their moment matrix.
   MomentQualityCounts moment_quality_counts() const;
 
   /// ∇u at every node by moving least squares, exact for linear fields where the moment matrix has

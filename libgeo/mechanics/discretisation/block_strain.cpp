@@ -1,3 +1,6 @@
+// Loose blocks: ∇u = A + Σ_j (u_j − u_0 − A (x_j − x_0)) g_jᵀ with the sum in single precision. A
+// is the displacement gradient of one point of the block at the start of the step, g_j the shape
+// gradients.
 #include "mechanics/discretisation/block_strain.h"
 
 #include <algorithm>
@@ -9,9 +12,9 @@
 namespace geo {
 namespace {
 
-// The displacement gradient of a block at u, if its nodes belong to one component and all of its
-// points reproduce affine fields. It is that of a good point near the middle of the block, so that
-// the residual displacements are small.
+// The displacement gradient at u of a good point near the middle of the block, so that the residual
+// displacements are small. None if the nodes belong to several components or a point is poor, which
+// would not reproduce affine fields.
 std::optional<Mat3> affine_gradient(const PointBlock& block, const std::vector<std::uint32_t>& component,
                                     const std::vector<Vec3>& u) {
   const auto is_foreign = [&](auto j) { return component[j] != component[block.nodes[0]]; };

@@ -24,8 +24,8 @@ class BlockStrain {
   /// Double precision.
   explicit BlockStrain(const MaterialPoints& points);
   /// Loose, relative to each block's affine motion at the displacements `start`. `position`: nodes
-  /// at rest, kept by reference. `component`: per node, that of the visibility graph. Blocks with
-  /// nodes of several components, or with points of poor quality, use double precision.
+  /// at rest, kept by reference. `component`: per node, its component of the visibility graph.
+  /// Blocks with nodes of several components, or with points of poor quality, use double precision.
   BlockStrain(const MaterialPoints& points, const std::vector<Vec3>& position,
               const std::vector<std::uint32_t>& component, const std::vector<Vec3>& start);
 

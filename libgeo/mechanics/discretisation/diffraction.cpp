@@ -1,3 +1,6 @@
+// With s = |x − x_j| and L the length of the bent path, d = (L / s)⁴ s and ∂d = 4 (L / s)³ ∂L − 3
+// (L / s)⁴ ∂s. The path bends where the line from x to x_j crosses the edge, once both are unfolded
+// into one plane about it, or at the nearer end of the edge.
 #include "mechanics/discretisation/diffraction.h"
 
 #include <algorithm>

@@ -24,9 +24,10 @@ std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceI
 /// A node that `faces` hide from x, as x sees it round one of the edges. With s the straight
 /// distance and L the length of the shortest path round an edge, its distance is (L / s)⁴ s. None
 /// if that is `support` or more, or if there is no path. Powers of 1 and 2, as in the original
-/// criterion, weld a crack behind its front at supports of 1.8 spacings (docs/validation.md). A
-/// path bends `support` / 1024 ahead of an edge; both of its segments are clear of faces (exact),
-/// so no path crosses a crack that has no front. `edges`: all edges within `support` of x.
+/// criterion, weld a crack behind its front at supports of 1.8 spacings (docs/decisions/041). A
+/// path bends `support` / 1024 ahead of an edge, so that it clears the crack face behind it. Both
+/// of its segments are clear of faces (exact), so no path crosses a crack that has no front.
+/// `edges`: all edges within `support` of x.
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
                                               std::span<const FrontEdge> edges, const TriangleBvh& faces);
 

@@ -1,3 +1,5 @@
+// Gather, law, scatter: ∇u at the points, energy and stress by ranges of one material, then nodal
+// forces f_j = Σ_p V_p P_p g_pj. P is the first Piola–Kirchhoff stress, g_pj the shape gradient.
 #include "mechanics/discretisation/elastic_block.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Incremental update: equal cells before and after a cut are matched in Morton order. A point of
+// such a cell keeps its shape gradients unless a changed support or face touches what they depend
+// on.
 #include "mechanics/discretisation/galerkin.h"
 
 #include <algorithm>
@@ -11,7 +14,7 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t max_cells_per_block = 256;
+constexpr std::size_t max_cells_per_block = 256;  // larger: fewer copies of a node's slots, longer node lists
 constexpr std::size_t none = ~std::size_t(0);
 
 // Faces that were added or removed, and supports of nodes that were added, moved or resized.
@@ -71,7 +74,7 @@ void set_position(const Body& body, const Vec3& intended, MaterialPoint& point) 
   point.position = moved_off_faces(body, intended), point.influence_radius = (point.position - intended).norm();
 }
 
-// Per cell, the index of the same cell before, or ~0u. Both lists are in Morton order.
+// Per cell, the index of the same cell before, or ~0u (none). Both lists are in Morton order.
 std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::span<const QuadratureCell> before) {
   std::vector<std::uint32_t> same;
   std::size_t o = 0;

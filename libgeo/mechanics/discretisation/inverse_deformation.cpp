@@ -1,3 +1,5 @@
+// Newton-like iteration for y = x + u(x), u by Eq. 1: x ← x + F⁻¹ (y − x − u(x)), while the
+// residual falls. F blends the nodes' gradients and leaves out the derivatives of the weights.
 #include "mechanics/discretisation/inverse_deformation.h"
 
 #include <Eigen/LU>
@@ -12,10 +14,10 @@
 namespace geo {
 namespace {
 
-// Crushed or inverted material is treated as undeformed.
+// Material crushed to less than a twentieth of its volume, or inverted, is treated as undeformed.
 Mat3 safe_inverse(const Mat3& f) { return f.determinant() > 0.05 ? Mat3(f.inverse()) : Mat3::Identity(); }
 
-// Smoothstep from 1 at a to 0 at b.
+// Smoothstep t² (3 − 2 t), from 1 at a to 0 at b.
 double fade(double x, double a, double b) {
   const double t = std::clamp((b - x) / (b - a), 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -98,8 +100,8 @@ Vec3 InverseDeformation::deformed_vertex(SurfaceVertexId v, VertexCache& cache) 
 }
 
 // The difference between the map that is linear on deformed triangles of the skin near y and the
-// inverse of Eq. 1. Weights grow without bound towards a triangle, so one that holds y decides
-// alone.
+// inverse of Eq. 1. A triangle at distance d < range has the weight (range / d − 1)², which grows
+// without bound: one that holds y decides alone. The whole fades by (1 − d_min / range)².
 Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, double range, VertexCache& cache) const {
   const Vec3& y = near.world;
   Vec3 to;
@@ -131,7 +133,8 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
   const std::size_t a = nearest[0];
   const auto& nodes = body_.nodes;
   if (!((y - world_[a]).norm() < nodes.radius[a])) return {y - u_[a], NodeId(a), false};
-  // Each node's own inverse affine map counts as far as it agrees with the nearest node's.
+  // Each node's own inverse affine map counts as far as it agrees with the nearest node's. It
+  // counts fully up to half a support radius apart, not at all from one on.
   const auto affine_inverse = [&](std::size_t i) {
     return Vec3(nodes.position[i] + safe_inverse(Mat3::Identity() + gradient_[i]) * (y - world_[i]));
   };
@@ -149,6 +152,7 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
   }
   Neighborhood near;
   near.world = y;
+  // The tolerance is close to rounding, so the result depends little on the initial guess.
   const Vec3 x = solve(near, total > 0 ? Vec3(sum / total) : guess, 1e-12 * nodes.spacing[a]);
   return {x + skin_correction(near, x, 0.5 * nodes.spacing[a], cache), NodeId(a), true};
 }

@@ -10,13 +10,13 @@
 
 namespace geo {
 
-/// Inverts Eq. 1 by Newton's method. Only nodes that are near the point both in the material and in
-/// the world take part: fully up to 1.5 support radii in the world, fading to none at 3. Hence
-/// material that is close in the world but far in the material, such as the two sides of an open
-/// cut, is not mixed. The initial guess blends the nodes' own affine maps with kernel weights in
-/// the world. Near the skin the map fades into the one that is linear on each deformed triangle,
-/// which is exact there. The map is continuous except where the material is torn. Threads may query
-/// the same object at the same time, each with a cache of its own.
+/// Inverts Eq. 1 by a Newton-like iteration. Only nodes that are near the point both in the
+/// material and in the world take part: fully up to 1.5 support radii in the world, fading to none
+/// at 3. Hence material that is close in the world but far in the material, such as the two sides
+/// of an open cut, is not mixed. The initial guess blends the nodes' own affine maps with kernel
+/// weights in the world. Near the skin the map fades into the one that is linear on each deformed
+/// triangle, which is exact there. The map is continuous except where the material is torn. Threads
+/// may query the same object at the same time, each with a cache of its own.
 class InverseDeformation {
  public:
   /// For points inside the box `about`, world coordinates. `u` and `gradient` are per node. All
@@ -51,7 +51,8 @@ class InverseDeformation {
   void update(Neighborhood& near, const Vec3& x) const;
   bool is_included(std::size_t node) const { return included_.empty() || included_[node]; }
   bool is_included(FaceId f) const;
-  /// Eq. 1 at x and its derivative F; false if no node reaches x.
+  /// Eq. 1 at x as `to`, and F = I + Σ w_i ∇u_i / Σ w_i, its derivative less that of the weights;
+  /// false if no node reaches x.
   bool deform(Neighborhood& near, const Vec3& x, Vec3& to, Mat3& f) const;
   Vec3 solve(Neighborhood& near, Vec3 x, double tolerance) const;
   Vec3 skin_correction(Neighborhood& near, const Vec3& x, double range, VertexCache& cache) const;

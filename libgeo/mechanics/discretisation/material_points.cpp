@@ -1,3 +1,5 @@
+// Shape gradients of a point are stored as 16-bit multiples of its quantum, their largest
+// coordinate over 32766. Error diffusion over the nodes keeps their sum at zero.
 #include "mechanics/discretisation/material_points.h"
 
 #include <algorithm>

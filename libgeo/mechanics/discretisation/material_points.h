@@ -23,7 +23,7 @@ struct MaterialPoint {
   bool occluded = false;        ///< a face hides a node within its support
   std::uint16_t material = 0;   ///< index of the material of the nodes that it sees
   double influence_radius = 0;  ///< bounds the distance of all nodes in its support and of all paths to them
-  double unscaled_volume = 0;   ///< its volume before all were scaled to sum to that of the nodes
+  double unscaled_volume = 0;   ///< its volume before the scaling to the nodes' total volume
 };
 
 /// Points of a block from `begin` up to `end`, multiples of eight, that contain points of one

@@ -1,3 +1,6 @@
+// Moment matrices A_i = Σ_j w_ij x_ij x_ijᵀ are inverted by their eigenvalues (pseudo-inverse), so
+// nodes on a plane or line keep the gradient along it. The mode penalty is differentiated by the
+// chain rule through ∇u_i.
 #include "mechanics/discretisation/nodal_gradients.h"
 
 #include <Eigen/Eigenvalues>
@@ -27,7 +30,8 @@ NodalGradientOperator::Node build(std::uint32_t i, const NodeSet& nodes, const V
     sum += w;
     moment += w / (scale * scale) * x * x.transpose();
   }
-  // Pseudo-inverse: directions in which the neighbours have hardly any extent carry no gradient.
+  // Pseudo-inverse: directions in which the neighbours extend less than a hundredth of the largest
+  // extent (1e-4 of its square) carry no gradient.
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(moment);
   const Vec3 values = eigen.eigenvalues();
   Vec3 inverse = Vec3::Zero();

@@ -1,3 +1,5 @@
+// Each point tries the support factors in turn until it sees enough nodes with a well-conditioned
+// moment matrix. Exact segment–triangle tests decide which nodes a point sees.
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>
@@ -11,8 +13,8 @@ namespace geo {
 namespace {
 
 constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its support: a linear basis needs 4
-constexpr double ill_conditioned = 500;  // and so does one with a larger condition number of the moment matrix
-constexpr double without_strain = 1e7;   // above it, linear fields would be off by 1e-9 of their size
+constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened
+constexpr double without_strain = 1e7;   // times the rounding unit 1e-16: linear fields would be off by 1e-9
 constexpr std::size_t tasks_per_batch = 32;
 
 bool is_on_face(const Complex& surface, const Vec3& p) {

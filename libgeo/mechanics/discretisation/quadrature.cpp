@@ -1,3 +1,6 @@
+// Whole cell of edge a: four alternate corners of the cube of half edge a/√12, half of the 2³ Gauss
+// rule. Cut cell: stratified samples give volume, mean m and covariance C; its points are
+// m + C^½ t_k, with t_k the alternate corners of [−1, 1]³.
 #include "mechanics/discretisation/quadrature.h"
 
 #include <Eigen/Eigenvalues>
@@ -72,7 +75,7 @@ QuadratureCell make_cell(const RegionTree& tree, const Lattice& lattice, const R
 }
 
 // The exact sum of node volumes in fixed-point arithmetic, which no order of summation changes:
-// inserted nodes halve volumes, which is exact, too.
+// inserted nodes halve volumes, which is exact, too. Each term is below 2⁹⁰: 2³⁷ of them fit.
 double exact_sum(const std::vector<double>& volumes) {
   int exponent;
   std::frexp(*std::max_element(volumes.begin(), volumes.end()), &exponent);
@@ -150,7 +153,8 @@ Divisions QuadratureCells::divisions(const NodeSet& nodes) const {
   return divided;
 }
 
-// Volumes of cut cells are estimates: they are scaled such that all cells have the nodes' volume.
+// Volumes of cut cells are estimates, scaled by (V − whole) / cut to sum to the nodes' volume V.
+// Where that is not positive, all cells are scaled by V / (whole + cut).
 void QuadratureCells::scale_volumes(const NodeSet& nodes) {
   cells_ = unscaled_;
   double whole = 0, cut = 0;

@@ -1,3 +1,6 @@
+// Moving least squares with linear basis p and the quartic spline weight w(s), s = distance/support
+// (Belytschko et al. 1996). The gradients are full derivatives, unlike the diffuse derivative of
+// nodal_gradients.cpp.
 #include "mechanics/discretisation/shape_functions.h"
 
 #include <Eigen/Eigenvalues>
@@ -22,8 +25,8 @@ double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::v
   double scale = 0;
   for (const SupportNode& j : nodes) scale += j.support;
   scale /= double(n);
-  // Lengths in units of the scale, coordinates relative to x: p_j = (1, x_j − x). At x itself p is
-  // the first unit vector, and ∂p_j = −∂x.
+  // Lengths in units of the scale, coordinates relative to x: p_j = (1, x_j − x), so that
+  // ∂p_j/∂x = (0; −I). At x itself p is the first unit vector e_1, whatever x is.
   std::vector<Vec4> p(n);
   std::vector<double> w(n);
   std::vector<Vec3> dw(n);  // ∂w/∂x
@@ -31,14 +34,19 @@ double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::v
   for (std::size_t j = 0; j < n; ++j) {
     const double h = nodes[j].support / scale, s = nodes[j].distance / nodes[j].support;
     p[j] << 1, (nodes[j].position - x) / scale;
+    // Quartic spline: w = 1 − 6 s² + 8 s³ − 3 s⁴, ∂w = −12 s (1 − s)² ∂s. (kernel.h is the kernel
+    // of nodal gradients and of Eq. 1, not of these shape functions.)
     w[j] = 1 + s * s * (-6 + s * (8 - 3 * s)), dw[j] = -12 * s * (1 - s) * (1 - s) / h * nodes[j].distance_gradient;
     m += w[j] * p[j] * p[j].transpose();
   }
+  // Condition numbers above 10¹² count as infinite; point_supports.cpp takes strain from none above
+  // 10⁷.
   const Vec4 eigenvalues = Eigen::SelfAdjointEigenSolver<Mat4>(m, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(eigenvalues[0] > 1e-12 * eigenvalues[3])) return infinite;
   const Mat4 inverse = m.inverse();
   const Vec4 b = inverse.col(0);
-  // ∂φ_j = bᵀp_j ∂w_j + w_j (bᵀ∂p_j + ∂bᵀp_j), with b = M⁻¹ p and ∂b = −M⁻¹ ∂M b.
+  // ∂φ_j = bᵀp_j ∂w_j + w_j (bᵀ∂p_j + ∂bᵀp_j), with b = M⁻¹ e_1 and ∂b = −M⁻¹ ∂M b, where
+  // ∂M = Σ ∂w_j p_j p_jᵀ + w_j (∂p_j p_jᵀ + p_j ∂p_jᵀ).
   Eigen::Matrix<double, 4, 3> dm_b = Eigen::Matrix<double, 4, 3>::Zero();  // ∂M b
   for (std::size_t j = 0; j < n; ++j) {
     dm_b += b.dot(p[j]) * p[j] * dw[j].transpose();

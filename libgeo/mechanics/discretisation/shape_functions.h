@@ -31,13 +31,15 @@ struct SupportNode {
   double support = 0;                     ///< support radius
 };
 
-/// A node seen straight ahead from x. Precondition: |x − node| < support.
+/// A node that no face hides from x; round a crack front, see diffracted_support(). Precondition:
+/// |x − node| < support.
 SupportNode direct_support(const Vec3& x, const Vec3& node, double support);
 
-/// Full derivatives (those of weights and moment matrix included) at x of φ_j = pᵀ M⁻¹ p_j w_j,
-/// with w = 1 − 6 s² + 8 s³ − 3 s⁴ and s the distance over the support. Returns the condition
-/// number of the scaled moment matrix. It is infinite, and `gradient` empty, for fewer than four
-/// nodes or coplanar ones.
+/// Full derivatives (weights and moment matrix differentiated, too) at x of φ_j = pᵀ M⁻¹ p_j w_j,
+/// with the quartic spline w = 1 − 6 s² + 8 s³ − 3 s⁴ and s the distance over the support. One
+/// gradient per element of `nodes`, 1/model unit. Returns the condition number of M, with lengths
+/// in units of the mean support. It is infinite, and `gradient` empty, for fewer than four nodes or
+/// coplanar ones.
 double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::vector<Vec3>& gradient);
 
 }  // namespace geo

@@ -112,6 +112,8 @@ StiffnessConstants stiffness_constants(const Material& m) {
   return {true, float(p.mu), float(p.lambda), float(p.alpha), float(m.volume_term), 0};
 }
 
+// A Cholesky factorisation that succeeds proves that no eigenvalue is below −1e-9 of the diagonal,
+// and spares their computation.
 Mat9 projected_derivative(const Material& m, const Mat3& f) {
   const Mat9 h = stress_derivative(m, f);
   if (Eigen::LLT<Mat9>(h + 1e-9 * h.diagonal().cwiseAbs().maxCoeff() * Mat9::Identity()).info() == Eigen::Success)

@@ -1,3 +1,5 @@
+// The inverse plastic stretch is found from the eigenvalues of 1 + 2 ε. The flow is one explicit
+// step ε ← ε + min(1, c Δt) ε_e of the elastic strain ε_e, then scaled back to the largest norm.
 #include "mechanics/material/plasticity.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,4 +1,6 @@
-// Compiled once per vector target, like point_lanes.cpp. All targets give the same bits.
+// F = U Σ Vᵀ by cyclic Jacobi on FᵀF, then ∂²Ψ/∂F² in the principal frame with negative eigenvalues
+// set to zero (Stomakhin et al. 2012; Smith, de Goes and Kim 2018). Compiled once per vector
+// target, like point_lanes.cpp; all give the same bits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/material/stiffness_lanes.cpp"
 #include "base/simd_targets.h"
@@ -18,9 +20,10 @@ using Vector = V<float>;
 
 // Cyclic Jacobi on symmetric matrices, a[j][i] = a[i][j]: eigenvalues end on the diagonal,
 // eigenvectors are the columns of `vectors`. A rotation is skipped if its off-diagonal entry is
-// below the rounding of the diagonal; a sweep that skips all is the last. Precondition: squares of
-// the entries are finite. Two sets of matrices alternate, because each rotation waits for the one
-// before: one set's square roots and divisions hide the other's latency.
+// below 1e-8 of the diagonal, less than single precision resolves. At most four sweeps; a sweep
+// that skips all is the last. Precondition: squares of the entries are finite. Two sets of matrices
+// alternate, because each rotation waits for the one before: one set's square roots and divisions
+// hide the other's latency.
 constexpr int sets = 2;
 HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[sets]) {
   const Lanes<float> d;
@@ -103,7 +106,7 @@ HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<floa
   for (int r = 0; r < 3; ++r) u.at[0][r] = hn::IfThenElse(is_zero, r == 0 ? one : zero, hn::Mul(b[0][r], inverse));
   const auto component = dot3(u.at[0], b[1]);
   for (int r = 0; r < 3; ++r) b[1][r] = hn::Sub(b[1][r], hn::Mul(component, u.at[0][r]));
-  // A vanishing second column: any direction normal to the first one.
+  // A second column shorter than 1e-6 of the first vanishes: any direction normal to the first.
   const auto second = dot3(b[1], b[1]);
   const auto vanishes = hn::Lt(second, hn::Max(hn::Mul(hn::Set(d, 1e-12f), hn::Mul(length, length)), tiny));
   const auto x_is_small = hn::Lt(hn::Abs(u.at[0][0]), hn::Set(d, 0.7f));

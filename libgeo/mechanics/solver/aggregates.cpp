@@ -1,3 +1,6 @@
+// Recursive coordinate bisection at the median of the nodes, then depth-first search for the
+// connected sets of each box. Their order along the component's longest side keeps the band of the
+// coarse matrix narrow.
 #include "mechanics/solver/aggregates.h"
 
 #include <algorithm>

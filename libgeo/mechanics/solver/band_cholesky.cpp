@@ -1,3 +1,5 @@
+// Right-looking block Cholesky A = RᵀR, tile row by tile row: factor R_gg, then R_gh = R_gg⁻ᵀ A_gh,
+// then A_hk ← A_hk − R_ghᵀ R_gk. Diagonal blocks that nothing couples are factored in parallel.
 #include "mechanics/solver/band_cholesky.h"
 
 #include <algorithm>
@@ -28,7 +30,7 @@ void BandCholesky::factor() {
 }
 
 void BandCholesky::factor(std::size_t from, std::size_t to) {
-  constexpr float rounding = 1e-5f;  // of a diagonal entry, in single precision
+  constexpr float rounding = 1e-5f;  // of a diagonal entry; a smaller pivot is rounding error of single precision
   std::vector<float> diagonal;
   for (std::size_t i = 6 * from; i < 6 * to; ++i) diagonal.push_back(at(i, i));
   for (std::size_t g = from; g < to; ++g) {

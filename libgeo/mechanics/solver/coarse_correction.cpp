@@ -1,3 +1,6 @@
+// An aggregate moves by u_i = t + ω × a_i, a_i the arm from its centre. Pᵀ K P is summed in tiles
+// of 6×6 per pair of aggregates, within each block of points in parallel, then over blocks in
+// order.
 #include "mechanics/solver/coarse_correction.h"
 
 #include <algorithm>
@@ -10,7 +13,8 @@ namespace {
 
 // Damping of the coarse correction in the sum of both levels. Overlapping subdomains move large
 // parts, too; with the whole coarse correction added, the largest eigenvalue of the preconditioned
-// matrix grows. Measured: fewest iterations at 0.35 to 0.4, a tenth to a fifth fewer than at 1.
+// matrix grows. Measured: fewest iterations at 0.35 to 0.4, a tenth to a fifth fewer than at 1
+// (docs/decisions/045).
 constexpr float damping = 0.4f;
 
 bool is_zero(const float* tile_numbers) {

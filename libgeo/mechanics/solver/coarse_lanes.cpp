@@ -1,5 +1,6 @@
-// Compiled once for each vector instruction set, like point_lanes.cpp. Products and sums are fused
-// only in the loop over pairs of slots.
+// Pᵀ K P of a block's points: strains of each aggregate's rigid motions, their stresses, and the
+// products of both. Compiled once for each vector instruction set, like point_lanes.cpp; products
+// and sums are fused only in the loop over pairs of slots.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/coarse_lanes.cpp"
 #include "base/simd_targets.h"

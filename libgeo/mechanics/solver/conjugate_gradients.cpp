@@ -1,3 +1,6 @@
+// Hestenes and Stiefel (1952) with preconditioner M, each island with its own α = r · z / p · Hp
+// and β = r' · z' / r · z, where z = M⁻¹ r. An island that is done is left out of all later
+// products.
 #include "mechanics/solver/conjugate_gradients.h"
 
 #include <utility>
@@ -5,9 +8,10 @@
 namespace geo {
 namespace {
 
-constexpr int most_iterations = 500;
+constexpr int most_iterations = 500;  // ends a solve that rounding keeps from converging
 
-// Reductions of r · M⁻¹ r, the square of the norm that conjugate gradients minimise in effect.
+// Reductions of r · M⁻¹ r, the square of the preconditioned norm of the residual: to about a half
+// (docs/decisions/049) and a quarter (048) of that norm.
 constexpr double first_direction_reduction = 0.3, inexact_reduction = 0.05;
 
 }  // namespace

@@ -23,16 +23,14 @@ struct NewtonDirection {
 
 /// Solves H step = force for the active islands; the entries of others stay. An island ends
 /// - when its preconditioned residual is less than half the accuracy, after one iteration at least;
-///   of the first
-///   direction of a time step √(r · M⁻¹ r) must also have fallen to √0.3 ≈ 0.55 of its initial
-///   value, or bodies would
-///   never quite come to rest;
-/// - when √(r · M⁻¹ r) has fallen to √0.05 ≈ 0.22 and the direction is so long that Newton's method
-///   needs another one
-///   anyway;
+///   in the first direction of a time step √(r · M⁻¹ r) must also have fallen to √0.3 ≈ 0.55 of its
+///   initial value, or bodies would never quite come to rest;
+/// - when √(r · M⁻¹ r) has fallen to √0.05 ≈ 0.22 of its initial value and the direction is so long
+///   that Newton's method needs another one anyway;
 /// - when rounding has made the curvature or the residual not positive; after 500 iterations.
-///   Returns the number of iterations. Precondition: potential and preconditioner are linearised at
-///   the same u.
+///
+/// Returns the number of iterations. Precondition: potential and preconditioner are linearised at
+/// the same u.
 int conjugate_gradients(IncrementalPotential& potential, TwoLevelPreconditioner& preconditioner,
                         const ActiveIslands& active, const std::vector<Vec3>& force, const CgStopping& stopping,
                         NewtonDirection& direction);

@@ -1,3 +1,6 @@
+// Matrix-free: each block of points writes its nodal sums to slots of its own, then each node adds
+// up its slots. K p = Σ Bᵀ D B p, with B the displacement gradient at a point and D its projected
+// stiffness.
 #include "mechanics/solver/elastic_potential.h"
 
 #include <algorithm>
@@ -121,8 +124,8 @@ void ElasticPotential::linearise_block(std::size_t block, const std::vector<Stif
   modes.resize(weight.size());
   for (const MaterialRange& run : points.material_ranges) {
     const bool plastic = !relaxation_.empty() && solid_.materials[run.material].yield > 0;
-    // Where points of several materials stand among each other, each run computes all of them and
-    // keeps its own.
+    // In a range of mixed materials, all points are computed with the range's material, and results
+    // of other materials' points are dropped.
     StiffnessModes& out = run.uniform ? modes : scratch;
     out.resize(weight.size());
     stiffness_modes(constants[run.material], {run.begin, run.end}, deformation, plastic ? &relaxation : nullptr, weight,

@@ -1,3 +1,6 @@
+// Rigid motions per free-floating island from mass-weighted moments of its nodes
+// (rigid_motion.cpp). Momentum: the direction gets the rigid motion nearest to what it lacks of the
+// ballistic one.
 #include "mechanics/solver/finite_rotation.h"
 
 #include <algorithm>
@@ -28,8 +31,8 @@ Vec3 FiniteRotation::position(std::size_t node, const std::vector<Vec3>& u) cons
   return potential_.problem().solid.position[node] + u[node];
 }
 
-// Whether the straight lines of a rotation by angle a stretch the island by ½ a² noticeably over
-// its radius.
+// Whether the straight lines of a rotation by angle a, which stretch lengths by √(1 + a²) − 1 ≈ ½
+// a², do so noticeably over the radius of gyration.
 bool FiniteRotation::is_noticeable(const RigidMotion& motion, std::size_t free_island) const {
   constexpr double noticeable = 1e-4;  // spacings; a tenth of the default accuracy of displacements
   return 0.5 * motion.angle.squaredNorm() * motion.radius > noticeable * spacing_[free_island];

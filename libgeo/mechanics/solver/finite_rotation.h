@@ -19,14 +19,14 @@ class FiniteRotation {
   /// full rank) is only translated.
   explicit FiniteRotation(const IncrementalPotential& potential);
 
-  /// Displacements after the rigid motions that are nearest, in the quadratic mean, to the straight
-  /// motion from the start of the step to u. Sets rotates[island] where a free-floating island
-  /// turns by a noticeable angle; empty where none does.
+  /// Displacements after finite rigid motions of the free-floating islands. Each is the nearest, in
+  /// the quadratic mean, to the straight motion from the start of the step to u. Empty if none
+  /// turns noticeably. rotates[island] becomes 1 if a free-floating island in it does, else 0.
   std::vector<Vec3> predict(const std::vector<Vec3>& u, std::vector<char>& rotates) const;
   /// Per free-floating island: the rigid motion nearest to a direction from u on, zero where its
   /// angle is negligible.
   std::vector<RigidMotion> rotations(const std::vector<Vec3>& u, const std::vector<Vec3>& direction) const;
-  /// Sets rotates[island] to 1 for islands with a rotation among those that rotations() returned.
+  /// Sets rotates[island] to 1 for islands with a nonzero angle in the result of rotations().
   void mark_rotating(const std::vector<RigidMotion>& rotations, std::vector<char>& rotates) const;
   /// Adds to a direction from u on the rigid motions that give untouched free-floating islands the
   /// momenta of inertia and loads alone. Internal forces do not change these; rounding and the

@@ -1,3 +1,5 @@
+// Node i adds ½ m/Δt² |u − ũ|² − f · (u − u₀) and, on the ground at depth d, ½ m k d² and
+// ½ c |T (u − u₀)|². T projects onto the ground plane; c is the lagged friction stiffness.
 #include "mechanics/solver/incremental_potential.h"
 
 #include "mechanics/solver/ground_contact.h"

@@ -1,3 +1,5 @@
+// Union–find over the components of the graph: shared material points give the free-floating
+// islands, contact on top of them the islands.
 #include "mechanics/solver/islands.h"
 
 #include "base/union_find.h"

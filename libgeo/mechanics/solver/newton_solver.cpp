@@ -1,3 +1,5 @@
+// Inexact Newton method with backtracking by the parabola through E(0), E'(0) and E(s), the step
+// kept between 0.2 and 0.5 of the last (Nocedal and Wright 2006, § 3.5, § 7.1).
 #include "mechanics/solver/newton_solver.h"
 
 #include <algorithm>
@@ -9,9 +11,9 @@ namespace geo {
 namespace {
 
 constexpr int most_iterations = 20;  // more are slower than two steps of half the length
-constexpr int most_halvings = 16;
+constexpr int most_halvings = 16;    // of a direction; each trial is at most half the one before
 // Spacings that an island may move before its stiffness is recomputed: strains change by about a
-// tenth.
+// tenth. Measured in docs/decisions/044 and 048.
 constexpr double stale_after = 0.1;
 
 bool any(const std::vector<char>& mask) { return std::find(mask.begin(), mask.end(), 1) != mask.end(); }
@@ -116,8 +118,8 @@ bool NewtonSolver::line_search(const std::vector<RigidMotion>& rotations, std::v
         if (!(length_[p] * share[p] < problem_.accuracy)) return false;
         active[p] = searching[p] = 0;
       } else {
-        // The minimiser of the parabola through both values and the slope; contact makes the
-        // potential steep.
+        // The minimiser ½ s g / (E(s) − E(0) + s g) of the parabola through both values and the
+        // slope −g, over s. Contact makes the potential steep, so the factor may be below ½.
         const double rise = value[p] - at_.value[p] + share[p] * slope[p], least = 0.5 * share[p] * slope[p] / rise;
         share[p] *= std::isfinite(least) ? std::clamp(least, 0.2, 0.5) : 0.5;
       }

@@ -1,3 +1,5 @@
+// Σ_p V_p ω(|x_p − x_i| / h_i) σ_p for node i: each block of points sums into slots of its own,
+// then each node adds up its slots.
 #include "mechanics/solver/nodal_averages.h"
 
 #include <algorithm>

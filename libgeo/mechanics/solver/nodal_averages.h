@@ -14,8 +14,8 @@ namespace geo {
 /// sum of the weights.
 using StressSums = std::array<double, 7>;
 
-/// The six components at a point from its material, its deformation gradient and the elastic part
-/// of that. Returns false where the point is to be left out.
+/// The six components at a point from its material, its deformation gradient F and its elastic part
+/// F times the inverse plastic stretch. Returns false where the point is to be left out.
 using PointStress = std::function<bool(const Material& material, const Mat3& deformation, const Mat3& elastic,
                                        std::array<double, 6>& out)>;
 
@@ -23,8 +23,8 @@ using PointStress = std::function<bool(const Material& material, const Mat3& def
 /// multiple of eight points, zero at first: the six components, 1 where the point counts, and 0.
 using BlockStress = std::function<void(std::size_t block, const PointMatrices<double>& gradient, float* out)>;
 
-/// Per node the sums over the material points that see it and have it in their shape functions,
-/// weighted by volume and the kernel over the node's support. Rigid points are left out. Sums are
+/// Per node i: Σ_p V_p (1 − |x_p − x_i|² / h_i²)³ σ_p over the material points p that have node i
+/// in their shape functions, h_i its support radius. Points without strain are left out. Sums are
 /// in single precision and the same for any number of threads.
 std::vector<StressSums> nodal_stress_sums(const Solid& solid, const NodeSet& nodes, const State& state,
                                           const BlockStress& stress);

@@ -1,3 +1,5 @@
+// Fields for pictures: Eq. 1 at the nodes' own positions, and the von Mises stress
+// √(½ Σ (σ_ii − σ_jj)² + 3 Σ σ_ij²), over pairs i < j, of the averaged stress.
 #include <algorithm>
 #include <cmath>
 
@@ -60,8 +62,8 @@ std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, c
   const auto block_stress = [&](std::size_t b, const PointMatrices<double>& gradient, float* out) {
     const PointBlock& block = points.blocks[b];
     const PointMatrices<double> relaxation = plastic ? relaxation_of(points, b, state) : PointMatrices<double>();
-    // Where points of several materials stand among each other, each run computes all of them and
-    // keeps its own.
+    // In a range of mixed materials, all points are computed with the range's material, and results
+    // of other materials' points are dropped.
     std::vector<float> scratch(8 * ((block.points.size() + 7) / 8 * 8));
     for (const MaterialRange& run : block.material_ranges) {
       cauchy_stresses(constants[run.material], {run.begin, run.end}, plastic ? &relaxation : nullptr, gradient,

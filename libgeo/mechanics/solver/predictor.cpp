@@ -1,3 +1,6 @@
+// u₀ + Δt v₀ + Δt² a, with the acceleration a of the last step where an affine field explains it.
+// Then the minimiser of a parabola towards u₀, or the finite rotation, where the potential is less
+// there.
 #include "mechanics/solver/predictor.h"
 
 #include <algorithm>
@@ -8,13 +11,13 @@
 namespace geo {
 namespace {
 
-// Nodal accelerations of an island are used where an affine field explains that share of their
+// Nodal accelerations of an island are used where an affine field explains this share of their
 // squares. Bodies that fall or swing have such accelerations; those of vibrations change from step
-// to step.
+// to step. Measured in docs/decisions/049.
 constexpr double affine_share = 0.8;
 
-// Per node: the displacement that the acceleration of the last step adds in this one, or of loads
-// where the former is unknown; zero where it is too long to be trusted.
+// Per node: Δt² a with the acceleration a of the last step, or of the loads where that is unknown.
+// Zero where it is too long to be trusted: half a spacing, or a spacing for loads.
 std::vector<Vec3> accelerated(const IncrementalPotential& potential, const ActiveIslands& all) {
   const StepProblem& problem = potential.problem();
   const SolidDiscretisation& solid = problem.solid;
@@ -28,8 +31,8 @@ std::vector<Vec3> accelerated(const IncrementalPotential& potential, const Activ
   return added;
 }
 
-// Per island: whether the affine field nearest to a nodal field, weighted by mass, has most of its
-// squares.
+// Per island: whether the affine field ā + G (x − c) nearest to a nodal field a, weighted by mass,
+// has most of its squares: Σm |ā|² + G : Σ m a (x − c)ᵀ > affine_share Σ m |a|².
 std::vector<char> mostly_affine(const IncrementalPotential& potential, const ActiveIslands& all,
                                 const std::vector<Vec3>& field) {
   const StepProblem& problem = potential.problem();
@@ -69,12 +72,12 @@ std::vector<Vec3> inertial_prediction(const IncrementalPotential& potential, con
   return u;
 }
 
-// Line search from the inertial prediction back to the start of the step: an impact, a cut or a
-// load makes the prediction wrong. The minimiser of the parabola through the potential here, its
-// slope here, and the potential at the start. Only islands whose forces promise a decrease that
-// inertia alone does not forbid are evaluated there. Islands that rotate begin after their finite
-// rotation where the potential is less there than at both ends. Returns per island whether its
-// nodes were moved.
+// Line search from the inertial prediction (share 0) back to the start of the step (share 1): an
+// impact, a cut or a load makes the prediction wrong. With E_0, E_1 the potential at both ends and
+// g the decrease that the forces at 0 promise, a parabola has its minimum at g / (2 (E_1 − E_0 +
+// g)). Candidates: islands with g greater than the inertial energy of the whole way. Islands that
+// rotate begin after their finite rotation if the potential is less there than at both ends.
+// Returns per island whether its nodes were moved.
 std::vector<char> warm_start(IncrementalPotential& potential, const FiniteRotation& rotation, ActiveIslands all,
                              NewtonIterate& at) {
   constexpr double least_share = 0.2;  // a shorter way back gains less than its evaluation costs

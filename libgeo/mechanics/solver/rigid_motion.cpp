@@ -1,3 +1,5 @@
+// With arms a and displacements d: the rotation nearest to Σ m (a + d) aᵀ (Kabsch 1976), and the
+// angle θ that carries all angular momentum, J θ = Σ m a × d, with J the tensor of inertia.
 #include "mechanics/solver/rigid_motion.h"
 
 #include <algorithm>

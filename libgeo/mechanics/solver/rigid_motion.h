@@ -31,7 +31,7 @@ enum class Freedom : std::uint8_t { none, translation, rigid };
 
 /// The rigid motion of each set of nodes, weighted by mass. `set`: per node, below freedom.size();
 /// node i moves by `displacement(i)` from `from(i)` on. Sets without freedom have no motion; sets
-/// on a line have no rotation about it. The order of sums depends on no number of threads. Both
+/// on a line have no rotation about it. The result is the same for any number of threads. Both
 /// functions are called from several threads.
 std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& set, const std::vector<Freedom>& freedom,
                                        const std::vector<double>& mass, const std::function<Vec3(std::size_t)>& from,

@@ -1,3 +1,5 @@
+// z = Σ_p W_p K_p⁻¹ W_p r_p over subdomains p. W_p scales each node by 1/√n, n its number of
+// subdomains, so that the sum is symmetric. Eight subdomains are inverted side by side.
 #include "mechanics/solver/schwarz_preconditioner.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Energies and forces are summed block by block, then over blocks in their order, so that they do
+// not depend on threads. Strains here are always in double precision.
 #include "mechanics/solver/solid_discretisation.h"
 
 #include <algorithm>

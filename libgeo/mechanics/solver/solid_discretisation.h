@@ -44,7 +44,8 @@ struct SolidDiscretisation {
   std::size_t size() const { return mass.size(); }
   /// Stride of the points over which the coarse space is summed, weighted by the stride. Quadrature
   /// has four points per cell: a stride of 5 takes another point from cell to cell and skips every
-  /// fifth cell. Results agree to the accuracy of the step, at a fifth of the work.
+  /// fifth cell. Results agree to the accuracy of the step, at a fifth of the work (measured in
+  /// docs/decisions/044).
   std::size_t coarse_point_stride() const { return galerkin ? 5 : 1; }
   /// Whether any material yields.
   bool is_plastic() const {

@@ -1,3 +1,5 @@
+// An inverse is reused while its inputs are unchanged, bit for bit: diagonal terms, moduli, and the
+// subdomain's outer products.
 #include "mechanics/solver/subdomain_inverses.h"
 
 #include <algorithm>

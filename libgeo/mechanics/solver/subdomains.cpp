@@ -1,3 +1,6 @@
+// A bisection tree over a cube about the origin, halved at its centre along x, y, z in turn. Each
+// leaf's connected sets are cores; outer products are summed per block of points, then over blocks
+// in order.
 #include "mechanics/solver/subdomains.h"
 
 #include <algorithm>
@@ -12,6 +15,8 @@
 namespace geo {
 namespace {
 
+// Measured (docs/decisions/043): to a hundredth of the residual, an overlap of 1.1 takes 11
+// iterations in place of 15, and three and a half times the memory.
 constexpr std::size_t most_in_leaf = 6;
 constexpr double overlap = 0.9;  // spacings
 constexpr int most_depth = 180;  // 60 halvings of each axis: nodes closer together share a leaf

@@ -24,18 +24,20 @@ class Subdomains {
  public:
   /// No subdomains.
   Subdomains() = default;
-  /// Builds from scratch. An octree about the origin is divided until its leaves have at most six
-  /// nodes. The nodes of a leaf that are connected form the core of a subdomain; their neighbours
-  /// within 0.9 of both spacings overlap it.
+  /// Builds from scratch. A bisection tree over a cube about the origin is divided until its leaves
+  /// have at most six nodes. The nodes of a leaf that are connected form the core of a subdomain. A
+  /// neighbour j of a core node i overlaps it if |x_i − x_j| < 0.9 · min(spacing_i, spacing_j).
+  /// Six and 0.9 are measured (docs/decisions/043).
   explicit Subdomains(const SubdomainInput& input);
   /// Updates subdomains after nodes and points have changed; the result equals a build from
   /// scratch, bit for bit. `changed`: per node, whether its position, spacing or neighbourhood
-  /// changed. Returns per subdomain the former number of the one with the same nodes and sums, or
-  /// ~0u.
+  /// changed. `changes`: what the same cut changed in the material points. Returns per subdomain
+  /// its old index if nodes and sums are unchanged, else ~0u (none).
   std::vector<std::uint32_t> update(const SubdomainInput& input, const std::vector<char>& changed,
                                     const PointChanges& changes);
 
-  /// A node of a subdomain: `slot` is its index in nodes(subdomain).
+  /// A node of a subdomain: `slot` is its local index, that in nodes(subdomain). Not to be confused
+  /// with the scatter slots of MaterialPoints.
   struct Incidence {
     std::uint32_t subdomain, slot;
     /// Equality of both members.
@@ -55,8 +57,9 @@ class Subdomains {
     return {&incidence_[begin_[node]], begin_[node + 1] - begin_[node]};
   }
 
-  /// For slots a ≥ b of a subdomain, twelve numbers at a (a + 1) / 2 + b: the rows of Σ w g_a g_bᵀ,
-  /// each followed by a zero. w: volumes of points as measured.
+  /// For slots a ≥ b of a subdomain, twelve numbers at 12 (a (a + 1) / 2 + b): the rows of
+  /// Σ w g_a g_bᵀ over material points. A zero follows each row, so that it is one vector of four
+  /// lanes. w: a point's unscaled_volume, which no cut elsewhere changes; g: its shape gradients.
   const float* outer_products(std::size_t subdomain) const { return outer_[subdomain].data(); }
   /// The material point that sees most nodes of a subdomain: block, and index there. Block ~0u: no
   /// point sees any.
@@ -77,7 +80,7 @@ class Subdomains {
   std::vector<std::uint32_t> node_;                             // nodes by subdomain
   std::vector<std::uint32_t> begin_;                            // per node and one more, into incidence_
   std::vector<Incidence> incidence_;                            // subdomains by node
-  std::vector<std::uint32_t> box_;                              // per node: its octree leaf
+  std::vector<std::uint32_t> box_;                              // per node: its leaf, a box
   std::vector<std::uint32_t> first_of_box_;                     // per leaf and one more: its first subdomain
   std::vector<std::vector<float>> outer_;                       // per subdomain
   std::vector<std::pair<std::uint32_t, std::uint32_t>> point_;  // per subdomain

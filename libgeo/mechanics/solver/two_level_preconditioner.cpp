@@ -1,3 +1,5 @@
+// M⁻¹ r = Σ_p W_p K_p⁻¹ W_p r + 0.4 P (Pᵀ K P)⁻¹ Pᵀ r: Schwarz subdomains and coarse correction,
+// built and applied in parallel.
 #include "mechanics/solver/two_level_preconditioner.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// With w_k the stencil and H_k the Hessian of term k: at node i the force is −Σ_k w_ki ∂E_k/∂d, the
+// product Σ_k w_ki H_k (Σ_j w_kj p_j). Only terms that have been active enter; the others have zero
+// derivatives.
 #include "mechanics/terms/potential_sum.h"
 
 #include <algorithm>
@@ -147,8 +150,8 @@ void PotentialSum::multiply_hessian(const std::vector<Vec3>& p) {
 }
 
 void PotentialSum::add_diagonal_blocks(std::vector<Mat3>& blocks) const {
-  // Block solves move a node with its neighbours: the neighbours' share of a stencil's weight
-  // counts as this much.
+  // Block solves move a node with its neighbours: a stencil with weight w at a node counts as
+  // |w| max(|w|, 0.2) instead of w². Measured in docs/decisions/047.
   constexpr float joint_weight = 0.2f;
   parallel_for(blocks.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {

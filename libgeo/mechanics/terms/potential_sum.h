@@ -75,8 +75,8 @@ class PotentialSum {
   std::vector<Vec3> force_;                    // per term: −∂E/∂d
   using Hessian = Eigen::Matrix<float, 4, 3>;  // a row of zeros at the bottom
   std::vector<Hessian> hessian_;
-  // Jacobian rows of the terms that have been active: those that were when the first matrix was
-  // made, and the few that became active since.
+  // Jacobian rows of the terms that have been active since the step began. First matrix: terms
+  // active when it was made; second: the few that have become active since.
   StencilMatrix matrices_[2];
   std::vector<std::uint8_t> matrix_of_;            // per term: 0 none, else 1 + index of its matrix
   std::vector<Eigen::Vector4f> single_precision_;  // multiply_hessian()'s p

@@ -1,3 +1,5 @@
+// The copy by node is made by a parallel counting sort of the copy by stencil. At a node, stencils
+// are in ascending order for any number of threads.
 #include "mechanics/terms/stencil_matrix.h"
 
 #include <algorithm>

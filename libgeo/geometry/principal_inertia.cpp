@@ -1,3 +1,5 @@
+// ω = Σ a_k (a_k · L) / I_k over principal axes a_k with moments I_k above a bound. No rotation is
+// taken about the others, where the quotient is undefined.
 #include "geometry/principal_inertia.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,5 @@
+// Cells of edge 2 · 4^k, one level per k, hashed in blocks of 4³ with linear probing. A bit per
+// cell marks finer blocks that hold entries, so that queries skip empty space.
 #include "geometry/triangle_index.h"
 
 #include <algorithm>
@@ -55,7 +57,8 @@ class TriangleIndex::Plane {
     m_ = n_.cwiseAbs();
     d_ = n_.dot(a);
     m_.maxCoeff(&axis_);
-    // The normal of a needle consists of rounding errors.
+    // The normal of a needle consists of rounding errors: height below 1e-6 of the longest edge.
+    // The index then uses the box alone.
     const double longest = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
     well_defined_ = m_[axis_] > 1e-6 * longest && longest > 1e-200 && longest < 1e200;
     size_ = box.hi.cwiseAbs().cwiseMax(box.lo.cwiseAbs()).maxCoeff();
@@ -86,6 +89,8 @@ class TriangleIndex::Plane {
   }
 
  private:
+  // A well-defined normal has a relative error of about 1e-16 / 1e-6 = 1e-10: ten times that, so
+  // that boxes in doubt are kept.
   double error_bound(double cube) const { return 1e-9 * (size_ + cube); }
   Vec3 n_, m_;
   double d_, size_, reach_;

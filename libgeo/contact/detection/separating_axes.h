@@ -18,8 +18,9 @@ struct PrimitivePair {
   Simplex a, b;
 };
 
-/// Candidate axes for up to eight pairs (a, b), one pair a SIMD lane. Axes point from b to a. One
-/// of them has the largest separation of all directions at the start.
+/// Candidate axes for up to eight pairs (a, b), one pair a SIMD lane; each may fail to separate.
+/// Axes point from b to a. For disjoint pairs, between_closest has the largest separation of all
+/// directions at the start, up to rounding.
 struct SeparatingAxes {
   /// Pairs to a batch.
   static constexpr std::size_t width = 8;
@@ -30,7 +31,8 @@ struct SeparatingAxes {
   alignas(64) double normal[count][3][width];         ///< unit vectors; zero: the candidate does not exist
   alignas(64) double start_separation[count][width];  ///< separation_along() at the start, model units
   alignas(64) double end_separation[count][width];    ///< at the end
-  /// For corners that are anywhere on their paths, independently of each other.
+  /// min(start, end) over a − max(start, end) over b: holds for corners that are anywhere on their
+  /// paths, independently of each other.
   alignas(64) double swept_separation[count][width];
   alignas(64) double weights_a[3][width];  ///< barycentric coordinates of a's closest point at the start
   alignas(64) double weights_b[3][width];  ///< of b's closest point

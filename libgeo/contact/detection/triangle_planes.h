@@ -32,7 +32,7 @@ class TrianglePlanes {
   void update_end(std::size_t i);
 
   /// Whether the plane of triangle i or j separates them, with j on the same side throughout, by
-  /// more than `start` at the start and more than `end` at the end. Both are at least 0.
+  /// more than `start` at the start and more than `end` at the end; both ≥ 0, model units.
   bool separates(std::uint32_t i, std::uint32_t j, double start, double end) const;
 
   /// Removes the pairs for which separates() is true. The others stay in order.

@@ -1,3 +1,5 @@
+// Surface vertices of other bodies are mapped to this body's material by the inverse deformation.
+// The nearest point of the undeformed surface gives the contact; its deformed triangle the normal.
 #include "contact/response/body_contact.h"
 
 #include <algorithm>
@@ -80,9 +82,8 @@ class BodyContactFinder {
     }
   }
 
-  // The point of body b's surface nearest to x, material coordinates; none where there is none
-  // within reach, or x lies beyond a crack from the node `anchor` that it was mapped by: in an open
-  // gap.
+  // The point of body b's surface nearest to x, material coordinates. None if no surface is within
+  // reach, or if a crack lies between x and `anchor`, the node that mapped it: x is in an open gap.
   std::optional<SidePoint> nearest_point(const Vec3& x, const Vec3& anchor, std::uint32_t b) {
     faces_.clear();
     complex().faces_near(Box3{x, x}.grown(options_.reach), faces_);
@@ -120,7 +121,7 @@ class BodyContactFinder {
     std::vector<NodeWeight> entries;
     for (const auto& [node, weight] : stencil) entries.push_back({node, weight});
     const double factor = std::max(pressure_factor(v), pressure_factor(complex().surface_vertex(p.side, 0)));
-    const double pressure = 0.5 * options_.pressure * factor;
+    const double pressure = 0.5 * options_.pressure * factor;  // vertices of both bodies act: half each
     contacts_.add(std::move(entries), material(v) - p.point, normal, pressure * in_.weights.area(v.index()));
   }
   double pressure_factor(SurfaceVertexId v) const {

@@ -1,3 +1,5 @@
+// Projected Gauss–Seidel on accumulated impulses λ with compliance s (W: effective inverse mass):
+// λ ← max(0, λ − (approach + n · v + s λ) / (W + s)); friction is clamped to |λ_t| ≤ μ λ.
 #include "contact/response/impulses.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Fans and coincidence are computed on first use; each change of topology or positions resets them.
 #include "contact/surface/moving_surface.h"
 
 #include "contact/detection/find_crossings.h"

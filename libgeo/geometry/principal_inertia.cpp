@@ -1,5 +1,4 @@
-// ω = Σ a_k (a_k · L) / I_k over principal axes a_k with moments I_k above a bound. No rotation is
-// taken about the others, where the quotient is undefined.
+// ω_k = (a_k · L) / I_k along each principal axis a_k with moment I_k > least_moment, else 0.
 #include "geometry/principal_inertia.h"
 
 #include <Eigen/Eigenvalues>

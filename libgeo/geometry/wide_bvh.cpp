@@ -174,7 +174,7 @@ Sides sides(const Plane& plane, const V& x, const V& y, const V& z) {
   return {bits(hn::Gt(value, bound)), bits(hn::Lt(value, hn::Neg(bound)))};
 }
 
-// The segments that certainly pass through a triangle, and those that certainly do not touch it.
+// Segments that certainly pass through a triangle; segments that certainly do not touch it.
 struct Crossing {
   std::uint32_t through, apart;
 };

@@ -312,7 +312,7 @@ class SurfaceEmbedder {
     const auto master = v.valid() ? in_.body.binding.master[v.index()] : SurfaceVertexId();
     return master.valid() ? with_neighbors(in_.body.binding.master_node[master.index()]) : std::vector<NodeId>();
   }
-  // Eq. 1 at x, with those of the nodes that support it.
+  // Eq. 1 at x, blended over the nodes of `nodes` whose support contains x; the first if none does.
   Vec3 displacement(const Vec3& x, const std::vector<NodeId>& nodes) const {
     if (nodes.empty()) return Vec3::Zero();
     std::vector<std::pair<NodeId, double>> bound;

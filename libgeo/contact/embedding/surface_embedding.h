@@ -24,14 +24,18 @@ struct EmbeddingInput {
   double gap;                          ///< largest separation that untangling wants, model units
 };
 
-/// Embeds the new vertices of a crack step; old ones keep their positions. A new vertex on an old
-/// face keeps its barycentric coordinates in this face. Copies on the two sides of a face with
-/// coincident corners get the same position, to the bit. A new vertex x inside the material
-/// continues the deformed surface. Each old point p, moved to p', proposes
-/// p' + x − p + u(x) − u(p), with u the blended displacement (Eq. 1 of the paper). The mean of the
-/// proposals has weights |x − p|⁻⁴. Points p are the closest points to x of old faces, at most as far from x (at rest)
-/// as the corners of the faces at x. Between x and p lies no old face. The two sides of a new face coincide. Triangles
-/// are flat and Eq. 1 is not, so some may cross: untangle.h separates them. Throws GeometryError if some still cross.
+/// Embeds the new vertices of a crack step; old ones keep their positions.
+///
+/// A new vertex on an old face keeps its barycentric coordinates in this face. Copies on the two
+/// sides of a face with coincident corners get the same position, to the bit. A new vertex x inside
+/// the material continues the deformed surface: each old point p, now at p', proposes the position
+/// p' + x − p + u(x) − u(p), where u is the blended displacement (Eq. 1 of the paper). The mean of
+/// the proposals has weights |x − p|⁻⁴. The points p are the closest points to x of old faces. They
+/// are at most as far from x (at rest) as the corners of the faces at x, and no old face lies in
+/// between. The two sides of a new face coincide.
+///
+/// Triangles are flat and Eq. 1 is not, so some may cross: untangle.h separates them. Throws
+/// GeometryError if some still cross.
 EmbeddedSurface embed_new_surface(const EmbeddingInput& input);
 
 }  // namespace geo

@@ -30,9 +30,9 @@ class SeparationProjection {
       : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
 
   /// Adds constraints for pairs that the motion from the start to `next` does not certify; replaces
-  /// those of pairs that have some. Among the axes that separate a pair well at the start, the one
-  /// that separates it most at the end is used. A pair so near that rounding hides all axes is made
-  /// rigid.
+  /// older constraints of the same pairs. The axis has the largest end separation among axes with
+  /// start separation ≥ min(largest start separation, gap) / 2. A pair without such an axis (start
+  /// separation > 0) is made rigid.
   void add(std::span<const Pair> pairs, const std::vector<Vec3>& next);
   /// Merges each pair, and all that move with it, into one rigid zone. Returns whether that changed
   /// anything.

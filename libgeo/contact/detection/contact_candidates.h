@@ -30,8 +30,8 @@ struct ContactCandidate {
 /// Limits the candidates between two nodes. Nodes are farther apart than vertices, so that more
 /// constraints on the same two nodes would be redundant.
 struct CandidateLimit {
-  std::span<const std::uint32_t> owner =
-      {};                ///< per surface vertex: the node that owns it, ~0u for none; empty: no limit
+  /// Per surface vertex the node that owns it, ~0u if none; empty: no limit.
+  std::span<const std::uint32_t> owner = {};
   std::size_t most = 0;  ///< candidates for each pair of owners, at least 1
 };
 

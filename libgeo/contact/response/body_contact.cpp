@@ -97,8 +97,8 @@ class BodyContactFinder {
       const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on,
                  normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
       const double d = away.norm(), frontal = std::abs(normal.dot(away));
-      // Several triangles may share the nearest point: the largest |normal · (x − point)| decides the
-      // side.
+      // Several triangles may share the nearest point: the largest |normal · (x − point)| decides
+      // the side.
       if (!(d < least || (d == least && frontal > most_frontal))) continue;
       const SidePoint p{{f, crack && normal.dot(away) > 0 ? 1 : 0}, barycentric(on, c[0], c[1], c[2]), on};
       if (crack && !((world(p, 0) - world(p, 1)).norm() > d)) continue;

@@ -1,5 +1,6 @@
 // One step: penalty on the nodes, opening of sheets, bounded motion of the surface to the targets.
-// The motion starts from target + 0.9 · tracking error of the step's beginning (decision 076).
+// First guess of its end: target + 0.9 · tracking error at the step's beginning
+// (docs/decisions/076).
 #include "contact/self_contact.h"
 
 #include <algorithm>

@@ -265,6 +265,7 @@ AabbTree::AabbTree(std::vector<Box3> boxes, std::span<const Triangle> triangles)
     if (!boxes_[i].empty()) all.add(boxes_[i]), sorted.push_back({0, i});
   if (sorted.empty()) return;
   middle_ = 0.5 * all.lo + 0.5 * all.hi;
+  // Cells are cubes, 2¹⁰ along the longest side: ten bits an axis.
   const double scale = 1023 / std::max((all.hi - all.lo).maxCoeff(), 1e-300);
   parallel_for((sorted.size() + width - 1) / width, 64, [&](std::size_t begin, std::size_t end) {
     Cells cells{};

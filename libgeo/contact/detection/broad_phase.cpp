@@ -1,5 +1,5 @@
-// Kept boxes of a bounding-volume tree: only triangles that have left their box are queried again,
-// and replace their pairs in the list (decision 074).
+// The tree keeps the boxes of a step. Only triangles that have left their box are queried again, and
+// their pairs in the list are replaced.
 #include "contact/detection/broad_phase.h"
 
 #include <algorithm>

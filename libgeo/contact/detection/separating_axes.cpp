@@ -1,6 +1,6 @@
-// Axes in lanes: difference of centroids, both normals, difference of closest points. The
-// last is the axis of largest separation of disjoint convex sets. So the cross products of edges of
-// the usual separating-axis test are not needed.
+// Axes in lanes: difference of centroids, both normals, difference of closest points. The last has
+// the largest separation of all axes of disjoint convex sets. So the cross products of edges of the
+// usual separating-axis test are not needed.
 //
 // Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
 // that all give the same results.

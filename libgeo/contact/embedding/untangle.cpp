@@ -67,7 +67,7 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
 std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& positions,
                                    std::vector<std::uint8_t>& marked) {
   // Limits of effort: searches for crossings, and sweeps over the constraints after each search.
-  // Larger: fewer crack steps are refused.
+  // Larger: more attempts before the crack step is refused.
   constexpr int most_rounds = 16, most_sweeps = 4;
   const ContactSurface& surface = in.surface;
   const auto representative = coincident_representatives(surface.site, positions);

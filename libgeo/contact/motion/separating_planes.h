@@ -16,7 +16,7 @@ struct PlaneSeparatedMotion {
   std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs;  ///< of triangles; no others come together
   const std::vector<Vec3>& to;                                     ///< per vertex: wanted position
   const std::vector<double>& limit;                                ///< per vertex: longest move, model units
-  double gap = 0;                                                  ///< distance that sheets in contact keep
+  double gap = 0;                                                  ///< distance that surfaces in contact keep
 };
 
 /// Moves the vertices `at`, of which no two triangles cross, towards their wanted positions: each

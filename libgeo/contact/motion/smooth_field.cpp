@@ -27,8 +27,8 @@ SmoothField::SmoothField(const std::vector<Vec3>& at, const std::vector<Vec3>& m
   bound_derivatives(filled);
 }
 
-// A grid that has the splines of all points of the box. Cells grow by halves until the grid has at
-// most 64 points for each given one, which bounds memory; 4096 serve few points.
+// A grid that has the splines of all points of the box. Cells grow by a factor of 1.5 until
+// the grid has at most 64 points for each given one, plus 4096: this bounds memory.
 void SmoothField::make_grid(const Box3& box, std::size_t points) {
   const double largest = 64.0 * double(points) + 4096;
   for (;; cell_ *= 1.5) {

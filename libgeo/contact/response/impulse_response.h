@@ -23,7 +23,7 @@ struct StepWithoutContact {
 
 /// Parameters of the response.
 struct ImpulseResponseOptions {
-  double gap;       ///< that sheets in contact keep, model units
+  double gap;       ///< distance that surfaces in contact keep, model units
   double friction;  ///< Coulomb's coefficient
   double recovery;  ///< share of a penetration that one step takes back
   int rounds;       ///< at most, of finding contacts and applying impulses

@@ -1,5 +1,5 @@
 // Trial moves of gap/2 · 4^(−k), k = 0 … 4, of all opening vertices at once. Vertices whose
-// triangles cross (exact test) close again and are tried one by one (decision 079).
+// triangles cross (exact test) close again and are tried one by one (docs/decisions/079).
 #include "contact/surface/open_sheets.h"
 
 #include <algorithm>

@@ -67,12 +67,13 @@ class TriangleIndex::Plane {
   bool well_defined() const { return well_defined_; }
   // The axis closest to the normal.
   int axis() const { return axis_; }
-  // Whether a box is farther than `reach` from the plane.
+  // Whether a box is farther than `reach` from the plane: |n · middle − d| > Σ |n_i| half_i +
+  // (error + reach) Σ |n_i|, where n is not normalised.
   bool clear_of(const Vec3& middle, const Vec3& half) const {
     return std::abs(n_.dot(middle) - d_) > m_.dot(half) + (error_bound(half.maxCoeff()) + reach_) * m_.sum();
   }
   // Calls visit(at) for each grid cube of edge length `size` in the range that the plane may pass
-  // through.
+  // through. In each column along axis w: x_w = (d − n_u x_u − n_v x_v) / n_w at its centre, ± span.
   template <class Visit>
   void each_cube(const Range& r, double size, const Visit& visit) const {
     const int w = axis_, u = (w + 1) % 3, v = (w + 2) % 3;

@@ -1,5 +1,5 @@
-// The tree keeps the boxes of a step. Only triangles that have left their box are queried again, and
-// their pairs in the list are replaced.
+// The tree keeps the boxes of a step. Only triangles that have left their box are queried again,
+// and their pairs in the list are replaced.
 #include "contact/detection/broad_phase.h"
 
 #include <algorithm>

@@ -52,8 +52,8 @@ struct TriangleBvh::Builder {
       }
       int axis = 0;
       (spread.hi - spread.lo).maxCoeff(&axis);
-      // The left range is a multiple of the wide tree's blocks, and of blocks of these, so that
-      // the two trees agree on what is near.
+      // The left range is a multiple of 16^k triangles, whole blocks of the wide tree: both trees
+      // then group the same triangles.
       const auto count = job.end - job.begin;
       std::uint32_t unit = 1;
       while (unit < (count + WideBvh::width - 1) / WideBvh::width) unit *= WideBvh::width;

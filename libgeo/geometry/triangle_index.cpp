@@ -73,7 +73,8 @@ class TriangleIndex::Plane {
     return std::abs(n_.dot(middle) - d_) > m_.dot(half) + (error_bound(half.maxCoeff()) + reach_) * m_.sum();
   }
   // Calls visit(at) for each grid cube of edge length `size` in the range that the plane may pass
-  // through. In each column along axis w: x_w = (d − n_u x_u − n_v x_v) / n_w at its centre, ± span.
+  // through. In each column along axis w:
+  // x_w = (d − n_u x_u − n_v x_v) / n_w at the column's centre, ± span.
   template <class Visit>
   void each_cube(const Range& r, double size, const Visit& visit) const {
     const int w = axis_, u = (w + 1) % 3, v = (w + 2) % 3;

@@ -109,7 +109,7 @@ Pairs closest_pairs(const Pairs& pairs, const std::vector<OwnedPair>& owned, con
 void update_broad_phase(const SurfaceMotion& m, const RepresentativeSurface& surface, BroadPhase& broad_phase) {
   std::vector<Vec3> fitted = m.from;
   if (!surface.vertices.empty()) apply_affine_fit(surface.vertices, m.from, m.to, fitted);
-  // Vertices may also stay where they are, whatever the motion wants.
+  // Boxes contain the start, too: a vertex may stay there.
   Vec3 start_centroid = Vec3::Zero();
   for (const auto v : surface.vertices) start_centroid += m.from[v] / double(surface.vertices.size());
   broad_phase.update(

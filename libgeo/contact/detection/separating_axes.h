@@ -69,7 +69,7 @@ inline PairSeparation centroid_separation(const PrimitivePair& pair, const std::
 void find_separating_axes(const PrimitivePair* pairs, std::size_t size, const std::vector<Vec3>& from,
                           const std::vector<Vec3>& to, bool end, SeparatingAxes& out);
 
-/// Axes for uneven sheets that slide over each other: the normals of a and b and their sum, each
+/// Axes for uneven surfaces that slide over each other: the normals of a and b and their sum, each
 /// tilted by growing amounts towards the difference of closest points.
 struct TiltedAxes {
   static constexpr int count = 15;                                    ///< number of axes

@@ -1,5 +1,5 @@
-// Support intervals: with the start normal n of p, o is separated if min n · o − max n · p exceeds
-// the bound at the start and at the end, or the same with both sides exchanged.
+// Support intervals along the start normal n of triangle p. Triangle o is separated above if
+// min n · o − max n · p exceeds the bound at both ends of the motion; below, likewise.
 //
 // Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
 // that all give the same results.

@@ -19,8 +19,8 @@ struct SeparationConstraint {
   double separation;  // wanted along the normal
 };
 
-// Moves vertices of a to n · x ≥ m + h and those of b to n · x ≤ m − h, with m the middle of the
-// overlap and h = 0.55 separation. Returns whether the constraint was violated.
+// Moves vertices of a to n · x ≥ m + h and vertices of b to n · x ≤ m − h. Here m is the middle of
+// the overlap, and h = 0.55 separation. Returns whether the constraint was violated.
 bool project(const SeparationConstraint& c, std::vector<Vec3>& at, std::vector<std::uint8_t>& moved) {
   if (separation_along(c.normal, c.a, c.b, at) >= c.separation) return false;
   double least = std::numeric_limits<double>::infinity(), most = -least;

@@ -16,8 +16,8 @@ namespace geo {
 
 struct SeparatingAxes;
 
-/// Constraints between pairs of triangles, each with an axis that separates the pair at the start
-/// of the motion and has to separate it at the end: then the pair does not meet in between.
+/// Constraints between pairs of triangles. The axis of each separates its pair at the start of the
+/// motion and has to separate it at the end: then the pair does not meet in between.
 /// Triangles that share vertices are constrained by their disjoint sub-simplices. Pairs without a
 /// usable axis move in rigid impact zones.
 class SeparationProjection {

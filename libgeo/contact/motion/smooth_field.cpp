@@ -61,8 +61,8 @@ std::vector<std::uint8_t> SmoothField::fill(const std::vector<Vec3>& at, const s
   return filled;
 }
 
-// Grid points that corners of a triangle do not reach, but its inside may, get the mean of their
-// neighbours, along one axis after the other.
+// Grid points that no corner of a triangle reaches, although its inside may, get the mean of their
+// neighbours: along x, then y, then z.
 void SmoothField::extend(std::vector<std::uint8_t>& filled) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<std::uint8_t> before = filled;

@@ -1,5 +1,5 @@
-// Reduces the tracking error that a fallback motion has left: each vertex for itself comes nearer
-// to its target.
+// Reduces the tracking error that a fallback motion has left: each vertex alone approaches its
+// target.
 #pragma once
 
 #include "kerf/mesh.h"

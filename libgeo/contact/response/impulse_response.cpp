@@ -52,7 +52,7 @@ class ImpulseResponse {
   MovingSurface& surface_;
   BroadPhase& near_;
   std::vector<Vec3> normals_;  // per surface vertex, of its sheet
-  CoincidentVertices alone_;   // every vertex for itself: the sides of a sheet move apart
+  CoincidentVertices alone_;   // no vertices coincide: the sides of a sheet move apart
   std::vector<double> inverse_mass_;
   std::vector<ContactCandidate> candidates_;  // of the first round
 };

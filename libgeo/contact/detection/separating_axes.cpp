@@ -220,7 +220,8 @@ HWY_EXPORT(compute_tilted);
 void find_tilted_axes(const PrimitivePair& pair, const SeparatingAxes& axes, std::size_t lane,
                       const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedAxes& out) {
   // Factors of c in n + τ c, where n is the unit normal of a, of b, or their sum. A geometric
-  // series: surfaces that slide over each other need a tilt of the order of their unevenness. The last is padding.
+  // series: surfaces that slide over each other need a tilt of the order of their unevenness. The
+  // last is padding.
   constexpr double tilt[] = {0, 0.01, 0.03, 0.09, 0.27, 0};
   TiltInput input;
   for (std::size_t i = 0; i < TiltedAxes::width; ++i) input.tilt[i] = tilt[i / 3];

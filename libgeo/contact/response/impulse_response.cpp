@@ -36,7 +36,7 @@ class ImpulseResponse {
     const auto near = deepest_constraints(contact_constraints(candidates_, motion, constraint), step_.weights,
                                           constraints_per_node_pair);
     std::vector<ContactConstraint> all_sides;
-    // Tolerance of 0.01 gap: coincident sides whose targets overlap by less count as touching.
+    // Tolerance of 0.01 gap: coincident sides whose targets overlap by less get no constraint.
     add_sheet_constraints(coincident, to, normals_, 0.01 * gap_, constraint, all_sides);
     const auto sides = deepest_constraints(all_sides, step_.weights, constraints_per_node_pair);
     ImpulseOptions options;

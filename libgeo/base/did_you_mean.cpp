@@ -33,6 +33,7 @@ std::string did_you_mean(std::string_view written, const std::vector<std::string
   if (written.empty() || written.size() > longest) return {};
   for (const auto& word : known) {
     const std::size_t distance = word.starts_with(written) ? 1 : edit_distance(written, word);
+    // At most a third of the letters may differ, one in short words. A prefix counts as distance 1.
     if (distance < least && 3 * distance <= std::max<std::size_t>(3, word.size())) least = distance, best = &word;
   }
   return best ? "; did you mean '" + *best + "'?" : std::string();

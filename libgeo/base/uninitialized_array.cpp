@@ -1,3 +1,4 @@
+// Advises the kernel to back large arrays by huge pages (madvise on Linux; nothing elsewhere).
 #include "base/uninitialized_array.h"
 
 #ifdef __linux__
@@ -10,7 +11,7 @@ namespace geo {
 
 void advise_huge_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
-  constexpr std::uintptr_t page = std::uintptr_t(2) << 20;
+  constexpr std::uintptr_t page = std::uintptr_t(2) << 20;  // 2 MiB; arrays below 8 MiB are left alone
   if (bytes < 4 * page) return;
   const auto begin = reinterpret_cast<std::uintptr_t>(at);
   const auto first = (begin + page - 1) / page * page, last = (begin + bytes) / page * page;

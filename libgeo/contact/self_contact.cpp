@@ -1,3 +1,6 @@
+// One step: penalty on the nodes, opening of sheets, bounded motion of the surface to the targets.
+// First guess of its end: target + 0.9 · tracking error at the step's beginning
+// (docs/decisions/076).
 #include "contact/self_contact.h"
 
 #include <algorithm>
@@ -20,7 +23,7 @@ constexpr std::size_t vertices_per_task = 1024;
 std::vector<Vec3> likely_positions(const std::vector<Vec3>& targets, const std::vector<Vec3>& tracking_error,
                                    std::span<const std::uint32_t> representative, double edge) {
   constexpr double persistence = 0.9;  // per step: without an obstacle the surface approaches its targets
-  constexpr double negligible = 1e-3;  // of an edge
+  constexpr double negligible = 1e-3;  // of an edge; affects the first guess only
   std::vector<Vec3> result = targets;
   parallel_for(std::min(result.size(), tracking_error.size()), vertices_per_task,
                [&](std::size_t begin, std::size_t end) {
@@ -72,8 +75,8 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   parallel_for(mean_targets.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) step.tracking_error[v] = positions()[v] - mean_targets[v];
   });
-  // Slip below a hundredth of what gravity moves a node in a step is rest; the second term is for
-  // no gravity.
+  // Slip regularisation ε = 0.01 g dt² + 1e-9 edge: slip below a hundredth of the distance g dt²
+  // of one step counts as rest. The second term keeps ε > 0 without gravity.
   const SelfContactPenaltyOptions penalty_options{options_.friction,
                                                   1e-2 * dt * dt * gravity.norm() + 1e-9 * surface().edge};
   step.penalty = spare_penalty_ ? std::move(spare_penalty_) : std::make_unique<SelfContactPenalty>(penalty_options);

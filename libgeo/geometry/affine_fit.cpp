@@ -1,3 +1,5 @@
+// With x, y about their centroids: affine map A = (Σ y xᵀ) (Σ x xᵀ)⁻¹; rigid map: the rotation
+// nearest to Σ y xᵀ (Kabsch 1976).
 #include "geometry/affine_fit.h"
 
 #include <Eigen/LU>
@@ -67,6 +69,8 @@ void apply_rigid_fit(const Indices& indices, const Points& from, const Points& t
 
 void apply_affine_fit(const Indices& indices, const Points& from, const Points& to, Points& at) {
   // A map outside these bounds tells more about outliers or a flat set than about a common motion.
+  // The rigid fit replaces it. The bounds choose a start or a frame of contact's motions, which are
+  // certified afterwards.
   constexpr double least_determinant = 0.2, largest_norm = 5;
   const Centroids m = centroids_of(indices, from, to);
   const auto sums = chunked_sum<Covariances>(indices, [&](Covariances& sum, std::uint32_t v) {

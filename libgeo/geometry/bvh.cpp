@@ -1,3 +1,5 @@
+// Median splits along the longest side of the centres' box. Point in surface: parity of crossings
+// along a ray with exact predicates; degenerate rays are replaced by others.
 #include "geometry/bvh.h"
 
 #include <algorithm>
@@ -11,7 +13,7 @@
 namespace geo {
 namespace {
 
-constexpr std::uint32_t leaf_size = 4;
+constexpr std::uint32_t leaf_size = 4;  // triangles; affects speed alone
 
 double squared_distance(const Box3& box, const Vec3& p) {
   return (box.lo - p).cwiseMax(p - box.hi).cwiseMax(0.0).squaredNorm();
@@ -50,8 +52,8 @@ struct TriangleBvh::Builder {
       }
       int axis = 0;
       (spread.hi - spread.lo).maxCoeff(&axis);
-      // The left range is a multiple of the wide tree's blocks, and of blocks of these, so that
-      // the two trees agree on what is near.
+      // The left range is a multiple of 16^k triangles, whole blocks of the wide tree: both trees
+      // then group the same triangles.
       const auto count = job.end - job.begin;
       std::uint32_t unit = 1;
       while (unit < (count + WideBvh::width - 1) / WideBvh::width) unit *= WideBvh::width;
@@ -83,6 +85,7 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles)
   std::iota(order_.begin(), order_.end(), 0u);
   nodes_.reserve(n);
   nodes_.emplace_back();
+  // Subtrees below 1/16 of the triangles are built in parallel; small trees serially.
   constexpr std::uint32_t many = 1024, shares = 16;
   std::vector<Builder::Job> deferred;
   builder.build({0, 0, n}, nodes_, std::max(many, n) / shares, n < many ? nullptr : &deferred);

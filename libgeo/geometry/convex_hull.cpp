@@ -1,3 +1,5 @@
+// Quickhull (Barber, Dobkin, Huhdanpaa 1996) with exact orientations: the farthest outside point
+// replaces the facets that it sees by a cone over their horizon.
 #include "geometry/convex_hull.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Closest features by Voronoi regions and by clamped line parameters (Ericson 2005, § 5.1).
 #include "geometry/distance.h"
 
 #include <Eigen/Geometry>
@@ -39,8 +40,8 @@ double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, co
   const Vec3 u = q - p, v = s - r, w = p - r;
   const double uu = u.dot(u), vv = v.dot(v), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
   const auto ratio = [](double up, double down) { return down > 0 ? std::clamp(up / down, 0.0, 1.0) : 0.0; };
-  // Alternating projections: the closest point of the first line, of the second segment to it, of
-  // the first segment to that one.
+  // The closest parameter of the two lines in closed form, clamped to the first segment. Then two
+  // projections: on the second segment, and back on the first.
   const double first = ratio(uv * vw - uw * vv, uu * vv - uv * uv);
   const double second = ratio(vw + first * uv, vv);
   const double again = ratio(second * uv - uw, uu);

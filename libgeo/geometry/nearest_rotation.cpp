@@ -1,3 +1,4 @@
+// R = U diag(1, 1, det(U Vᵀ)) Vᵀ of the singular value decomposition U S Vᵀ (Kabsch 1976).
 #include "geometry/nearest_rotation.h"
 
 #include <Eigen/LU>

@@ -1,3 +1,5 @@
+// Filtered orientations decide most cases (error bounds: Shewchuk 1997). Triangle pairs follow
+// Guigue and Devillers (2003). Degenerate and undecided cases go to CGAL's exact kernel.
 #include "geometry/predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -54,7 +56,7 @@ std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c)
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
   // Filter: each component of the cross product has a rounding error of at most 4 ε times its
-  // permanent.
+  // permanent, ε = 2⁻⁵³: 4.5e-16, below the 5e-16 used.
   const Vec3 u = b - a, v = c - a;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;

@@ -69,7 +69,7 @@ int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// A filter for pairs of triangles with coincident corners. True only if the triangles have nothing
 /// in common but these corners: a line through an edge separates them in the projection along the
-/// axis that s faces most. False is inconclusive.
+/// dominant axis of the normal of s. False is inconclusive.
 bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]);
 
 /// Whether the closed segment pq meets the closed triangle abc; touching counts. Both may be

@@ -1,3 +1,4 @@
+// ω_k = (a_k · L) / I_k along each principal axis a_k with moment I_k > least_moment, else 0.
 #include "geometry/principal_inertia.h"
 
 #include <Eigen/Eigenvalues>

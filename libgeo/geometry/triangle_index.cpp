@@ -1,3 +1,5 @@
+// Cells of edge 2 · 4^k, one level per k, hashed in blocks of 4³ with linear probing. A bit per
+// cell marks finer blocks that hold entries, so that queries skip empty space.
 #include "geometry/triangle_index.h"
 
 #include <algorithm>
@@ -55,7 +57,8 @@ class TriangleIndex::Plane {
     m_ = n_.cwiseAbs();
     d_ = n_.dot(a);
     m_.maxCoeff(&axis_);
-    // The normal of a needle consists of rounding errors.
+    // The normal of a needle consists of rounding errors: height below 1e-6 of the longest edge.
+    // The index then uses the box alone.
     const double longest = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
     well_defined_ = m_[axis_] > 1e-6 * longest && longest > 1e-200 && longest < 1e200;
     size_ = box.hi.cwiseAbs().cwiseMax(box.lo.cwiseAbs()).maxCoeff();
@@ -64,12 +67,14 @@ class TriangleIndex::Plane {
   bool well_defined() const { return well_defined_; }
   // The axis closest to the normal.
   int axis() const { return axis_; }
-  // Whether a box is farther than `reach` from the plane.
+  // Whether a box is farther than `reach` from the plane: |n · middle − d| > Σ |n_i| half_i +
+  // (error + reach) Σ |n_i|, where n is not normalised.
   bool clear_of(const Vec3& middle, const Vec3& half) const {
     return std::abs(n_.dot(middle) - d_) > m_.dot(half) + (error_bound(half.maxCoeff()) + reach_) * m_.sum();
   }
   // Calls visit(at) for each grid cube of edge length `size` in the range that the plane may pass
-  // through.
+  // through. In each column along axis w:
+  // x_w = (d − n_u x_u − n_v x_v) / n_w at the column's centre, ± span.
   template <class Visit>
   void each_cube(const Range& r, double size, const Visit& visit) const {
     const int w = axis_, u = (w + 1) % 3, v = (w + 2) % 3;
@@ -86,6 +91,8 @@ class TriangleIndex::Plane {
   }
 
  private:
+  // A well-defined normal has a relative error of about 1e-16 / 1e-6 = 1e-10: ten times that, so
+  // that boxes in doubt are kept.
   double error_bound(double cube) const { return 1e-9 * (size_ + cube); }
   Vec3 n_, m_;
   double d_, size_, reach_;

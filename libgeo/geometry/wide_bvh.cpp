@@ -1,3 +1,6 @@
+// Packets of up to 32 segments with a common end descend together. Tests in this order: boxes, slab
+// of the triangle, filtered orientations in lanes, exact predicate for what is left.
+//
 // Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/wide_bvh.cpp"
@@ -171,7 +174,7 @@ Sides sides(const Plane& plane, const V& x, const V& y, const V& z) {
   return {bits(hn::Gt(value, bound)), bits(hn::Lt(value, hn::Neg(bound)))};
 }
 
-// The segments that certainly pass through a triangle, and those that certainly do not touch it.
+// Segments that certainly pass through a triangle; segments that certainly do not touch it.
 struct Crossing {
   std::uint32_t through, apart;
 };

@@ -1,3 +1,5 @@
+// Boxes sorted along a Hilbert curve and packed bottom-up into blocks of 16, as in a Hilbert R-tree
+// (Kamel and Faloutsos 1993). Queries descend from the root once for each 256 neighbouring boxes.
 // Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/aabb_tree.cpp"
@@ -263,6 +265,7 @@ AabbTree::AabbTree(std::vector<Box3> boxes, std::span<const Triangle> triangles)
     if (!boxes_[i].empty()) all.add(boxes_[i]), sorted.push_back({0, i});
   if (sorted.empty()) return;
   middle_ = 0.5 * all.lo + 0.5 * all.hi;
+  // Cells are cubes, 2¹⁰ along the longest side: ten bits an axis.
   const double scale = 1023 / std::max((all.hi - all.lo).maxCoeff(), 1e-300);
   parallel_for((sorted.size() + width - 1) / width, 64, [&](std::size_t begin, std::size_t end) {
     Cells cells{};
@@ -318,8 +321,9 @@ void AabbTree::fill() {
 }
 
 void AabbTree::refit_or_rebuild(std::vector<Box3> boxes, std::span<const Triangle> triangles) {
-  // Beyond `largest`, queries slow down. Below `least`, floats so far from their origin no longer
-  // resolve the boxes, which become flat.
+  // Ratios of the sum of extents to that of construction. Above `largest`, blocks overlap more and
+  // queries slow down. Below `least`, the boxes are flat: they are so far from the origin of the
+  // floats that these no longer resolve them. Both affect speed alone.
   constexpr double largest = 1.2, least = 0.2;
   if (!refit(boxes))
     *this = AabbTree(std::move(boxes), triangles);

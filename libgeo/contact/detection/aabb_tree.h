@@ -40,14 +40,14 @@ class AabbTree {
   explicit AabbTree(std::vector<Box3> boxes, std::span<const Triangle> triangles = {});
 
   /// Takes new boxes of the same objects and keeps the order of the curve, which remains good
-  /// while the objects have not moved far. Returns false and changes nothing, neither here nor in
-  /// `boxes`, if their number differs or if a box that was empty at the construction no longer
-  /// is.
+  /// while the objects have not moved far. Returns false if their number differs, or if a box that
+  /// was empty at the construction no longer is. Then it changes nothing, neither here nor in
+  /// `boxes`.
   bool refit(std::vector<Box3>& boxes);
 
-  /// Takes new boxes of the same triangles by refit(). Builds the tree anew if that fails, if the
-  /// blocks have become a fifth larger in sum, or if the objects are now so far away that floats
-  /// hardly distinguish the boxes.
+  /// Takes new boxes of the same triangles by refit(), or builds the tree anew. The latter if
+  /// refit() fails, or if the sum of the blocks' extents is > 1.2 or < 0.2 times that at the
+  /// construction. It is small where boxes are too far from the origin of the floats.
   void refit_or_rebuild(std::vector<Box3> boxes, std::span<const Triangle> triangles);
 
   /// The current boxes.

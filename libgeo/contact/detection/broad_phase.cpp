@@ -1,3 +1,5 @@
+// The tree keeps the boxes of a step. Only triangles that have left their box are queried again,
+// and their pairs in the list are replaced.
 #include "contact/detection/broad_phase.h"
 
 #include <algorithm>
@@ -15,7 +17,7 @@ bool contains(const Box3& box, const Box3& inner) {
 
 void BroadPhase::update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
                         const std::vector<std::uint8_t>* changed) {
-  constexpr std::size_t rebuild_share = 4;  // rebuild if more than a quarter has left its box
+  constexpr std::size_t rebuild_share = 4;  // rebuild if more than 1/4 have left their boxes; affects speed alone
   const bool valid = valid_ && tree_.boxes().size() == triangles.size(), changed_only = valid && changed;
   std::vector<Box3> boxes(changed_only ? 0 : triangles.size());
   std::vector<std::uint8_t> outside(triangles.size(), 0);

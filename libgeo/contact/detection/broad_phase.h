@@ -22,8 +22,8 @@ class BroadPhase {
   /// Updates pairs() for new boxes, box(t) for triangle t. With `changed`, only marked triangles
   /// have boxes that differ from the previous call. A triangle that has left its box gets a new
   /// one, extended by `margin` (model units). All pairs are searched anew at the first call,
-  /// after invalidate(), and after a quarter of the triangles have left their boxes. `triangles`
-  /// must be the same at each call until reset(): they tell which pairs share a vertex.
+  /// after invalidate(), and, without `changed`, when a quarter of the triangles have left their
+  /// boxes. `triangles` must be the same until reset(): they decide which pairs share a vertex.
   void update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
               const std::vector<std::uint8_t>* changed = nullptr);
 

@@ -1,3 +1,5 @@
+// Culling in three stages: swept boxes in the frame of the surface's affine motion, cheap axes
+// (triangle normals, difference of centroids), then all axes of separating_axes.h.
 #include "contact/detection/contact_candidates.h"
 
 #include <algorithm>
@@ -13,8 +15,9 @@ namespace {
 
 using Pairs = std::vector<BroadPhase::Pair>;
 
-// Sets normal, closest points and gap from the axes of the pair. Returns false if it is no
-// candidate.
+// Sets normal, closest points and gap from the axes of the pair. Returns false if the pair is no
+// candidate: an axis has start separation ≥ gap and end separation ≥ reach, or the start distance
+// is not positive.
 bool set_candidate(const SurfaceMotion& m, const SeparatingAxes& axes, std::size_t lane, ContactCandidate& candidate) {
   for (int k = 0; k < SeparatingAxes::between_closest; ++k)
     if (axes.start_separation[k][lane] >= m.gap && axes.end_separation[k][lane] >= m.reach) return false;
@@ -29,7 +32,8 @@ bool set_candidate(const SurfaceMotion& m, const SeparatingAxes& axes, std::size
   for (int k = 0; k < 3; ++k)
     candidate.closest.weights_a[k] = axes.weights_a[k][lane], candidate.closest.weights_b[k] = axes.weights_b[k][lane];
   candidate.closest.difference = distance * normal(SeparatingAxes::between_closest);
-  // Prefer an axis that separates about as well at the start and better at the end.
+  // Prefer the axis of largest end separation among axes with start separation ≥ min(d, gap) / 2,
+  // where d is the distance. A factor above 1/2 leaves fewer axes to choose from.
   for (int k = 0; k < SeparatingAxes::between_closest; ++k)
     if (axes.start_separation[k][lane] >= 0.5 * std::min(distance, m.gap) && axes.end_separation[k][lane] > best)
       best = axes.end_separation[k][lane], chosen = k;
@@ -38,7 +42,7 @@ bool set_candidate(const SurfaceMotion& m, const SeparatingAxes& axes, std::size
   return true;
 }
 
-// The owners of a pair, and the separation by which pairs between the same owners are compared.
+// The owners (nodes) of a pair, and the separation by which pairs of the same owners are compared.
 struct OwnedPair {
   std::uint32_t low, high;
   double separation;  // TrianglePlanes::end_separations()
@@ -105,7 +109,7 @@ Pairs closest_pairs(const Pairs& pairs, const std::vector<OwnedPair>& owned, con
 void update_broad_phase(const SurfaceMotion& m, const RepresentativeSurface& surface, BroadPhase& broad_phase) {
   std::vector<Vec3> fitted = m.from;
   if (!surface.vertices.empty()) apply_affine_fit(surface.vertices, m.from, m.to, fitted);
-  // Vertices may also stay where they are, whatever the motion wants.
+  // Boxes contain the start, too: a vertex may stay there.
   Vec3 start_centroid = Vec3::Zero();
   for (const auto v : surface.vertices) start_centroid += m.from[v] / double(surface.vertices.size());
   broad_phase.update(

@@ -17,24 +17,30 @@ namespace geo {
 
 /// A pair of triangles that may come together.
 struct ContactCandidate {
-  Simplex a, b;           ///< of representatives, none in both
-  Vec3 normal;            ///< separating axis, unit, from b to a
-  ClosestPoints closest;  ///< at the start
-  double gap;             ///< least separation along the normal that the step should leave, model units
+  /// Vertices are representatives; the two share none.
+  Simplex a, b;
+  /// Chosen separating axis, unit, from b to a. Its direction may differ from closest.difference.
+  Vec3 normal;
+  /// Closest points at the start of the motion.
+  ClosestPoints closest;
+  /// min(motion.gap, start separation along `normal`), which the step should leave; model units.
+  double gap;
 };
 
-/// Limits the candidates between two nodes: more say the same, since nodes are farther apart than
-/// vertices.
+/// Limits the candidates between two nodes. Nodes are farther apart than vertices, so that more
+/// constraints on the same two nodes would be redundant.
 struct CandidateLimit {
-  std::span<const std::uint32_t> owner = {};  ///< per surface vertex: its node; empty: no limit
-  std::size_t most = 0;                       ///< candidates for each pair of owners, at least 1
+  /// Per surface vertex the node that owns it, ~0u if none; empty: no limit.
+  std::span<const std::uint32_t> owner = {};
+  std::size_t most = 0;  ///< candidates for each pair of owners, at least 1
 };
 
-/// The candidates of a motion: pairs without a common vertex that no axis keeps at a distance of
-/// motion.reach or more. The set depends on the motion alone; its order depends on the history of
-/// `broad_phase`, too. With a limit, pairs between the same two owners are chosen by
-/// TrianglePlanes::end_separations(): those that the motion brings closest. Updates `broad_phase`,
-/// whose boxes are relative to the affine motion that fits the surface best.
+/// The candidates of a motion: pairs of triangles with start distance > 0 and no shared vertex. A
+/// pair is culled if one axis has start separation ≥ motion.gap and end separation ≥ motion.reach.
+/// The set depends on the motion alone; its order depends on the history of `broad_phase`, too.
+/// With a limit, each two owners keep their limit.most pairs of least
+/// TrianglePlanes::end_separations(). Updates `broad_phase`, whose boxes are relative to the affine
+/// motion that fits the surface best.
 std::vector<ContactCandidate> find_contact_candidates(const SurfaceMotion& motion, BroadPhase& broad_phase,
                                                       const CandidateLimit& limit = {});
 

@@ -1,3 +1,6 @@
+// Separating-plane and separating-edge tests of eight triangle pairs at a time. Signs of the
+// determinants count only beyond the static error bounds of Shewchuk (1997); else the pair is kept.
+//
 // Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
 // that error bounds hold.
 #undef HWY_TARGET_INCLUDE
@@ -50,7 +53,8 @@ HWY_INLINE Corners corners(const PairLanes& lanes, int which, std::size_t from) 
   return c;
 }
 
-// Where the error bounds of filters hold.
+// Where the error bounds hold: neither underflow nor overflow. `permanent`: the sum of absolute
+// values of the terms of the determinant.
 HWY_INLINE M in_filter_range(V permanent) {
   const D d;
   return hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
@@ -71,8 +75,8 @@ HWY_INLINE Normal normal(const Corners& c) {
   return n;
 }
 
-// Whether all vertices of o that p does not have are strictly on one side of the plane of p. The
-// determinant and bound are those of orient3d_filtered(), with the first corner of p as origin.
+// Whether the vertices of o that p does not share are strictly on one side of the plane of p.
+// Determinant and bound are those of orient3d_filtered(), with the first corner of p as origin.
 HWY_INLINE M on_one_side(const Corners& p, const Corners& o) {
   const D d;
   const Normal n = normal(p);
@@ -94,11 +98,12 @@ HWY_INLINE M on_one_side(const Corners& p, const Corners& o) {
   return hn::AndNot(all_shared, hn::Or(above, below));
 }
 
-// A triangle projected along an axis.
+// A triangle projected along a coordinate axis.
 struct Projected {
   V at[3][2], vertex[3];
 };
 
+// Projects along x, else along y, else along z: the dominant axis of the first triangle's normal.
 HWY_INLINE Projected project(const Corners& c, M along_x, M along_y) {
   Projected s;
   for (int k = 0; k < 3; ++k) {

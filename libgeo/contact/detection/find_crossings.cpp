@@ -1,3 +1,5 @@
+// Pairs without a common vertex come from a tree of boxes, pairs at a vertex from fans that are not
+// height fields. A floating-point filter precedes the exact test faces_cross() (kerf/crossing.h).
 #include "contact/detection/find_crossings.h"
 
 #include <algorithm>

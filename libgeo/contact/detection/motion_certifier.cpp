@@ -1,3 +1,5 @@
+// Separating axes certify pairs without a common vertex: n · (a − b) > rounding at both ends of the
+// motion. Height-field fans certify pairs at a vertex; the exact test decides what is left.
 #include "contact/detection/motion_certifier.h"
 
 #include <algorithm>
@@ -24,7 +26,8 @@ std::vector<MotionCertifier::Pair> MotionCertifier::uncertified_pairs(std::span<
     for (std::size_t c = begin; c < end; ++c)
       certify(pairs.subspan(c * chunk, std::min(chunk, pairs.size() - c * chunk)), changed, known_disjoint, found[c]);
   });
-  // Triangles with a common vertex cannot pass through each other without crossing other triangles.
+  // Pairs with a common vertex need the test at the end alone: they cannot pass through each other
+  // without crossing other triangles.
   const auto uncertified_fans = m_.fans.find_uncertified(changed, m_.representative, m_.next, certified_fans_);
   std::vector<Pair> result = crossings_at_vertices(m_.fans, uncertified_fans, certified_fans_, m_.surface.triangles,
                                                    m_.next, m_.two_sided, changed);
@@ -33,7 +36,8 @@ std::vector<MotionCertifier::Pair> MotionCertifier::uncertified_pairs(std::span<
   return result;
 }
 
-// Cheap axes cull most pairs; the others are tried with all axes, eight at a time.
+// Triangle normals and differences of centroids certify most pairs; the others are tried with all
+// axes, eight pairs at a time.
 void MotionCertifier::certify(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed,
                               const KnownDisjoint& known_disjoint, std::vector<Pair>& uncertified) const {
   const auto& triangles = m_.surface.triangles;

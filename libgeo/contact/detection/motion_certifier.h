@@ -35,12 +35,13 @@ class MotionCertifier {
   /// Computes `planes` for the motion and uses them from then on.
   MotionCertifier(const Motion& motion, TrianglePlanes& planes);
 
-  /// The uncertified pairs, ascending: those that cross at the end by the exact test, or that may
+  /// The uncertified pairs, ascending: pairs that cross at the end by the exact test, or that may
   /// pass through each other. A pair is certified if one axis separates it at both ends, or if it
-  /// is known to be disjoint. `pairs`: the pairs without a common vertex of the surface that
-  /// boxes cannot exclude; pairs with a common vertex are always included. Only pairs with a
-  /// triangle marked in `changed`: those whose end differs from the previous call. At the first
-  /// call all must be marked, and the end must be that of the construction.
+  /// is known to be disjoint and does not cross at the end. `pairs`: the pairs without a common
+  /// vertex of the surface whose boxes meet; pairs with a common vertex are tested in addition.
+  /// Tests only pairs with a triangle marked in `changed`, which marks all triangles whose end
+  /// differs from the previous call. At the first call all must be marked, and the end must be
+  /// that of the construction.
   std::vector<Pair> uncertified_pairs(std::span<const Pair> pairs, const std::vector<std::uint8_t>& changed,
                                       const KnownDisjoint& known_disjoint);
 

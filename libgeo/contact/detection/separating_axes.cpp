@@ -1,3 +1,7 @@
+// Axes in lanes: difference of centroids, both normals, difference of closest points. The last has
+// the largest separation of all axes of disjoint convex sets. So the cross products of edges of the
+// usual separating-axis test are not needed.
+//
 // Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
 // that all give the same results.
 #undef HWY_TARGET_INCLUDE
@@ -27,7 +31,8 @@ struct ClosestFeatures {
   alignas(64) double feature[SeparatingAxes::width], s[SeparatingAxes::width], t[SeparatingAxes::width];
 };
 
-// Input of the tilted axes: normal + tilt · closest, and the corners at the start and at the end.
+// Input of the tilted axes n + τ c: `normal` n, `tilt` τ, `closest` c (unit difference of closest
+// points). `at`: corners of a, then of b, at the start and at the end.
 struct TiltInput {
   alignas(64) double normal[3][TiltedAxes::width], tilt[TiltedAxes::width];
   double closest[3], at[2][6][3];
@@ -78,6 +83,7 @@ struct Closest {
   V3 difference;
   V feature, s, t;
 
+  // Takes the candidate of feature `number` where it is valid and shorter than the best so far.
   HWY_INLINE void offer(int number, const V3& candidate, const V& at_s, const V& at_t, const hn::Mask<Doubles>& valid) {
     const V length = dot(candidate, candidate);
     const auto better = hn::And(valid, hn::Lt(length, squared));
@@ -89,7 +95,8 @@ struct Closest {
   }
 };
 
-// Offers the corners of p whose projections are inside q.
+// Offers the corners of p whose projections are inside q. `reverse`: p is triangle b, so that the
+// difference changes its sign. s and t solve [uu uv; uv vv] (s, t) = (uw, vw).
 HWY_INLINE void corners_over(const V3 (&p)[3], const V3 (&q)[3], int feature, bool reverse, Closest& best) {
   const Doubles d;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0);
@@ -106,6 +113,8 @@ HWY_INLINE void corners_over(const V3 (&p)[3], const V3 (&q)[3], int feature, bo
   }
 }
 
+// Closest points of two disjoint triangles: the least over nine pairs of edges and six corners
+// above the other's interior. Triangles that meet may give a positive distance.
 HWY_INLINE Closest closest_of(const V3 (&a)[3], const V3 (&b)[3]) {
   const Doubles d;
   const V zero = hn::Zero(d);
@@ -119,7 +128,8 @@ HWY_INLINE Closest closest_of(const V3 (&a)[3], const V3 (&b)[3]) {
   const auto always = hn::Eq(zero, zero);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      // Alternating projections, as in distance_between_segments().
+      // As in distance_between_segments(): closed form on the lines, clamped to [0, 1], then two
+      // projections, to edge v and back to edge u.
       const V3 w = a[i] - b[j];
       const V uv = dot(u[i], v[j]), uw = dot(u[i], w), vw = dot(v[j], w);
       const V first =
@@ -135,6 +145,8 @@ HWY_INLINE Closest closest_of(const V3 (&a)[3], const V3 (&b)[3]) {
 
 }  // namespace
 
+// Axes of all lanes at the corners `from` (start) and `to` (end). `end`: computes the axis of the
+// closest points at the end, too. `features`: closest features at the start.
 void compute_axes(const Corners& from, const Corners& to, bool end, SeparatingAxes& out, ClosestFeatures& features) {
   const Doubles d;
   for (std::size_t lane = 0; lane < SeparatingAxes::width; lane += hn::Lanes(d)) {
@@ -142,6 +154,7 @@ void compute_axes(const Corners& from, const Corners& to, bool end, SeparatingAx
     for (int k = 0; k < 3; ++k)
       a[k] = load(from, k, lane), b[k] = load(from, 3 + k, lane), c[k] = load(to, k, lane),
       e[k] = load(to, 3 + k, lane);
+    // Stores axis n = ± direction / |direction|, negated where `flip` is set, and its separations.
     const auto put = [&](int axis, const V3& direction, const hn::Mask<Doubles>& flip) HWY_ATTR {
       const V length = hn::Sqrt(dot(direction, direction)), one = inverse(length);
       const V3 n = hn::IfThenElse(flip, hn::Neg(one), one) * direction;
@@ -171,6 +184,7 @@ void compute_axes(const Corners& from, const Corners& to, bool end, SeparatingAx
   }
 }
 
+// Unit axes n + τ c and their separations min n · a − max n · b at both ends.
 void compute_tilted(const TiltInput& input, TiltedAxes& out) {
   const Doubles d;
   for (std::size_t lane = 0; lane < TiltedAxes::width; lane += hn::Lanes(d)) {
@@ -205,7 +219,9 @@ HWY_EXPORT(compute_tilted);
 
 void find_tilted_axes(const PrimitivePair& pair, const SeparatingAxes& axes, std::size_t lane,
                       const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedAxes& out) {
-  // A geometric series: sheets need a tilt of the order of their unevenness. The last is padding.
+  // Factors of c in n + τ c, where n is the unit normal of a, of b, or their sum. A geometric
+  // series: surfaces that slide over each other need a tilt of the order of their unevenness. The
+  // last is padding.
   constexpr double tilt[] = {0, 0.01, 0.03, 0.09, 0.27, 0};
   TiltInput input;
   for (std::size_t i = 0; i < TiltedAxes::width; ++i) input.tilt[i] = tilt[i / 3];

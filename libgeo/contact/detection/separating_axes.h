@@ -18,8 +18,9 @@ struct PrimitivePair {
   Simplex a, b;
 };
 
-/// Candidate axes for up to eight pairs (a, b), one pair a SIMD lane. Axes point from b to a. One
-/// of them has the largest separation of all directions at the start.
+/// Candidate axes for up to eight pairs (a, b), one pair a SIMD lane; each may fail to separate.
+/// Axes point from b to a. For disjoint pairs, between_closest has the largest separation of all
+/// directions at the start, up to rounding.
 struct SeparatingAxes {
   /// Pairs to a batch.
   static constexpr std::size_t width = 8;
@@ -30,7 +31,8 @@ struct SeparatingAxes {
   alignas(64) double normal[count][3][width];         ///< unit vectors; zero: the candidate does not exist
   alignas(64) double start_separation[count][width];  ///< separation_along() at the start, model units
   alignas(64) double end_separation[count][width];    ///< at the end
-  /// For corners that are anywhere on their paths, independently of each other.
+  /// min(start, end) over a − max(start, end) over b: holds for corners that are anywhere on their
+  /// paths, independently of each other.
   alignas(64) double swept_separation[count][width];
   alignas(64) double weights_a[3][width];  ///< barycentric coordinates of a's closest point at the start
   alignas(64) double weights_b[3][width];  ///< of b's closest point
@@ -67,7 +69,7 @@ inline PairSeparation centroid_separation(const PrimitivePair& pair, const std::
 void find_separating_axes(const PrimitivePair* pairs, std::size_t size, const std::vector<Vec3>& from,
                           const std::vector<Vec3>& to, bool end, SeparatingAxes& out);
 
-/// Axes for uneven sheets that slide over each other: the normals of a and b and their sum, each
+/// Axes for uneven surfaces that slide over each other: the normals of a and b and their sum, each
 /// tilted by growing amounts towards the difference of closest points.
 struct TiltedAxes {
   static constexpr int count = 15;                                    ///< number of axes

@@ -1,3 +1,5 @@
+// Closest points by cases: each corner against the other simplex, and each pair of edges, whose
+// parameters solve the 2 × 2 normal equations of |a(s) − b(t)|² (Ericson 2005, § 5.1).
 #include "contact/detection/simplex.h"
 
 #include <limits>

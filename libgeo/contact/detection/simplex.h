@@ -39,8 +39,8 @@ double separation_along(const Vec3& n, const Simplex& a, const Simplex& b, const
 
 /// Two triangles without a common vertex must be disjoint as a whole. If they share vertices, the
 /// remaining sub-simplex of each must be disjoint from the other triangle. Writes these pairs of
-/// sub-simplices to `pairs` and returns their number: 1, 2, or 0 if one has all vertices of the
-/// other.
+/// sub-simplices to `pairs` and returns their number: 1, 2, or 0 if one has all vertices
+/// of the other.
 int disjoint_subsimplices(const Triangle& s, const Triangle& t, std::pair<Simplex, Simplex> (&pairs)[2]);
 
 }  // namespace geo

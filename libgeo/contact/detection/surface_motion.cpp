@@ -1,3 +1,4 @@
+// Replaces the vertices of triangles by their representatives and records which stand for several.
 #include "contact/detection/surface_motion.h"
 
 #include "kerf/parallel.h"

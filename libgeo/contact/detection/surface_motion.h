@@ -16,7 +16,7 @@ struct SurfaceMotion {
   std::span<const std::uint32_t> representative;  ///< per vertex: coincident_representatives()
   const std::vector<Vec3>& from;                  ///< per vertex: position at the start
   const std::vector<Vec3>& to;                    ///< per vertex: wanted position at the end
-  double gap = 0;                                 ///< distance that sheets in contact keep, model units
+  double gap = 0;                                 ///< distance that surfaces in contact keep, model units
   double reach = 0;                               ///< distance below which a pair is a contact candidate, model units
   /// If given: positions near `to` that are less likely to cross. They become the end if they are
   /// certified.
@@ -30,8 +30,8 @@ struct RepresentativeSurface {
 
   std::vector<Triangle> triangles;      ///< of representatives
   std::vector<std::uint32_t> vertices;  ///< representatives in use, ascending
-  /// Per triangle: has a vertex that represents several, and may share it with a triangle with
-  /// which it has no vertex of the surface in common.
+  /// Per triangle: has a vertex that represents several. Only such triangles can share a
+  /// representative without sharing a surface vertex.
   std::vector<std::uint8_t> has_coincident;
   Vec3 target_centroid = Vec3::Zero();  ///< mean of the wanted positions
 
@@ -42,7 +42,7 @@ struct RepresentativeSurface {
     return in_t(triangles[s][0]) || in_t(triangles[s][1]) || in_t(triangles[s][2]);
   }
 
-  /// The box that triangle t sweeps on straight paths, relative to the centroid.
+  /// The box that triangle t sweeps on straight paths, relative to target_centroid.
   Box3 swept_box(std::size_t t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {
     Box3 box;
     for (const auto v : triangles[t]) box.add(from[v] - target_centroid), box.add(to[v] - target_centroid);

@@ -1,3 +1,6 @@
+// Support intervals along the start normal n of triangle p. Triangle o is separated above if
+// min n · o − max n · p exceeds the bound at both ends of the motion; below, likewise.
+//
 // Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
 // that all give the same results.
 #undef HWY_TARGET_INCLUDE
@@ -21,7 +24,7 @@ using Pair = TrianglePlanes::Pair;
 using Four = hn::CappedTag<double, 4>;
 using V = hn::Vec<Four>;
 
-// Products of n with the corners from k on.
+// n · corner, for the corners from k on.
 HWY_INLINE V products(const double (&n)[3], const double (&at)[3][4], std::size_t k) {
   const Four d;
   return hn::Add(
@@ -58,7 +61,8 @@ HWY_INLINE bool plane_separates(const Plane& p, const Plane& o, double start, do
   return above | below;
 }
 
-// The separation by the plane of p at the end, on the side of p where o is at the start.
+// The separation by the plane of p at the end, on the side of p where o's centroid is at the start:
+// n · Σ o > 3 (low + high) / 2.
 HWY_INLINE double end_separation(const Plane& p, const Plane& o) {
   double sum[3];
   for (int axis = 0; axis < 3; ++axis) sum[axis] = o.at[0][axis][0] + o.at[0][axis][1] + o.at[0][axis][2];
@@ -67,6 +71,7 @@ HWY_INLINE double end_separation(const Plane& p, const Plane& o) {
                                                  : p.low[1] - most(p.normal, o.at[1]);
 }
 
+// Separations along n = difference of centroids, unnormalised: bounds are multiplied by |n|.
 HWY_INLINE bool centroids_separate(const Plane& p, const Plane& o, double start, double end) {
   const double n[3] = {p.centroid[0] - o.centroid[0], p.centroid[1] - o.centroid[1], p.centroid[2] - o.centroid[2]};
   const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -117,7 +122,7 @@ HWY_EXPORT(find_end_separations);
 void TrianglePlanes::compute(std::span<const Triangle> triangles, const std::vector<Vec3>& from,
                              const std::vector<Vec3>& to) {
   triangles_ = triangles, to_ = &to;
-  // Spare elements: the number of triangles grows with each step of a cut. Memory that is never
+  // An eighth to spare: the number of triangles grows with each step of a cut. Memory that is never
   // written costs nothing.
   if (planes_.size() < triangles.size())
     planes_ = {}, planes_ = UninitializedArray<Plane>(triangles.size() + triangles.size() / 8);

@@ -31,8 +31,8 @@ class TrianglePlanes {
   /// Must be called after a vertex of triangle i has changed in `to`.
   void update_end(std::size_t i);
 
-  /// Whether the plane of triangle i or j separates them, with j on the same side throughout, by
-  /// more than `start` at the start and more than `end` at the end. Both are at least 0.
+  /// Whether the plane of triangle i or j separates them by more than `start` at the start and more
+  /// than `end` at the end. j is on the same side at both. `start`, `end` ≥ 0, model units.
   bool separates(std::uint32_t i, std::uint32_t j, double start, double end) const;
 
   /// Removes the pairs for which separates() is true. The others stay in order.

@@ -1,3 +1,5 @@
+// Height-field test: with n = Σ n_t over the fan, all n · n_t > 0 and the opposite edges wind once
+// around n (cf. Volino and Magnenat-Thalmann 1994: normals in one half-space, contour simple).
 #include "contact/detection/vertex_fans.h"
 
 #include <algorithm>
@@ -10,7 +12,7 @@ namespace geo {
 
 VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t vertices)
     : triangles_(triangles), first_(vertices + 1, 0), link_(3 * triangles.size()), closed_(vertices, 0) {
-  constexpr std::size_t largest = 32;  // the test is quadratic; larger fans are rare and stay uncertified
+  constexpr std::size_t largest = 32;  // the test is quadratic; larger fans are rare and stay uncertified, same result
   for (const auto& t : triangles)
     for (const auto v : t) ++first_[v + 1];
   for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];

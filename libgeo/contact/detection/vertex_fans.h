@@ -34,7 +34,7 @@ class VertexFans {
   /// Certifies fans as height fields: some direction sees the front of all triangles of the fan,
   /// which closes around the vertex exactly once. No two triangles of such a fan have more in
   /// common than shared vertices and edges. Updates `certified` (per vertex) for the vertices of
-  /// triangles marked in `changed`, and returns those of them that are not certified, ascending.
+  /// triangles marked in `changed`. Returns the uncertified ones among these vertices, ascending.
   /// `representative`: coincident_representatives(), by which `at` gives positions. Floating
   /// point, but conservative.
   std::vector<std::uint32_t> find_uncertified(const std::vector<std::uint8_t>& changed,

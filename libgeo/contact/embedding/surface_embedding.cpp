@@ -1,3 +1,6 @@
+// Order of placement: remaining sides, divided faces (barycentric), copies of placed vertices, then
+// the inside: x ↦ Σ w (p' + x − p + u(x) − u(p)) / Σ w over visible old points p, now at p'. Here
+// w = |x − p|⁻⁴, and u is the blended displacement (Eq. 1).
 #include "contact/embedding/surface_embedding.h"
 
 #include <algorithm>
@@ -27,7 +30,8 @@ Mat3 frame_of(const std::array<Vec3, 3>& t) {
 }
 
 // The image of x under the motion of a triangle from `rest` to `now`. x lies on the triangle
-// except for rounding. This offset turns with the triangle: it decides whether slivers cross.
+// except for the offset of rounding, which turns with the triangle: it decides whether slivers
+// cross.
 Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Vec3, 3>& now) {
   const Vec3 w = barycentric(x, rest[0], rest[1], rest[2]);
   const Vec3 offset = x - (w[0] * rest[0] + w[1] * rest[1] + w[2] * rest[2]);
@@ -102,6 +106,7 @@ class SurfaceEmbedder {
     std::sort(parents.begin(), parents.end());
     std::set_difference(crack.new_faces.begin(), crack.new_faces.end(), crack.new_crack_faces.begin(),
                         crack.new_crack_faces.end(), std::back_inserter(parts));
+    // Tolerances 1e-12 and 1e-10 of the diagonal only find parents: new corners are rounded points.
     const double size = k_.extent().diagonal();
     std::vector<std::pair<FaceId, FaceId>> part_of;  // parent, part
     // By site: the corners that all parents of its parts have; two if the site lies on their edge.
@@ -185,7 +190,7 @@ class SurfaceEmbedder {
   };
 
   struct Surroundings {
-    double reach = 0;  // of the new faces at the site
+    double reach = 0;  // longest distance of a corner of the faces at the site
     std::vector<VisiblePoint> points;
   };
   Surroundings surroundings(VertexId site, const std::vector<std::uint8_t>& is_new) const {
@@ -193,7 +198,7 @@ class SurfaceEmbedder {
     const Vec3& x = k_.point(site);
     for (const FaceId f : k_.faces_at(site))
       for (const Vec3& c : k_.corners(f)) result.reach = std::max(result.reach, (c - x).norm());
-    result.points = visible_points(x, 1.01 * result.reach, is_new);
+    result.points = visible_points(x, 1.01 * result.reach, is_new);  // 1.01: includes the farthest corner
     return result;
   }
 
@@ -217,7 +222,8 @@ class SurfaceEmbedder {
       for (auto j = first[i]; j < first[i + 1]; ++j) place(waiting[j].second, found[i].first, found[i].second);
   }
 
-  // The position of a site inside the material, and its reference.
+  // The position of a site inside the material, and its reference: the nearest visible point's.
+  // Distance⁻⁴ makes the weight unbounded at old points, so that the surface is continued there.
   std::pair<Vec3, SurfaceVertexId> continued_surface(VertexId site, const std::vector<std::uint8_t>& is_new) const {
     const Vec3& x = k_.point(site);
     const Surroundings visible = surroundings(site, is_new);
@@ -306,7 +312,7 @@ class SurfaceEmbedder {
     const auto master = v.valid() ? in_.body.binding.master[v.index()] : SurfaceVertexId();
     return master.valid() ? with_neighbors(in_.body.binding.master_node[master.index()]) : std::vector<NodeId>();
   }
-  // Eq. 1 at x, with those of the nodes that support it.
+  // Eq. 1 at x, blended over the nodes of `nodes` whose support contains x; the first if none does.
   Vec3 displacement(const Vec3& x, const std::vector<NodeId>& nodes) const {
     if (nodes.empty()) return Vec3::Zero();
     std::vector<std::pair<NodeId, double>> bound;

@@ -1,3 +1,5 @@
+// Projection of separation constraints, Gauss–Seidel (position-based dynamics). The axis is the
+// difference of closest points in the material, mapped by F⁻ᵀ; crossings are then searched again.
 #include "contact/embedding/untangle.h"
 
 #include <Eigen/LU>
@@ -17,7 +19,8 @@ struct SeparationConstraint {
   double separation;  // wanted along the normal
 };
 
-// Moves the vertices on the wrong side of the plane in the middle. Returns whether any moved.
+// Moves vertices of a to n · x ≥ m + h and vertices of b to n · x ≤ m − h. Here m is the middle of
+// the overlap, and h = 0.55 separation. Returns whether the constraint was violated.
 bool project(const SeparationConstraint& c, std::vector<Vec3>& at, std::vector<std::uint8_t>& moved) {
   if (separation_along(c.normal, c.a, c.b, at) >= c.separation) return false;
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -54,6 +57,7 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
       normal = mean.inverse().transpose() * difference;
     }
     if (normal.norm() > 0 && normal.allFinite())
+      // A quarter of the distance at the reference, at most the gap: less than the material allows.
       out.push_back({a, b, normal.normalized(), std::min(in.gap, 0.25 * difference.norm())});
   }
 }
@@ -62,6 +66,8 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
 
 std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& positions,
                                    std::vector<std::uint8_t>& marked) {
+  // Limits of effort: searches for crossings, and sweeps over the constraints after each search.
+  // Larger: more attempts before the crack step is refused.
   constexpr int most_rounds = 16, most_sweeps = 4;
   const ContactSurface& surface = in.surface;
   const auto representative = coincident_representatives(surface.site, positions);

@@ -1,3 +1,5 @@
+// Rounds of affine motion, projected targets, and fallback; each motion is accepted only if it is
+// certified (motion_certifier.h). The last resort is the affine motion alone, or none.
 #include "contact/motion/bounded_motion.h"
 
 #include <algorithm>
@@ -16,16 +18,18 @@ namespace geo {
 namespace {
 
 // Limits of effort. None changes whether something crosses; they bound what one step may cost.
-constexpr int max_rounds = 8;          // of motion and reduction of the tracking error
+constexpr int max_rounds = 8;          // of motion and reduction of the tracking error; more: nearer to the targets
 constexpr int max_projections = 240;   // in a round
 constexpr int patience = 6;            // projections without progress, after which pairs become rigid
 constexpr int max_growths = 20;        // of the fallback's set of vertices
 constexpr int growths_to_follow = 10;  // after which all vertices follow the field
 // Progress: a quarter fewer pairs are uncertified.
 constexpr std::size_t progress_divisor = 4;
-// Margin of boxes in the broad phase, of an edge: what is projected further mostly stays within it.
+// Margin of boxes in the broad phase, in edges: projected vertices mostly stay within it. Larger:
+// more pairs, fewer new queries, the same result.
 constexpr double box_margin = 0.05;
-// Error bound of separations over the size of coordinates: some ulps of the products in them.
+// Error bound of separations over the size of coordinates: 45 ulps of 2⁻⁵², more than the rounding
+// of the products n · x and their difference.
 constexpr double relative_rounding = 1e-14;
 
 class CrossingFreeMotion {
@@ -52,8 +56,8 @@ class CrossingFreeMotion {
   }
 
  private:
-  // How a round ended: all vertices went straight to their projected targets; some followed the
-  // fallback, which went as far as they wanted; or it was scaled down.
+  // How a round ended. free: all vertices went straight to their projected targets. fallback: some
+  // followed the fallback's field, unscaled. scaled_down: the field was scaled by a share < 1.
   enum class Outcome { free, fallback, scaled_down };
 
   // Chunked sums, the same for any number of threads.
@@ -96,7 +100,7 @@ class CrossingFreeMotion {
     return {{surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes()};
   }
 
-  // Changes `next` until the motion from `start` is certified. False: it still is not.
+  // Changes `next` until the motion from `start` is certified. Returns whether it is.
   bool project_targets(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     SeparationProjection projection(surface_.triangles, start, m_.gap);
     MotionCertifier certify = certifier(start, next);

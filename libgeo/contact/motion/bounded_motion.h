@@ -20,16 +20,14 @@ struct BoundedMotionStats {
 /// triangles cross at the beginning, and none at the end, by the exact test (find_crossings.h);
 /// none has passed through another.
 ///
-/// 1. The affine motion nearest to the wanted one is applied, then all vertices go straight to
-/// their targets.
+/// 1. The affine motion nearest to the wanted one is applied. Then all vertices go straight to
+///    their targets, or to `motion.guess` if there is one.
 /// 2. Where this is not certified (motion_certifier.h), targets are changed by projection of
-/// separation
-///    constraints (separation_projection.h), beginning with `motion.guess` if there is one.
-/// 3. If that fails, vertices of uncertified pairs follow a smooth field of the wanted motion or
-/// rigid impact
-///    zones (fallback_motion.h), which grow until all is certified; the tracking error that this
-///    leaves is
-///    reduced (vertex_advance.h), and the motion begins again from there.
+///    separation constraints (separation_projection.h).
+/// 3. If that fails, vertices of uncertified pairs follow a smooth field of the wanted motion, or
+///    rigid impact zones (fallback_motion.h). Both grow until all pairs are certified. The tracking
+///    error that this leaves is reduced (vertex_advance.h). If the field was scaled down, the
+///    motion begins again from there.
 ///
 /// `near`: pairs known of the same triangles, from find_contact_candidates() or an earlier motion
 /// in this step; `fans`: of the triangles; null: made here. `two_sided`: as in find_crossings().

@@ -1,3 +1,5 @@
+// Vertices move by s · field(x), s = min(1, 0.6 / slope): a one-to-one map of space. Flat triangles
+// deviate from its image by at most deviation(edge); nearer pairs become rigid zones.
 #include "contact/motion/fallback_motion.h"
 
 #include <algorithm>
@@ -9,10 +11,12 @@
 namespace geo {
 namespace {
 
-// Largest slope of the scaled field. Below 1, x + field(x) is one-to-one; the distance of two
-// points shrinks at most to 1 − steepest of itself.
+// Largest slope of the scaled field. Below 1, x + field(x) is one-to-one, and the distance of two
+// points shrinks at most by the factor 1 − steepest. Larger: more of the motion in one round, less
+// distance left.
 constexpr double steepest = 0.6;
-// Cell of the field's grid, in mean edges: a few vertices in each, so that their mean is smooth.
+// Cell of the field's grid, in mean edges: each has several vertices, so that their mean is smooth.
+// Must be above 1: deviation() is infinite for edges longer than a cell.
 constexpr double cell_in_edges = 4;
 
 double longest_edge(const Triangle& t, const std::vector<Vec3>& at) {

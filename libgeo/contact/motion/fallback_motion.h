@@ -14,8 +14,8 @@ namespace geo {
 /// The set of vertices that follow the field, which grows until nothing crosses.
 class FallbackMotion {
  public:
-  /// The field of the motion from `start` to `to`, per vertex, of the vertices in `vertices`,
-  /// scaled down so that it is one-to-one at all times. `edge`: mean edge of the surface, model
+  /// The field of the motion of `vertices` from `start` to `to` (both per vertex). It is scaled
+  /// down so that the motion is one-to-one at all times. `edge`: mean edge of the surface, model
   /// units. No vertex follows it yet. Refers to everything.
   FallbackMotion(const std::vector<Triangle>& triangles, std::span<const std::uint32_t> vertices,
                  const std::vector<Vec3>& start, const std::vector<Vec3>& to, double edge);

@@ -1,3 +1,4 @@
+// Zones as a union-find over vertices; zones that share a vertex are one.
 #include "contact/motion/rigid_zones.h"
 
 #include <algorithm>

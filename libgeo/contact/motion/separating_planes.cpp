@@ -1,3 +1,5 @@
+// Each vertex has half-space constraints ± (n · x − d) ≥ gap / 2. Its target is projected on them
+// in turn. The straight move to the result is cut at the first plane that it would cross.
 #include "contact/motion/separating_planes.h"
 
 #include <algorithm>
@@ -19,7 +21,7 @@ struct SeparatingPlane {
 
 using PlaneSide = std::pair<const SeparatingPlane*, double>;  // 1: the side of a, −1: of b
 
-// How far the two sub-simplices of a pair may approach each other.
+// How far the two sub-simplices may approach each other: max limit over a + max limit over b.
 double approach_of(const PlaneSeparatedMotion& m, const PrimitivePair& pair) {
   double a = 0, b = 0;
   for (int k = 0; k < pair.a.size; ++k) a = std::max(a, m.limit[pair.a.v[k]]);
@@ -27,8 +29,8 @@ double approach_of(const PlaneSeparatedMotion& m, const PrimitivePair& pair) {
   return a + b;
 }
 
-// Places the plane between the sub-simplices of `out`. Returns false if they cannot come together.
-// `adjacent`: they belong to triangles with a common vertex.
+// Places the plane between the sub-simplices of `out`. Returns false if an axis separates them by
+// more than they may approach, plus the gap. `adjacent`: their triangles have a common vertex.
 bool place_plane(const PlaneSeparatedMotion& m, const std::vector<Vec3>& at, bool adjacent, const SeparatingAxes& axes,
                  std::size_t lane, SeparatingPlane& out) {
   const double reach = approach_of(m, {out.a, out.b}) + m.gap;
@@ -67,7 +69,7 @@ Vec3 moved_vertex(const Vec3& from, const Vec3& to, double limit, std::span<cons
     if (const Vec3 move = x - from; move.norm() > limit) x = from + limit / move.norm() * move;
   };
   limit_move();
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 8;   // over all planes; a move that still crosses one is cut there
   constexpr double margin = 0.02;  // of half a gap: projections end beyond planes, not on them
   for (int round = 0; round < most_rounds; ++round) {
     bool inside = true;
@@ -79,7 +81,7 @@ Vec3 moved_vertex(const Vec3& from, const Vec3& to, double limit, std::span<cons
   limit_move();
   double share = 1;  // of the move, up to the first plane
   for (const auto& [p, side] : planes) {
-    if (!(p->half > 1e-13 * size)) return from;
+    if (!(p->half > 1e-13 * size)) return from;  // the gap is of the order of rounding
     const double before = side * (p->normal.dot(from) - p->at) - p->half,
                  after = side * (p->normal.dot(x) - p->at) - p->half;
     if (after < 0) share = std::min(share, std::max(0.0, before) / (std::max(0.0, before) - after));

@@ -16,13 +16,13 @@ struct PlaneSeparatedMotion {
   std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs;  ///< of triangles; no others come together
   const std::vector<Vec3>& to;                                     ///< per vertex: wanted position
   const std::vector<double>& limit;                                ///< per vertex: longest move, model units
-  double gap = 0;                                                  ///< distance that sheets in contact keep
+  double gap = 0;                                                  ///< distance that surfaces in contact keep
 };
 
 /// Moves the vertices `at`, of which no two triangles cross, towards their wanted positions: each
-/// as far as the separating planes of its pairs allow, sliding along them. A plane is normal to
-/// the closest points of two disjoint sub-simplices, placed where both sides want it most. At the
-/// end nothing crosses, since the planes of a vertex do not depend on the moves of others.
+/// as far as the separating planes of its pairs allow, sliding along them. A plane is normal to an
+/// axis of SeparatingAxes, at the middle of the wanted positions of both sides, clamped to the free
+/// interval. At the end nothing crosses: the planes of a vertex do not depend on others' moves.
 /// Floating point, with half the gap to spare; sub-simplices whose distance is of the order of
 /// rounding stay where they are. Returns the number of planes.
 std::size_t move_between_planes(const PlaneSeparatedMotion& motion, std::vector<Vec3>& at);

@@ -1,3 +1,5 @@
+// Constraint: min n · a − max n · b ≥ separation at the end. Where it is violated, vertices of a
+// and b move along ± n beyond the plane midway between the two extremes, with equal weights.
 #include "contact/motion/separation_projection.h"
 
 #include <algorithm>
@@ -35,12 +37,14 @@ struct ConstraintsOfVertices {
 
 }  // namespace
 
+// `next`: the end of the motion, which the axes at the end refer to.
 void SeparationProjection::choose_axis(Constraint& c, const SeparatingAxes& axes, std::size_t lane,
                                        const std::vector<Vec3>& next) const {
   const bool adjacent = c.a.size < 3 || c.b.size < 3;
   const double share = adjacent ? 0.5 : 1;  // adjacent triangles may become thinner as the body is squeezed
   double largest = 0, best = -std::numeric_limits<double>::infinity();
   for (const auto& start : axes.start_separation) largest = std::max(largest, start[lane]);
+  // max end separation, subject to start separation ≥ min(largest, gap) / 2.
   const auto consider = [&](const Vec3& axis, double start, double end) {
     if (start > 0 && start >= 0.5 * std::min(largest, gap_) && end > best)
       best = end, c.axis = axis, c.separation = std::min(gap_, share * start);
@@ -87,7 +91,7 @@ bool SeparationProjection::make_rigid(std::span<const Pair> pairs) {
 }
 
 void SeparationProjection::project(std::vector<Vec3>& next) const {
-  constexpr int max_sweeps = 30;
+  constexpr int max_sweeps = 30;  // bounds the effort; bounded_motion.cpp tests and projects again
   constexpr double margin = 0.1;  // of a constraint's separation: projections do not end on its bound
   const ConstraintsOfVertices of_vertex(next.size(), constraints_);
   const auto zones = zones_.zones();

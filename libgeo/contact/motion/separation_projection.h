@@ -16,8 +16,8 @@ namespace geo {
 
 struct SeparatingAxes;
 
-/// Constraints between pairs of triangles, each with an axis that separates the pair at the start
-/// of the motion and has to separate it at the end: then the pair does not meet in between.
+/// Constraints between pairs of triangles. The axis of each separates its pair at the start of the
+/// motion and has to separate it at the end: then the pair does not meet in between.
 /// Triangles that share vertices are constrained by their disjoint sub-simplices. Pairs without a
 /// usable axis move in rigid impact zones.
 class SeparationProjection {
@@ -30,9 +30,9 @@ class SeparationProjection {
       : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
 
   /// Adds constraints for pairs that the motion from the start to `next` does not certify; replaces
-  /// those of pairs that have some. Among the axes that separate a pair well at the start, the one
-  /// that separates it most at the end is used. A pair so near that rounding hides all axes is made
-  /// rigid.
+  /// older constraints of the same pairs. The axis has the largest end separation among axes with
+  /// start separation ≥ min(largest start separation, gap) / 2. A pair without such an axis (start
+  /// separation > 0) is made rigid.
   void add(std::span<const Pair> pairs, const std::vector<Vec3>& next);
   /// Merges each pair, and all that move with it, into one rigid zone. Returns whether that changed
   /// anything.

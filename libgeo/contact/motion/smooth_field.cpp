@@ -1,3 +1,5 @@
+// Grid values v_g = Σ w_g(x) m / Σ w_g(x) over points x with motion m; field(x) = Σ w_g(x) v_g with
+// w the tensor product of quadratic B-splines. Differences of v_g bound the derivatives.
 #include "contact/motion/smooth_field.h"
 
 #include <algorithm>
@@ -25,7 +27,8 @@ SmoothField::SmoothField(const std::vector<Vec3>& at, const std::vector<Vec3>& m
   bound_derivatives(filled);
 }
 
-// A grid that has the splines of all points of the box.
+// A grid that has the splines of all points of the box. Cells grow by a factor of 1.5 until
+// the grid has at most 64 points for each given one, plus 4096: this bounds memory.
 void SmoothField::make_grid(const Box3& box, std::size_t points) {
   const double largest = 64.0 * double(points) + 4096;
   for (;; cell_ *= 1.5) {
@@ -58,8 +61,8 @@ std::vector<std::uint8_t> SmoothField::fill(const std::vector<Vec3>& at, const s
   return filled;
 }
 
-// Grid points that corners of a triangle do not reach, but its inside may, get the mean of their
-// neighbours, along one axis after the other.
+// Grid points that no corner of a triangle reaches, although its inside may, get the mean of their
+// neighbours: along x, then y, then z.
 void SmoothField::extend(std::vector<std::uint8_t>& filled) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<std::uint8_t> before = filled;
@@ -75,7 +78,8 @@ void SmoothField::extend(std::vector<std::uint8_t>& filled) {
   }
 }
 
-// Derivatives of a spline along axes are means of differences on the grid.
+// Derivatives of a spline along axes are weighted means of differences on the grid: |∂_i f| ≤
+// max |v_g − v_(g + e_i)| / cell, and second differences likewise.
 void SmoothField::bound_derivatives(const std::vector<std::uint8_t>& filled) {
   double first = 0, second = 0;  // squared differences
   for (int axis = 0; axis < 3; ++axis) {
@@ -101,6 +105,8 @@ void SmoothField::bound_derivatives(const std::vector<std::uint8_t>& filled) {
   bend_ = 3 * std::sqrt(second) / (cell_ * cell_);  // a 3 × 3 matrix' norm is at most 3 times its largest entry
 }
 
+// Quadratic B-spline at offset f ∈ [−½, ½] from the nearest grid point: ½ (½ − f)², ¾ − f²,
+// ½ (½ + f)².
 SmoothField::Weights SmoothField::weights(const Vec3& p) const {
   Weights w;
   for (int k = 0; k < 3; ++k) {

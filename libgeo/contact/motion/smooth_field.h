@@ -29,7 +29,8 @@ class SmoothField {
   double slope() const { return slope_; }
   /// Upper bound of the distance between the image of a triangle under the field and the flat
   /// triangle of the images of its corners. `edge`: its longest edge, model units. Infinite for
-  /// edges longer than a cell.
+  /// edges longer than a cell. The bound is ½ bend R² for linear interpolation within a circle of
+  /// radius R, and R ≤ edge / √3 (Jung).
   double deviation(double edge) const {
     return edge <= cell_ ? bend_ * edge * edge / 6 : std::numeric_limits<double>::infinity();
   }

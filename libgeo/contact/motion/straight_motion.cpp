@@ -1,3 +1,5 @@
+// Trials with shares 1, 1/2, 1/4, 0 of each vertex' move. A pair that no axis separates at both
+// ends shortens the moves of its vertices; only pairs with a shortened move are judged again.
 #include "contact/motion/straight_motion.h"
 
 #include <algorithm>
@@ -66,6 +68,7 @@ class StraightMotion {
     });
   }
 
+  // Separation to be kept: adjacent triangles may become thinner as the body is squeezed.
   double required(const PairSeparation& p, bool adjacent) const {
     return std::min(gap_, adjacent ? 0.5 * p.start : p.start);
   }
@@ -130,7 +133,7 @@ class StraightMotion {
   }
 
   void shorten_moves(int trial) {
-    constexpr int max_halvings = 2;
+    constexpr int max_halvings = 2;  // then the vertex stays: at most 4 trials for it
     for (std::size_t v = 0; v < at_.size(); ++v)
       if (blocked_[v]) share_[v] = trial < max_halvings ? 0.5 * share_[v] : 0, moves_[v] = share_[v] > 0;
     for (std::size_t t = 0; t < triangles_.size(); ++t) changed_[t] = any_vertex(triangles_[t], blocked_);
@@ -142,7 +145,7 @@ class StraightMotion {
   double gap_;
   const std::vector<Vec3> start_;
   std::vector<Vec3>& at_;
-  std::vector<double> share_;                   // per vertex, of its way
+  std::vector<double> share_;                   // per vertex, of its whole move
   std::vector<std::uint8_t> moves_, blocked_;   // per vertex
   std::vector<std::uint8_t> changed_, moving_;  // per triangle: since the last trial; has a vertex that moves
   std::vector<Box3> boxes_;                     // per triangle, swept

@@ -1,3 +1,4 @@
+// Straight motion first (cheap, no planes), then planes for the vertices that still lag behind.
 #include "contact/motion/vertex_advance.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A flank is the middle plane r = α along + β back, α, β ∈ [0, 1]. Faces of the wedge lean by
+// thickness / (2 |back|) against it; depth = clearance − n · (x − start of the segment).
 #include "contact/response/blade_penalty.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Surface vertices of other bodies are mapped to this body's material by the inverse deformation.
+// The nearest point of the undeformed surface gives the contact; its deformed triangle the normal.
 #include "contact/response/body_contact.h"
 
 #include <algorithm>
@@ -80,9 +82,8 @@ class BodyContactFinder {
     }
   }
 
-  // The point of body b's surface nearest to x, material coordinates; none where there is none
-  // within reach, or x lies beyond a crack from the node `anchor` that it was mapped by: in an open
-  // gap.
+  // The point of body b's surface nearest to x, material coordinates. None if no surface is within
+  // reach, or if a crack lies between x and `anchor`, the node that mapped it: x is in an open gap.
   std::optional<SidePoint> nearest_point(const Vec3& x, const Vec3& anchor, std::uint32_t b) {
     faces_.clear();
     complex().faces_near(Box3{x, x}.grown(options_.reach), faces_);
@@ -96,7 +97,8 @@ class BodyContactFinder {
       const Vec3 on = closest_point_on_triangle(x, c[0], c[1], c[2]), away = x - on,
                  normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
       const double d = away.norm(), frontal = std::abs(normal.dot(away));
-      // Several triangles may share the nearest point: the one that faces x most decides the side.
+      // Several triangles may share the nearest point: the largest |normal · (x − point)| decides
+      // the side.
       if (!(d < least || (d == least && frontal > most_frontal))) continue;
       const SidePoint p{{f, crack && normal.dot(away) > 0 ? 1 : 0}, barycentric(on, c[0], c[1], c[2]), on};
       if (crack && !((world(p, 0) - world(p, 1)).norm() > d)) continue;
@@ -120,7 +122,7 @@ class BodyContactFinder {
     std::vector<NodeWeight> entries;
     for (const auto& [node, weight] : stencil) entries.push_back({node, weight});
     const double factor = std::max(pressure_factor(v), pressure_factor(complex().surface_vertex(p.side, 0)));
-    const double pressure = 0.5 * options_.pressure * factor;
+    const double pressure = 0.5 * options_.pressure * factor;  // vertices of both bodies act: half each
     contacts_.add(std::move(entries), material(v) - p.point, normal, pressure * in_.weights.area(v.index()));
   }
   double pressure_factor(SurfaceVertexId v) const {

@@ -24,13 +24,12 @@ struct BodyContactInput {
 struct BodyContactOptions {
   double pressure = 1e6;  ///< pressure over depth, Pa/m
   double friction = 0.3;  ///< Coulomb's coefficient
-  /// Vertices at most so far from or deep in another body are considered, model units: no less than
-  /// what bodies approach each other in a step, plus a node spacing.
+  /// Largest distance from, or depth in, another body at which vertices are considered, model
+  /// units: at least the approach of bodies in a step plus a node spacing.
   double reach = 0;
   double slip_regularisation = 0;  ///< model units (contact_law.h)
-  /// Per node, of the pressure on the surface that it carries; the larger one of the two sides
-  /// acts. Empty:
-  /// 1.
+  /// Per node, factor of the pressure on the surface that it carries; the larger one of the two
+  /// sides acts. Empty: 1.
   std::span<const double> pressure_factor = {};
 };
 

@@ -1,3 +1,5 @@
+// Depth max(0, −n · (offset + d)) of relative displacement d, penalised quadratically. Lagged
+// friction acts on the slip (I − n nᵀ) (d − d_start). Formulas: mechanics/terms/contact_law.h.
 #include "contact/response/body_contact_penalty.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// For closest points a, b and normal n: depth = gap − n · (a − b) at the end of the motion.
+// approach = max(0, n · (a − b) − gap) / dt at the start, or −share · max(0, depth) / dt.
 #include "contact/response/contact_constraints.h"
 
 #include <algorithm>
@@ -82,7 +84,7 @@ void add_sheet_constraints(const CoincidentVertices& coincident, const std::vect
         const auto a = coincident[v][i], b = coincident[v][j];
         // The outward normal of b's side points to a's material.
         const Vec3 across = normals[b].normalized() - normals[a].normalized();
-        if (!(across.norm() > 0.5)) continue;  // they do not face each other
+        if (!(across.norm() > 0.5)) continue;  // they do not face each other: normals less than 29° apart
         const Vec3 n = across.normalized();
         const double apart = n.dot(targets[a] - targets[b]);
         if (apart < -tolerance)

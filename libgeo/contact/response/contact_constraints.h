@@ -12,7 +12,7 @@ namespace geo {
 struct ContactConstraint {
   SurfacePoint a, b;
   Vec3 normal;       ///< unit, from b to a
-  double depth = 0;  ///< by how much the motion falls short of their gap, model units
+  double depth = 0;  ///< gap − separation along the normal at the end of the motion, model units
   /// Relative speed along −normal that is still allowed, model units per second; negative: they
   /// must separate.
   double approach = 0;
@@ -44,8 +44,9 @@ void add_sheet_constraints(const CoincidentVertices& coincident, const std::vect
                            const std::vector<Vec3>& normals, double tolerance, const ConstraintOptions& options,
                            std::vector<ContactConstraint>& constraints);
 
-/// For every two nodes, of those constraints whose points these nodes carry the most, the `count`
-/// deepest. More would be redundant, since nodes are farther apart than vertices. Keeps the order.
+/// Assigns each constraint to the heaviest nodes of its two points, and keeps the `count` deepest
+/// for every two nodes. More would be redundant, since nodes are farther apart than vertices. Keeps
+/// the order.
 std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactConstraint>& constraints,
                                                    const SurfaceWeights& weights, std::size_t count);
 

@@ -1,3 +1,5 @@
+// Rounds: constraints of the motion to the targets, impulses on node velocities, u += dt Δv. A last
+// pass recovers penetration by displacements alone: velocities do not change.
 #include "contact/response/impulse_response.h"
 
 #include "contact/response/contact_constraints.h"
@@ -34,6 +36,7 @@ class ImpulseResponse {
     const auto near = deepest_constraints(contact_constraints(candidates_, motion, constraint), step_.weights,
                                           constraints_per_node_pair);
     std::vector<ContactConstraint> all_sides;
+    // Tolerance of 0.01 gap: coincident sides whose targets overlap by less get no constraint.
     add_sheet_constraints(coincident, to, normals_, 0.01 * gap_, constraint, all_sides);
     const auto sides = deepest_constraints(all_sides, step_.weights, constraints_per_node_pair);
     ImpulseOptions options;
@@ -49,7 +52,7 @@ class ImpulseResponse {
   MovingSurface& surface_;
   BroadPhase& near_;
   std::vector<Vec3> normals_;  // per surface vertex, of its sheet
-  CoincidentVertices alone_;   // every vertex for itself: the sides of a sheet move apart
+  CoincidentVertices alone_;   // no vertices coincide: the sides of a sheet move apart
   std::vector<double> inverse_mass_;
   std::vector<ContactCandidate> candidates_;  // of the first round
 };

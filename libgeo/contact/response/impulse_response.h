@@ -23,15 +23,15 @@ struct StepWithoutContact {
 
 /// Parameters of the response.
 struct ImpulseResponseOptions {
-  double gap;       ///< that sheets in contact keep, model units
+  double gap;       ///< distance that surfaces in contact keep, model units
   double friction;  ///< Coulomb's coefficient
   double recovery;  ///< share of a penetration that one step takes back
   int rounds;       ///< at most, of finding contacts and applying impulses
 };
 
 /// Changes displacements and velocities of `state`, the end of the step, so that surface points
-/// stop approaching each other, and brings back points that passed each other, without a change of
-/// velocity. Momentum is conserved but for fixed nodes. `near`: is left with the broad phase's
+/// stop approaching each other. Then brings back points that passed each other, by displacements
+/// alone. Momentum is conserved but for fixed nodes. `near`: is left with the broad phase's
 /// pairs. Returns the number of contacts, summed over the rounds.
 std::size_t resolve_with_impulses(const StepWithoutContact& step, const ImpulseResponseOptions& options,
                                   MovingSurface& surface, BroadPhase& near, State& state);

@@ -1,3 +1,5 @@
+// Projected Gauss–Seidel on accumulated impulses λ with compliance s (W: effective inverse mass):
+// λ ← max(0, λ − (approach + n · v + s λ) / (W + s)); friction is clamped to |λ_t| ≤ μ λ.
 #include "contact/response/impulses.h"
 
 #include <algorithm>
@@ -14,9 +16,9 @@ struct ContactImpulse {
   Vec3 friction = Vec3::Zero();
 };
 
-// One Gauss–Seidel update of a contact: the change of its impulse that gives its points, which have
-// the relative velocity v, the missing normal speed `deficit` and stops their slip as far as
-// friction can.
+// One Gauss–Seidel update of a contact with relative velocity v. Returns the change of its impulse:
+// it adds the missing normal speed `deficit`, and stops the slip as far as friction can.
+// `inverse_mass`: effective, `softness` included.
 Vec3 update_impulse(const Vec3& n, const Vec3& v, double deficit, double softness, double inverse_mass, double friction,
                     ContactImpulse& impulse) {
   const double before = impulse.normal;

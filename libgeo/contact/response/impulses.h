@@ -23,7 +23,7 @@ struct ImpulseOptions {
   int sweeps = 8;           ///< at most
   double tolerance = 1e-2;  ///< sweeps end when the largest change of a relative speed is this share of the largest
   /// Compliance: share of the effective inverse mass of point a alone that is added to that of the
-  /// pair. It bounds impulses where both points share their nodes.
+  /// pair. It bounds impulses where both points share their nodes. Larger: softer contacts.
   double softness = 0.02;
 };
 

@@ -1,3 +1,5 @@
+// Vertices are evaluated in the obstacle's frame by its exact distance field (rigid_shape.h). Slip
+// is measured from where the vertex would be had it stuck to the obstacle.
 #include "contact/response/obstacle_penalty.h"
 
 #include <algorithm>
@@ -18,7 +20,7 @@ void ObstaclePenalty::for_each_displacement(const std::vector<Vec3>& u, const Us
       contacts_.size(), u, [&](std::size_t k) { return contacts_[k].weights; }, use);
 }
 
-// Pose of the obstacle at a share of the step.
+// Pose of the obstacle at a share of the step: slerp of rotations, straight path of the origin.
 Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   if (share <= 0) return from_;
   if (share >= 1) return to_;

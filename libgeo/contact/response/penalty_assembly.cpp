@@ -1,3 +1,5 @@
+// Candidates of the free motion become contacts with depth = separation − n · (a − b), at most
+// constraints_per_node_pair for two nodes. Stiffness: 4 E / (ρ h²) + 1 / dt² per effective mass.
 #include "contact/response/penalty_assembly.h"
 
 #include <algorithm>

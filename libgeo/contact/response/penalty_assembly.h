@@ -34,7 +34,7 @@ struct PenaltyInput {
   const std::vector<Vec3>& mean_targets;  ///< Coincidence::averaged() of these
   const std::vector<Vec3>& free_targets;  ///< per surface vertex, at the end of the free motion
   double dt = 0;                          ///< s
-  double gap = 0;                         ///< that sheets in contact keep, model units
+  double gap = 0;                         ///< distance that surfaces in contact keep, model units
 };
 
 /// Adds to `penalty` the contacts that the free motion may close: pairs of surface points that come

@@ -1,3 +1,4 @@
+// Weight of node j: w_j = Σ weights of a − Σ weights of b; effective inverse mass Σ w_j² / m_j.
 #include "contact/response/relative_stencil.h"
 
 namespace geo {

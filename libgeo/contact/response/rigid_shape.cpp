@@ -1,3 +1,5 @@
+// Sign by pseudonormals (Bærentzen and Aanæs 2005): Σ angle · n at vertices, Σ n at edges. Hessian
+// of ½ d²: n nᵀ at a face, I − t tᵀ at an edge with direction t, I at a vertex.
 #include "contact/response/rigid_shape.h"
 
 #include <cmath>

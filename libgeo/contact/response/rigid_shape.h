@@ -2,7 +2,7 @@
 // (§ 3.3, contact with rigid objects).
 //
 // Distances are exact, to the triangles, instead of sampled on a grid. A grid would round sharp
-// corners, lose thin parts, and have a gradient that is not that of its values, which a line search
+// corners and lose thin parts. Its gradient would differ from that of its values, and a line search
 // would notice. A query costs the logarithm of the number of triangles.
 #pragma once
 

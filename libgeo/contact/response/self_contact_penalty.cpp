@@ -1,3 +1,5 @@
+// Depth max(0, depth_0 − n · (d − d_0)) of relative displacement d, with d_0 that at the beginning.
+// Quadratic penalty and lagged Coulomb friction: mechanics/terms/contact_law.h.
 #include "contact/response/self_contact_penalty.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Sides of the complex in ascending order (2 · face + side). An update copies unchanged runs of
+// triangles, appends those of new faces and rewrites triangles at changed vertices.
 #include "contact/surface/contact_surface.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Fans and coincidence are computed on first use. New positions reset the coincidence, another
+// topology both.
 #include "contact/surface/moving_surface.h"
 
 #include "contact/detection/find_crossings.h"

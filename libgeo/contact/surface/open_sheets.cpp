@@ -1,3 +1,5 @@
+// Trial moves of gap/2 · 4^(−k), k = 0 … 4, of all opening vertices at once. Vertices whose
+// triangles cross (exact test) close again and are tried one by one (docs/decisions/079).
 #include "contact/surface/open_sheets.h"
 
 #include <algorithm>
@@ -11,7 +13,8 @@ namespace {
 
 using Representatives = std::vector<std::uint32_t>;
 
-// Representatives of which two copies have targets that come apart.
+// Representatives of which two copies a, b have targets that come apart: with d = to_a − to_b and n
+// the normalised difference of unit normals, n · d > opening or |d − (n · d) n| > 3 opening.
 Representatives find_opening(const CoincidentVertices& coincident, const std::vector<Vec3>& normals,
                              const std::vector<Vec3>& to, double opening) {
   Representatives result;
@@ -45,7 +48,7 @@ class SheetOpener {
     for (std::size_t v = 0; v < inward_.size(); ++v)
       if (inward_[v].isZero(0)) inward_[v] = normals_[v];
     Representatives closed = opening;
-    // Smaller moves for those that would cross something.
+    // Smaller moves for vertices whose triangles would cross: five lengths, each along two normals.
     constexpr int most_trials = 10;
     for (int trial = 0; !closed.empty() && trial < most_trials; ++trial) closed = open_at_once(closed, trial);
     return open_one_by_one(closed);
@@ -105,7 +108,7 @@ class SheetOpener {
   // Opens vertices one after another, since others may have been in the way. Tries moves of both
   // copies and of all but the first. Returns the number of vertices that stay closed.
   std::size_t open_one_by_one(Representatives closed) {
-    constexpr int most_trials = 20;
+    constexpr int most_trials = 20;  // five lengths, two normals, both copies or all but the first
     auto representative = coincident_representatives(surface_.site, positions_);
     const auto pairs_of = pairs_at(closed);
     std::size_t next = 0;

@@ -5,8 +5,8 @@
 
 namespace geo {
 
-/// A vertex opens if the targets `to` of two of its coincident copies come apart by more than
-/// `opening` along their normals, or slide past each other by three times that. Each copy then
+/// A vertex opens if the targets `to` of two of its coincident copies are more than `opening` apart
+/// along their normals, or more than 3 · `opening` across them. Each copy then
 /// moves by at most half a gap into its own material: against the normal of the coincident
 /// triangles around it, or against the normal of all its triangles. Copies whose triangles would
 /// cross others stay coincident. `fans`: of the surface. Lengths in model units. Changes

@@ -1,3 +1,4 @@
+// Target = rest position + Σ w_i u_i over the vertex' stencil (surface_weights.h).
 #include "contact/surface/surface_targets.h"
 
 #include <algorithm>

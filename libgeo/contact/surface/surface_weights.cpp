@@ -1,3 +1,5 @@
+// Eq. 1: u(x) = Σ_i w_i (u_i + ∇u_i (x − x_i)), w_i = W_i / Σ W. With ∇u_i = Σ_j u_j ⊗ g_ij, the
+// weight of u_i is w_i, and that of each u_j gains w_i g_ij · (x − x_i).
 #include "contact/surface/surface_weights.h"
 
 #include <algorithm>

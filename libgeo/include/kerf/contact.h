@@ -11,7 +11,7 @@ struct ContactOptions {
   double friction = 0.3;  ///< Coulomb's coefficient
   double gap = 1e-4;      ///< distance that opened sheets of a crack keep
   /// Two sheets of a crack separate where Eq. 1 has them this far apart along the normal, or three
-  /// times as far tangentially.
+  /// times as far tangentially. Smaller: sheets follow the noise of the mechanics and never rest.
   double opening = 1e-2;
   double recovery = 0.3;  ///< share of an interpenetration that a step removes, explicit steps only
   int rounds = 2;         ///< iterations of contact detection and impulses, explicit steps only

@@ -45,6 +45,8 @@ std::vector<VertexId> vertices_between(const Complex& complex, const FrontState:
 // Another crack may have divided the front's edges since the last step. Consecutive contacts that
 // no edge of K joins are joined through the vertices that now lie between them.
 void update_contacts(FrontState& front, const Complex& complex) {
+  // Far above rounding (2⁻⁵² ≈ 2e-16), far below a front segment. Vertices found count only where
+  // edges of K join them.
   const double tolerance = 1e-12 * complex.extent().diagonal();
   for (auto& segment : front.segments) {
     std::vector<FrontState::Point> updated{segment.front()};

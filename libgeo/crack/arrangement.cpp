@@ -1,3 +1,6 @@
+// Two triangles in different planes share at most a segment. Its ends follow from signs of orient3d
+// alone (compare Guigue and Devillers 2003); coplanar triangles are clipped edge by edge. Pairs
+// come from the lists of near faces, and for the strip with itself from sweep and prune.
 #include "crack/arrangement.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A feature edge has ≠ 2 faces, or two of different surfaces, or a crease: n₁ · n₂ < cos(crease)
+// |n₁||n₂|. A vertex lies on all surfaces of its faces and on the lines of its feature edges.
 #include "crack/features.h"
 
 #include <algorithm>

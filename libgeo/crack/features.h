@@ -14,9 +14,10 @@ namespace geo::crack {
 
 /// Rules for what local edits must preserve.
 struct FeatureRules {
-  double crease = 0.94;   ///< cosine: edges with a larger dihedral deviation are features
-  bool keep_skin = true;  ///< vertices stay on the triangles of the input on which they lie; else the
-                          // /< skin is treated as a crack
+  double crease = 0.94;  ///< cosine: edges with a larger dihedral deviation are features
+  /// True: vertices stay on the input triangles on which they lie. False: the skin is treated as a
+  /// crack.
+  bool keep_skin = true;
 };
 
 /// The surfaces and feature lines on which a vertex lies.

@@ -1,3 +1,6 @@
+// Each edit removes the faces at a vertex or edge and adds replacements. Radial cycles are copied
+// with ids exchanged; collapsing b into a joins the cycles around ax and bx. Tetrahedra swept by
+// faces must contain no vertex of other faces, or a face might pass over it.
 #include "crack/local_edit.h"
 
 #include <algorithm>

@@ -17,7 +17,8 @@
 namespace geo {
 namespace {
 
-constexpr int rounds = 8;  // of displace(): later rounds move few vertices
+// Rounds of displace(). Larger: blocked vertices get nearer to their goals, the cost grows.
+constexpr int rounds = 8;
 
 class Roughener {
  public:
@@ -134,7 +135,7 @@ class Roughener {
     return vertices;
   }
 
-  // Fractal noise at a vertex of a crack.
+  // Fractal noise at a vertex p of a crack: Σ_o 0.6^o · noise_o(2^o · frequency · (p − lo)).
   double noise_at(VertexId v, std::int32_t crack) const {
     double sum = 0, height = 1, frequency = options_.frequency / size_;
     for (int octave = 0; octave < options_.octaves; ++octave, height *= 0.6, frequency *= 2)
@@ -153,6 +154,8 @@ class Roughener {
       const auto location = crack::location_of(k_, v, rules_);
       if (location.features.empty() && location.sources.empty() && location.cracks.size() == 1) free.insert(v);
     }
+    // The noise grows linearly from 0 at vertices that stay to its full height at distance `fade`.
+    // Its slope there is a third of the noise, whatever the amplitude.
     const double height = options_.amplitude * size_, fade = 3 * height;
     const auto distance = distances(vertices, free, fade);
     std::vector<Move> moves;

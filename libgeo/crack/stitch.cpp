@@ -1,3 +1,6 @@
+// Four phases: children of cut faces, crack faces, radial orders around the edges of crack faces,
+// radial orders of divided edges. K's stored order is copied, never sorted again; crack faces are
+// inserted into it by exact comparison of angles.
 #include "crack/stitch.h"
 
 #include <algorithm>

@@ -14,9 +14,9 @@ namespace geo {
 /// shares with K coincide exactly: contacts were rounded to doubles when they were stored.
 struct Strip {
   struct Triangle {
-    std::array<std::uint32_t, 3> p;          ///< indices into points
-    std::array<int, 3> segment{-1, -1, -1};  ///< per edge k (p[k] to p[k+1]): the segment of the new
-                                             // /< front on which it lies, or −1
+    std::array<std::uint32_t, 3> p;  ///< indices into points
+    /// Per edge k (p[k] to p[k+1]): the segment of the new front on which it lies; −1: none.
+    std::array<int, 3> segment{-1, -1, -1};
   };
   std::vector<Vec3> points;
   std::vector<bool> fixed;  ///< per point: it is on the old front, or snapped, and must not move

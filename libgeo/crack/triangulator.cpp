@@ -1,3 +1,6 @@
+// Points are inserted one by one. Flipping the diagonals in its way enforces a constraint (Sloan
+// 1993); Lawson flips improve the result towards Delaunay. Orientation is decided by the exact
+// predicates of points.h, in the projection along the face's dominant axis.
 #include "crack/triangulator.h"
 
 #include <algorithm>

@@ -8,14 +8,10 @@
 //
 // Terms and the paper's symbols:
 //   K        the crack complex; skin faces bound the solid, crack faces lie inside it
-//   side     a face seen from the material on one side of it; a skin face has one side, a crack
-//   face two
-//   wedge    the space between two faces that follow each other around an edge: all material, or
-//   all air
-//   fan      sides at a vertex of K that are connected through wedges of material; each is one
-//   vertex of S_A
-//   S_A      the derived surface: all sides, joined across wedges of material; closed, oriented,
-//   manifold
+//   side     a face seen from material on one side; skin faces have one side, crack faces two
+//   wedge    the space between consecutive faces around an edge: all material, or all air
+//   fan      sides at a vertex of K, connected through wedges of material: one vertex of S_A
+//   S_A      the derived surface: all sides, joined across wedges; closed, oriented, manifold
 //   site     the vertex of K at which a vertex of S_A stands; the fans of one site coincide
 #pragma once
 

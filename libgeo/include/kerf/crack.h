@@ -60,15 +60,19 @@ struct FrontState {
 
 /// Tolerances are relative to the diagonal of Complex::extent().
 struct CrackOptions {
-  double snap = 1e-14;  ///< strip vertices this near to a vertex of K become that vertex
-  double face_offset =
-      1e-6;  ///< a new front point within a hundredth of this of a face of K, but not on it, moves this
-             // /< far off the face
-  double clearance = 0x1p-46;  ///< least distance between features that do not touch; the later half of the attempts
-                               // /< does without
-  double jitter = 1e-9;        ///< displacement of the new front in the first repeated attempt
-  int attempts = 12;           ///< how often a refused step is repeated with the front displaced
-  std::uint64_t seed = 1;      ///< of the displacements
+  /// The strip is snapped to vertices of K nearer than this: its vertices move, edges and triangles
+  /// are divided there.
+  double snap = 1e-14;
+  /// New front points off K but nearer to a face than face_offset / 100 move away from it by
+  /// face_offset. Otherwise the strip would have needles there.
+  double face_offset = 1e-6;
+  /// Least distance between features of cracks that do not touch (2⁻⁴⁶ ≈ 1.4e-14). The later half
+  /// of the attempts has no such limit.
+  double clearance = 0x1p-46;
+  /// Displacement of the new front in repeated attempt n = 1, 2, …: jitter · 8^min(n − 1, 4).
+  double jitter = 1e-9;
+  int attempts = 12;       ///< how often a refused step is repeated with the front displaced
+  std::uint64_t seed = 1;  ///< of the displacements
 };
 
 /// Counts and seconds of one step, by phase.

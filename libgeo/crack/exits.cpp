@@ -115,7 +115,7 @@ bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3
   std::stable_sort(largest.begin(), largest.end(), [&](auto i, auto j) { return area(i) > area(j); });
   largest.resize(std::min(largest.size(), max_chosen));
   for (const auto chosen : largest)
-    for (const double share : {0.5, 0.375, 0.6875}) {
+    for (const double share : {0.5, 0.375, 0.6875}) {  // other points where the arc meets an edge
       const Vec3 w = fan[chosen][1] + share * (fan[chosen][2] - fan[chosen][1]);
       const int start = orient3d(u, fan[chosen][1], fan[chosen][2], q),
                 end = orient3d(u, fan[chosen][1], fan[chosen][2], w);

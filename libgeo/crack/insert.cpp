@@ -96,8 +96,8 @@ std::vector<VertexId> known_vertices(const Arrangement& arrangement) {
 }  // namespace
 
 Attempt attempt_at(int number, const CrackOptions& options, double size) {
-  // At most 8⁴ · 1e-9 ≈ 4e-6 of the model's size by default: larger displacements would be visible.
-  // Half of the attempts insist on the clearance (docs/decisions/005).
+  // By default 1e-9 … 8⁴ · 1e-9 ≈ 4e-6 of the model's size. Half of the attempts insist on the
+  // clearance (docs/decisions/005).
   return {number == 0 ? 0 : options.jitter * size * std::pow(8.0, std::min(number - 1, 4)),
           2 * number <= options.attempts ? options.clearance * size : 0};
 }

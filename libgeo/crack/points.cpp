@@ -1,4 +1,6 @@
-// Explicit and implicit points: floating-point filters, exact arithmetic (GMP) where these fail.
+// Floating-point filters with error bounds, and GMP where they fail: exact numbers are m · 2^e with
+// integer m, exact points homogeneous. ab crosses a plane at (b d_a − a d_b) / (d_a − d_b), where
+// d_a, d_b are the signed distances of a and b, times |normal|.
 #include <gmpxx.h>
 
 #include <bit>

@@ -1,4 +1,6 @@
-// Remeshing: improves small angles of a region by flips, collapses, moves and divisions.
+// A queue of faces below the wanted angle; each tries flip, collapse, vertex move and bisection,
+// in this order, until one is accepted. Quality of an edit: its largest cotangent of a smallest angle,
+// before and after.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>

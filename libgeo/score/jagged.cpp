@@ -1,5 +1,5 @@
-// Walls are refined by longest-edge bisection and displaced by fractal noise in each
-// coordinate, Σ_o 0.6^o · noise_o(2^o · frequency · p). Where triangles cross (exact test, spatial index), the
+// Walls are refined by longest-edge bisection and displaced by fractal noise in each coordinate,
+// Σ_o 0.6^o · noise_o(2^o · frequency · p). Where triangles cross (exact test, spatial index), the
 // displacement of their vertices is halved, and dropped at the fourth time.
 #include "score/jagged.h"
 

@@ -1,6 +1,6 @@
 // Depth is the distance to the skin, negative outside, at the vertices of the walls. A connected
-// part keeps what is less deep than the fraction of its greatest depth. Triangles are cut along that
-// level of the linearly interpolated depth (as marching triangles do).
+// part keeps what is less deep than the fraction of its greatest depth. Triangles are cut along
+// that level of the linearly interpolated depth (as marching triangles do).
 #include "score/partial.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// planes, crossing, bricks: grids of boxes along the axis. radial, glass: spokes and rings around
-// a hub, extruded. voronoi, wood: Voronoi cells of blue-noise sites; wood divides lengths
-// along the grain by its ratio before, and multiplies them after.
+// planes, crossing, bricks: grids of boxes along the axis. radial, glass: spokes and rings around a
+// hub, extruded. voronoi, wood: Voronoi cells of blue-noise sites; for wood, lengths along the
+// grain are divided by its ratio before, and multiplied after.
 #include "score/patterns.h"
 
 #include <algorithm>

@@ -203,7 +203,7 @@ TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box) {
   });
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) throw InputError("two sites are at one place");
   Random random(sites.size());
-  // Displacements of 2⁻¹⁶ … 2⁻⁷ of the diagonal, from invisible to a percent of it.
+  // Displacements of 2⁻¹⁶ … 2⁻⁷ of the diagonal: the first that helps is used.
   for (double by = 0x1p-16 * box.diagonal(); by < 0x1p-6 * box.diagonal(); by *= 2) {
     if (auto walls = walls_of(moved, box)) return *walls;
     for (std::size_t i = 0; i < moved.size(); ++i)

@@ -1,4 +1,6 @@
-// The crack complex K: incidence, proximity and the derived surface.
+// Corners at a vertex form a linked list in ascending order; radial_ links the faces around an edge
+// in a cycle. The neighbour of a side on S_A is the face next in that cycle, seen from the other
+// side of their wedge.
 #include "kerf/complex.h"
 
 #include <algorithm>

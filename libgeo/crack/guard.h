@@ -30,8 +30,8 @@ struct Family {
 
 /// A piece of a front's line that leaves the material at a vertex; see exits.h.
 struct FrontExit {
-  VertexId from;
-  Vec3 to;
+  VertexId from;                 ///< where the line leaves the material
+  Vec3 to;                       ///< the end of the piece outside
   VertexId at;                   ///< the vertex at `to`, where the line comes back; else invalid
   std::span<const FaceId> near;  ///< faces of K that may be near
 };

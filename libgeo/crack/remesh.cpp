@@ -1,5 +1,5 @@
-// A queue of faces below the wanted angle; each tries flip, collapse, vertex move and bisection,
-// in this order, until one is accepted. Quality of an edit: its largest cotangent of a smallest angle,
+// A queue of faces below the wanted angle; each tries flip, collapse, vertex move and bisection, in
+// this order, until one is accepted. Quality of an edit: its largest cotangent of a smallest angle,
 // before and after.
 #include "kerf/crack_edits.h"
 

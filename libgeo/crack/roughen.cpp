@@ -1,6 +1,6 @@
-// Longest-edge bisection (Rivara and Inostroza 1997), then each inner vertex moves along its normal:
-// p + amplitude · min(1, d / fade) · Σ_o 0.6^o · noise_o(p), d: distance along edges to the nearest
-// vertex that stays (Dijkstra). A refused move is tried at 1/2 and 1/4, then again in later rounds.
+// Longest-edge bisection (Rivara and Inostroza 1997); then each inner vertex moves along its normal
+// to p + amplitude · min(1, d / fade) · Σ_o 0.6^o · noise_o(p), d: distance along edges to the
+// nearest fixed vertex (Dijkstra). A refused move is tried at 1/2 and 1/4, then in later rounds.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>

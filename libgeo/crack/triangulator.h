@@ -97,7 +97,8 @@ class Triangulator {
   std::vector<PointIndex> chain_;  // points on the edge at hand
 };
 
-/// projection_axis() of three explicit points, as corners of elements are.
+/// projection_axis() of three explicit points, as corners of elements are: the dominant axis of the
+/// normal, and the sign of orient2d along it (0: no area).
 std::pair<int, int> projection_of(const Points& points, const std::array<PointIndex, 3>& corner);
 
 }  // namespace geo::crack

@@ -23,8 +23,8 @@ namespace geo {
 /// A front over time: F_0, F_1, … A closed front joins its last point to its first. A sheet is a
 /// crack given whole: a single step, and triangles of its points.
 struct Front {
-  std::string name;
-  bool closed = false;
+  std::string name;     ///< as in its file; may be empty
+  bool closed = false;  ///< the last point is joined to the first
   std::vector<std::vector<Vec3>> steps;  ///< points per time step, each at least two; material coordinates
   std::vector<Triangle> triangles{};     ///< of a sheet: indices into steps[0]; else none
 
@@ -77,7 +77,12 @@ struct CrackOptions {
 
 /// Counts and seconds of one step, by phase.
 struct CrackStats {
+  /// faces_near: pairs of a strip triangle and a near face of K; triangles_cut: faces of K that were
+  /// divided; attempts: the first one included; snapped: vertices of K that the strip was snapped
+  /// to; repairs: attempts in which displaced points removed a fault of rounding.
   std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0;
+  /// near: sweep, near faces, snapping; meet: intersections; split: triangulation; keep:
+  /// classification; stitch: edit and commit; guard: checks and repairs after rounding.
   double near_seconds = 0, meet_seconds = 0, split_seconds = 0, keep_seconds = 0, stitch_seconds = 0, guard_seconds = 0;
   /// Adds all counts and seconds.
   CrackStats& operator+=(const CrackStats& other);

@@ -30,6 +30,7 @@ struct RemeshOptions {
 };
 
 struct RemeshStats {
+  /// faces: bad faces examined, again each time; then the edits made, by kind.
   std::size_t faces = 0, flips = 0, collapses = 0, moves = 0, divisions = 0;
   std::size_t refused = 0;  ///< edits that the guard or may_sweep refused
   double seconds = 0;

@@ -116,8 +116,8 @@ void advance_contacts(FrontState& front, const Complex& complex, const Strip& st
   front.points = std::move(points);
 }
 
-// Moves a point that is close to a face of K but not on it away from the face, to the side on which
-// it is: the strip would have needles there that cannot be rounded. Points exactly on K stay.
+// A point nearer to a face of K than 0.01 · distance moves away from it by `distance`, on its own
+// side. Otherwise needles in the strip could not be rounded there. Points exactly on K stay.
 Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
   const double reach = 0.01 * distance;
   if (!Box3{p, p}.grown(reach).meets(complex.extent())) return p;
@@ -238,6 +238,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   const FrontState old = prepared(front, complex, options.face_offset * size);
   CrackStats done;
   std::string reason;
+  // 2⁶⁴ / golden ratio spreads consecutive seeds; each step has its own displacements.
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
   std::vector<Vec3> offset_next(next.begin(), next.end());
   for (std::size_t i = 0; i < offset_next.size(); ++i)

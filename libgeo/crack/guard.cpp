@@ -140,7 +140,7 @@ class Inspection {
     return {};
   }
 
-  // A new face that crosses, or is too near to, a face that stays.
+  // A new face that crosses, or is too near to, a kept face.
   Fault find_crossing_with_kept() const {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
     std::sort(removed.begin(), removed.end());

@@ -63,9 +63,8 @@ struct Fault {
 /// Exact. Returns the first fault, none for a valid edit. Cost follows the edit.
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context);
 
-/// Displaces points that are rounded anyway by a few ulps more, where that removes a fault. Returns
-/// the fault that remains, none for a valid edit. `repairs` is incremented when a fault was
-/// removed.
+/// Tries to remove faults by displacing rounded points, from 1 ulp up to 2¹⁵. Returns the remaining
+/// fault, none for a valid edit. Increments `repairs` when all faults were removed.
 Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs);
 
 }  // namespace geo

@@ -60,8 +60,8 @@ void find_kept_pieces(const Arrangement& arrangement, std::span<const ChildRef> 
   std::sort(out.begin(), out.end());
 }
 
-// The pieces of the new front's line that run outside the material from or to a new vertex of K:
-// those that are neither an edge of a kept child nor on K.
+// The pieces of the new front's line outside the material, from or to a new vertex of K. A piece is
+// outside if it is neither an edge of a kept child nor on K.
 std::vector<FrontExit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement,
                                 const EdgeTable& edges, std::span<const ChildRef> kept,
                                 std::span<const VertexId> vertex) {

@@ -137,10 +137,12 @@ PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
     size = std::max({size, std::abs(a[i]), std::abs(b[i])});
     length = std::max(length, std::abs(b[i] - a[i]));
   }
+  // Rounding to double, and the error of t along ab; 1.01 covers the roundings of the bound itself.
   const double half_ulp = size * 0x1p-53, error = 1.01 * half_ulp + 1.01 * static_cast<double>(error_t) * length;
   const PointIndex l = append(x, error);
   definition_[l] = static_cast<std::uint32_t>(definitions_.size());
   definitions_.push_back({l, {a, b, p, q, r}});
+  // A loose bound would defeat the filters: the point is then rounded from its exact coordinates.
   if (!(error <= 8 * half_ulp) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest))
     round(l);
   return l;
@@ -207,7 +209,8 @@ int Points::orient3d(PointIndex a, PointIndex b, PointIndex c, PointIndex d) con
   // Shewchuk's static bound for orient3d (1997): (7 + 56 ε) ε · permanent, ε = 2⁻⁵³.
   double bound = 7.9e-16 * permanent;
   if (error > 0) {
-    // The determinant is linear in each of its nine entries, and each is off by `error` at most.
+    // The determinant is linear in each of its nine entries, each off by `error` at most, with minors
+    // of at most 2 m²: 18 m² · error, and 20 with the terms of second order where error < m / 1000.
     const double m = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff()});
     if (!(error < 1e-3 * m)) bound = largest;
     bound += 20 * m * m * error;

@@ -15,7 +15,7 @@
 
 namespace geo::crack {
 
-using PointIndex = std::uint32_t;  ///< index of a point of the arrangement
+using PointIndex = std::uint32_t;     ///< index of a point of the arrangement
 constexpr PointIndex no_point = ~0u;  ///< stands for none
 
 /// Hash of a position: equal for equal points, both zeros being one.

@@ -19,6 +19,7 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
       if (v >= sheet.vertices.size())
         throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
   const double size = complex.extent().diagonal();
+  // 2⁶⁴ / golden ratio spreads consecutive seeds.
   Random random(options.seed * 0x9e3779b97f4a7c15ull);
   CrackStats done;
   std::string reason;

@@ -30,6 +30,7 @@ Vec3 axis_of(const Box3& box, const PatternOptions& o) {
   return Vec3::Unit(axis);
 }
 
+// Walls must end outside of the model; a larger margin only makes them larger.
 Box3 widened(const Box3& box) { return box.grown(0.25 * box.diagonal()); }
 
 // The ends of `count` intervals of [low, high], randomly uneven; the outer ones extend beyond by

@@ -34,7 +34,7 @@ class Corners {
     if (is_new) entry->second = position(name);
     return entry->second;
   }
-  // Whether the corner is nearer to another site than to those that make it.
+  // Whether the corner is nearer to `site` than to its defining sites.
   bool beyond(const Name& name, std::uint32_t site) {
     const Vec3& p = at(name);
     return (p - sites_[site]).squaredNorm() < (p - sites_[name[0]]).squaredNorm();

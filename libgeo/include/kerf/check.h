@@ -37,8 +37,8 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 /// no two faces cross or overlap. Exact.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 
-/// The structural part of check_complex() for some faces (dead ones are skipped) and those that
-/// share a corner with them: all that a step with these new faces can break. Cost follows the
+/// The structural part of check_complex() for some faces (dead ones are skipped) and the faces that
+/// share a corner with them. A step with these new faces can break nothing else. Cost follows the
 /// faces.
 SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 

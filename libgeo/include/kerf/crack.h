@@ -23,8 +23,8 @@ namespace geo {
 /// A front over time: F_0, F_1, … A closed front joins its last point to its first. A sheet is a
 /// crack given whole: a single step, and triangles of its points.
 struct Front {
-  std::string name;     ///< as in its file; may be empty
-  bool closed = false;  ///< the last point is joined to the first
+  std::string name;                      ///< as in its file; may be empty
+  bool closed = false;                   ///< the last point is joined to the first
   std::vector<std::vector<Vec3>> steps;  ///< points per time step, each at least two; material coordinates
   std::vector<Triangle> triangles{};     ///< of a sheet: indices into steps[0]; else none
 
@@ -32,8 +32,8 @@ struct Front {
   bool is_sheet() const { return !triangles.empty(); }
 };
 
-/// Resamples `next` so that its points correspond one to one with those of `previous`: by index
-/// where the counts agree, else by fraction of arc length.
+/// Resamples `next` to as many points as `previous`: unchanged where the counts agree, else at the
+/// fractions of arc length of the points of `previous`.
 std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed);
 
 /// The number of substeps, at least 1, that keeps each front point's motion per substep at or below
@@ -77,9 +77,9 @@ struct CrackOptions {
 
 /// Counts and seconds of one step, by phase.
 struct CrackStats {
-  /// faces_near: pairs of a strip triangle and a near face of K; triangles_cut: faces of K that were
-  /// divided; attempts: the first one included; snapped: vertices of K that the strip was snapped
-  /// to; repairs: attempts in which displaced points removed a fault of rounding.
+  /// faces_near: pairs of a strip triangle and a near face of K; triangles_cut: divided faces of K;
+  /// attempts: the first one included; snapped: vertices of K that the strip was snapped to;
+  /// repairs: attempts in which displaced points removed a fault of rounding.
   std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0;
   /// near: sweep, near faces, snapping; meet: intersections; split: triangulation; keep:
   /// classification; stitch: edit and commit; guard: checks and repairs after rounding.

@@ -296,8 +296,8 @@ void Arrangement::merge_coinciding_points() {
 }
 
 // Collects the Steiner points and constraints of element e from divisions_[at..]; returns the end
-// of its divisions. A point named by several divisions is entered once, with the union of their edge
-// bits.
+// of its divisions. A point named by several divisions is entered once, with the union of their
+// edge bits.
 std::size_t Arrangement::collect_divisions(std::uint32_t e, std::size_t at) {
   const auto& corner = elements[e].corner;
   constraints_.clear();

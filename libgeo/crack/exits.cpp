@@ -15,7 +15,7 @@ namespace {
 // Pairs of exits and faces that are tested without an index; the result does not depend on it.
 constexpr std::size_t few = 1 << 14;
 
-// The skin around the exits, after the edit.
+// The skin around the exits, after the edit. An exit is a piece of the front's line outside.
 class Surroundings {
  public:
   Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits)

@@ -116,7 +116,7 @@ class Remesher {
         const int e = by_length[i];
         const VertexId from = reversed ? v[e] : v[(e + 1) % 3], to = reversed ? v[(e + 1) % 3] : v[e];
         const auto [before, after] = crack::worst_if_moved(k_, from, k_.point(to), to);
-        if (after >= 0.999 * before || !may_merge(from, to)) continue;
+        if (after >= 0.999 * before || !may_merge(from, to)) continue;  // as in flip()
         auto local = crack::collapse(k_, from, to);
         if (!local) continue;
         if (!stays_close(*local, k_.point(from))) continue;

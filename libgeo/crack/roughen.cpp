@@ -79,7 +79,7 @@ class Roughener {
         next = {};
         const int e = longest_edge(at);
         for (const FaceId g : k_.faces_around(k_.face(at).v[e], k_.face(at).v[(e + 1) % 3]))
-          if (length_of(g, longest_edge(g)) > length_of(at, e) * (1 + 1e-9)) next = g;
+          if (length_of(g, longest_edge(g)) > length_of(at, e) * (1 + 1e-9)) next = g;  // longer beyond rounding
       }
       const int e = longest_edge(at);
       const VertexId a = k_.face(at).v[e], b = k_.face(at).v[(e + 1) % 3];

@@ -36,8 +36,8 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next);
 /// out.
 Strip strip_of(std::span<const Vec3> points, std::span<const geo::Triangle> triangles);
 
-/// Fills `near`: the faces of K whose boxes are within `reach` (model units) of a triangle's box
-/// and not clear of its plane.
+/// Fills `near` as Complex::faces_near_triangle() does, for each triangle of the strip. `reach`:
+/// model units.
 void find_near(Strip& strip, const Complex& complex, double reach);
 
 /// Snaps the strip to vertices of K closer than `reach` (model units): a free point moves to the

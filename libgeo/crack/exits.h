@@ -11,8 +11,8 @@ namespace geo {
 /// The fault of the first exit that is not outside after the edit; none if all are. The next step
 /// would start from it, re-enter the material and leave a passage finer than doubles there.
 ///
-/// Conditions: the exit starts outside the skin around its first vertex, likewise around its last
-/// one where it comes back, and touches no other face of the skin. Exact, except that a
+/// Conditions: the exit starts outside the skin around its first vertex, and around its last one
+/// where it comes back. It touches no other face of the skin. Exact, except that a
 /// rounded point of a face counts as lying on it. Cost follows the faces around the exits, and
 /// the edit.
 Fault find_reentry(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits);

@@ -1,6 +1,6 @@
 // Floating-point filters with error bounds, and GMP where they fail: exact numbers are m · 2^e with
-// integer m, exact points homogeneous. ab crosses a plane at (b d_a − a d_b) / (d_a − d_b), where
-// d_a, d_b are the signed distances of a and b, times |normal|.
+// integer m, exact points homogeneous. ab crosses a plane at (b d_a − a d_b) / (d_a − d_b); d_a
+// and d_b are the signed distances of a and b, times |normal|.
 #include <gmpxx.h>
 
 #include <bit>
@@ -209,8 +209,8 @@ int Points::orient3d(PointIndex a, PointIndex b, PointIndex c, PointIndex d) con
   // Shewchuk's static bound for orient3d (1997): (7 + 56 ε) ε · permanent, ε = 2⁻⁵³.
   double bound = 7.9e-16 * permanent;
   if (error > 0) {
-    // The determinant is linear in each of its nine entries, each off by `error` at most; minors are
-    // at most 2 m². Together 18 m² · error; 20 covers terms of higher order if error < m / 1000.
+    // The determinant is linear in each of its nine entries, each off by `error` at most. Minors are
+    // at most 2 m²: 18 m² · error in all, and 20 covers higher orders if error < m / 1000.
     const double m = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff()});
     if (!(error < 1e-3 * m)) bound = largest;
     bound += 20 * m * m * error;

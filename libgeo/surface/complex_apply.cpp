@@ -1,6 +1,6 @@
-// Phases of a commit: check the edit, plan the radial cycle of each touched edge (children replace
-// parents, given orders replace the plan), then overwrite and rebuild the fans at touched vertices.
-// Each overwritten value is logged for undo().
+// Phases of a commit: check the edit; plan the radial cycle of each touched edge (children replace
+// parents, given orders replace the plan); overwrite; rebuild the fans at touched vertices. Each
+// overwritten value is logged for undo().
 #include <algorithm>
 #include <string>
 

@@ -92,9 +92,9 @@ TriangleMesh make_apple(int frequency) {
 }
 
 TriangleMesh make_polyp(int frequency) {
-  // A surface of revolution over a geodesic sphere: the polar angle runs along a profile (radius,
-  // height) that is a simple curve, the azimuth stays, and small bumps on the bulb keep it from
-  // looking turned.
+  // A surface of revolution over a geodesic sphere. The polar angle runs along a profile (radius,
+  // height), a simple curve; the azimuth stays. Small bumps on the bulb hide the rotational
+  // symmetry.
   constexpr double profile[][2] = {{0, 1.0},      {0.30, 0.95},  {0.52, 0.76},  {0.60, 0.48},  {0.52, 0.20},
                                    {0.32, 0.0},   {0.19, -0.16}, {0.17, -0.38}, {0.20, -0.60}, {0.34, -0.80},
                                    {0.46, -0.92}, {0.42, -1.0},  {0.2, -1.0},   {0, -1.0}};

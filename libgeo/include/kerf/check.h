@@ -32,9 +32,9 @@ struct SurfaceReport {
 /// coincident sheets are no intersection.
 SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 
-/// Checks K: radial cycles list their edges' faces in geometric order, wedges agree, the derived
-/// surface is closed, oriented and manifold, no face is degenerate, and with `self_intersections`
-/// no two faces cross or overlap. Exact.
+/// Checks K: radial cycles list their edges' faces in geometric order; both sides of each wedge are
+/// material, or both air; the derived surface is closed, oriented and manifold; no face is
+/// degenerate. With `self_intersections`, also that no two faces cross or overlap. Exact.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 
 /// The structural part of check_complex() for some faces (dead ones are skipped) and the faces that
@@ -54,9 +54,8 @@ void require_solid(const TriangleMesh& mesh);
 
 // ---- Predicates
 
-/// True when two triangles, given by vertex ids f, g and points p, q, meet other than in the
-/// vertices and edges they share by id, or when a vertex they share occurs twice in one of them.
-/// Exact.
+/// True when two triangles, given by vertex ids f, g and points p, q, meet other than in vertices
+/// and edges shared by id. Also true when a shared vertex occurs twice in one of them. Exact.
 bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
                  const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q);
 

@@ -38,8 +38,8 @@ struct RemeshStats {
 
 /// Improves the faces of `region` (dead ones are skipped) that have a smaller angle than wanted, by
 /// flips, collapses, moves and divisions. Kept are the skin's surface, the lines where cracks meet
-/// each other and the skin, crack tips, creases, and the contacts of `fronts`, which are updated
-/// where a contact is merged with its neighbour. Cost follows the region. Returns all changes.
+/// each other and the skin, crack tips, creases, and the contacts of `fronts`. A contact merged
+/// with its neighbour is removed from its front. Cost follows the region. Returns all changes.
 /// Throws InputError for options out of range.
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
                   const RemeshOptions& options = {}, RemeshStats* stats = nullptr);

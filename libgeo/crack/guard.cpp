@@ -1,6 +1,6 @@
-// Every test is exact on the rounded coordinates, behind floating-point filters. Pairs come from
-// lists of near faces, the spatial index of K, and sweep and prune. Repair displaces rounded
-// points of faulty faces at random, twice as far every second try, and tests again.
+// Orientation, order and crossing are exact on the rounded coordinates, behind floating-point
+// filters; the clearance is measured in doubles. Pairs come from lists of near faces, the index of
+// K, and sweep and prune. Repair displaces rounded points of faulty faces and tests again.
 #include "crack/guard.h"
 
 #include <algorithm>

@@ -70,7 +70,7 @@ std::vector<VertexId> neighbors_of(const Complex& k, VertexId v) {
   return link;
 }
 
-// The cycle without f, starting after f.
+// The faces of the radial cycle after f, in order, without f.
 std::vector<FaceId> rest_after(const std::vector<FaceId>& cycle, FaceId f) {
   const auto at = std::find(cycle.begin(), cycle.end(), f);
   std::vector<FaceId> rest(at + 1, cycle.end());

@@ -209,8 +209,8 @@ int Points::orient3d(PointIndex a, PointIndex b, PointIndex c, PointIndex d) con
   // Shewchuk's static bound for orient3d (1997): (7 + 56 ε) ε · permanent, ε = 2⁻⁵³.
   double bound = 7.9e-16 * permanent;
   if (error > 0) {
-    // The determinant is linear in each of its nine entries, each off by `error` at most. Minors are
-    // at most 2 m²: 18 m² · error in all, and 20 covers higher orders if error < m / 1000.
+    // The determinant is linear in each of its nine entries, each off by `error` at most. Minors
+    // are at most 2 m²: 18 m² · error in all, and 20 covers higher orders if error < m / 1000.
     const double m = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff()});
     if (!(error < 1e-3 * m)) bound = largest;
     bound += 20 * m * m * error;

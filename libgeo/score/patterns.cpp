@@ -172,7 +172,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   const Box3& box = skin.box();
   const double diagonal = box.diagonal();
   // Spacing of sites at p, relative to that far from the impact c of radius r:
-  // 1 − (1 − closest) · exp(−(|p − c| / 2 r)²). Smaller `closest`: finer cells at the impact.
+  // 1 − (1 − closest) · exp(−(|p − c| / (2 r))²). Smaller `closest`: finer cells at the impact.
   constexpr double closest = 0.15;
   const auto spacing = [&](const Vec3& p) {
     return o.impact ? 1 - (1 - closest) * std::exp(-std::pow((p - *o.impact).norm() / (2 * o.cluster * diagonal), 2))

@@ -11,8 +11,8 @@
 namespace geo::crack {
 namespace {
 
-// True when two faces at edge ab are of different surfaces, or n_f · n_g < crease · |n_f| |n_g| with
-// normals of equal orientation across the edge.
+// True when two faces at edge ab are of different surfaces, or n_f · n_g < crease · |n_f| |n_g|
+// with normals oriented alike across the edge.
 bool is_feature_between(const Complex& k, FaceId ff, FaceId gg, VertexId a, VertexId b, const FeatureRules& rules) {
   const auto &f = k.face(ff), &g = k.face(gg);
   if (f.crack != g.crack || (f.crack == 0 && rules.keep_skin && f.source != g.source)) return true;

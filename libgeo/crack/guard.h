@@ -60,7 +60,8 @@ struct Fault {
 /// Checks an edit against K as it is. In order: each new face has an area and the orientation of
 /// its family's triangle; no two vertices coincide; faces around edges are in the radial order
 /// listed; no new face crosses another one or is nearer than the clearance; exits stay outside.
-/// Exact, except for the clearance. Returns the first fault, none for a valid edit. Cost follows the edit.
+/// Exact, except for the clearance. Returns the first fault, none for a valid edit. Cost follows
+/// the edit.
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context);
 
 /// Tries to remove faults by displacing rounded points, from 1 ulp up to 2¹⁵. Returns the remaining

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// An edge of the walls, and where the levels of its triangles cross it (a level: greatest depth that
-// is kept).
+// An edge of the walls, and where the levels of its triangles cross it. A level is the greatest
+// depth that is kept.
 struct Edge {
   std::vector<std::uint32_t> triangles;
   struct Split {

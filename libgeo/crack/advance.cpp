@@ -1,4 +1,6 @@
-// One step of a crack: sweep, meet, split, classify, stitch, guard, commit (docs/design.md).
+// One step of a crack: sweep, meet, split, classify, stitch, guard, commit (docs/design.md). A
+// refused attempt is repeated with the new front displaced at random; the front's contacts follow
+// from the vertices along the strip's new edges.
 #include "kerf/crack.h"
 
 #include <algorithm>
@@ -45,6 +47,8 @@ std::vector<VertexId> vertices_between(const Complex& complex, const FrontState:
 // Another crack may have divided the front's edges since the last step. Consecutive contacts that
 // no edge of K joins are joined through the vertices that now lie between them.
 void update_contacts(FrontState& front, const Complex& complex) {
+  // Far above rounding (2⁻⁵² ≈ 2e-16), far below a front segment. Vertices found count only where
+  // edges of K join them.
   const double tolerance = 1e-12 * complex.extent().diagonal();
   for (auto& segment : front.segments) {
     std::vector<FrontState::Point> updated{segment.front()};
@@ -112,8 +116,8 @@ void advance_contacts(FrontState& front, const Complex& complex, const Strip& st
   front.points = std::move(points);
 }
 
-// Moves a point that is close to a face of K but not on it away from the face, to the side on which
-// it is: the strip would have needles there that cannot be rounded. Points exactly on K stay.
+// A point nearer to a face of K than 0.01 · distance moves away from it by `distance`, on its own
+// side. Otherwise needles in the strip could not be rounded there. Points exactly on K stay.
 Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
   const double reach = 0.01 * distance;
   if (!Box3{p, p}.grown(reach).meets(complex.extent())) return p;
@@ -234,6 +238,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   const FrontState old = prepared(front, complex, options.face_offset * size);
   CrackStats done;
   std::string reason;
+  // 2⁶⁴ / golden ratio spreads consecutive seeds; each step has its own displacements.
   Random random(options.seed * 0x9e3779b97f4a7c15ull + front.step);
   std::vector<Vec3> offset_next(next.begin(), next.end());
   for (std::size_t i = 0; i < offset_next.size(); ++i)

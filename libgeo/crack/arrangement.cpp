@@ -1,3 +1,6 @@
+// Two triangles in different planes share at most a segment. Its ends follow from signs of orient3d
+// alone (compare Guigue and Devillers 2003); coplanar triangles are clipped edge by edge. Pairs
+// come from the lists of near faces, and for the strip with itself from sweep and prune.
 #include "crack/arrangement.h"
 
 #include <algorithm>
@@ -162,8 +165,8 @@ PointIndex Arrangement::crossing_coplanar(std::uint32_t a, int edge_a, std::uint
   return point;
 }
 
-// Adds a point that the pair shares; `which` (0, 1) is the one of the pair that `on_mine` refers
-// to.
+// Adds a point shared by the pair. `on_mine` holds the edge bits in element `which` (0, 1) of the
+// pair, `on_other` those in the other one.
 void Arrangement::add_shared(PointIndex p, int which, std::uint8_t on_mine, std::uint8_t on_other) {
   for (SharedPoint& s : shared_)
     if (s.point == p) {
@@ -293,8 +296,8 @@ void Arrangement::merge_coinciding_points() {
 }
 
 // Collects the Steiner points and constraints of element e from divisions_[at..]; returns the end
-// of its divisions. A point that several divisions name is entered once, with the edges that they
-// name.
+// of its divisions. A point named by several divisions is entered once, with the union of their
+// edge bits.
 std::size_t Arrangement::collect_divisions(std::uint32_t e, std::size_t at) {
   const auto& corner = elements[e].corner;
   constraints_.clear();

@@ -23,8 +23,8 @@ struct Element {
   std::uint32_t first = 0, end = 0;  ///< its children: children[first..end)
 };
 
-/// Intersection points are identified by the edge and the face that define them, so that a position
-/// has one index. Positions are compared only where the strip intersects itself.
+/// Intersection points are identified by their defining edge and face, so that a position has one
+/// index. Positions are compared only where the strip intersects itself.
 class Arrangement {
  public:
   /// The strip's triangles as elements. Both arguments must outlive the arrangement.

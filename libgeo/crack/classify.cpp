@@ -1,3 +1,6 @@
+// A child at an edge of K is inside iff the wedge of K that contains it is material. Flood fill
+// across edges without faces of K carries the answer over the component. Components without an edge
+// on K are decided by the parity of skin crossings of a ray (Jordan curve theorem).
 #include "crack/classify.h"
 
 #include <algorithm>
@@ -125,7 +128,8 @@ bool inside_material(const Complex& complex, const Vec3& q) {
   std::vector<FaceId> near;
   for (int tries = 0; tries < 24; ++tries) {
     const int axis = tries % 3;
-    // Straight out along an axis, tilted slightly so that the ray is generic.
+    // Straight out along an axis, to 1 % of the diagonal beyond the box. The tilt is small and
+    // differs each time: a ray that touches an edge is followed by another one.
     Vec3 end = q;
     end[axis] = (tries / 3) % 2 == 0 ? extent.hi[axis] + reach * 0.01 : extent.lo[axis] - reach * 0.01;
     end[(axis + 1) % 3] += reach * (1.3e-4 + 3.1e-4 * tries);

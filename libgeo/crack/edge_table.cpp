@@ -1,3 +1,5 @@
+// Edge-uses are in linked lists by lower point. Radial order: the side of the plane of face `zero`
+// gives each face's sector, 0, (0, π), π or (π, 2π); within a sector, orient3d orders two faces.
 #include "crack/edge_table.h"
 
 #include <algorithm>

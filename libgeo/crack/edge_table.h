@@ -11,8 +11,8 @@ namespace geo::crack {
 
 /// A child at one of its edges (an edge-use in Weiler's terms).
 struct EdgeUse {
-  std::uint32_t element, child;
-  std::uint8_t k;  ///< the edge from the child's k-th corner to the next
+  std::uint32_t element, child;  ///< indices into Arrangement::elements and Arrangement::children
+  std::uint8_t k;                ///< the edge from the child's k-th corner to the next
 };
 
 /// Edge-uses by edge. Diagonals inside an element are not entered: no other element has them.
@@ -33,7 +33,7 @@ class EdgeTable {
     std::uint32_t next;
     EdgeUse use;
   };
-  std::vector<std::uint32_t> head_;  // by lower point
+  std::vector<std::uint32_t> head_;  // by lower point: its last entry, ~0u: none
   std::vector<Entry> entries_;
 };
 
@@ -42,16 +42,16 @@ EdgeTable edges_of_complex(const Arrangement& arrangement);
 
 /// A face at a directed edge u→v, for the radial order around that edge.
 struct RadialFace {
-  std::uint32_t element;
-  PointIndex apex;
-  bool forward;  ///< its boundary runs u→v
+  std::uint32_t element;  ///< index into Arrangement::elements; its plane is the face's
+  PointIndex apex;        ///< the corner of the child opposite to the edge
+  bool forward;           ///< its boundary runs u→v
 };
 /// The child of an edge-use as seen from the edge's end u.
 RadialFace radial_face(const Arrangement& a, const EdgeUse& use, PointIndex u);
 
 /// True when face w lies in the half-plane of `zero` around u→v. Exact.
 bool lies_on(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& w);
-/// Sign of angle(p) − angle(q) around u→v, counter-clockwise from `zero`. Exact.
+/// Sign of angle(p) − angle(q) around u→v, angles in [0, 2π) counter-clockwise from `zero`. Exact.
 int compare_around(const Arrangement& a, PointIndex u, PointIndex v, const RadialFace& zero, const RadialFace& p,
                    const RadialFace& q);
 

@@ -20,9 +20,9 @@ double worst_removed(const Complex& complex, const LocalEdit& local);
 /// The largest smallest_angle_cotangent() of the faces that an edit makes.
 double worst_new(const Complex& complex, const LocalEdit& local);
 
-/// How far p, a point of the old surface, is from the new faces of an edit: the largest, over the
-/// surfaces that it changes, of the distances to the nearest face. Preserved skin does not count:
-/// it stays in its planes.
+/// Distance of p, a point of the old surface, from the new faces of an edit: max over the surfaces
+/// (cracks, skin) of min over their new faces of |p − face|. Preserved skin does not count: it
+/// stays in its planes.
 double deviation_at(const Complex& complex, const LocalEdit& local, const Vec3& p, const FeatureRules& rules);
 
 }  // namespace geo::crack

@@ -1,3 +1,6 @@
+// Inside or outside around a vertex: parity of the faces that an arc of directions crosses, from
+// the line's direction to a point on one face of the fan. The rest of the line is tested exactly
+// against the skin, through a box tree of the new faces where there are many pairs.
 #include "crack/exits.h"
 
 #include <algorithm>
@@ -9,9 +12,10 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t few = 1 << 14;  // pairs of exits and faces that are tested without an index
+// Pairs of exits and faces that are tested without an index; the result does not depend on it.
+constexpr std::size_t few = 1 << 14;
 
-// The skin around the exits, after the edit.
+// The skin around the exits, after the edit. An exit is a piece of the front's line outside.
 class Surroundings {
  public:
   Surroundings(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits)
@@ -104,14 +108,14 @@ class Surroundings {
 bool begins_inside(const Vec3& u, const Vec3& q, std::span<const std::array<Vec3, 3>> fan) {
   // Parity along the arc, in a plane, from the direction of q to that of a point w on a face: each
   // other face that the arc crosses changes sides.
-  constexpr std::size_t max_chosen = 4;
+  constexpr std::size_t max_chosen = 4;  // w is tried on that many faces, the largest first
   std::vector<std::size_t> largest(fan.size());
   for (std::size_t i = 0; i < fan.size(); ++i) largest[i] = i;
   const auto area = [&](std::size_t i) { return (fan[i][1] - u).cross(fan[i][2] - u).squaredNorm(); };
   std::stable_sort(largest.begin(), largest.end(), [&](auto i, auto j) { return area(i) > area(j); });
   largest.resize(std::min(largest.size(), max_chosen));
   for (const auto chosen : largest)
-    for (const double share : {0.5, 0.375, 0.6875}) {
+    for (const double share : {0.5, 0.375, 0.6875}) {  // other points where the arc meets an edge
       const Vec3 w = fan[chosen][1] + share * (fan[chosen][2] - fan[chosen][1]);
       const int start = orient3d(u, fan[chosen][1], fan[chosen][2], q),
                 end = orient3d(u, fan[chosen][1], fan[chosen][2], w);

@@ -8,11 +8,13 @@
 
 namespace geo {
 
-/// The first exit that is not outside after the edit. The next step would start from it, re-enter
-/// the material and leave a passage there that is finer than doubles. An exit must start outside
-/// the skin around its first vertex, likewise at its last vertex where it comes back, and touch no
-/// other face of the skin. Exact, but that the midpoint of a face is taken to lie on the face. Cost
-/// follows the faces around the exits, and the edit.
+/// The fault of the first exit that is not outside after the edit; none if all are. The next step
+/// would start from it, re-enter the material and leave a passage finer than doubles there.
+///
+/// Conditions: the exit starts outside the skin around its first vertex, and around its last one
+/// where it comes back. It touches no other face of the skin. Exact, except that a
+/// rounded point of a face counts as lying on it. Cost follows the faces around the exits, and
+/// the edit.
 Fault find_reentry(const Complex& complex, const ComplexEdit& edit, std::span<const FrontExit> exits);
 
 /// Whether the line from u to q starts inside the solid angle that the faces around u bound.

@@ -1,3 +1,5 @@
+// A feature edge has ≠ 2 faces, or two of different surfaces, or a crease: n₁ · n₂ < cos(crease)
+// |n₁||n₂|. A vertex lies on all surfaces of its faces and on the lines of its feature edges.
 #include "crack/features.h"
 
 #include <algorithm>
@@ -9,7 +11,8 @@
 namespace geo::crack {
 namespace {
 
-// True when the surface on which two faces at edge ab lie ends or bends there.
+// True when two faces at edge ab are of different surfaces, or n_f · n_g < crease · |n_f| |n_g|
+// with normals oriented alike across the edge.
 bool is_feature_between(const Complex& k, FaceId ff, FaceId gg, VertexId a, VertexId b, const FeatureRules& rules) {
   const auto &f = k.face(ff), &g = k.face(gg);
   if (f.crack != g.crack || (f.crack == 0 && rules.keep_skin && f.source != g.source)) return true;

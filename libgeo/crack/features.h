@@ -14,9 +14,10 @@ namespace geo::crack {
 
 /// Rules for what local edits must preserve.
 struct FeatureRules {
-  double crease = 0.94;   ///< cosine: edges with a larger dihedral deviation are features
-  bool keep_skin = true;  ///< vertices stay on the triangles of the input on which they lie; else the
-                          // /< skin is treated as a crack
+  double crease = 0.94;  ///< cosine: edges with a larger dihedral deviation are features
+  /// True: vertices stay on the input triangles on which they lie. False: the skin is treated as a
+  /// crack.
+  bool keep_skin = true;
 };
 
 /// The surfaces and feature lines on which a vertex lies.
@@ -30,7 +31,8 @@ struct SurfaceLocation {
 bool is_feature_edge(const Complex& complex, VertexId a, VertexId b, const FeatureRules& rules);
 /// The location of a vertex.
 SurfaceLocation location_of(const Complex& complex, VertexId v, const FeatureRules& rules);
-/// True when `all` lies on all surfaces of `some`: a segment between them may, too.
+/// True when each surface of `some` is one of `all`: a vertex at `some` may be merged into one at
+/// `all` without leaving its surfaces.
 bool lies_within(const SurfaceLocation& some, const SurfaceLocation& all);
 /// The next vertex on a feature line through a location, coming from a; empty where the line ends,
 /// branches or does not pass.

@@ -1,4 +1,5 @@
-// Fronts as given: resampling and substeps.
+// Resampling is linear along the polyline, at equal fractions of arc length. Substeps:
+// ⌈max_i |next_i − previous_i| / limit⌉.
 #include "kerf/crack.h"
 
 #include <algorithm>
@@ -37,6 +38,7 @@ int substep_count(const std::vector<Vec3>& previous, const std::vector<Vec3>& ne
   double largest = 0;
   for (std::size_t i = 0; i < std::min(previous.size(), next.size()); ++i)
     largest = std::max(largest, (next[i] - previous[i]).norm());
+  // 1e-12 forgives rounding of the quotient; at most a million, to fit an int.
   return std::max(1, static_cast<int>(std::min(1e6, std::ceil(largest / limit * (1 - 1e-12)))));
 }
 

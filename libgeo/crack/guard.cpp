@@ -1,3 +1,6 @@
+// Orientation, order and crossing are exact on the rounded coordinates, behind floating-point
+// filters; the clearance is measured in doubles. Pairs come from lists of near faces, the index of
+// K, and sweep and prune. Repair displaces rounded points of faulty faces and tests again.
 #include "crack/guard.h"
 
 #include <algorithm>
@@ -31,6 +34,8 @@ struct Plane {
   // meet, so that no offset is longer than both sizes.
   bool clears(const std::array<std::uint32_t, 3>& mine, const std::array<std::uint32_t, 3>& ids,
               const std::array<Vec3, 3>& corners, double other_size) const {
+    // Three products, each off by 12 roundings at most, and their sum: fewer than 64 roundings of
+    // 2⁻⁵³, together 2⁻⁴⁷.
     const double volume = size * size * (size + other_size), bound = 0x1p-47 * volume + margin;
     if (!(volume > filter_smallest && volume < filter_largest)) return false;
     int side = 0, shared = 0;
@@ -115,7 +120,9 @@ class Inspection {
         sorted.push_back({along.dot(point(v)), v});
       }
     std::sort(sorted.begin(), sorted.end());
+    // At least 16 ulps (2⁻⁵²) of the diagonal, also for edits without a clearance.
     const double close = std::max(clearance_, 0x1p-48 * complex_.extent().diagonal());
+    // Differences of at most `close` per coordinate project to at most √3 · close < 2 · close.
     const double reach =
         2 * close +
         0x1p-50 * (complex_.extent().lo.cwiseAbs().cwiseMax(complex_.extent().hi.cwiseAbs()).sum());  // and rounding
@@ -133,7 +140,7 @@ class Inspection {
     return {};
   }
 
-  // A new face that crosses, or is too near to, a face that stays.
+  // A new face that crosses, or is too near to, a kept face.
   Fault find_crossing_with_kept() const {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
     std::sort(removed.begin(), removed.end());
@@ -286,7 +293,8 @@ Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext&
   displaced.families = families;
   Random random(edit.new_faces.size() * 0x9e3779b97f4a7c15ull + edit.new_vertices.size());
   for (int tries = 0; tries < 32; ++tries) {
-    // Displaces the rounded points of the faulty faces, farther every second time.
+    // Displaces the rounded points of the faulty faces by up to 2^⌊tries/2⌋ ≤ 2¹⁵ ulps of the
+    // model's size. More tries: fewer steps are refused, refused ones take longer.
     const double distance = ulp * std::pow(2.0, tries / 2);
     std::vector<std::pair<std::uint32_t, Vec3>> before;
     for (const auto f : fault.faces)

@@ -30,8 +30,8 @@ struct Family {
 
 /// A piece of a front's line that leaves the material at a vertex; see exits.h.
 struct FrontExit {
-  VertexId from;
-  Vec3 to;
+  VertexId from;                 ///< where the line leaves the material
+  Vec3 to;                       ///< the end of the piece outside
   VertexId at;                   ///< the vertex at `to`, where the line comes back; else invalid
   std::span<const FaceId> near;  ///< faces of K that may be near
 };
@@ -60,12 +60,12 @@ struct Fault {
 /// Checks an edit against K as it is. In order: each new face has an area and the orientation of
 /// its family's triangle; no two vertices coincide; faces around edges are in the radial order
 /// listed; no new face crosses another one or is nearer than the clearance; exits stay outside.
-/// Exact. Returns the first fault, none for a valid edit. Cost follows the edit.
+/// Exact, except for the clearance. Returns the first fault, none for a valid edit. Cost follows
+/// the edit.
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context);
 
-/// Displaces points that are rounded anyway by a few ulps more, where that removes a fault. Returns
-/// the fault that remains, none for a valid edit. `repairs` is incremented when a fault was
-/// removed.
+/// Tries to remove faults by displacing rounded points, from 1 ulp up to 2¹⁵. Returns the remaining
+/// fault, none for a valid edit. Increments `repairs` when all faults were removed.
 Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs);
 
 }  // namespace geo

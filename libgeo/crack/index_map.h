@@ -6,8 +6,8 @@
 
 namespace geo::crack {
 
-/// Open addressing with linear probing. `Hash` must spread its bits; the values are indices other
-/// than ~0u.
+/// Open addressing with linear probing. `Hash` must spread its bits. The values are indices; ~0u
+/// stands for none.
 template <class Key, class Hash>
 class IndexMap {
  public:

@@ -1,3 +1,5 @@
+// The phases of one attempt in order. Exact intersections and classification come first; new points
+// are rounded to doubles at the end, and the guard checks or repairs the rounded edit.
 #include "crack/insert.h"
 
 #include <algorithm>
@@ -58,8 +60,8 @@ void find_kept_pieces(const Arrangement& arrangement, std::span<const ChildRef> 
   std::sort(out.begin(), out.end());
 }
 
-// The pieces of the new front's line that run outside the material from or to a new vertex of K:
-// those that are neither an edge of a kept child nor on K.
+// The pieces of the new front's line outside the material, from or to a new vertex of K. A piece is
+// outside if it is neither an edge of a kept child nor on K.
 std::vector<FrontExit> exits_of(const Complex& complex, const Strip& strip, const Arrangement& arrangement,
                                 const EdgeTable& edges, std::span<const ChildRef> kept,
                                 std::span<const VertexId> vertex) {
@@ -94,6 +96,8 @@ std::vector<VertexId> known_vertices(const Arrangement& arrangement) {
 }  // namespace
 
 Attempt attempt_at(int number, const CrackOptions& options, double size) {
+  // By default 1e-9 … 8⁴ · 1e-9 ≈ 4e-6 of the model's size. Half of the attempts insist on the
+  // clearance (docs/decisions/005).
   return {number == 0 ? 0 : options.jitter * size * std::pow(8.0, std::min(number - 1, 4)),
           2 * number <= options.attempts ? options.clearance * size : 0};
 }

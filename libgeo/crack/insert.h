@@ -7,8 +7,7 @@ namespace geo::crack {
 
 /// Parameters of one attempt at a step, model units.
 struct Attempt {
-  double jitter;     ///< displacement of the new front; none in attempt 0, then eight times as far
-                     ///< each time, five times in all
+  double jitter;     ///< displacement of the new front: 0 in attempt 0, else options.jitter · 8^min(n − 1, 4)
   double clearance;  ///< see GuardContext; 0 in the later half of the attempts
 };
 /// The parameters of attempt `number`, for a complex of extent diagonal `size`.

@@ -1,3 +1,6 @@
+// Each edit removes the faces at a vertex or edge and adds replacements. Radial cycles are copied
+// with ids exchanged; collapsing b into a joins the cycles around ax and bx. Tetrahedra swept by
+// faces must contain no vertex of other faces, or a face might pass over it.
 #include "crack/local_edit.h"
 
 #include <algorithm>
@@ -67,7 +70,7 @@ std::vector<VertexId> neighbors_of(const Complex& k, VertexId v) {
   return link;
 }
 
-// The cycle without f, starting after f.
+// The faces of the radial cycle after f, in order, without f.
 std::vector<FaceId> rest_after(const std::vector<FaceId>& cycle, FaceId f) {
   const auto at = std::find(cycle.begin(), cycle.end(), f);
   std::vector<FaceId> rest(at + 1, cycle.end());

@@ -18,7 +18,7 @@ namespace geo::crack {
 struct LocalEdit {
   ComplexEdit edit;
   std::vector<Family> families;            ///< one per new face: the face that it replaces
-  std::vector<std::array<Vec3, 4>> swept;  ///< tetrahedra that faces pass through; they must be empty
+  std::vector<std::array<Vec3, 4>> swept;  ///< tetrahedra between old and new faces; no vertex may lie inside
 };
 
 /// Edge collapse: merges b into its neighbour a; the faces at edge ab vanish. Empty where the

@@ -1,3 +1,6 @@
+// Gradient noise on the integer lattice (K. Perlin, Improving noise, 2002). Gradients are hashed
+// from the cell's corner and a seed, instead of a permutation table. It displaces cracks
+// (crack/roughen, score/jagged) and varies strength (simulation/strength).
 #include "crack/noise.h"
 
 #include <cmath>
@@ -5,14 +8,16 @@
 namespace geo {
 namespace {
 
+// The finaliser of SplitMix64 (Steele, Lea and Flood 2014), without its increment.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
   x = (x ^ x >> 27) * 0x94d049bb133111ebull;
   return x ^ x >> 31;
 }
 
-// The scalar product of d with one of sixteen gradients, towards the midpoints of a cube's edges,
-// at a lattice point.
+// g · d for a pseudo-random gradient g at lattice point (x, y, z). g is one of the twelve midpoints
+// of the edges of the cube [−1, 1]³; four of them occur twice, so that four bits choose (Perlin
+// 2002).
 double gradient(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed, const Vec3& d) {
   const auto bits = mixed(seed ^ mixed(static_cast<std::uint64_t>(x) ^
                                        mixed(static_cast<std::uint64_t>(y) ^ mixed(static_cast<std::uint64_t>(z))))) &
@@ -26,7 +31,7 @@ double gradient(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t se
 double gradient_noise(const Vec3& p, std::uint64_t seed) {
   const Vec3 base = p.array().floor();
   const Vec3 d = p - base;
-  double weight[3];
+  double weight[3];  // fade curve 6 t⁵ − 15 t⁴ + 10 t³: its first two derivatives vanish at 0 and 1
   for (int i = 0; i < 3; ++i) weight[i] = d[i] * d[i] * d[i] * (d[i] * (d[i] * 6 - 15) + 10);
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {

@@ -1,4 +1,4 @@
-// Gradient noise for jagged cracks.
+// Gradient noise for jagged cracks, jagged scores and random strength.
 #pragma once
 
 #include <cstdint>

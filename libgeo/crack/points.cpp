@@ -1,4 +1,6 @@
-// Explicit and implicit points: floating-point filters, exact arithmetic (GMP) where these fail.
+// Floating-point filters with error bounds, and GMP where they fail: exact numbers are m · 2^e with
+// integer m, exact points homogeneous. ab crosses a plane at (b d_a − a d_b) / (d_a − d_b); d_a
+// and d_b are the signed distances of a and b, times |normal|.
 #include <gmpxx.h>
 
 #include <bit>
@@ -72,6 +74,7 @@ double nearest(const mpq_class& x) {
   return abs(mpq_class(outer) - x) < rest ? outer : inner;
 }
 
+// Filters hold where products neither underflow nor overflow; other values are computed exactly.
 constexpr double smallest = 1e-250, largest = 1e250;
 
 }  // namespace
@@ -120,6 +123,8 @@ PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
     da += n * wa[i], db += n * wb[i];
     size_a += m * std::abs(wa[i]), size_b += m * std::abs(wb[i]);
   }
+  // t = d_a / (d_a − d_b), d_x = (q − p) × (r − p) · (x − p). Each term of d passes through at most
+  // 12 roundings of 2⁻⁶⁴; the error of t follows from those of d_a and d_b.
   constexpr Long unit = 0x1p-64L;
   const Long error_a = 12 * unit * size_a, error_b = 12 * unit * size_b, whole = std::abs(da - db);
   const Long t = whole > 0 ? da / (da - db) : 0.5L;
@@ -132,10 +137,12 @@ PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
     size = std::max({size, std::abs(a[i]), std::abs(b[i])});
     length = std::max(length, std::abs(b[i] - a[i]));
   }
+  // Rounding to double, and the error of t along ab; 1.01 covers the roundings of the bound itself.
   const double half_ulp = size * 0x1p-53, error = 1.01 * half_ulp + 1.01 * static_cast<double>(error_t) * length;
   const PointIndex l = append(x, error);
   definition_[l] = static_cast<std::uint32_t>(definitions_.size());
   definitions_.push_back({l, {a, b, p, q, r}});
+  // A loose bound would defeat the filters: the point is then rounded from its exact coordinates.
   if (!(error <= 8 * half_ulp) || !(static_cast<double>(size_a) > smallest) || !(static_cast<double>(size_a) < largest))
     round(l);
   return l;
@@ -199,9 +206,11 @@ int Points::orient3d(PointIndex a, PointIndex b, PointIndex c, PointIndex d) con
   const double permanent = std::abs(u.x()) * (std::abs(x) + std::abs(x2)) +
                            std::abs(u.y()) * (std::abs(y) + std::abs(y2)) +
                            std::abs(u.z()) * (std::abs(z) + std::abs(z2));
+  // Shewchuk's static bound for orient3d (1997): (7 + 56 ε) ε · permanent, ε = 2⁻⁵³.
   double bound = 7.9e-16 * permanent;
   if (error > 0) {
-    // The determinant is linear in each of its nine entries, and each is off by `error` at most.
+    // The determinant is linear in each of its nine entries, each off by `error` at most. Minors
+    // are at most 2 m²: 18 m² · error in all, and 20 covers higher orders if error < m / 1000.
     const double m = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), w.cwiseAbs().maxCoeff()});
     if (!(error < 1e-3 * m)) bound = largest;
     bound += 20 * m * m * error;
@@ -219,6 +228,7 @@ int Points::orient2d(PointIndex a, PointIndex b, PointIndex c, int axis) const {
   const double ux = pa[i] - pc[i], uy = pa[j] - pc[j], vx = pb[i] - pc[i], vy = pb[j] - pc[j];
   const double left = ux * vy, right = uy * vx, value = left - right;
   const double error = std::max(error_[a], error_[b]) + error_[c], terms = std::abs(left) + std::abs(right);
+  // Shewchuk's static bound for orient2d (1997): (3 + 16 ε) ε · terms, ε = 2⁻⁵³.
   double bound = 3.4e-16 * terms;
   if (error > 0) bound += error * 1.01 * (std::abs(ux) + std::abs(uy) + std::abs(vx) + std::abs(vy) + 2 * error);
   if (terms > smallest && terms < largest && std::abs(value) > bound) return value > 0 ? 1 : -1;

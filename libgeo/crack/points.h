@@ -15,8 +15,8 @@
 
 namespace geo::crack {
 
-using PointIndex = std::uint32_t;  ///< index of a point of the arrangement
-constexpr PointIndex no_point = ~0u;
+using PointIndex = std::uint32_t;     ///< index of a point of the arrangement
+constexpr PointIndex no_point = ~0u;  ///< stands for none
 
 /// Hash of a position: equal for equal points, both zeros being one.
 std::uint64_t hash_of(const Vec3& p);
@@ -53,8 +53,8 @@ class Points {
 
   /// Sign of det(b−a, c−a, d−a), as in geometry/predicates.h.
   int orient3d(PointIndex a, PointIndex b, PointIndex c, PointIndex d) const;
-  /// Sign of the turn abc seen against `axis` (0, 1, 2): counter-clockwise is positive in the two
-  /// axes that follow it.
+  /// Sign of the turn abc, projected along `axis` (0, 1, 2) to coordinates (axis + 1, axis + 2)
+  /// mod 3: positive for counter-clockwise.
   int orient2d(PointIndex a, PointIndex b, PointIndex c, int axis) const;
   /// Sign of coordinate `axis` of a minus that of b.
   int compare(PointIndex a, PointIndex b, int axis) const;

@@ -1,3 +1,5 @@
+// Tests the cycles that the edit lists and, at undivided edges with ≥ 3 faces, K's own cycles with
+// parents replaced by their children. Edges without a rounded point are skipped: they are exact.
 #include "crack/radial_order.h"
 
 #include <algorithm>

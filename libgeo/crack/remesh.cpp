@@ -1,4 +1,6 @@
-// Remeshing: improves small angles of a region by flips, collapses, moves and divisions.
+// A queue of faces below the wanted angle; each tries flip, collapse, vertex move and bisection, in
+// this order, until one is accepted. Quality of an edit: its largest cotangent of a smallest angle,
+// before and after.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>
@@ -31,7 +33,8 @@ class Remesher {
 
   CrackDelta run(std::span<const FaceId> region) {
     for (const FaceId f : region) queue(f);
-    // A face is tried again when its neighbours change; these bounds end the loop.
+    // A face is tried again when its neighbours change; these bounds end the loop. Larger:
+    // more tries for faces that resist, and a later end where edits undo each other.
     std::size_t patience = 60 * todo_.size() + 400, divisions = 4 * todo_.size() + 40;
     while (!todo_.empty() && patience-- > 0) {
       const FaceId f = todo_.front();
@@ -86,6 +89,7 @@ class Remesher {
     for (const int e : edges_by_length(c, std::greater<>())) {
       if (crack::is_feature_edge(k_, k_.face(f).v[e], k_.face(f).v[(e + 1) % 3], rules_)) continue;
       auto local = crack::flip(k_, f, e);
+      // Better by 0.1 %, so that rounding cannot make flips alternate.
       if (!local || !improves(*local, 0.999)) continue;
       // The deviation is largest at the edge's midpoint.
       const Vec3 middle = 0.5 * (c[e] + c[(e + 1) % 3]);
@@ -112,7 +116,7 @@ class Remesher {
         const int e = by_length[i];
         const VertexId from = reversed ? v[e] : v[(e + 1) % 3], to = reversed ? v[(e + 1) % 3] : v[e];
         const auto [before, after] = crack::worst_if_moved(k_, from, k_.point(to), to);
-        if (after >= 0.999 * before || !may_merge(from, to)) continue;
+        if (after >= 0.999 * before || !may_merge(from, to)) continue;  // as in flip()
         auto local = crack::collapse(k_, from, to);
         if (!local) continue;
         if (!stays_close(*local, k_.point(from))) continue;
@@ -159,6 +163,7 @@ class Remesher {
       for (const Vec3& goal : goals_of(v)) {
         if (!goal.allFinite() || goal == p) continue;
         const auto [before, after] = crack::worst_if_moved(k_, v, goal);
+        // A move must gain 10 %. Larger factors: more moves with less effect each.
         if (after >= 0.9 * before) continue;
         auto local = crack::relocate(k_, v, goal);
         if (!stays_close(local, p)) continue;
@@ -181,6 +186,7 @@ class Remesher {
       if (const auto cycle = k_.faces_around(a, b); cycle.size() == 2 && !crack::is_feature_edge(k_, a, b, rules_)) {
         const FaceId g = cycle[0] == f ? cycle[1] : cycle[0];
         const auto t = k_.corners(g);
+        // Strictly longer beyond rounding, so that the path cannot return to a face.
         for (int i = 0; i < 3; ++i)
           if ((t[(i + 1) % 3] - t[i]).norm() > length * (1 + 1e-9)) next = g;
       }

@@ -1,5 +1,6 @@
-// Roughening: bisects the inner edges of cracks and displaces their inner vertices by fractal
-// noise.
+// Longest-edge bisection (Rivara and Inostroza 1997); then each inner vertex moves along its normal
+// to p + amplitude · min(1, d / fade) · Σ_o 0.6^o · noise_o(p), d: distance along edges to the
+// nearest fixed vertex (Dijkstra). A refused move is tried at 1/2 and 1/4, then in later rounds.
 #include "kerf/crack_edits.h"
 
 #include <algorithm>
@@ -17,7 +18,8 @@
 namespace geo {
 namespace {
 
-constexpr int rounds = 8;  // of displace(): later rounds move few vertices
+// Rounds of displace(). Larger: blocked vertices get nearer to their goals, the cost grows.
+constexpr int rounds = 8;
 
 class Roughener {
  public:
@@ -77,7 +79,7 @@ class Roughener {
         next = {};
         const int e = longest_edge(at);
         for (const FaceId g : k_.faces_around(k_.face(at).v[e], k_.face(at).v[(e + 1) % 3]))
-          if (length_of(g, longest_edge(g)) > length_of(at, e) * (1 + 1e-9)) next = g;
+          if (length_of(g, longest_edge(g)) > length_of(at, e) * (1 + 1e-9)) next = g;  // longer beyond rounding
       }
       const int e = longest_edge(at);
       const VertexId a = k_.face(at).v[e], b = k_.face(at).v[(e + 1) % 3];
@@ -134,7 +136,7 @@ class Roughener {
     return vertices;
   }
 
-  // Fractal noise at a vertex of a crack.
+  // Fractal noise at a vertex p of a crack: Σ_o 0.6^o · noise_o(2^o · frequency · (p − lo)).
   double noise_at(VertexId v, std::int32_t crack) const {
     double sum = 0, height = 1, frequency = options_.frequency / size_;
     for (int octave = 0; octave < options_.octaves; ++octave, height *= 0.6, frequency *= 2)
@@ -153,6 +155,8 @@ class Roughener {
       const auto location = crack::location_of(k_, v, rules_);
       if (location.features.empty() && location.sources.empty() && location.cracks.size() == 1) free.insert(v);
     }
+    // The noise grows linearly from 0 at vertices that stay to its full height at distance `fade`.
+    // Its slope there is a third of the noise, whatever the amplitude.
     const double height = options_.amplitude * size_, fade = 3 * height;
     const auto distance = distances(vertices, free, fade);
     std::vector<Move> moves;

@@ -1,4 +1,5 @@
-// Inserts a crack given as a surface.
+// As advance(): attempt 0 with the sheet as given, later ones with each vertex displaced at random
+// by up to the attempt's jitter. The sheet is a strip without a front: no contacts are kept.
 #include "kerf/crack.h"
 
 #include "base/random.h"
@@ -18,6 +19,7 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
       if (v >= sheet.vertices.size())
         throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
   const double size = complex.extent().diagonal();
+  // 2⁶⁴ / golden ratio spreads consecutive seeds.
   Random random(options.seed * 0x9e3779b97f4a7c15ull);
   CrackStats done;
   std::string reason;

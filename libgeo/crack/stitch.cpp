@@ -1,3 +1,6 @@
+// Four phases: children of cut faces, crack faces, radial orders around the edges of crack faces,
+// radial orders of divided edges. K's stored order is copied, never sorted again; crack faces are
+// inserted into it by exact comparison of angles.
 #include "crack/stitch.h"
 
 #include <algorithm>
@@ -125,7 +128,8 @@ class Stitcher {
     edit_.radial_orders.push_back(std::move(order));
   }
 
-  // Where face m belongs in the cycle around u→v.
+  // The index at which face m is inserted into the cycle around u→v: i + 1 if
+  // angle(m) < angle(cycle[i + 1]), angles counter-clockwise from cycle[i].
   std::size_t position_in_cycle(PointIndex u, PointIndex v, const RadialFace& m) const {
     if (cycle_.size() == 1 && compare_around(a_, u, v, cycle_[0].member, m, cycle_[0].member) == 0)
       throw GeometryError("two faces lie on each other at an edge");

@@ -1,3 +1,6 @@
+// The quad between a front segment and its next position becomes a fan around a new point. Snapping
+// turns distances below `reach` into incidence: a point moves to the vertex of K, or the edge or
+// triangle is divided there.
 #include "crack/sweep.h"
 
 #include <algorithm>

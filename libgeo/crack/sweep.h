@@ -14,9 +14,9 @@ namespace geo {
 /// shares with K coincide exactly: contacts were rounded to doubles when they were stored.
 struct Strip {
   struct Triangle {
-    std::array<std::uint32_t, 3> p;          ///< indices into points
-    std::array<int, 3> segment{-1, -1, -1};  ///< per edge k (p[k] to p[k+1]): the segment of the new
-                                             // /< front on which it lies, or −1
+    std::array<std::uint32_t, 3> p;  ///< indices into points
+    /// Per edge k (p[k] to p[k+1]): the segment of the new front on which it lies; −1: none.
+    std::array<int, 3> segment{-1, -1, -1};
   };
   std::vector<Vec3> points;
   std::vector<bool> fixed;  ///< per point: it is on the old front, or snapped, and must not move
@@ -36,8 +36,8 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next);
 /// out.
 Strip strip_of(std::span<const Vec3> points, std::span<const geo::Triangle> triangles);
 
-/// Fills `near`: the faces of K whose boxes are within `reach` (model units) of a triangle's box
-/// and not clear of its plane.
+/// Fills `near` as Complex::faces_near_triangle() does, for each triangle of the strip. `reach`:
+/// model units.
 void find_near(Strip& strip, const Complex& complex, double reach);
 
 /// Snaps the strip to vertices of K closer than `reach` (model units): a free point moves to the

@@ -1,3 +1,6 @@
+// Points are inserted one by one. Flipping the diagonals in its way enforces a constraint (Sloan
+// 1993); Lawson flips improve the result towards Delaunay. Orientation is decided by the exact
+// predicates of points.h, in the projection along the face's dominant axis.
 #include "crack/triangulator.h"
 
 #include <algorithm>
@@ -166,6 +169,7 @@ std::pair<int, int> Triangulator::find_edge(int a, int b) const {
 
 void Triangulator::insert(int p) {
   int t = 0;
+  // Visibility walk; the bound ends it where exact and given incidences contradict each other.
   for (std::size_t step = 0; step <= 4 * tri_.size() + 16; ++step) {
     const Tri& x = tri_[static_cast<std::size_t>(t)];
     int next = -1, on = -1, zeros = 0;
@@ -274,6 +278,7 @@ Triangulator::Corridor Triangulator::walk(int a, int b, const Departure& from, c
 
 // Flips edges until none crosses the segment from a to `end` any more (Sloan 1993).
 void Triangulator::clear_corridor(int a, int end, std::vector<std::pair<int, int>>& crossed) {
+  // Flips terminate in O(n²) for n crossed edges; beyond that the input is inconsistent.
   std::size_t patience = 16 * crossed.size() * crossed.size() + 64;
   for (std::size_t head = 0; head < crossed.size(); ++head) {
     if (patience-- == 0) throw GeometryError("a constraint cannot be reached by flips");
@@ -296,6 +301,7 @@ void Triangulator::clear_corridor(int a, int end, std::vector<std::pair<int, int
 // Makes segment ab a chain of constraint edges, from each vertex on it to the next.
 void Triangulator::constrain(int a, int b, const Canonicalize& canonicalize) {
   for (int guard = 0; a != b; ++guard) {
+    // Ends the loop where the input is inconsistent: the chain has a link for each vertex on ab.
     if (guard > 4096) throw GeometryError("a constraint cannot be inserted");
     if (mark_constraint(a, b)) return;
     const Departure from = leave(a, b);
@@ -322,6 +328,7 @@ void Triangulator::improve() {
   for (const Tri& x : tri_)
     for (int k = 0; k < 3; ++k)
       if (x.e[k] == edge_diagonal && x.v[k] < x.v[(k + 1) % 3]) todo.push_back({x.v[k], x.v[(k + 1) % 3]});
+  // Lawson flips terminate in exact arithmetic; this bound ends them where rounding repeats one.
   std::size_t patience = 20 * todo.size() + 20;
   while (!todo.empty() && patience-- > 0) {
     const auto [a, b] = todo.back();
@@ -334,6 +341,7 @@ void Triangulator::improve() {
     other = tri_[static_cast<std::size_t>(t)].n[k];
     for (const int v : tri_[static_cast<std::size_t>(other)].v)
       if (v != a && v != b) d = v;
+    // cot γ + cot δ < 0 iff d lies in the circumcircle of abc; −1e-6 leaves cocircular quads alone.
     if (!(cotangent(c, a, b) + cotangent(d, a, b) < -1e-6) || !may_flip(t, k, other, d)) continue;
     flip(t, k);
     for (const auto& [x, y] : {std::pair{a, d}, {d, b}, {b, c}, {c, a}})

@@ -38,8 +38,8 @@ class Triangulator {
   /// Triangulates faces between these points, and adds points where constraints cross.
   explicit Triangulator(Points& points) : points_(points) {}
 
-  /// Called with a new point where two constraints cross; returns the index by which that position
-  /// is known.
+  /// Called with the new point at the crossing of two constraints. Returns the index of the known
+  /// point at the same position, or the argument for a new position.
   using Canonicalize = std::function<PointIndex(PointIndex)>;
 
   /// Appends the children of a face to `out`. `steiner`: its points other than the corners, each
@@ -97,7 +97,8 @@ class Triangulator {
   std::vector<PointIndex> chain_;  // points on the edge at hand
 };
 
-/// projection_axis() of three explicit points, as corners of elements are.
+/// projection_axis() of three explicit points, as corners of elements are: the dominant axis of the
+/// normal, and the sign of orient2d along it (0: no area).
 std::pair<int, int> projection_of(const Points& points, const std::array<PointIndex, 3>& corner);
 
 }  // namespace geo::crack

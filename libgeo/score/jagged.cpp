@@ -1,3 +1,6 @@
+// Walls are refined by longest-edge bisection and displaced by fractal noise in each coordinate,
+// Σ_o 0.6^o · noise_o(2^o · frequency · p). Where triangles cross (exact test, spatial index), the
+// displacement of their vertices is halved, and dropped at the fourth time.
 #include "score/jagged.h"
 
 #include <algorithm>
@@ -154,7 +157,8 @@ class Crossings {
 }  // namespace
 
 void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, double margin) {
-  // Coarsely first: few triangles are divided that are dropped afterwards.
+  // Coarsely first: few triangles are divided that are dropped afterwards. The factors change the
+  // cost and where triangles are bisected, not the bound on their edges.
   for (const double edge : {8 * longest, 2 * longest, longest}) {
     divide(walls, edge);
     trim(walls, skin, margin);

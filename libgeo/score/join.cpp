@@ -1,3 +1,6 @@
+// Greedy merging of pieces: the smallest group joins the neighbour with the largest shared area. A
+// crack face belongs to the wall triangle nearest to its centroid. A triangle is dropped where the
+// same group lies on both sides of all its crack faces.
 #include "score/join.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Depth is the distance to the skin, negative outside, at the vertices of the walls. A connected
+// part keeps what is less deep than the fraction of its greatest depth. Triangles are cut along
+// that level of the linearly interpolated depth (as marching triangles do).
 #include "score/partial.h"
 
 #include <algorithm>
@@ -13,7 +16,8 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// An edge of the walls, and where the levels of its triangles cross it.
+// An edge of the walls, and where the levels of its triangles cross it. A level is the greatest
+// depth that is kept.
 struct Edge {
   std::vector<std::uint32_t> triangles;
   struct Split {
@@ -92,8 +96,8 @@ class LevelCut {
     }
   }
 
-  // Adds the points where levels of the triangles at an edge cross it, or uses its end where that
-  // is nearer than a twentieth of the edge.
+  // Adds the points s = (level − d_a) / (d_b − d_a) where levels of the triangles at an edge cross
+  // it. An end nearer than a twentieth of the edge is used instead: no needles there.
   void split(Edge& e, std::uint32_t a, std::uint32_t b) {
     for (const auto t : e.triangles) {
       const double level = level_[t];

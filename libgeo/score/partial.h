@@ -6,8 +6,8 @@
 
 namespace geo {
 
-/// Keeps each connected part of a wall inside the material only where it is less deep under the
-/// skin than the fraction `depth` of its greatest depth: a ligament in the middle stays whole.
+/// Cuts the middle out of each connected part of a wall inside the material: kept is only
+/// d(x) < depth · max d, d: distance to the skin. A ligament of material stays whole there.
 /// Triangles are cut along that depth; walls that meet are cut at the same points. A wall ends
 /// where others meet it. Throws InputError unless depth is in (0, 1).
 void keep_shallow(TriangleMesh& walls, const TriangleBvh& skin, double depth);

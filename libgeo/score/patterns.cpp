@@ -1,3 +1,6 @@
+// planes, crossing, bricks: grids of boxes along the axis. radial, glass: spokes and rings around a
+// hub, extruded. voronoi, wood: Voronoi cells of blue-noise sites; for wood, lengths along the
+// grain are divided by its ratio before, and multiplied after.
 #include "score/patterns.h"
 
 #include <algorithm>
@@ -27,6 +30,7 @@ Vec3 axis_of(const Box3& box, const PatternOptions& o) {
   return Vec3::Unit(axis);
 }
 
+// Walls must end outside of the model; a larger margin only makes them larger.
 Box3 widened(const Box3& box) { return box.grown(0.25 * box.diagonal()); }
 
 // The ends of `count` intervals of [low, high], randomly uneven; the outer ones extend beyond by
@@ -95,6 +99,7 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
         reach, Vec2((corner & 1 ? along.hi : along.lo).x() - hub.x(), (corner & 2 ? along.hi : along.lo).y() - hub.y())
                    .norm());
   const bool rings = o.pattern == Pattern::glass;
+  // glass: spokes · rings = cells. A larger factor than 2.5: more spokes, fewer rings.
   const int spokes = std::max(2, rings ? int(std::lround(std::sqrt(2.5 * cells))) : cells);
   const int circles = rings ? std::max(1, int(std::lround(double(cells) / spokes))) : 1;
   std::vector<Vec2> points{{hub.x(), hub.y()}};
@@ -106,8 +111,8 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
   for (int s = 0; s < spokes; ++s) angle.push_back(turn / spokes * (s + 0.5 * random.uniform(-0.5, 0.5)));
   for (int s = 0; s < spokes; ++s)
     for (int c = 1; c <= circles; ++c) {
-      // Rings are denser near the hub. The last one is outside: no chord of it comes near the
-      // model.
+      // Rings are denser near the hub: radii grow as (c / circles)^1.6; a larger power: denser. The
+      // last one is outside: no chord of it comes near the model.
       const double uneven = rings && c < circles ? 0.25 * random.uniform(-1, 1) : 0;
       const double radius = c == circles ? 3 * reach + box.diagonal() : reach * std::pow((c + uneven) / circles, 1.6);
       const double a = angle[std::size_t(s)] + (c < circles ? turn / spokes * 0.15 * random.uniform(-1, 1) : 0);
@@ -166,7 +171,8 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   Random random(o.seed);
   const Box3& box = skin.box();
   const double diagonal = box.diagonal();
-  // Spacing of sites, relative to that far from the impact.
+  // Spacing of sites at p, relative to that far from the impact c of radius r:
+  // 1 − (1 − closest) · exp(−(|p − c| / (2 r))²). Smaller `closest`: finer cells at the impact.
   constexpr double closest = 0.15;
   const auto spacing = [&](const Vec3& p) {
     return o.impact ? 1 - (1 - closest) * std::exp(-std::pow((p - *o.impact).norm() / (2 * o.cluster * diagonal), 2))
@@ -176,6 +182,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   const auto candidate = [&](Vec3& p) {
     for (int tries = 0; tries < 100000; ++tries) {
       for (int k = 0; k < 3; ++k) p[k] = random.uniform(box.lo[k], box.hi[k]);
+      // Density is spacing⁻³; candidates are accepted in proportion to it, with 1 at the impact.
       const bool accepted = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
       if (accepted && skin.inside(p)) return true;
     }

@@ -1,3 +1,6 @@
+// Each cell is the box, clipped by bisectors with the other sites in order of distance. No site
+// farther than twice the cell's radius can clip it. A vertex solves the three plane equations
+// (s_j − s_i) · (x − s_i) = |s_j − s_i|² / 2; its name, four sites or box sides, is unique.
 #include "score/voronoi.h"
 
 #include <algorithm>
@@ -31,7 +34,7 @@ class Corners {
     if (is_new) entry->second = position(name);
     return entry->second;
   }
-  // Whether the corner is nearer to another site than to those that make it.
+  // Whether the corner is nearer to `site` than to its defining sites.
   bool beyond(const Name& name, std::uint32_t site) {
     const Vec3& p = at(name);
     return (p - sites_[site]).squaredNorm() < (p - sites_[name[0]]).squaredNorm();
@@ -148,7 +151,7 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
     Cell cell = box_cell(i, count);
     double radius2 = std::numeric_limits<double>::infinity();
     for (const auto& [distance2, j] : others) {
-      if (distance2 > 4.0001 * radius2) break;
+      if (distance2 > 4.0001 * radius2) break;  // |s_j − s_i| > 2 · radius, with a margin for rounding
       if (!clip(cell, i, j, corners)) return std::nullopt;
       radius2 = 0;
       for (const auto& side : cell)
@@ -200,6 +203,7 @@ TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box) {
   });
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) throw InputError("two sites are at one place");
   Random random(sites.size());
+  // Displacements of 2⁻¹⁶ … 2⁻⁷ of the diagonal: the first that helps is used.
   for (double by = 0x1p-16 * box.diagonal(); by < 0x1p-6 * box.diagonal(); by *= 2) {
     if (auto walls = walls_of(moved, box)) return *walls;
     for (std::size_t i = 0; i < moved.size(); ++i)

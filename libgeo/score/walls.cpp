@@ -1,3 +1,6 @@
+// Grid walls are the rectangles between boxes of different labels; raised walls are extruded
+// segments. Polygons become fans around their centroid. Sheets are divided by each other by
+// inserting them as one crack into a block.
 #include "score/walls.h"
 
 #include <map>

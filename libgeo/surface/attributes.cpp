@@ -1,4 +1,6 @@
-// Transfers attributes of a mesh to surfaces cut from it.
+// A corner gets barycentric weights in its source triangle: 1 at a corner, linear on an edge within
+// 8 ulps of it, else height over the longest edge first, then position along it. Edges are directed
+// by position, so that both triangles of an edge compute equal values.
 #include "kerf/mesh.h"
 
 #include <algorithm>
@@ -27,7 +29,7 @@ Location locate(const std::array<Vec3, 3>& t, const Vec3& p) {
   // equal weights there, so the edge is directed independently of the triangle.
   double largest = p.cwiseAbs().maxCoeff();
   for (const Vec3& c : t) largest = std::max(largest, c.cwiseAbs().maxCoeff());
-  double best = 8 * std::numeric_limits<double>::epsilon() * largest;
+  double best = 8 * std::numeric_limits<double>::epsilon() * largest;  // a few roundings of coordinates
   int longest = 0;
   Location on_edge{0, {}, {}};
   for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,5 @@
-// Validity checks of meshes and crack complexes.
+// Edges are counted by direction in a hash map. Pairs of near triangles come from a spatial index;
+// faces_cross() decides each by the corners that they share: 0, 1 or 2 leave different exact tests.
 #include "kerf/check.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
-// Commits an edit to the crack complex K, all or nothing, and reverts the last one.
+// Phases of a commit: check the edit; plan the radial cycle of each touched edge (children replace
+// parents, given orders replace the plan); overwrite; rebuild the fans at touched vertices. Each
+// overwritten value is logged for undo().
 #include <algorithm>
 #include <string>
 

@@ -1,4 +1,6 @@
-// Makes a crack complex K from a skin, or from a two-sided surface as files hold it.
+// A skin gives pairs of faces by edge. In a two-sided surface, triangles of equal sites and patches
+// ±c are the two sides of one crack face; edges of S_A give the wedges, and exact angles order the
+// chains of faces that wedges join.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -98,7 +100,8 @@ class Complex::Builder {
     }
   }
 
-  /// Reserves memory for the first cracks, so that they do not move all arrays.
+  /// Reserves memory for the first cracks, so that they do not move all arrays: a quarter more
+  /// than there is, and 4096 entries. Larger: later growth, more memory.
   void reserve_for_cracks() {
     const auto more = [](auto& v, std::size_t each) { v.reserve(v.size() + v.size() / 4 + 4096 * each); };
     more(k.points_, 1), more(k.impl_->marks, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1),

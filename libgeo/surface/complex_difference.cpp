@@ -1,4 +1,5 @@
-// The edit that turns one crack complex into another that has grown from it.
+// Faces with equal vertices, crack and orientation are kept. A new face is the child of the removed
+// face of its crack nearest to its centroid. Radial orders are copied from the other complex.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -20,6 +21,8 @@ class Difference {
     // the origin.
     const Box3& extent = from.extent();
     const double rounding = 0x1p-50 * extent.hi.cwiseAbs().cwiseMax(extent.lo.cwiseAbs()).maxCoeff();
+    // Relative to the diagonal: 1e-9 to find candidate faces by their boxes, 1e-7 to count as lying
+    // on one. Larger values accept a surface that has been moved slightly.
     search_reach_ = 1e-9 * extent.diagonal() + rounding, tolerance_ = 1e-7 * extent.diagonal() + rounding;
   }
 

@@ -1,3 +1,5 @@
+// Sets of ids: an item removed after it was made is erased from the new ones, any other removed
+// item is recorded. Origins of copied surface vertices are composed along the deltas.
 #include "surface/delta_sum.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Liepa 2003: a triangle is divided at its centroid m where √2 |x_i − m| > max(size_m, size_i) for
+// each corner i; edges are flipped; then Σ_v |Δx_v|² is minimised over the inner positions (sparse
+// LDLᵀ). Δx_v = Σ_w x_w / |x_w − x_v| / Σ_w 1 / |x_w − x_v| − x_v, w: the neighbours of v.
 #include "surface/fair_patch.h"
 
 #include <Eigen/SparseCholesky>
@@ -15,6 +18,7 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // lower corner first
+// Limits memory and time only; coarser patches do not depend on it.
 constexpr double most_triangles = 1e6;
 
 // The cosine of a triangle's smallest angle; 1 for a degenerate one.

@@ -20,7 +20,7 @@ std::vector<Stroke> strokes_of(char letter) {
   const double l = 0, r = 0.6, b = 0, t = 0.8, m = 0.4, c = 0.3;
   const auto arc_of = [&](double from, double to) {
     std::vector<Stroke> arc;
-    constexpr int segments = 24;
+    constexpr int segments = 24;  // larger: rounder letters
     for (int i = 0; i < segments; ++i) {
       const double a0 = from + (to - from) * i / segments, a1 = from + (to - from) * (i + 1) / segments;
       arc.push_back({c + 0.3 * std::cos(a0), m + 0.4 * std::sin(a0), c + 0.3 * std::cos(a1), m + 0.4 * std::sin(a1)});
@@ -112,6 +112,7 @@ struct Region {
 };
 
 Region contour(const std::vector<Stroke>& strokes, int resolution) {
+  // Half the pen's width; margin of the grid around the strokes, wider than that.
   constexpr double pen = 0.1, pad = 0.15;
   const double h = 1.0 / resolution;
   const int nx = static_cast<int>(std::ceil((0.6 + 2 * pad) / h)),
@@ -133,6 +134,7 @@ Region contour(const std::vector<Stroke>& strokes, int resolution) {
     if (is_new) {
       const int i1 = i + (kind == 1), j1 = j + (kind == 2);
       const double f0 = field[j * (nx + 1) + i], f1 = field[j1 * (nx + 1) + i1];
+      // Zero of the linear interpolant, away from the grid corners: no needles.
       const double s = kind == 0 ? 0.0 : std::clamp(f0 / (f0 - f1), 0.1, 0.9);
       region.points.push_back({(i + s * (i1 - i)) * h, (j + s * (j1 - j)) * h});
     }

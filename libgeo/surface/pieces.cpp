@@ -1,4 +1,6 @@
-// Pieces of material: connected regions, each with one outer shell and possibly inner ones.
+// Shells are the connected components of S_A, flooded across wedges; their volumes are Kahan sums.
+// Shells joined by crack faces form a group, which divides space (Alexander duality). Cavities and
+// internal cracks belong to the smallest outer shell around them (point in solid test).
 #include "kerf/pieces.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Ear clipping (Meisters 1975), with the exact orient2d along the dominant axis of the normal. An
+// ear is a convex corner whose triangle contains no other corner; corners are tried cyclically.
 #include "surface/polygon.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Refinement of meshes by bisection of long edges.
+// Passes of edge bisection: all edges that are too long are divided at once. Each triangle follows
+// the pattern of its 1, 2 or 3 divided edges; with two, the shorter diagonal divides the quad.
 #include "kerf/repair.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // lower vertex first
 
+// Limits memory: an edge length in the wrong unit fails early.
 constexpr std::size_t most_triangles = 20'000'000;
 constexpr std::uint32_t none = ~0u;
 

@@ -1,4 +1,6 @@
-// Mesh repair: welds, orients, fills holes, arranges shells.
+// Phases: weld, drop degenerate and duplicate triangles, orient components by flood fill (majority
+// wins), fill the loops of open edges, arrange shells by nesting depth. A shell at odd depth is a
+// cavity if it was oriented against the shell around it, else it is dropped.
 #include "kerf/repair.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
-// Procedural models: geodesic spheres with a radius function, and blocks.
+// Geodesic spheres divide each face of an icosahedron into frequency² triangles and project them
+// along rays from the centre. Radius functions are sums of bumps exp(−x²) and sines. Points are
+// shared by integer coordinates, never by comparison of doubles.
 #include "kerf/shapes.h"
 
 #include <cmath>
@@ -21,6 +23,7 @@ constexpr std::uint32_t icosahedron_faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 
                                                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                                     {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
+// The numbers in the models below are their dimensions: no algorithm depends on them.
 double bump(double x) { return std::exp(-x * x); }
 
 }  // namespace
@@ -89,9 +92,9 @@ TriangleMesh make_apple(int frequency) {
 }
 
 TriangleMesh make_polyp(int frequency) {
-  // A surface of revolution over a geodesic sphere: the polar angle runs along a profile (radius,
-  // height) that is a simple curve, the azimuth stays, and small bumps on the bulb keep it from
-  // looking turned.
+  // A surface of revolution over a geodesic sphere. The polar angle runs along a profile (radius,
+  // height), a simple curve; the azimuth stays. Small bumps on the bulb hide the rotational
+  // symmetry.
   constexpr double profile[][2] = {{0, 1.0},      {0.30, 0.95},  {0.52, 0.76},  {0.60, 0.48},  {0.52, 0.20},
                                    {0.32, 0.0},   {0.19, -0.16}, {0.17, -0.38}, {0.20, -0.60}, {0.34, -0.80},
                                    {0.46, -0.92}, {0.42, -1.0},  {0.2, -1.0},   {0, -1.0}};

@@ -1,4 +1,5 @@
-// Nearest triangles of meshes, and faces of crack complexes that a segment touches.
+// Nearest triangles come from a box tree over the mesh. Faces on a segment are candidates of K's
+// spatial index that pass the exact test.
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "kerf/complex.h"

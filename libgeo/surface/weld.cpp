@@ -1,3 +1,5 @@
+// Union-find over vertices at open edges: equal positions are adjacent after sorting; positions
+// within `reach` are found in a grid of cells of that size, in 27 cells each.
 #include "surface/weld.h"
 
 #include <algorithm>

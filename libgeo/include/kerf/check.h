@@ -18,6 +18,8 @@
 namespace geo {
 
 struct SurfaceReport {
+  /// closed: no edge with one triangle; manifold: none with more than two; oriented: the two
+  /// triangles of each edge run along it in opposite directions.
   bool closed = true, manifold = true, oriented = true;
   std::size_t degenerate_faces = 0;               ///< faces of zero area, exactly
   std::optional<std::size_t> self_intersections;  ///< pairs of faces; empty: not tested
@@ -30,13 +32,13 @@ struct SurfaceReport {
 /// coincident sheets are no intersection.
 SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
 
-/// Checks K: radial cycles list their edges' faces in geometric order, wedges agree, the derived
-/// surface is closed, oriented and manifold, no face is degenerate, and with `self_intersections`
-/// no two faces cross or overlap. Exact.
+/// Checks K: radial cycles list their edges' faces in geometric order; both sides of each wedge are
+/// material, or both air; the derived surface is closed, oriented and manifold; no face is
+/// degenerate. With `self_intersections`, also that no two faces cross or overlap. Exact.
 SurfaceReport check_complex(const Complex& complex, bool self_intersections);
 
-/// The structural part of check_complex() for some faces (dead ones are skipped) and those that
-/// share a corner with them: all that a step with these new faces can break. Cost follows the
+/// The structural part of check_complex() for some faces (dead ones are skipped) and the faces that
+/// share a corner with them. A step with these new faces can break nothing else. Cost follows the
 /// faces.
 SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 
@@ -52,9 +54,8 @@ void require_solid(const TriangleMesh& mesh);
 
 // ---- Predicates
 
-/// True when two triangles, given by vertex ids f, g and points p, q, meet other than in the
-/// vertices and edges they share by id, or when a vertex they share occurs twice in one of them.
-/// Exact.
+/// True when two triangles, given by vertex ids f, g and points p, q, meet other than in vertices
+/// and edges shared by id. Also true when a shared vertex occurs twice in one of them. Exact.
 bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
                  const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q);
 

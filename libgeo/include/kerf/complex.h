@@ -8,14 +8,10 @@
 //
 // Terms and the paper's symbols:
 //   K        the crack complex; skin faces bound the solid, crack faces lie inside it
-//   side     a face seen from the material on one side of it; a skin face has one side, a crack
-//   face two
-//   wedge    the space between two faces that follow each other around an edge: all material, or
-//   all air
-//   fan      sides at a vertex of K that are connected through wedges of material; each is one
-//   vertex of S_A
-//   S_A      the derived surface: all sides, joined across wedges of material; closed, oriented,
-//   manifold
+//   side     a face seen from material on one side; skin faces have one side, crack faces two
+//   wedge    the space between consecutive faces around an edge: all material, or all air
+//   fan      sides at a vertex of K, connected through wedges of material: one vertex of S_A
+//   S_A      the derived surface: all sides, joined across wedges; closed, oriented, manifold
 //   site     the vertex of K at which a vertex of S_A stands; the fans of one site coincide
 #pragma once
 
@@ -118,9 +114,8 @@ class Complex {
     std::array<VertexId, 3> v;  ///< counter-clockwise seen from the side that the normal points to
     std::int32_t crack = 0;     ///< 0: skin, c > 0: crack c
     bool alive = false;         ///< false once the face is removed
-    /// Index of the triangle that contains this face in the surface that the complex was made from
-    /// (for a crack of that surface: the triangle on its positive side); ~0u for a crack made
-    /// since.
+    /// Index of the triangle that contains this face in the original surface of the complex (for a
+    /// crack of that surface: the triangle on its positive side). ~0u: none, the crack is newer.
     std::uint32_t source = ~0u;
   };
 
@@ -172,8 +167,9 @@ class Complex {
   FacesAt faces_at(VertexId v) const;
   /// Appends to `out`, ascending, the living faces whose boxes meet `box`.
   void faces_near(const Box3& box, std::vector<FaceId>& out) const;
-  /// Appends to `out`, ascending, the living faces whose boxes meet that of triangle abc grown by
-  /// `reach` (model units) and are not farther than `reach` from its plane.
+  /// Appends to `out`, ascending, the living faces near triangle abc. Conditions: the face's box
+  /// meets the box of abc grown by `reach` (model units), and is not farther than `reach` from the
+  /// plane of abc.
   void faces_near_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double reach, std::vector<FaceId>& out) const;
 
   // ---- The derived surface S_A: closed, oriented, manifold by construction

@@ -23,8 +23,8 @@ namespace geo {
 /// A front over time: F_0, F_1, … A closed front joins its last point to its first. A sheet is a
 /// crack given whole: a single step, and triangles of its points.
 struct Front {
-  std::string name;
-  bool closed = false;
+  std::string name;                      ///< as in its file; may be empty
+  bool closed = false;                   ///< the last point is joined to the first
   std::vector<std::vector<Vec3>> steps;  ///< points per time step, each at least two; material coordinates
   std::vector<Triangle> triangles{};     ///< of a sheet: indices into steps[0]; else none
 
@@ -32,8 +32,8 @@ struct Front {
   bool is_sheet() const { return !triangles.empty(); }
 };
 
-/// Resamples `next` so that its points correspond one to one with those of `previous`: by index
-/// where the counts agree, else by fraction of arc length.
+/// Resamples `next` to as many points as `previous`: unchanged where the counts agree, else at the
+/// fractions of arc length of the points of `previous`.
 std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed);
 
 /// The number of substeps, at least 1, that keeps each front point's motion per substep at or below
@@ -60,20 +60,29 @@ struct FrontState {
 
 /// Tolerances are relative to the diagonal of Complex::extent().
 struct CrackOptions {
-  double snap = 1e-14;  ///< strip vertices this near to a vertex of K become that vertex
-  double face_offset =
-      1e-6;  ///< a new front point within a hundredth of this of a face of K, but not on it, moves this
-             // /< far off the face
-  double clearance = 0x1p-46;  ///< least distance between features that do not touch; the later half of the attempts
-                               // /< does without
-  double jitter = 1e-9;        ///< displacement of the new front in the first repeated attempt
-  int attempts = 12;           ///< how often a refused step is repeated with the front displaced
-  std::uint64_t seed = 1;      ///< of the displacements
+  /// The strip is snapped to vertices of K nearer than this: its vertices move, edges and triangles
+  /// are divided there.
+  double snap = 1e-14;
+  /// New front points off K but nearer to a face than face_offset / 100 move away from it by
+  /// face_offset. Otherwise the strip would have needles there.
+  double face_offset = 1e-6;
+  /// Least distance between features of cracks that do not touch (2⁻⁴⁶ ≈ 1.4e-14). The later half
+  /// of the attempts has no such limit.
+  double clearance = 0x1p-46;
+  /// Displacement of the new front in repeated attempt n = 1, 2, …: jitter · 8^min(n − 1, 4).
+  double jitter = 1e-9;
+  int attempts = 12;       ///< how often a refused step is repeated with the front displaced
+  std::uint64_t seed = 1;  ///< of the displacements
 };
 
 /// Counts and seconds of one step, by phase.
 struct CrackStats {
+  /// faces_near: pairs of a strip triangle and a near face of K; triangles_cut: divided faces of K;
+  /// attempts: the first one included; snapped: vertices of K that the strip was snapped to;
+  /// repairs: attempts in which displaced points removed a fault of rounding.
   std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0;
+  /// near: sweep, near faces, snapping; meet: intersections; split: triangulation; keep:
+  /// classification; stitch: edit and commit; guard: checks and repairs after rounding.
   double near_seconds = 0, meet_seconds = 0, split_seconds = 0, keep_seconds = 0, stitch_seconds = 0, guard_seconds = 0;
   /// Adds all counts and seconds.
   CrackStats& operator+=(const CrackStats& other);

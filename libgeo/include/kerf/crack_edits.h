@@ -21,7 +21,7 @@ namespace geo {
 /// Lengths are relative to the diagonal of Complex::extent().
 struct RemeshOptions {
   double angle = 15;        ///< degrees: faces with a smaller angle are improved
-  double deviation = 1e-4;  ///< how far a crack's surface may move; the skin never does
+  double deviation = 1e-4;  ///< how far a crack's surface may move in one edit; the skin never does
   double shortest = 2e-3;   ///< no edge is divided into shorter ones
   double crease = 20;       ///< degrees: an edge of a crack with a larger dihedral deviation is a feature
   /// Where given: refuses edits whose faces sweep a tetrahedron for which this is false (a body's
@@ -30,6 +30,7 @@ struct RemeshOptions {
 };
 
 struct RemeshStats {
+  /// faces: bad faces examined, again each time; then the edits made, by kind.
   std::size_t faces = 0, flips = 0, collapses = 0, moves = 0, divisions = 0;
   std::size_t refused = 0;  ///< edits that the guard or may_sweep refused
   double seconds = 0;
@@ -37,8 +38,8 @@ struct RemeshStats {
 
 /// Improves the faces of `region` (dead ones are skipped) that have a smaller angle than wanted, by
 /// flips, collapses, moves and divisions. Kept are the skin's surface, the lines where cracks meet
-/// each other and the skin, crack tips, creases, and the contacts of `fronts`, which are updated
-/// where a contact is merged with its neighbour. Cost follows the region. Returns all changes.
+/// each other and the skin, crack tips, creases, and the contacts of `fronts`. A contact merged
+/// with its neighbour is removed from its front. Cost follows the region. Returns all changes.
 /// Throws InputError for options out of range.
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
                   const RemeshOptions& options = {}, RemeshStats* stats = nullptr);
@@ -53,7 +54,7 @@ struct RoughenOptions {
   double amplitude = 0.01;  ///< of the largest bumps
   double frequency = 8;     ///< of the largest bumps, per diagonal
   int octaves = 4;          ///< each twice as fine and 0.6 times as high
-  double edge = 0;          ///< longest edge inside a crack; 0: a twelfth of the largest bumps
+  double edge = 0;          ///< longest edge inside a crack; 0: 1 / (12 · frequency)
   std::uint64_t seed = 1;
   std::vector<std::int32_t> cracks;  ///< numbers of the cracks to roughen; empty: all
 };

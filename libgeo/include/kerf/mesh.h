@@ -38,10 +38,11 @@ struct Attributes {
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::int32_t> patch;    ///< per triangle: 0 skin, +c and −c the two sides of crack c; or empty
-  std::vector<std::uint32_t> site;    ///< per vertex: vertex of the crack complex; or empty
-  std::vector<std::uint32_t> source;  ///< per triangle: the triangle of the surface that was cut which contains it, ~0u
-                                      // /< for a crack's; empty: unknown
+  std::vector<std::int32_t> patch;  ///< per triangle: 0 skin, +c and −c the two sides of crack c; or empty
+  std::vector<std::uint32_t> site;  ///< per vertex: vertex of the crack complex; or empty
+  /// Per triangle: index of the triangle that contains it in the surface that was cut. ~0u: none,
+  /// the triangle belongs to a crack. Empty array: unknown.
+  std::vector<std::uint32_t> source;
   Attributes attributes;
   /// Whether this is a two-sided surface.
   bool two_sided() const { return !site.empty(); }

@@ -64,9 +64,9 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
 
 /// Approximate convex decomposition of a closed mesh: at most `max_hulls` convex hulls of at most
 /// `max_vertices` vertices each. Planes across principal axes divide the mesh greedily; each
-/// division is the one that saves most hull volume (after Mamou and Ghorbel 2009), while that is
-/// more than a hundredth of the whole hull's. Hulls with no limit on vertices cover the mesh. Empty
-/// for a planar mesh.
+/// division saves the most hull volume (after Mamou and Ghorbel 2009). It ends when the saving is
+/// at most a hundredth of the whole hull's volume. Hulls with no limit on vertices cover the mesh.
+/// Empty for a planar mesh.
 std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t max_hulls,
                                                std::size_t max_vertices);
 

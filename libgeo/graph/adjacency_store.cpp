@@ -1,3 +1,6 @@
+// A row is 8-byte words: ids, bits and path lengths, each array aligned to four bytes. Free words
+// are lists by size (segregated fits). A row moves when it needs more words than it has, or fewer
+// than two thirds of them.
 #include "graph/adjacency_store.h"
 
 #include <algorithm>

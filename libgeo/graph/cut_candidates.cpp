@@ -1,3 +1,6 @@
+// An edge of length L that a face cuts has one end within L / 2 of the face. The octrees of nodes
+// and guides are descended to cubes that such neighbourhoods of faces reach. The nodes in them are
+// tested against box and plane of each face, with bounds on rounding.
 #include "graph/cut_candidates.h"
 
 #include <algorithm>

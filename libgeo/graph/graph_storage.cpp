@@ -1,3 +1,5 @@
+// Edges change one row at a time: a row is copied, edited and stored again. Rows of a whole graph
+// come from a counting sort of half-edges by node, or from arrays of a file, which are checked.
 #include "graph/graph_storage.h"
 
 #include <algorithm>

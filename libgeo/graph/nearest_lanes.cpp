@@ -1,7 +1,6 @@
 // Nearest nodes by groups. The nodes of a small cell search together:
-//   1. Candidates within `reach` of the cell's box are gathered once, as floats relative to the
-//   box.
-//   2. Each node selects those within reach of itself and ranks them by counting.
+//   1. Candidates within √reach of the cell's box are gathered once, as floats relative to the box.
+//   2. Each node selects those within √reach of itself and ranks them by counting.
 //   3. It puts the first k in exact order by doubles.
 // The result holds when the last node is within reach, since all nodes left out are farther
 // (NodeTree::Cell::gap). The width of the vectors changes the speed only.
@@ -71,11 +70,12 @@ class GroupSearch {
   void operator()(std::uint32_t group) {
     const auto cells = tree_.cells();
     const NodeTree::Cell& home = cells[group];
-    // A cell around with enough nodes bounds how far the last of them can be, and tells about how
-    // far it will be.
+    // The smallest cell around the group with enough nodes bounds the distance of the last of them.
     std::uint32_t around = group;
     while (cells[around].count() < wanted_) around = cells[around].parent;
     const double farthest = cells[around].diagonal();
+    // Factors 0.06 and 0.36 of the squared diagonal bound the first guess; a guess too small costs
+    // another round, a guess too large more candidates. The result is the same.
     double reach = std::clamp(learned_, 0.06 * farthest, 0.36 * farthest);
     pending_.clear();
     for (auto slot = home.begin; slot < home.end; ++slot) pending_.push_back(slot);
@@ -87,8 +87,10 @@ class GroupSearch {
         if (!search(slot, reach)) pending_[open++] = slot;
       pending_.resize(open);
       if (open == 0) break;
+      // Squared: the distance grows by a factor of 1.26.
       reach = std::min(reach > 0 ? 1.6 * reach : farthest, farthest);
     }
+    // The next group starts with 3 % more distance (6 % of its square).
     learned_ *= 1.06;
   }
 

@@ -1,3 +1,6 @@
+// Up to 4096 sources share a local graph, and sixteen of them one batched search. A hidden
+// neighbour's path is, among all paths of least warped length, the one of least plain length: p(v)
+// = min p(u) + |x_u − x_v| over edges uv with d(u) + length(uv) = d(v).
 #include "graph/neighborhood_search.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// 30-bit Morton codes are sorted by radix. A cell is split at the highest bit in which its first
+// and last code differ, as in a binary radix tree (Lauterbach et al. 2009). Boxes are joined
+// bottom-up.
 #include "graph/node_tree.h"
 
 #include <algorithm>
@@ -15,6 +18,7 @@ using Cell = NodeTree::Cell;
 constexpr int code_bits = 30, axis_bits = 10;
 constexpr std::uint32_t grain = 1 << 14;  // nodes that are worth a task
 
+// Puts two zero bits between the lower ten bits of x.
 std::uint32_t spread(std::uint32_t x) {
   x = (x | x << 16) & 0x30000ff;
   x = (x | x << 8) & 0x300f00f;

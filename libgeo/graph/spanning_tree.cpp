@@ -162,6 +162,7 @@ std::vector<std::pair<NodeId, NodeId>> as_pairs(const std::vector<TreeEdge>& edg
 }  // namespace
 
 std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions) {
+  // Nearest nodes tested before the tree is searched; the result does not depend on their number.
   constexpr int k = 8;
   const NodeTree tree(positions);
   const auto near = nearest_nodes(tree, k);

@@ -30,8 +30,8 @@ inline bool is_divided(const Divisions& divided, const Cell& c) {
   return std::binary_search(codes.begin(), codes.end(), morton(c.corner));
 }
 
-/// The thinnest wall with less than `across` regular cells across, and the thinnest with less than
-/// that even of the finest cells.
+/// Thinnest: the thinnest wall with less than `across` regular cells across. Unresolved: the
+/// thinnest wall that even the finest cells do not resolve.
 struct ThinPlaces {
   Wall thinnest, unresolved;
 };

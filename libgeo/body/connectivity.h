@@ -27,8 +27,9 @@ struct ConnectivityMismatch {
 ConnectivityMismatch find_mismatch(const Body& body, const std::vector<std::uint32_t>& component);
 
 /// Compares after a step only what may have changed: at `cut` edges, `detached` pieces, nodes from
-/// `first_new` on, and faces at `touched` vertices. The part with fewer nodes is
-/// visited. Parts that are still connected around the crack front cost little more than the cut.
+/// `first_new` on, and faces at `touched` vertices. If a component came apart, only the part with
+/// fewer nodes is visited. Parts still connected around the crack front cost little more than the
+/// cut.
 ConnectivityMismatch find_mismatch(const Body& body, std::span<const NodePair> cut,
                                    std::span<const DetachedPiece> detached, std::span<const SurfaceVertexId> touched,
                                    NodeId first_new);
@@ -56,8 +57,8 @@ using GraphUpdater = std::function<void(NodeId first_new, std::span<const NodePa
 /// Afterwards mismatch.representative has a node of each piece visited.
 void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update);
 
-/// The nodes of each detached piece. Among parts of what was one piece, that with most nodes is
-/// left out.
+/// The nodes of each detached piece, ascending. A piece that came apart into n parts gives n − 1
+/// lists: the part with most nodes is left out.
 std::vector<std::vector<NodeId>> detached_nodes(const Body& body, std::span<const DetachedPiece> detached,
                                                 const ConnectivityMismatch& mismatch);
 

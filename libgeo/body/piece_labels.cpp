@@ -1,3 +1,6 @@
+// Labels are copied to new vertices, or flooded over the surface from labelled ones. Both sides of
+// each new crack face then grow along the surface until they meet; if they do not, the piece with
+// less surface gets a new label.
 #include "body/piece_labels.h"
 
 #include <algorithm>

@@ -100,8 +100,8 @@ class GraphStorage {
   /// Upper bound of the lengths of all edges and of the Euclidean distances of all neighbours.
   /// Model units.
   double longest_edge() const { return longest_edge_; }
-  /// Upper bound of the Euclidean distances of all neighbours; the largest radius of a node or
-  /// guide with edges so far. Model units.
+  /// Largest support radius of nodes and guides so far: an upper bound of the Euclidean distances
+  /// of all neighbours. Model units.
   double largest_support() const { return largest_support_; }
 
   /// See VisibilityGraph::components().

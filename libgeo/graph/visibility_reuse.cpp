@@ -1,5 +1,6 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind
-// of vector.
+// Old and new row ascend and are merged in vectors. Entry e is open (to be tested again) unless it
+// is an edge, or it was visible and no new face hides it: open = ¬(edge ∨ (visible ∧ ¬hidden)).
+// Highway compiles the part from HWY_BEFORE_NAMESPACE on once for each kind of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/visibility_reuse.cpp"
 #include "base/simd_targets.h"

@@ -1,3 +1,5 @@
+// Text: a header line and points of each time step, or triangles of a sheet (docs/formats.md). OBJ:
+// each object with a polyline is a time step.
 #include "kerf/front_file.h"
 
 #include <algorithm>

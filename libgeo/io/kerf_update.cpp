@@ -1,3 +1,6 @@
+// Under a file lock, sections whose hashes differ are appended as one segment: whole, or as runs of
+// rows if these are shorter. The commit record is written after fsync(), so a crash leaves the old
+// state.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -174,6 +177,7 @@ std::uint64_t KerfUpdate::commit(const std::vector<KerfArray>& arrays) {
   if (kept && file().version() == kerf_format_version) {
     const auto changed = impl_->changes(arrays);
     const std::uint64_t added = kerf::segment_size(file().committed(), changed);
+    // Appends while the file is at most twice as long as a new one; else it is written anew.
     if (file().committed() + added <= 2 * size) {
       impl_->append(changed);
       return added;

@@ -1,3 +1,4 @@
+// Formats of nodes are recognised by their first bytes: .kerf, PLY, or PCD (ASCII or binary).
 #include "kerf/node_file.h"
 
 #include <array>

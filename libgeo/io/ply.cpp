@@ -1,3 +1,5 @@
+// The header gives the layout. Elements of fixed size are decoded column by column; lists are read
+// number by number. All numbers become doubles.
 #include <bit>
 #include <cstdint>
 #include <cstring>

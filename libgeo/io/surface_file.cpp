@@ -1,3 +1,5 @@
+// Formats are recognised by their first bytes or lines, never by the name. Polygons become
+// triangles, and equal vertices are welded where a format does not share them.
 #include "kerf/surface_file.h"
 
 #include "io/line_reader.h"

@@ -21,7 +21,7 @@ TriangleMesh parse_off(const std::string& bytes, const std::string& name);
 /// Reads ASCII or binary STL.
 TriangleMesh parse_stl(const std::string& bytes, const std::string& name);
 
-/// A number as an index; ~0u where it is no index.
+/// A number as an index; ~0u (no index) if it is negative, fractional or too large.
 inline std::uint32_t row_of(double x) {
   if (!(x >= 0 && x < 4294967295.0)) return ~0u;
   const auto row = static_cast<std::uint32_t>(x);

@@ -1,3 +1,5 @@
+// USD as text (.usda): a mesh with time samples for each value that changes. Frames are read and
+// printed on several threads, and written in order.
 #include "kerf/run_files.h"
 
 #include <charconv>

@@ -1,3 +1,5 @@
+// OpenVDB: surfaces by dual contouring of an iso-value (volumeToMesh), level sets from closed
+// surfaces (meshToLevelSet).
 #include "kerf/surface_file.h"
 
 #include <openvdb/io/Stream.h>

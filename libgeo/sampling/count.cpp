@@ -106,7 +106,7 @@ std::optional<SpacedLeaves> LeafFinder::at(double spacing, int thin_levels, std:
 }
 
 SpacedLeaves LeafFinder::with_count(std::size_t count, double volume, SampleReport& report) const {
-  // Trials with four times the wanted number are given up, since they cost time and memory.
+  // A trial that would divide more than `most` cells is given up: it costs time and memory.
   const double target = double(count), most = 4 * target + 1000;
   CountCurve curve;
   int thin = thin_levels();

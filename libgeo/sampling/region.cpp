@@ -1,6 +1,7 @@
 // Parity of crossings: a point is inside if the segment from the probe crosses the surface an odd
-// number of times, by exact orientation predicates. A segment that touches an edge, a corner or a
-// plane falls back to a search in the BVH. Many points are handled as bits of 64-bit words.
+// number of times, by exact predicates. A segment that touches an edge or corner, or ends on a
+// triangle, falls back to the BVH. Many points are handled as bits of 64-bit words.
+
 #include "sampling/region.h"
 
 #include <algorithm>

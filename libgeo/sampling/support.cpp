@@ -1,5 +1,5 @@
 // r_i = max(support · min(s_i, Σ s² / Σ s), 1.05 · min(d_12, 3 s_i)). Sums run over node i and its
-// twelve nearest nodes, and d_12 is the distance of the twelfth.
+// twelve nearest nodes; d_12 is the distance of the twelfth, infinite if fewer are near.
 #include "sampling/support.h"
 
 #include <cmath>

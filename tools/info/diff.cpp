@@ -1,3 +1,4 @@
+// Compares sets of edges, neighbours and masters by id, and counts what is in one body only.
 #include "info/diff.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Overrides of keys come from --set. Warnings compare the models with what the scene asks of them.
 #include "sim/setup.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Frames are read again from the folder, one after another, so that memory does not grow with the
+// run.
 #include "sim/whole_run.h"
 
 #include <vector>

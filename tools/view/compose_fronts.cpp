@@ -1,3 +1,5 @@
+// Seams and fronts are edges of the derived surface between patches: skin beside crack, or the two
+// sides of one crack.
 #include <map>
 
 #include "view/compose_parts.h"

@@ -1,3 +1,5 @@
+// Edges are sticks and nodes spheres. Shortest paths by Dijkstra's algorithm along edges show
+// neighbours that a crack hides.
 #include <algorithm>
 #include <map>
 

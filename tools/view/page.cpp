@@ -1,3 +1,5 @@
+// Content is quantised and coarsened until it is within the budget, packed, and inserted into the
+// template.
 #include "view/page.h"
 
 #include <algorithm>

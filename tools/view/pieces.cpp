@@ -1,3 +1,4 @@
+// Connected shells by union-find over triangles, then shells within shells.
 #include "view/pieces.h"
 
 #include <limits>

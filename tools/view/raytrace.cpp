@@ -1,3 +1,5 @@
+// Embree finds hits. Light: a soft key light, sky by ambient occlusion, a rim light. A cut-away
+// shows its section where the winding number of the surface in the cutting plane is positive.
 #include "view/raytrace.h"
 
 #include <embree3/rtcore.h>
@@ -22,7 +24,8 @@ Color mixed(const Color& a, const Color& b, double t) {
   return {float(a[0] + (b[0] - a[0]) * t), float(a[1] + (b[1] - a[1]) * t), float(a[2] + (b[2] - a[2]) * t)};
 }
 
-// Integer hash of a pixel sample: noise that does not depend on threads.
+// Integer hash of a pixel sample (lowbias32 by C. Wellons, 2018): noise that does not depend on
+// threads.
 std::uint32_t hash(std::uint32_t x) {
   x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
   return x;

@@ -111,9 +111,9 @@ struct BodyDelta {
                                                   // /< most nodes counts as the rest
 };
 
-/// Moves a crack front to `next` through all seven steps of § 4: crack, cut graph, resample, update
-/// neighbours, rebind. Throws GeometryError when the step is not possible; body and front are then
-/// unchanged.
+/// Moves a crack front to `next` (positions of its points, material coordinates) through all seven
+/// steps of § 4: crack, cut graph, resample, update neighbours, rebind. Throws GeometryError when
+/// the step is not possible; body and front are then unchanged.
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
                 SplitStats* stats = nullptr);
 
@@ -126,8 +126,9 @@ BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats = nu
 /// for bit. The cost follows what changes. Throws InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
-/// Writes the nodes that carry a surface vertex with their Euclidean distances (§ 6.5): its
-/// master's node and that node's neighbours, those whose support radius covers the vertex.
+/// Writes the nodes that carry a surface vertex v, with their Euclidean distances to v (§ 6.5).
+/// Candidates: the node m of v's master, and m's neighbours. A candidate j carries v if
+/// |x_j − v| < r_j. If none does, m carries v, with distance 0. Empty for an orphan.
 void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
 
 /// The result of check_body().

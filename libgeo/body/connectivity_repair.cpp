@@ -150,7 +150,8 @@ std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<Si
   return best;
 }
 
-// The rounds of a repair. Each inserts nodes and joins, updates the graph, and sees what is left.
+// The rounds of a repair. Each inserts nodes and joins, updates the graph, and finds the remaining
+// mismatch.
 class ConnectivityRepair {
  public:
   ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update)

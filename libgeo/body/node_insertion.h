@@ -11,7 +11,8 @@ namespace geo {
 
 using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 
-/// Declares the first `count` nodes, at least one, to be those that the body was built from.
+/// Declares the first `count` nodes (at least one) as the nodes that the body was built from, and
+/// sets the bounds that depend on them.
 void set_original_nodes(Body& body, std::uint32_t count);
 
 /// Appends a node at x with the support radius of node `donor` and half of its volume: the sum of

@@ -1,6 +1,6 @@
-// The path leads over the sides of the surface, from one point's view to the other's. It crosses
-// edges at points pulled taut, and is lowered towards the surface until it touches nothing.
-// Floating point only proposes points; exact predicates decide.
+// The path leads over the sides of the surface, from a side that `from` sees to a side that `to`
+// sees. It crosses edges at points pulled taut, and is lowered towards the surface until it touches
+// nothing. Floating point only proposes points; exact predicates decide.
 #include "body/taut_path.h"
 
 #include <algorithm>

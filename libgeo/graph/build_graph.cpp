@@ -13,8 +13,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<NodeId, NodeId>>;
 
-// Pairs i < j, each once: one end is among the k nearest of the other, or the spanning tree joins
-// them.
+// Pairs i < j, each once: i is among the k nearest of j, or j among the k nearest of i, or the
+// spanning tree joins them.
 Pairs candidate_edges(const NodeSet& nodes, std::size_t k, const Progress& progress) {
   const std::size_t n = nodes.size();
   report(progress, "nearest nodes", 0, n);

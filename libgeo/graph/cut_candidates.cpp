@@ -58,8 +58,8 @@ struct Surroundings {
   double reach;
 };
 
-// Walks the grids down to small cubes, keeps those that faces reach into, and tests the nodes in
-// them in batches.
+// Descends the grids to small cubes that surroundings of faces reach, and tests the nodes in these
+// cubes in batches.
 class Search {
  public:
   Search(const NodeSet& nodes, const GraphStorage& graph, std::span<const Corners> faces, const TriangleBvh& tree)

@@ -118,7 +118,7 @@ class GroupSearch {
       for (const auto child : {cell.children + 1, cell.children})
         if (cells[child].gap(home.lo, home.hi) <= reach) stack_.push_back(child);
     }
-    // Whole vectors are read: those behind the last are far away.
+    // Whole vectors are read. Entries behind the last are far away.
     const hn::ScalableTag<float> d;
     near_.reserve(hn::Lanes(d));
     for (auto& a : near_.along) std::fill_n(a.begin() + static_cast<std::ptrdiff_t>(near_.size), hn::Lanes(d), 1e15f);
@@ -212,8 +212,8 @@ class GroupSearch {
     return true;
   }
 
-  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put
-  // behind them, in order.
+  // Puts the first `wanted_` candidates into `exact_`, in order. Candidates that rounding may have
+  // put behind them are sorted, too.
   template <class ToExact>
   void rank(std::uint32_t count, const ToExact& exact) {
     const hn::ScalableTag<std::uint32_t> du;

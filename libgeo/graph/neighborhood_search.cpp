@@ -50,8 +50,7 @@ class NeighborhoodSearch::Scratch {
   std::vector<LastEdge> last_edges_;  // [0] ends each list
 };
 
-// The edges that end shortest paths from a source: those that account for the distance of their
-// end.
+// The edges uv that end shortest paths from a source: d(u) + length(uv) = d(v).
 void NeighborhoodSearch::Scratch::find_last_edges(std::uint32_t source, const BatchedSearch::Distances& found) {
   distance_.resize(std::max<std::size_t>(distance_.size(), local.size()), 0);
   plain_.resize(distance_.size()), first_edge_.resize(distance_.size());

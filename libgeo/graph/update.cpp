@@ -321,8 +321,8 @@ void GraphUpdater::join_new_guides(PairVisibility& visibility) {
   add_guide_edges(nodes_, visible, graph_);
 }
 
-// P_update also has the nodes that a new or shortened edge may give a shorter path: those within a
-// support radius of one of its ends.
+// A new or shortened edge may give a shorter path to nodes within a support radius of one of its
+// ends. They belong to P_update, too.
 void GraphUpdater::add_users_of_new_edges() {
   std::vector<std::uint32_t> starts = fresh_;
   for (const NodeId r : in_.resized) starts.push_back(r.value);
@@ -372,7 +372,7 @@ void GraphUpdater::find_rows(std::span<const std::uint32_t> sources, const Neigh
         bits[e] |= AdjacencyRow::path_bit;
     }
     if (in_.moved.empty()) return;
-    // Lines of sight to moved nodes are not what they were.
+    // Lines of sight to moved nodes have changed.
     for (std::size_t e = 0; e < to.size(); ++e)
       if (!AdjacencyRow::is_edge(bits[e]) && to[e] < in_.first_new.value && is_fresh(to[e]) &&
           visibility.blocked(i, to[e]))

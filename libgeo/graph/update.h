@@ -43,8 +43,8 @@ struct GraphUpdate {
   std::vector<NodeId> updated_nodes;                   ///< P_update: nodes whose rows were recomputed, ascending
 };
 
-/// Brings edges and neighbours up to date. The cost follows what changes, not the size of the
-/// graph. If `progress` stops it, the graph is lost.
+/// Updates edges and neighbours. The cost depends on the size of the change, not of the graph. If
+/// `progress` stops it, the graph is lost.
 GraphUpdate update_graph(const GraphChange& change, VisibilityGraph& graph, const Progress& progress = {});
 
 }  // namespace geo

@@ -1,5 +1,5 @@
-// Text: a header line and points of each time step, or triangles of a sheet (docs/formats.md). OBJ:
-// each object with a polyline is a time step.
+// Text, line by line: `front NAME`, then `step T` and a point a line; or `sheet NAME` with points
+// and triangles. OBJ: each object with a polyline is a time step.
 #include "kerf/front_file.h"
 
 #include <algorithm>

@@ -60,8 +60,9 @@ double linear(double c) {  // IEC 61966-2-1
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// The buffer of a .glb and the JSON that describes it. Numbers of the glTF 2.0 specification: targets
-// 34962 (vertices) and 34963 (indices); types 5123 (16 bits), 5125 (32 bits) and 5126 (floats).
+// The buffer of a .glb and the JSON that describes it. Numbers of the glTF 2.0 specification:
+// targets 34962 (vertices) and 34963 (indices); types 5123 (16 bits), 5125 (32 bits), 5126
+// (floats).
 class Glb {
  public:
   Json json;

@@ -37,7 +37,8 @@ std::vector<std::byte> all_of(const KerfArray& array) {
   return bytes;
 }
 
-// The array as runs over the one before, or whole where that is shorter or there is no telling.
+// The array as runs of rows of its previous version; whole if that is shorter, or if the types
+// differ.
 kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::uint64_t hash, const KerfFile& file) {
   const KerfFile::Section& old = file.sections().at(array.name);
   kerf::Stored s{array, {}, 0, hash};

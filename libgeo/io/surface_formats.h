@@ -43,8 +43,8 @@ std::vector<std::array<V, 3>> at_corners(const TriangleMesh& mesh, const std::ve
   return result;
 }
 
-/// Values of corners at vertices: that of the first corner of a vertex, corners of skin before
-/// those of cracks. `agree`: whether all corners of skin have the value of their vertex.
+/// Values of corners at vertices. A vertex takes the value of its first corner; corners of skin
+/// precede corners of cracks. `agree`: whether all corners of skin have the value of their vertex.
 template <class V>
 struct AtVertices {
   std::vector<V> value;

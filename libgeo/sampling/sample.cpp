@@ -14,8 +14,9 @@
 namespace geo {
 namespace {
 
-/// Material of leaves without a node goes to the nearest node; what cut leaves hold, which is an
-/// estimate, is scaled so that all together have the body's volume.
+/// Volume of leaves without a node goes to the nearest node. Volumes of whole leaves are exact.
+/// Volumes of cut leaves are estimates and are scaled by (V − Σ whole) / Σ cut, so that the sum is
+/// the body's volume V.
 void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole,
                   const std::vector<Leaf>& orphans, double volume) {
   double exact = 0, estimate = 0;

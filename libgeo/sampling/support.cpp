@@ -17,7 +17,7 @@ struct Near {
   bool operator<(const Near& b) const { return squared != b.squared ? squared < b.squared : row < b.row; }
 };
 
-/// The twelve nodes nearest to node i of those that can be within three spacings.
+/// The twelve nodes nearest to node i within four spacings; fewer if there are fewer.
 void find_dozen(const NodeSet& nodes, const LeafIndex& leaves, std::size_t i, std::vector<Near>& near) {
   const Cell cell = leaves.cell(i);
   // Cells one level coarser cover two spacings, which nearly always suffices; two levels, four.

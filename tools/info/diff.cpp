@@ -1,4 +1,5 @@
-// Compares sets of edges, neighbours and masters by id, and counts what is in one body only.
+// Nodes and surface vertices are matched by index, edges by their ends. Values are compared bit for
+// bit.
 #include "info/diff.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Overrides of keys come from --set. Warnings compare the models with what the scene asks of them.
+// Overrides of keys come from --set. Warnings compare models, sampling, grips and blades with the
+// scene.
 #include "sim/setup.h"
 
 #include <algorithm>

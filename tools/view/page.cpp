@@ -1,5 +1,5 @@
-// Content is quantised and coarsened until it is within the budget, packed, and inserted into the
-// template.
+// Content is packed at a budget of triangles, nodes and pairs. If the page is too large, the budget
+// is reduced in proportion and the page is made again.
 #include "view/page.h"
 
 #include <algorithm>

@@ -126,8 +126,8 @@ Body parse_body(const std::string& bytes, const std::string& name);
 /// Writes a body as a new file. The same body gives the same bytes.
 void write_body(std::ostream& out, const Body& body);
 
-/// Updates a file to a body that was derived from the file's, by appending what changed. Returns
-/// the number of bytes written. Throws as KerfUpdate::commit().
+/// Updates a file to a later state of its body, by appending the changes. Returns the number of
+/// bytes written. Throws as KerfUpdate::commit().
 std::uint64_t write_body(KerfUpdate& file, const Body& body);
 
 }  // namespace geo

@@ -17,7 +17,7 @@ struct ConnectivityMismatch {
   std::vector<SurfaceVertexId> empty_pieces;      ///< a surface vertex of each piece without a node
   std::vector<NodePair> disconnected;             ///< pairs of nodes of one piece in two components of G
   std::map<std::int32_t, NodeId> representative;  ///< by label: a node of each piece visited; invalid
-                                                  // /< where the piece has none yet
+                                                  ///< where the piece has none yet
   /// Do components and pieces correspond?
   bool none() const { return empty_pieces.empty() && disconnected.empty(); }
 };

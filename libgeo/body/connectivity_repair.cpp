@@ -203,6 +203,7 @@ class ConnectivityRepair {
       if (round == 0)
         for (const auto n : component) {
           const Vec3& x = body_.nodes.position[n];
+          // Faces within 1.5 spacings of the component: walls of the passage at its nodes.
           body_.surface.faces_near(Box3{x, x}.grown(1.5 * body_.nodes.spacing[n]), faces);
         }
       else
@@ -254,6 +255,7 @@ std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double r
     const auto t = k.corners(s.face);
     const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
     const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    // Steps of factor 0.6 down to 1e-16 of the extent, the resolution of doubles (2⁻⁵³).
     for (double step = reach; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
       const Vec3 x = middle + 0.5 * step * inwards;
       if (is_in_front(k, s, middle, middle + step * inwards) && is_in_front(k, s, middle, x) && !is_blocked(k, x, x) &&

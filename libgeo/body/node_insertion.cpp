@@ -166,6 +166,8 @@ Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& 
   // As far as possible. The node leaves the faces that it is on, and passes no other.
   Vec3 best = x;
   for (const Vec3& along : directions)
+    // At most 17 steps, each half of the one before. Leaving a face is tested from 1e-3 of the step
+    // on, since x itself is on the face.
     for (double step = farthest; step > 1e-6 * spacing; step *= 0.5) {
       const Vec3 to = x + step * along;
       if (std::any_of(around.begin(), on, [&](FaceId f) { return touches(surface, f, x, to); }) ||

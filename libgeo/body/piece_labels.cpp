@@ -26,8 +26,8 @@ Regions shells_of(const Complex& k) {
       });
 }
 
-// Labels the connected unlabelled vertices around v with the label found beside them, else with
-// `label`. Returns whether there was one.
+// Labels the connected unlabelled vertices around v: with the label of an adjacent vertex, else
+// with `label`. False if both are missing.
 bool flood(Body& body, SurfaceVertexId v, std::int32_t label) {
   auto& labels = body.cache->piece;
   std::vector<SurfaceVertexId> found{v}, around;

@@ -235,7 +235,7 @@ class SupportedPath {
   }
 
   PathEnd from_, to_;
-  double lowest_;  // height
+  double lowest_;  // height: about the resolution of doubles in the extent of K (2⁻⁵³ ≈ 1e-16)
   Random random_;
   std::vector<Support> supports_;
 };

@@ -82,6 +82,7 @@ AdjacencyStore::FreeWords AdjacencyStore::find_free_words(std::uint32_t words) {
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(k));
       return free;
     } else if (open_[k].end - open_[k].begin < (1u << block_shift) / 64) {
+      // A block with less than a 64th of its words left is closed; its rest is kept for small rows.
       release(open_[k].block << block_shift | open_[k].begin, open_[k].end - open_[k].begin);
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(k));
     }

@@ -24,6 +24,7 @@ Pairs candidate_edges(const NodeSet& nodes, std::size_t k, const Progress& progr
     const auto row = near.begin() + static_cast<std::ptrdiff_t>(i.index() * k);
     return std::find(row, row + static_cast<std::ptrdiff_t>(k), j) != row + static_cast<std::ptrdiff_t>(k);
   };
+  // Nodes of a task; the pairs do not depend on it.
   constexpr std::size_t grain = 4096;
   std::vector<Pairs> chunks((n + grain - 1) / grain);
   parallel_for(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {

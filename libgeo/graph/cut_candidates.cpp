@@ -177,6 +177,7 @@ class Search {
     return found_.slab[region.slab];
   }
 
+  // Larger regions: fewer slabs, each with more faces and so thicker. The result is the same.
   static constexpr double region_size = 1;   // half its edge at most, in supports
   static constexpr std::size_t batch = 256;  // suspects: enough for prefetches to arrive
   const NodeSet& nodes_;
@@ -210,6 +211,7 @@ Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> indice
   // A height takes six operations, each with an error of 2⁻⁵³ of a sum no larger than this.
   const double rounding = 0x1p-49 * normal.lpNorm<1>() * far;
   from -= rounding, to += rounding;
+  // Rounded up: norm() is off by a few ulps (2⁻⁵³) at most.
   length = normal.norm() * (1 + 1e-12);
 }
 

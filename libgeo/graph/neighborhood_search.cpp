@@ -11,8 +11,8 @@
 namespace geo {
 namespace {
 
-// Sources that share one local graph: enough that most nodes near a source are near others, too;
-// few enough that the local graph fits into a core's cache.
+// Sources that share one local graph. More: most nodes near a source are near others, too. Fewer:
+// the local graph fits into a core's cache. Rows do not depend on it.
 constexpr std::size_t sources_per_graph = 4096;
 
 }  // namespace

@@ -45,8 +45,8 @@ std::size_t EntriesToRetest(std::span<const std::uint32_t> to, std::span<const s
   for (std::size_t e = 0; e < count; e += lanes) {
     const auto at = std::min(e, count - lanes);
     const auto now = hn::LoadU(d, to.data() + at);
-    // Old rows have nearly all that new ones have: what is sought is as many places on as entries
-    // have gone, or a few more.
+    // The old row has nearly all ids of the new one, which `gone` entries have left so far. So the
+    // search begins at index at + gone of the old row and ends after a few vectors.
     auto same = nothing, visible = nothing;
     for (std::size_t k = at + gone; k <= old_count - lanes; ++k) {
       const auto equal = hn::Eq(now, hn::LoadU(d, old.to.data() + k));

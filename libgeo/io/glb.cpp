@@ -240,6 +240,7 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
     children.push_back(glb.node(std::move(node)));
   }
   Json root = {{"name", "pieces"}, {"children", children}};
+  // Quaternion (x, y, z, w) of −90° about x, which turns z upwards to y.
   const double half = std::sqrt(0.5);
   if (options.z_up) root["rotation"] = Json::array({-half, 0.0, 0.0, half});
   const std::size_t top = glb.node(std::move(root));

@@ -53,6 +53,8 @@ void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, 
               squared = std::max(squared, n.squared);
         const double reach =
             near.size() < std::min(dozen, nodes.size() - 1) ? 3 * own : std::min(std::sqrt(squared), 3 * own);
+        // 5 % more than the distance of the twelfth node, which then lies strictly within the
+        // radius.
         nodes.radius[i] = std::max(support * std::min(own, squares / sum), 1.05 * reach);
       }
     });

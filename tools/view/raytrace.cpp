@@ -58,6 +58,7 @@ class Dice {
   }
 
  private:
+  // The inverse of the golden ratio, whose multiples are evenly spread modulo 1.
   static constexpr double golden = 0.6180339887498949;
   static double unit(std::uint32_t& state) { return (state = hash(state + 0x9e3779b9u)) * 0x1p-32; }
   std::uint32_t state_;
@@ -319,6 +320,7 @@ class Tracer {
   }
 
   Color lit(const Hit& hit, const Vec3& d, Dice& dice) const {
+    // Shares of light: key 0.72, sky 0.42, rim 0.10. They set the look of pictures only.
     const Vec3 key = dice.key(0.12);
     const Vec3 rim_light = Vec3(0.7, 0.5, 0.25).normalized();
     const double facing = hit.normal.dot(key);

@@ -24,9 +24,9 @@ constexpr std::uint32_t unit_radius = 1u << 24;
 struct Neighbor {
   NodeId to;                 ///< the neighbour
   std::uint32_t warped = 0;  ///< graph distance in 2⁻²⁴ support radii, below unit_radius, rounded
-                             // /< down to 2⁻¹⁴ of a radius (§ 6.4)
+                             ///< down to 2⁻¹⁴ of a radius (§ 6.4)
   float distance = 0;        ///< argument of the kernel, model units: Euclidean where the pair sees each
-                             // /< other, else the length of the shortest path
+                             ///< other, else the length of the shortest path
   bool hidden = false;       ///< a face lies between the pair; an edge never joins such a pair
 };
 

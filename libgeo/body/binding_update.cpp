@@ -129,8 +129,8 @@ void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const 
   for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
 }
 
-// The node that carries an unseen shell stays unless it moved, it is in another piece now, or a new
-// or moved node is at most as far.
+// The node that carries an unseen shell v changes in three cases: it moved, it is in another piece
+// now, or a new or moved node is at most as far from v.
 void Rebinding::update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved) {
   const auto before = unseen_masters_;
   for (const auto v : before) {

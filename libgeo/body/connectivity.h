@@ -42,9 +42,9 @@ void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Con
 Regions components_of(const Body& body);
 
 /// A point inside the piece that the shell of surface vertex v bounds. `piece` gives labels of
-/// sides. Candidates lie on lines from the largest faces of the shell straight into the piece, half
-/// way to the next face and at most half of `reach` away; for needles, between corners of the
-/// shell. Empty where the piece is too thin for a point in double precision.
+/// sides. Candidates lie on the inward normals of the largest faces, half way to the next face and
+/// at most reach / 2 away. For needles, they lie between corners of the shell. Empty where the
+/// piece is too thin for a point in double precision.
 std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double reach,
                                    const std::function<std::int32_t(Side)>& piece);
 

@@ -82,8 +82,8 @@ bool have_joined(const Body& body, const CrackDelta& delta) {
 
 using TwoSides = std::array<SurfaceVertexId, 2>;  // a vertex on each side of a crack face
 
-// New vertices take the label of the vertex that they are a copy of, of their surroundings, or of
-// the other side of their crack faces: both sides were the same material before.
+// New vertices take the label of their original, if they are copies, else of their surroundings,
+// else of the other side of their crack faces. Both sides were the same material before.
 void label_new_vertices(Body& body, const CrackDelta& delta, const std::vector<TwoSides>& crack_faces) {
   auto& labels = body.cache->piece;
   labels.resize(body.surface.surface_vertex_count(), unlabelled);

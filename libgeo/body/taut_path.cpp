@@ -130,8 +130,8 @@ std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, c
 }
 
 // Points where a taut path crosses the edges of a path over sides, at least the share `clear` from
-// their ends. 16 Gauss–Seidel rounds: each point is put where the two triangles at its edge,
-// unfolded into a plane, give a straight line, t = (t_a h_b + t_b h_a) / (h_a + h_b).
+// their ends. 16 Gauss–Seidel rounds. The two triangles at an edge are unfolded into a plane, where
+// the path is straight at t = (t_a h_b + t_b h_a) / (h_a + h_b).
 std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end,
                             double clear) {
   const std::size_t n = path.size() - 1;

@@ -12,8 +12,8 @@
 
 namespace geo {
 
-/// Nodes and guides within a support radius of a source ("local nodes", numbered ascending by id),
-/// and the edges between them that shortest paths may use.
+/// Nodes and guides within a support radius of a source ("local nodes", numbered ascending by id).
+/// Also holds the edges between local nodes that shortest paths may use.
 class LocalGraph {
  public:
   /// An edge to a local node.

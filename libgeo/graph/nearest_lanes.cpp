@@ -25,8 +25,8 @@ using Visit = std::function<void(NodeId, std::span<const NodeId>)>;
 
 // Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within
 // 2⁻²⁴ (1 + 2⁻²⁸) of the exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at
-// most. For a distance d ≤ 1 the sum of squares is then off by 2 η √3 d + 3 η² from the coordinates
-// and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
+// most. For a distance d ≤ 1 the sum of squares has two errors: 2 η √3 d + 3 η² from the
+// coordinates, and 4 · 2⁻²⁴ d² from its own rounding. Their sum is below 18 · 2⁻²⁴.
 constexpr double float_error = 0x1p-19;
 // A candidate's index replaces the low bits of its squared distance, so that all keys differ. That
 // changes the distance by a share of key_error at most.

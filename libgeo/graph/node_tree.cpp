@@ -101,8 +101,8 @@ class Splitter {
   Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed)
       : positions_(positions), keyed_(keyed) {}
 
-  // Splits a cell at the highest bit in which its first and last code differ, and appends the jobs
-  // of both children, the first child last. False when the cell stays a leaf.
+  // Splits a cell at the highest bit in which its first and last code differ. Appends the jobs of
+  // both children, the first child last. False when the cell stays a leaf.
   bool split(std::vector<Cell>& cells, Job job, std::vector<Job>& jobs) {
     const auto begin = cells[job.cell].begin, end = cells[job.cell].end;
     if (end - begin <= NodeTree::leaf_size) return false;

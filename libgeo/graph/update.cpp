@@ -4,8 +4,8 @@
 //   E_new     edges that new nodes get: to their k nearest visible nodes
 //   P_update  nodes whose neighbours may have changed; their rows are recomputed
 // One departure: rows are recomputed on the whole graph. A detour between two nodes of P_update may
-// leave P_update (its middle can be far from the cut while both ends are near), and the paper's
-// subgraph would miss it.
+// leave P_update: its middle can be far from the cut while both ends are near. The paper's subgraph
+// would miss it.
 #include "graph/update.h"
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 
 namespace geo::kerf {
 
-/// An array to store: whole, or as runs of rows. A run is copied from the previous version of the
-/// array, which has the same name in an earlier segment, or literal, stored with the run.
+/// An array to store: whole, or as runs of rows. A run of rows is copied from the previous version
+/// of the array (same name, earlier segment), or it is literal: stored in this segment.
 struct Stored {
   KerfArray array;
   std::vector<Run> runs;           ///< none: the array is stored whole

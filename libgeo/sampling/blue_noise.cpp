@@ -1,5 +1,6 @@
-// Simultaneous relaxation: p_i ← p_i + ½ Σ_j (w_ij / d_ij − 1) (p_i − p_j) over nodes j with d_ij =
-// |p_i − p_j| < w_ij = (s_i + s_j) / 2. Then p_i is clamped to the inner box of its leaf.
+// Simultaneous relaxation: p_i ← p_i + ½ Σ_j (w_ij / d_ij − 1) (p_i − p_j), with d_ij = |p_i − p_j|
+// and w_ij = (s_i + s_j) / 2. The sum runs over j with d_ij < w_ij. Then p_i is clamped to the
+// inner box of its leaf.
 #include "sampling/blue_noise.h"
 
 #include "kerf/parallel.h"

@@ -15,8 +15,8 @@ namespace geo {
 namespace {
 
 /// Volume of leaves without a node goes to the nearest node. Volumes of whole leaves are exact.
-/// Volumes of cut leaves are estimates and are scaled by (V − Σ whole) / Σ cut, so that the sum is
-/// the body's volume V.
+/// Volumes of cut leaves are estimates. They are scaled by (V − Σ whole) / Σ cut, so that the sum
+/// is the body's volume V.
 void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole,
                   const std::vector<Leaf>& orphans, double volume) {
   double exact = 0, estimate = 0;

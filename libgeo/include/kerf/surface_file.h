@@ -20,8 +20,8 @@ struct SurfaceFile {
 /// Reads a surface from a file, or from standard input where `path` is "-". The format is
 /// recognised by content; unknown content is read as STL. Polygons are triangulated as fans, by ear
 /// clipping where they are not convex. Coincident vertices of seams are merged unless the mesh has
-/// sites. Throws InputError, with the line or entry, for malformed data, numbers that are not
-/// finite, indices out of range, sizes larger than the file, and trailing bytes.
+/// sites. Throws InputError, with the line or entry: malformed data, numbers that are not finite,
+/// indices out of range, sizes larger than the file, trailing bytes.
 SurfaceFile read_surface(const std::string& path);
 /// The same from bytes in memory; `name` stands for the file in messages.
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name);

@@ -1,6 +1,6 @@
-// Up to 4096 sources share a local graph, and sixteen of them one batched search. A hidden
-// neighbour's path is, among all paths of least warped length, the one of least plain length: p(v)
-// = min p(u) + |x_u − x_v| over edges uv with d(u) + length(uv) = d(v).
+// Up to 4096 sources share a local graph, and sixteen of them one batched search. Plain length of a
+// hidden neighbour's path, with warped distances d: p(v) = min p(u) + |x_u − x_v| over edges uv
+// with d(u) + length(uv) = d(v). So it is the least among all paths of least warped length.
 #include "graph/neighborhood_search.h"
 
 #include <algorithm>

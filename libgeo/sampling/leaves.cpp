@@ -61,7 +61,7 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
     return leaf;
   }
   const Vec3 middle = sum / count;
-  // A cell cut by the surface has less space: its jitter is reduced to 0.3.
+  // Where a sample point is outside the material, there is less space: 0.3 of the jitter.
   for (const Vec3& p : {Vec3(middle + (count == points ? 1.0 : 0.3) * edge * shift), middle}) {
     leaf.position = p;
     if (settle(tree, region, box, keep_off * edge, leaf.position)) return leaf;

@@ -36,9 +36,10 @@ struct ThinPlaces {
   Wall thinnest, unresolved;
 };
 
-/// Divides three kinds of cells: cut by the surface, above the regular level; not cut, with their
-/// middle nearer to the surface than their edge; any, with fewer than `across` cells across thin
-/// material. Then cells for the 2:1 rule. Empty if more than `most` cells would be divided.
+/// Divides three kinds of cells: above the regular level, cut by the surface; above the regular
+/// level, not cut, with their middle nearer to the surface than their edge is long; at any level,
+/// with fewer than `across` cells across thin material. Then cells for the 2:1 rule. Empty if more
+/// than `most` cells would be divided.
 std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most,
                                      ThinPlaces& thin, const Progress& progress);
 

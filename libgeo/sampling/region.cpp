@@ -1,7 +1,6 @@
 // Parity of crossings: a point is inside if the segment from the probe crosses the surface an odd
 // number of times, by exact predicates. A segment that touches an edge or corner, or ends on a
 // triangle, falls back to the BVH. Many points are handled as bits of 64-bit words.
-
 #include "sampling/region.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// OpenVDB: surfaces by dual contouring of an iso-value (volumeToMesh), level sets from closed
-// surfaces (meshToLevelSet).
+// Through OpenVDB: volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set
+// from a closed surface. Coordinates are scaled to voxels first, where single precision is enough.
 #include "kerf/surface_file.h"
 
 #include <openvdb/io/Stream.h>

@@ -1,5 +1,5 @@
 // Through OpenVDB: volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set
-// from a closed surface. Coordinates are scaled to voxels first, where single precision is enough.
+// from a closed surface. wrapped() does both, in coordinates scaled to voxels.
 #include "kerf/surface_file.h"
 
 #include <openvdb/io/Stream.h>

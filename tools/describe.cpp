@@ -1,3 +1,4 @@
+// Options are read from CLI11 and printed as completion scripts or troff.
 #include "describe.h"
 
 #include <CLI/CLI.hpp>

@@ -9,8 +9,8 @@ class App;
 
 namespace tool {
 
-/// A completion script for `what` = "bash" or "zsh", or for "man" the manual page in roff, with
-/// @DESCRIPTION@ on a line in place of the description. Throws UsageError for any other word.
+/// A completion script for `what` = "bash" or "zsh"; for "man" the manual page in roff. There, a
+/// line @DESCRIPTION@ stands for the description. Throws UsageError for any other word.
 std::string describe(const CLI::App& app, const std::string& what);
 
 }  // namespace tool

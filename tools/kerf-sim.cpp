@@ -29,7 +29,7 @@ struct Command {
   bool resume = false;
 };
 
-// Estimates the time of the frames that are left from that of the last ones.
+// Estimates the remaining time from the seconds of the last frames.
 class Forecast {
  public:
   void add(double seconds) {
@@ -156,7 +156,7 @@ class RecordedRun {
   geo::FrameStats total_;
 };
 
-// Writes summary.json, and says what the run came to.
+// Writes summary.json, and prints the totals of the run.
 void summarise(const RecordedRun& recorded, const sim::Setup& setup, const sim::RunFolder& folder, int last,
                const tool::Tool& t) {
   const geo::Simulation& run = recorded.run();

@@ -1,3 +1,5 @@
+// CLI11 parses. A thread waits for signals and sets a flag that progress callbacks read; exceptions
+// become messages and exit codes in one place.
 #include "tool.h"
 
 #include <signal.h>

@@ -39,8 +39,8 @@ bool sees_vertex(const Complex& k, const Vec3& p, VertexId v) {
   return true;
 }
 
-// The surface vertex at v on the side that p sees: that of a side which faces p and whose middle p
-// sees.
+// The surface vertex at v on the side that p sees: a side faces p, and p sees a point of its face
+// near v.
 SurfaceVertexId visible_fan(const Complex& k, const Vec3& p, VertexId v) {
   SurfaceVertexId only;
   bool several = false;
@@ -58,8 +58,8 @@ SurfaceVertexId visible_fan(const Complex& k, const Vec3& p, VertexId v) {
     const int above = orient3d(t[0], t[1], t[2], p);
     const Side s{f, above > 0 ? 1 : 0};
     if (above == 0 || !k.has(s)) continue;
-    // A point of the face near its corner at v, so that little can stand between, and what does is
-    // not far.
+    // A point of the face near its corner at v: at most a twentieth of the way to the face's middle
+    // and of the distance of p, so that few faces can stand between.
     const auto& c = k.face(f).v;
     const int corner = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
     const Vec3 inwards = (t[0] + t[1] + t[2]) / 3 - k.point(v);
@@ -72,6 +72,8 @@ SurfaceVertexId visible_fan(const Complex& k, const Vec3& p, VertexId v) {
 }  // namespace
 
 SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
+  // Nearest vertices tested. A node that sees none of them has no closest vertex: part of the rule,
+  // so a change of this number changes bindings.
   constexpr std::size_t candidates = 12;
   std::vector<FaceId> faces;
   std::vector<std::pair<double, VertexId>> near;

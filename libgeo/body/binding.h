@@ -1,9 +1,9 @@
 // Parts of the binding (§ 6.5) that the build and the update share.
 //
-// Every rule depends on a vertex and its neighbours on the surface, never on an order of events. A
-// master is a vertex that is the closest visible one of some node. A slave is one edge farther from
-// the nearest master than its parent, which is the lowest vertex of which that is true. So an
-// updated tree equals the tree of a build from scratch.
+// Every rule depends on a vertex and its neighbours on the surface, never on an order of events.
+// Master: the closest visible vertex of some node; depth 0. Slave v: depth(v) = 1 + min depth(w)
+// over neighbours w, and its parent is the lowest w with that minimum. So an updated tree equals
+// the tree of a build from scratch.
 #pragma once
 
 #include <functional>
@@ -21,8 +21,8 @@ double longest_reach(const Body& body);
 /// site, the one on the side that p sees. Invalid when there is none. Exact.
 SurfaceVertexId closest_vertex(const Complex& complex, const Vec3& p, double reach);
 
-/// The nearest of the nodes whose closest vertex is v (ties: the lowest id); invalid when v is no
-/// master.
+/// Among nodes i with closest[i] = v, the one nearest to v (ties: the lowest id). Invalid if there
+/// is none: v is no master.
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v);
 
 /// The nearest accepted node to v, the lowest vertex of a shell that no node sees; invalid when

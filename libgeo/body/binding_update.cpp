@@ -51,7 +51,8 @@ class Rebinding {
   bool is_unseen_master(SurfaceVertexId v) const {
     return std::binary_search(unseen_masters_.begin(), unseen_masters_.end(), v);
   }
-  // The node that carried a vertex before the step; asked before the vertex gets another master.
+  // The node that carried a vertex before the step. To be called before the vertex gets another
+  // master.
   NodeId carrier_before(SurfaceVertexId v) const {
     const SurfaceVertexId m = b_.master[v.index()];
     if (!m.valid()) return {};
@@ -77,14 +78,15 @@ class Rebinding {
   Binding& b_;
   std::vector<std::uint32_t>& depth_;
   std::vector<SurfaceVertexId>& unseen_masters_;
-  std::set<SurfaceVertexId> retargeted_;  // vertices that nodes began or ceased to look at
+  std::set<SurfaceVertexId> retargeted_;  // vertices that became or ceased to be the closest of a node
   std::vector<SurfaceVertexId> orphans_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
 };
 
-// A node's closest vertex depends on faces no farther than it, and a twentieth more; where there is
-// none, on all within the support radius.
+// A node's closest vertex v depends on faces within 1.05 |v − x|, since visible_fan() tests points
+// up to a twentieth farther. 1.06 covers rounding, too. Without a closest vertex, the node depends
+// on all faces within 1.06 support radii.
 void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
   const auto& x = body_.nodes.position;
   const double reach = longest_reach(body_);
@@ -127,7 +129,8 @@ void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const 
   for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
 }
 
-// A stray's node stays unless it moved or was cut off, or another one is nearer now.
+// The node that carries an unseen shell v changes in three cases: it moved, it is in another piece
+// now, or a new or moved node is at most as far from v.
 void Rebinding::update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved) {
   const auto before = unseen_masters_;
   for (const auto v : before) {
@@ -204,7 +207,7 @@ void Rebinding::update_trees_at_changed_edges(const CrackDelta& delta) {
     const auto beside = around(v);
     const auto parent = b_.parent[v.index()], master = b_.master[v.index()];
     if (parent.valid() && parent != v && !std::binary_search(beside.begin(), beside.end(), parent)) orphan(v);
-    // A shell with a stray may have joined another one.
+    // An unseen shell may have joined another one.
     if (b_.master[v.index()].valid() && is_unseen_master(master)) dismiss_unseen_master(master);
   }
   orphans_.insert(orphans_.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
@@ -218,7 +221,8 @@ void Rebinding::update_trees_at_changed_edges(const CrackDelta& delta) {
     }
 }
 
-// From the rim inwards, nearest to a master first; then masters down the trees whose roots changed.
+// Dijkstra's algorithm on (depth, parent): orphans get the least depth and, among equals, the
+// lowest parent. Then masters are passed down the trees whose roots changed.
 void Rebinding::grow() {
   std::priority_queue<std::pair<std::uint32_t, SurfaceVertexId>, std::vector<std::pair<std::uint32_t, SurfaceVertexId>>,
                       std::greater<>>
@@ -262,7 +266,7 @@ void Rebinding::adopt_unseen_shells() {
 }
 
 std::vector<SurfaceVertexId> Rebinding::rebound() {
-  // Whole trees whose root another node looks at.
+  // Whole trees whose root has another carrying node.
   for (const auto& [root, node] : node_before_) {
     if (!k_.alive(root) || b_.master[root.index()] != root || b_.master_node[root.index()] == node) continue;
     std::vector<SurfaceVertexId> tree{root};

@@ -1,3 +1,6 @@
+// From scratch: components of G are labelled with the piece of one of their nodes. After a step:
+// regions grow on both sides of cut edges and detached pieces, the smaller one first, until they
+// meet or the smaller one is complete.
 #include "body/connectivity.h"
 
 #include <algorithm>
@@ -32,8 +35,8 @@ void record_empty_piece(std::int32_t piece, SurfaceVertexId v, ConnectivityMisma
   mismatch.representative.emplace(piece, NodeId());
 }
 
-// Does a piece hold a node? `vertices`: some of its surface. The nodes that carry these are tested
-// first, then those that carry the rest of the shell, then all nodes in its box.
+// Does a piece hold a node? `vertices`: some of its surface. Tests carrying nodes of `vertices`,
+// then carrying nodes of the rest of the shell, then all nodes in the shell's box.
 bool holds_node(const Body& body, std::int32_t piece, const std::vector<SurfaceVertexId>& vertices) {
   const Binding& b = body.binding;
   std::set<NodeId> tested;

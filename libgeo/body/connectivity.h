@@ -17,7 +17,7 @@ struct ConnectivityMismatch {
   std::vector<SurfaceVertexId> empty_pieces;      ///< a surface vertex of each piece without a node
   std::vector<NodePair> disconnected;             ///< pairs of nodes of one piece in two components of G
   std::map<std::int32_t, NodeId> representative;  ///< by label: a node of each piece visited; invalid
-                                                  // /< where the piece has none yet
+                                                  ///< where the piece has none yet
   /// Do components and pieces correspond?
   bool none() const { return empty_pieces.empty() && disconnected.empty(); }
 };
@@ -27,8 +27,9 @@ struct ConnectivityMismatch {
 ConnectivityMismatch find_mismatch(const Body& body, const std::vector<std::uint32_t>& component);
 
 /// Compares after a step only what may have changed: at `cut` edges, `detached` pieces, nodes from
-/// `first_new` on, and faces at `touched` vertices. The part with fewer nodes is
-/// visited. Parts that are still connected around the crack front cost little more than the cut.
+/// `first_new` on, and faces at `touched` vertices. If a component came apart, only the part with
+/// fewer nodes is visited. Parts still connected around the crack front cost little more than the
+/// cut.
 ConnectivityMismatch find_mismatch(const Body& body, std::span<const NodePair> cut,
                                    std::span<const DetachedPiece> detached, std::span<const SurfaceVertexId> touched,
                                    NodeId first_new);
@@ -41,9 +42,9 @@ void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, Con
 Regions components_of(const Body& body);
 
 /// A point inside the piece that the shell of surface vertex v bounds. `piece` gives labels of
-/// sides. Candidates lie on lines from the largest faces of the shell straight into the piece, half
-/// way to the next face and at most half of `reach` away; for needles, between corners of the
-/// shell. Empty where the piece is too thin for a point in double precision.
+/// sides. Candidates lie on the inward normals of the largest faces, half way to the next face and
+/// at most reach / 2 away. For needles, they lie between corners of the shell. Empty where the
+/// piece is too thin for a point in double precision.
 std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double reach,
                                    const std::function<std::int32_t(Side)>& piece);
 
@@ -56,8 +57,8 @@ using GraphUpdater = std::function<void(NodeId first_new, std::span<const NodePa
 /// Afterwards mismatch.representative has a node of each piece visited.
 void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update);
 
-/// The nodes of each detached piece. Among parts of what was one piece, that with most nodes is
-/// left out.
+/// The nodes of each detached piece, ascending. A piece that came apart into n parts gives n − 1
+/// lists: the part with most nodes is left out.
 std::vector<std::vector<NodeId>> detached_nodes(const Body& body, std::span<const DetachedPiece> detached,
                                                 const ConnectivityMismatch& mismatch);
 

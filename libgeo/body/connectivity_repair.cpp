@@ -1,4 +1,6 @@
-// Repairs of G (§ 6.4): passages too narrow for the sampling, and pieces without a node.
+// Repairs of G (§ 6.4): passages too narrow for the sampling, and pieces without a node. In this
+// order: an edge between components that see each other, new nodes at the passage's walls, nodes
+// along a taut path (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -76,7 +78,7 @@ class NearestInPiece {
 
 // Joins a component to another one of its piece by a visible edge no longer than the longest
 // support radius. The k nearest nodes of a node may all be hidden while others are visible. Tests
-// at most 16 nodes of the component.
+// at most 16 nodes of the component, each against 8 others. If none succeeds, nodes are inserted.
 bool join_by_visible_edge(const Body& body, NearestInPiece& nearest, const std::vector<std::uint32_t>& component,
                           std::vector<NodePair>& joins) {
   for (std::size_t n = 0; n < component.size(); n += 1 + component.size() / 16)
@@ -117,8 +119,8 @@ std::vector<SideByArea> sides_of_shell(const Complex& k, SurfaceVertexId v) {
   return sides;
 }
 
-// For needles, whose normals say little: of random points between corners, the one farthest from
-// the boundary.
+// For needles, whose normals are mostly rounding: the best of 256 random convex combinations of
+// four corners, by distance from the boundary. More samples: thinner needles get a node.
 std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<SideByArea>& sides,
                                           const std::function<std::int32_t(Side)>& piece, std::int32_t wanted) {
   constexpr std::size_t max_sides = 64;  // slivers too thin for other points have few
@@ -150,12 +152,15 @@ std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<Si
   return best;
 }
 
-// The rounds of a repair. Each inserts nodes and joins, updates the graph, and sees what is left.
+// The rounds of a repair. Each inserts nodes and joins, updates the graph, and finds the remaining
+// mismatch.
 class ConnectivityRepair {
  public:
   ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update)
       : body_(body), mismatch_(mismatch), update_(update) {}
   void run() {
+    // Rounds have spacing 0.7 · 0.8^round: the first is denser than the sampling, which missed the
+    // passage, and the last (round 11) has 6 % of it. More rounds: finer nodes in passages.
     double scale = 0.7;  // of the spacing
     for (int round = 0; round < 12 && !mismatch_.none(); ++round, scale *= 0.8) {
       const NodeId first_new(body_.nodes.size());
@@ -200,6 +205,7 @@ class ConnectivityRepair {
       if (round == 0)
         for (const auto n : component) {
           const Vec3& x = body_.nodes.position[n];
+          // Faces within 1.5 spacings of the component: walls of the passage at its nodes.
           body_.surface.faces_near(Box3{x, x}.grown(1.5 * body_.nodes.spacing[n]), faces);
         }
       else
@@ -251,6 +257,7 @@ std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double r
     const auto t = k.corners(s.face);
     const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
     const Vec3 inwards = (s.which ? 1.0 : -1.0) * (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+    // Steps of factor 0.6 down to 1e-16 of the extent, the resolution of doubles (2⁻⁵³).
     for (double step = reach; step > 1e-16 * k.extent().diagonal(); step *= 0.6) {
       const Vec3 x = middle + 0.5 * step * inwards;
       if (is_in_front(k, s, middle, middle + step * inwards) && is_in_front(k, s, middle, x) && !is_blocked(k, x, x) &&

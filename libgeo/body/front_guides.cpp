@@ -1,3 +1,5 @@
+// Edges of new faces are passed to place_guides(). A guide is retired if a new crack face comes
+// within radius / 64 of it.
 #include "body/front_guides.h"
 #include "body/incremental_cache.h"
 
@@ -60,8 +62,8 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideChange change;
   if (body.guide_spacing == 0) return change;
   const GuideSet& guides = body.graph.storage().guides();
-  // Guides stand closer to their edges than a 64th of their radius; what a face comes that near to
-  // has lost its edge.
+  // A guide stands at spacing / 64 < radius / 64 from its edge (guide_placement.cpp). A crack face
+  // that near has cut the edge.
   std::vector<std::uint32_t> near, others;
   for (const FaceId f : crack.new_faces) {
     if (!body.surface.alive(f)) continue;

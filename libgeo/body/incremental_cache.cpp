@@ -1,3 +1,5 @@
+// Depths of the trees of slaves: each vertex climbs to an ancestor of known depth, and all vertices
+// on the way get their depths. Linear in the number of vertices.
 #include "body/incremental_cache.h"
 
 #include "body/piece_labels.h"

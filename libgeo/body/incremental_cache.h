@@ -17,12 +17,12 @@ namespace geo {
 struct IncrementalCache {
   NodeGrid grid;                                ///< over nodes.position
   std::vector<NodeId> donors;                   ///< for each node inserted by the last step: the node that gave half
-                                                // /< of its volume
+                                                ///< of its volume
   std::vector<std::int32_t> piece;              ///< by surface vertex: the label of its piece of material; −1: dead
   std::int32_t piece_count = 0;                 ///< labels in use are below this
   std::set<std::int32_t> pieces_without_node;   ///< labels, as far as known
   bool inner_shells = false;                    ///< several shells may bound one piece: cavities, internal cracks
-  std::vector<std::uint32_t> depth;             ///< by surface vertex: edges to its master; ~0u for orphans
+  std::vector<std::uint32_t> depth;             ///< by surface vertex: edges to its master; ~0u (no depth) for orphans
   std::vector<SurfaceVertexId> unseen_masters;  ///< masters of unseen shells, ascending
 };
 

@@ -1,3 +1,6 @@
+// Winding numbers along an axis-parallel line from the point out of the complex: Σ ±1 over the
+// faces that it meets. The line is displaced by ε and ε² symbolically (Edelsbrunner and Mücke
+// 1990), so that it meets no edge.
 #include "body/locate.h"
 
 #include <algorithm>
@@ -89,8 +92,9 @@ std::int32_t piece_containing(const Complex& complex, const Vec3& p, const std::
     if (orient3d(t[0], t[1], t[2], p) != before) continue;
     count({f, before > 0 ? 1 : 0}, 1), count({f, before > 0 ? 0 : 1}, -1);
   }
-  // Where sheets have changed places several pieces may lie over each other: less a crumb, they are
-  // one.
+  // Rounding may have exchanged two sheets: several pieces then contain p, and a crumb that is
+  // inside out counts −1. The piece with the largest winding number is taken if the sum is
+  // positive.
   int sum = 0;
   std::pair<std::int32_t, int> most{-1, 0};
   for (const auto& w : windings) {

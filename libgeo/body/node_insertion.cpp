@@ -1,3 +1,6 @@
+// New nodes are offset samples of crack faces, kept if they see their face and no node nearer than
+// 0.6 spacings. Each halves the volume of its donor. Debris is decided by the eigenvalues of Σ x xᵀ
+// over the neighbours.
 #include "body/node_insertion.h"
 #include "body/incremental_cache.h"
 
@@ -87,6 +90,7 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
   for (const auto& s : offset_samples(triangles, spacing_at, options.seed)) {
     if (!is_in_front(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
     near.clear();
+    // Below the 0.8 spacings between samples (resample.h). Larger: fewer new nodes beside old ones.
     body.cache->grid.within(body.nodes.position, s.position, 0.6 * s.spacing, near);
     if (std::any_of(near.begin(), near.end(),
                     [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
@@ -94,6 +98,8 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
     // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest of
     // all.
     const auto nearest =
+        // 24 candidates for at most twelve visible nodes. Fewer are found where the crack hides
+        // more than half.
         body.cache->grid.nearest(body.nodes.position, s.position, 24, ~0u, [](std::uint32_t) { return true; });
     const auto visible = visible_nodes(body, s.position, nearest);
     // Where rounding has exchanged two sheets, even air may be in front of a side with material.
@@ -115,8 +121,8 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
 
 namespace {
 
-// The direction whose least part along all of `normals` is about the greatest: between two faces
-// half way, in a corner along its axis.
+// Maximises min_k n_k · d over unit vectors d approximately: adds the normal n_k with the least
+// n_k · sum, 64 times. Between two faces d is their bisector, in a corner its axis.
 Vec3 away_from(const std::vector<Vec3>& normals) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& n : normals) sum += n;
@@ -129,6 +135,8 @@ Vec3 away_from(const std::vector<Vec3>& normals) {
 
 // A position with more clearance for a node on or very near faces; x itself where there is none.
 Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& x, double spacing) {
+  // Nodes within 2 % of the spacing of a face are moved, by 10 % at most. Larger: more nodes are
+  // moved and lose their edges.
   const double close = 0.02 * spacing, farthest = 0.1 * spacing;
   std::vector<FaceId> around;
   surface.faces_near(Box3{x, x}.grown(farthest + close), around);
@@ -158,6 +166,8 @@ Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& 
   // As far as possible. The node leaves the faces that it is on, and passes no other.
   Vec3 best = x;
   for (const Vec3& along : directions)
+    // At most 17 steps, each half of the one before. Leaving a face is tested from 1e-3 of the step
+    // on, since x itself is on the face.
     for (double step = farthest; step > 1e-6 * spacing; step *= 0.5) {
       const Vec3 to = x + step * along;
       if (std::any_of(around.begin(), on, [&](FaceId f) { return touches(surface, f, x, to); }) ||

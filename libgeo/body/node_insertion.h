@@ -11,7 +11,8 @@ namespace geo {
 
 using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 
-/// Declares the first `count` nodes, at least one, to be those that the body was built from.
+/// Declares the first `count` nodes (at least one) as the nodes that the body was built from, and
+/// sets the bounds that depend on them.
 void set_original_nodes(Body& body, std::uint32_t count);
 
 /// Appends a node at x with the support radius of node `donor` and half of its volume: the sum of
@@ -21,8 +22,8 @@ NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing);
 /// Options of insert_nodes_near().
 struct InsertionOptions {
   double spacing = 0;                   ///< wanted distance between nodes, model units. 0: half of the spacing of the
-                                        // /< original nodes there, not below Body::finest_spacing,
-                                        // and support radii /< in proportion
+                                        ///< original nodes there, not below Body::finest_spacing, and support radii
+                                        ///< in proportion
   std::uint64_t seed = 0;               ///< of the samples
   std::size_t limit = std::size_t(-1);  ///< most nodes inserted
 };

@@ -1,3 +1,6 @@
+// Labels are copied to new vertices, or flooded over the surface from labelled ones. Both sides of
+// each new crack face then grow along the surface until they meet; if they do not, the piece with
+// less surface gets a new label.
 #include "body/piece_labels.h"
 
 #include <algorithm>
@@ -23,8 +26,8 @@ Regions shells_of(const Complex& k) {
       });
 }
 
-// Labels the connected unlabelled vertices around v with the label found beside them, else with
-// `label`. Returns whether there was one.
+// Labels the connected unlabelled vertices around v: with the label of an adjacent vertex, else
+// with `label`. False if both are missing.
 bool flood(Body& body, SurfaceVertexId v, std::int32_t label) {
   auto& labels = body.cache->piece;
   std::vector<SurfaceVertexId> found{v}, around;
@@ -79,8 +82,8 @@ bool have_joined(const Body& body, const CrackDelta& delta) {
 
 using TwoSides = std::array<SurfaceVertexId, 2>;  // a vertex on each side of a crack face
 
-// New vertices take the label of the vertex that they are a copy of, of their surroundings, or of
-// the other side of their crack faces: both sides were the same material before.
+// New vertices take the label of their original, if they are copies, else of their surroundings,
+// else of the other side of their crack faces. Both sides were the same material before.
 void label_new_vertices(Body& body, const CrackDelta& delta, const std::vector<TwoSides>& crack_faces) {
   auto& labels = body.cache->piece;
   labels.resize(body.surface.surface_vertex_count(), unlabelled);

@@ -23,10 +23,10 @@ struct DetachedPiece {
 };
 
 /// Updates labels after a step and returns the detached pieces. A crack face separates material
-/// exactly when its two sides are on different shells. So only what new crack faces may have
-/// separated is visited, and of two parts the one with less surface. Sets `relabelled` where that
-/// does not suffice: a piece that may have inner shells came apart, or a piece without a node was
-/// joined to another. All pieces then have new labels.
+/// exactly when its two sides are on different shells. Only surface near new crack faces is
+/// visited, and the smaller of two parts. Sets `relabelled` and labels all pieces anew in two
+/// cases: a piece that may have inner shells came apart, or a piece without a node was joined to
+/// another.
 std::vector<DetachedPiece> update_piece_labels(Body& body, const CrackDelta& delta, bool& relabelled);
 
 }  // namespace geo

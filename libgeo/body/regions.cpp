@@ -1,3 +1,5 @@
+// Breadth-first regions in a union-find forest with path halving (Tarjan and van Leeuwen 1984). The
+// smaller region is merged into the larger one.
 #include "body/regions.h"
 
 #include <algorithm>
@@ -13,6 +15,7 @@ Regions::Slot& Regions::slot(std::uint32_t element) {
       if (s.element != none) slot(s.element) = s;
   }
   const std::size_t mask = slots_.size() - 1;
+  // Fibonacci hashing: the constant is 2⁶⁴ / φ (Knuth, vol. 3, § 6.4).
   std::size_t at = (element * std::uint64_t{0x9e3779b97f4a7c15}) >> 32 & mask;
   while (slots_[at].element != none && slots_[at].element != element) at = (at + 1) & mask;
   if (slots_[at].element == none) slots_[at].element = element, ++used_;

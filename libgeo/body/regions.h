@@ -9,8 +9,8 @@
 namespace geo {
 
 /// Regions over the elements 0, 1, … of any undirected graph. A query grows the smaller of two
-/// regions, so it costs at most twice the smaller one, and little where both are connected near
-/// their seeds.
+/// regions, so its cost is at most twice the size of the smaller component. It is small if the two
+/// seeds are connected near each other.
 class Regions {
  public:
   /// Appends the neighbours of an element.
@@ -31,7 +31,8 @@ class Regions {
   bool whole(std::uint32_t at) { return at_end(of(at)); }
   /// The lowest element of a seed's region so far.
   std::uint32_t lowest(std::uint32_t at) { return of(at).lowest; }
-  /// The elements of a seed's region whose neighbours are in it, too; all, when it is whole.
+  /// Elements of a seed's region whose neighbours are all in the region; the whole component when
+  /// whole().
   const std::vector<std::uint32_t>& inside(std::uint32_t at) { return of(at).inside; }
 
  private:

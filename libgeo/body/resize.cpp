@@ -1,3 +1,5 @@
+// A radius changes warped lengths: rows near the node are recomputed, and its closest vertex is
+// searched within the new radius.
 #include <algorithm>
 #include <string>
 

@@ -1,6 +1,6 @@
-// The path leads over the sides of the surface, from one point's view to the other's. It crosses
-// edges at points pulled taut, and is lowered towards the surface until it touches nothing.
-// Floating point only proposes points; exact predicates decide.
+// The path leads over the sides of the surface, from a side that `from` sees to a side that `to`
+// sees. It crosses edges at points pulled taut, and is lowered towards the surface until it touches
+// nothing. Floating point only proposes points; exact predicates decide.
 #include "body/taut_path.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 using Step = std::pair<Side, int>;  // a side, and the edge over which the path leaves it
 
-// PathVisibility along segments, with a limit on the number of tests in one search: nearly all
-// paths that exist need less than a thousand.
+// Visibility along segments, with a limit of 100000 tests in one search. Nearly all paths that
+// exist need less than a thousand; a higher limit costs time where no path exists.
 class PathVisibility {
  public:
   explicit PathVisibility(const Complex& k) : k_(k) {}
@@ -129,8 +129,9 @@ std::vector<Vec3> around_edge(const Complex& k, Side a, Side b, const Vec3& p, c
   return reflex ? std::vector<Vec3>{rise, turn, land} : std::vector<Vec3>{turn};
 }
 
-// Where a taut path crosses the edges of a path over sides, at least the share `clear` from their
-// ends.
+// Points where a taut path crosses the edges of a path over sides, at least the share `clear` from
+// their ends. 16 Gauss–Seidel rounds. The two triangles at an edge are unfolded into a plane, where
+// the path is straight at t = (t_a h_b + t_b h_a) / (h_a + h_b).
 std::vector<Vec3> crossings(const Complex& k, const std::vector<Step>& path, const Vec3& start, const Vec3& end,
                             double clear) {
   const std::size_t n = path.size() - 1;
@@ -234,7 +235,7 @@ class SupportedPath {
   }
 
   PathEnd from_, to_;
-  double lowest_;  // height
+  double lowest_;  // height: about the resolution of doubles in the extent of K (2⁻⁵³ ≈ 1e-16)
   Random random_;
   std::vector<Support> supports_;
 };

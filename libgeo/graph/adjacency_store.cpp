@@ -1,3 +1,6 @@
+// A row is 8-byte words: ids, bits and path lengths, each array aligned to four bytes. Free words
+// are lists by size (segregated fits). A row moves when it needs more words than it has, or fewer
+// than two thirds of them.
 #include "graph/adjacency_store.h"
 
 #include <algorithm>
@@ -79,6 +82,7 @@ AdjacencyStore::FreeWords AdjacencyStore::find_free_words(std::uint32_t words) {
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(k));
       return free;
     } else if (open_[k].end - open_[k].begin < (1u << block_shift) / 64) {
+      // A block with less than a 64th of its words left is closed; its rest is kept for small rows.
       release(open_[k].block << block_shift | open_[k].begin, open_[k].end - open_[k].begin);
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(k));
     }

@@ -1,5 +1,6 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind
-// of vector.
+// A label-correcting search: a FIFO queue of nodes of which a distance fell (Bellman–Ford–Moore),
+// with sixteen distances a node. Highway compiles the part between HWY_BEFORE_NAMESPACE and
+// HWY_AFTER_NAMESPACE once for each kind of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/batched_search.cpp"
 #include "base/simd_targets.h"
@@ -28,9 +29,8 @@ void Lengths(const double* squared, const double* radius, std::size_t count, std
   }
 }
 
-// The entries whose bits in `mask` are not `refused` and that end within the support radius. Whole
-// vectors only: the last one begins so early that it ends with the row, and skips the entries
-// already handled.
+// Selects entry k if (bits[k] & mask) ≠ refused and distance + bound(bits[k]) < unit_radius. Works
+// in whole vectors: the last one ends with the row, and skips the entries already handled.
 std::size_t WithinSupport(const AdjacencyRow& row, std::uint32_t mask, std::uint32_t refused, std::uint32_t distance,
                           std::uint32_t* targets, std::uint32_t* distances) {
   const std::uint32_t* const to = row.to.data();
@@ -64,7 +64,9 @@ std::size_t WithinSupport(const AdjacencyRow& row, std::uint32_t mask, std::uint
   return found;
 }
 
-// The queue's loop: relaxes the edges of each node in the queue, for all sources at once.
+// Relaxes the edges of each node u in the queue, for all sources s at once:
+// d_s(v) ← min(d_s(v), d_s(u) + length(uv)). A node v enters the queue if a distance fell below
+// limits[v], from which on no edge of v leads to a neighbour.
 void Search(const LocalGraph& graph, BatchedSearch::Scratch& s) {
   using Tag = hn::CappedTag<std::int32_t, BatchedSearch::lanes>;
   const Tag d;

@@ -34,7 +34,7 @@ class BatchedSearch {
     std::span<const std::uint32_t> node;      ///< local nodes
     std::span<const std::uint32_t> id;        ///< their ids in the whole graph
     std::span<const std::uint32_t> distance;  ///< warped, 0 < distance < unit_radius; edge_bit marks nodes
-                                              // /< joined to the source by an edge
+                                              ///< joined to the source by an edge
   };
   /// Set in Distances::distance.
   static constexpr std::uint32_t edge_bit = 1u << 31;

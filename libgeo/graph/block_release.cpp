@@ -1,3 +1,5 @@
+// A run reads rows of nodes within `reach` of its bounding box. A block of rows is released when
+// the count of runs whose grown box meets the block's box falls to 0.
 #include "graph/block_release.h"
 
 #include <algorithm>
@@ -7,8 +9,9 @@ namespace geo {
 BlockRelease::BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run_length, AdjacencyStore& to)
     : graph_(graph), to_(to) {
   const std::size_t n = nodes.size();
-  // A search follows lower bounds of lengths, which are low by less than 2¹⁰: by a share of the
-  // shortest edge at most. If that is 0, a search may go anywhere and all blocks are kept.
+  // A search follows lower bounds b of lengths L, with L < b + 2¹⁰. So the length of a path is at
+  // most 1 + 1024 / b_min times the sum of its bounds. If b_min = 0, a search may reach any node,
+  // and all blocks are kept.
   std::uint32_t shortest = unit_radius;
   for (std::uint32_t i = 0; i < n; ++i)
     shortest = std::min(shortest, AdjacencyRow::bound(graph.rows().lowest_bound(i)));

@@ -15,7 +15,7 @@ namespace geo {
 /// being filled.
 class BlockRelease {
  public:
-  /// Run c consists of the nodes from c · run_length on, run_length of them or those that are left.
+  /// Run c: nodes c · run_length to min((c + 1) · run_length, n) − 1. `to`: the store being filled.
   BlockRelease(const NodeSet& nodes, GraphStorage& graph, std::size_t run_length, AdjacencyStore& to);
   /// To be called once for each run, when its rows are stored; safe from several threads.
   void done(std::size_t run);

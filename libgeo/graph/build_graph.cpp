@@ -13,8 +13,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<NodeId, NodeId>>;
 
-// Pairs i < j, each once: one end is among the k nearest of the other, or the spanning tree joins
-// them.
+// Pairs i < j, each once: i is among the k nearest of j, or j among the k nearest of i, or the
+// spanning tree joins them.
 Pairs candidate_edges(const NodeSet& nodes, std::size_t k, const Progress& progress) {
   const std::size_t n = nodes.size();
   report(progress, "nearest nodes", 0, n);
@@ -24,6 +24,7 @@ Pairs candidate_edges(const NodeSet& nodes, std::size_t k, const Progress& progr
     const auto row = near.begin() + static_cast<std::ptrdiff_t>(i.index() * k);
     return std::find(row, row + static_cast<std::ptrdiff_t>(k), j) != row + static_cast<std::ptrdiff_t>(k);
   };
+  // Nodes of a task; the pairs do not depend on it.
   constexpr std::size_t grain = 4096;
   std::vector<Pairs> chunks((n + grain - 1) / grain);
   parallel_for(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -1,5 +1,4 @@
-// The graph and its neighbourhoods over obstacles that are already in a tree: what kerf/graph.h
-// declares for triangles.
+// Functions of kerf/graph.h for obstacles that are already in a tree.
 #pragma once
 
 #include "geometry/bvh.h"

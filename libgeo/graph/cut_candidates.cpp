@@ -1,3 +1,6 @@
+// An edge of length L that a face cuts has one end within L / 2 of the face. The octrees of nodes
+// and guides are descended to cubes that such neighbourhoods of faces reach. The nodes in them are
+// tested against box and plane of each face, with bounds on rounding.
 #include "graph/cut_candidates.h"
 
 #include <algorithm>
@@ -55,8 +58,8 @@ struct Surroundings {
   double reach;
 };
 
-// Walks the grids down to small cubes, keeps those that faces reach into, and tests the nodes in
-// them in batches.
+// Descends the grids to small cubes that surroundings of faces reach, and tests the nodes in these
+// cubes in batches.
 class Search {
  public:
   Search(const NodeSet& nodes, const GraphStorage& graph, std::span<const Corners> faces, const TriangleBvh& tree)
@@ -174,6 +177,7 @@ class Search {
     return found_.slab[region.slab];
   }
 
+  // Larger regions: fewer slabs, each with more faces and so thicker. The result is the same.
   static constexpr double region_size = 1;   // half its edge at most, in supports
   static constexpr std::size_t batch = 256;  // suspects: enough for prefetches to arrive
   const NodeSet& nodes_;
@@ -207,6 +211,7 @@ Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> indice
   // A height takes six operations, each with an error of 2⁻⁵³ of a sum no larger than this.
   const double rounding = 0x1p-49 * normal.lpNorm<1>() * far;
   from -= rounding, to += rounding;
+  // Rounded up: norm() is off by a few ulps (2⁻⁵³) at most.
   length = normal.norm() * (1 + 1e-12);
 }
 

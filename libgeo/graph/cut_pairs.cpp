@@ -1,3 +1,5 @@
+// Segments from each candidate to all entries of its row are tested exactly against a BVH of the
+// new faces. A slab around the faces rejects ends on the same side first. Each pair is tested once.
 #include "graph/cut_pairs.h"
 
 #include <algorithm>
@@ -134,6 +136,7 @@ CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const N
   if (ids.empty()) return {};
   CutPairSearch search(nodes, graph, tree);
   for (std::uint32_t at = 0; at < ids.size(); ++at) {
+    // Rows to prefetch ahead; locations are prefetched twice as early.
     constexpr std::size_t ahead = 4;
     if (at + 2 * ahead < ids.size())
       graph.store(ids[at + 2 * ahead]).prefetch_location(GraphStorage::index_of(ids[at + 2 * ahead]));

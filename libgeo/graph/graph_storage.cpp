@@ -1,3 +1,5 @@
+// Edges change one row at a time: a row is copied, edited and stored again. Rows of a whole graph
+// come from a counting sort of half-edges by node, or from arrays of a file, which are checked.
 #include "graph/graph_storage.h"
 
 #include <algorithm>
@@ -182,7 +184,7 @@ void GraphStorage::lower_bounds(const NodeSet& nodes, NodeId i) {
     if (bound < (row.bits[e] & AdjacencyRow::bound_bits)) rows_.set_bound(i.index(), e, bound);
     const auto other = entries(j);
     const auto at = lower_index(other, i.value);
-    // Bounds in rows of guides are lengths of edges; those in rows of nodes are lengths of paths,
+    // Bounds in rows of guides are lengths of edges. Bounds in rows of nodes are lengths of paths,
     // which may be shorter.
     if (is_guide(j) || bound < (other.bits[at] & AdjacencyRow::bound_bits)) store(j).set_bound(index_of(j), at, bound);
   }

@@ -97,10 +97,11 @@ class GraphStorage {
   double plain_unit() const { return plain_unit_; }
   /// Sets the unit of plain lengths, once.
   void set_plain_unit(double unit) { plain_unit_ = unit; }
-  /// No edge is longer than this and no two neighbours are farther apart. Model units.
-  double longest_edge() const { return longest_edge_; }
-  /// No edge that joins neighbours is longer than this and no two neighbours are farther apart.
+  /// Upper bound of the lengths of all edges and of the Euclidean distances of all neighbours.
   /// Model units.
+  double longest_edge() const { return longest_edge_; }
+  /// Largest support radius of nodes and guides so far: an upper bound of the Euclidean distances
+  /// of all neighbours. Model units.
   double largest_support() const { return largest_support_; }
 
   /// See VisibilityGraph::components().

@@ -1,3 +1,5 @@
+// Octrees over nodes and guides give the pairs within a support radius; exact segment tests against
+// the faces decide which of them see each other.
 #include "graph/guide_edges.h"
 
 #include <algorithm>

@@ -11,9 +11,8 @@
 
 namespace geo {
 
-/// Adds guides to a graph that has no neighbours yet. Each guide gets an edge to every node that it
-/// sees within its radius, and to every guide that it sees if one of the two is within the other's
-/// radius. `grid` is over nodes.position.
+/// Adds guides to a graph that has no neighbours yet. Guide g gets an edge to every visible node
+/// within r_g, and to every visible guide h within max(r_g, r_h). `grid` is over nodes.position.
 void add_guides(const NodeSet& nodes, const NodeGrid& grid, const TriangleBvh& obstacles, std::span<const Guide> guides,
                 VisibilityGraph& graph);
 
@@ -25,8 +24,8 @@ void ids_near_guide(const NodeSet& nodes, const NodeGrid& grid, const GraphStora
                     std::vector<std::uint32_t>& ids);
 /// Appends the ids of the guides that a node has an edge to if it sees them.
 void guides_near(const NodeSet& nodes, const GraphStorage& graph, std::uint32_t node, std::vector<std::uint32_t>& ids);
-/// Adds the edges of the last visible.size() guides, which have none yet: from the k-th of them to
-/// visible[k], which are those of ids_near_guide() that it sees.
+/// Adds the edges of the last visible.size() guides, which have none yet. visible[k]: the ids of
+/// ids_near_guide() that the k-th of these guides sees.
 void add_guide_edges(const NodeSet& nodes, std::span<const std::vector<std::uint32_t>> visible, GraphStorage& graph);
 
 }  // namespace geo

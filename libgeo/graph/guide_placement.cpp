@@ -1,3 +1,6 @@
+// A guide stands at distance `offset` from its edge, along the bisector −(u + v) / |u + v|. Here u
+// and v are unit vectors across the edge within its two triangles. The angle outside the material
+// is acos(u · v); the material spans 2π less that angle.
 #include "graph/guide_placement.h"
 
 #include <algorithm>

@@ -16,7 +16,7 @@ namespace geo {
 struct Guide {
   Vec3 position;      ///< inside the material
   double radius = 0;  ///< it has edges to what it sees within this distance; its support radius in warped
-                      // /< lengths. Model units. 0: retired
+                      ///< lengths. Model units. 0: retired
 };
 
 /// The guides that a step adds and retires.

@@ -1,3 +1,6 @@
+// A label-correcting search from all sources at once, by lower bounds of lengths, finds nodes and
+// edges. Then nodes are numbered by id, edges get exact lengths, and a counting sort by class of
+// length orders the edges of each node.
 #include "graph/local_graph.h"
 
 #include <algorithm>
@@ -38,6 +41,7 @@ void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_
   for (std::size_t at = 0; at < tail; ++at) {
     const auto number = queue_[at];
     queued_[number] = 0;
+    // Rows to prefetch ahead: memory answers while they are handled.
     constexpr std::size_t ahead = 6;
     if (at + 2 * ahead < tail) prefetch_location(discoveries_[queue_[at + 2 * ahead]].id);
     if (at + ahead < tail && may_lead_on(queue_[at + ahead])) prefetch(discoveries_[queue_[at + ahead]].id);

@@ -12,8 +12,8 @@
 
 namespace geo {
 
-/// Nodes and guides within a support radius of a source ("local nodes", numbered ascending by id),
-/// and the edges between them that shortest paths may use.
+/// Nodes and guides within a support radius of a source ("local nodes", numbered ascending by id).
+/// Also holds the edges between local nodes that shortest paths may use.
 class LocalGraph {
  public:
   /// An edge to a local node.
@@ -42,11 +42,11 @@ class LocalGraph {
   std::uint32_t source(std::size_t k) const { return local_[k]; }
   /// The position of a local node.
   Vec3 position(std::uint32_t local) const { return {points_[local].x, points_[local].y, points_[local].z}; }
-  /// Does the k-th source have edges that join no neighbours? Those as long as the support are not
+  /// Does the k-th source have edges that join no neighbours? Edges as long as the support are not
   /// in the local graph.
   bool has_edge_only_entries(std::size_t k) const { return edge_only_[k]; }
-  /// The edges of a local node by class of length, without those that lead to no neighbour of a
-  /// source.
+  /// The edges of a local node by class of length. Edges that lead to no neighbour of a source are
+  /// left out.
   std::span<const Edge> edges(std::uint32_t local) const {
     return {edges_.data() + first_[local], edges_.data() + first_[local + 1]};
   }

@@ -1,3 +1,4 @@
+// Cells of at most 48 nodes, in the order of the Morton curve, search as groups on all threads.
 #include "graph/nearest.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ void visit_nearest(const NodeTree& tree, int k, const std::function<void(NodeId,
   if (tree.size() == 0) return;
   // Nodes that search together: enough to pay for gathering candidates, few enough to share most of
   // them.
-  constexpr std::uint32_t group_size = 48;
+  constexpr std::uint32_t group_size = 48;  // the result does not depend on it
   const auto cells = tree.cells();
   // Along the Morton curve: each group learns its reach from the one before.
   std::vector<std::uint32_t> groups, open{0};

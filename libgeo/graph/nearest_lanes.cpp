@@ -1,7 +1,6 @@
 // Nearest nodes by groups. The nodes of a small cell search together:
-//   1. Candidates within `reach` of the cell's box are gathered once, as floats relative to the
-//   box.
-//   2. Each node selects those within reach of itself and ranks them by counting.
+//   1. Candidates within √reach of the cell's box are gathered once, as floats relative to the box.
+//   2. Each node selects those within √reach of itself and ranks them by counting.
 //   3. It puts the first k in exact order by doubles.
 // The result holds when the last node is within reach, since all nodes left out are farther
 // (NodeTree::Cell::gap). The width of the vectors changes the speed only.
@@ -26,8 +25,8 @@ using Visit = std::function<void(NodeId, std::span<const NodeId>)>;
 
 // Floats are in units of E, the half-width of the gathered box: coordinates are at most 1, within
 // 2⁻²⁴ (1 + 2⁻²⁸) of the exact ones. A difference of two (at most 2) is off by η = 4.01 · 2⁻²⁴ at
-// most. For a distance d ≤ 1 the sum of squares is then off by 2 η √3 d + 3 η² from the coordinates
-// and by 4 · 2⁻²⁴ d² from its own rounding: below 18 · 2⁻²⁴.
+// most. For a distance d ≤ 1 the sum of squares has two errors: 2 η √3 d + 3 η² from the
+// coordinates, and 4 · 2⁻²⁴ d² from its own rounding. Their sum is below 18 · 2⁻²⁴.
 constexpr double float_error = 0x1p-19;
 // A candidate's index replaces the low bits of its squared distance, so that all keys differ. That
 // changes the distance by a share of key_error at most.
@@ -71,11 +70,12 @@ class GroupSearch {
   void operator()(std::uint32_t group) {
     const auto cells = tree_.cells();
     const NodeTree::Cell& home = cells[group];
-    // A cell around with enough nodes bounds how far the last of them can be, and tells about how
-    // far it will be.
+    // The smallest cell around the group with enough nodes bounds the distance of the last of them.
     std::uint32_t around = group;
     while (cells[around].count() < wanted_) around = cells[around].parent;
     const double farthest = cells[around].diagonal();
+    // Factors 0.06 and 0.36 of the squared diagonal bound the first guess; a guess too small costs
+    // another round, a guess too large more candidates. The result is the same.
     double reach = std::clamp(learned_, 0.06 * farthest, 0.36 * farthest);
     pending_.clear();
     for (auto slot = home.begin; slot < home.end; ++slot) pending_.push_back(slot);
@@ -87,8 +87,10 @@ class GroupSearch {
         if (!search(slot, reach)) pending_[open++] = slot;
       pending_.resize(open);
       if (open == 0) break;
+      // Squared: the distance grows by a factor of 1.26.
       reach = std::min(reach > 0 ? 1.6 * reach : farthest, farthest);
     }
+    // The next group starts with 3 % more distance (6 % of its square).
     learned_ *= 1.06;
   }
 
@@ -116,7 +118,7 @@ class GroupSearch {
       for (const auto child : {cell.children + 1, cell.children})
         if (cells[child].gap(home.lo, home.hi) <= reach) stack_.push_back(child);
     }
-    // Whole vectors are read: those behind the last are far away.
+    // Whole vectors are read. Entries behind the last are far away.
     const hn::ScalableTag<float> d;
     near_.reserve(hn::Lanes(d));
     for (auto& a : near_.along) std::fill_n(a.begin() + static_cast<std::ptrdiff_t>(near_.size), hn::Lanes(d), 1e15f);
@@ -210,8 +212,8 @@ class GroupSearch {
     return true;
   }
 
-  // Puts the first `wanted_` of the candidates into `exact_`, and those that rounding may have put
-  // behind them, in order.
+  // Puts the first `wanted_` candidates into `exact_`, in order. Candidates that rounding may have
+  // put behind them are sorted, too.
   template <class ToExact>
   void rank(std::uint32_t count, const ToExact& exact) {
     const hn::ScalableTag<std::uint32_t> du;

@@ -1,3 +1,6 @@
+// Nodes are grouped by bisection of their bounding box until a group is as wide as a support
+// radius. A group shares one BVH of the triangles near it, against which its candidates are tested
+// exactly.
 #include "graph/nearest_visible.h"
 
 #include <algorithm>
@@ -74,6 +77,7 @@ std::vector<std::vector<std::uint32_t>> nearest_visible(
       }
     }
   };
+  // Groups between two reports of progress.
   constexpr std::size_t part = 256;
   for (std::size_t first = 0; first < groups.size(); first += part) {
     report(progress, "new edges", first, groups.size());

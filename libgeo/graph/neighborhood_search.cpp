@@ -1,3 +1,6 @@
+// Up to 4096 sources share a local graph, and sixteen of them one batched search. Plain length of a
+// hidden neighbour's path, with warped distances d: p(v) = min p(u) + |x_u − x_v| over edges uv
+// with d(u) + length(uv) = d(v). So it is the least among all paths of least warped length.
 #include "graph/neighborhood_search.h"
 
 #include <algorithm>
@@ -8,8 +11,8 @@
 namespace geo {
 namespace {
 
-// Sources that share one local graph: enough that most nodes near a source are near others, too;
-// few enough that the local graph fits into a core's cache.
+// Sources that share one local graph. More: most nodes near a source are near others, too. Fewer:
+// the local graph fits into a core's cache. Rows do not depend on it.
 constexpr std::size_t sources_per_graph = 4096;
 
 }  // namespace
@@ -47,8 +50,7 @@ class NeighborhoodSearch::Scratch {
   std::vector<LastEdge> last_edges_;  // [0] ends each list
 };
 
-// The edges that end shortest paths from a source: those that account for the distance of their
-// end.
+// The edges uv that end shortest paths from a source: d(u) + length(uv) = d(v).
 void NeighborhoodSearch::Scratch::find_last_edges(std::uint32_t source, const BatchedSearch::Distances& found) {
   distance_.resize(std::max<std::size_t>(distance_.size(), local.size()), 0);
   plain_.resize(distance_.size()), first_edge_.resize(distance_.size());

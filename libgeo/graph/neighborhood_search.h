@@ -35,8 +35,8 @@ class NeighborhoodSearch {
   std::unique_ptr<Scratch> scratch_;
 };
 
-/// Inserts into the row of node i (ids and bits) its edges that join no neighbours: those as long
-/// as the support, and those to guides.
+/// Inserts into the row of node i (ids and bits) its edges that join no neighbours: edges as long
+/// as the support, and edges to guides.
 void insert_edge_only_entries(const NodeSet& nodes, const GraphStorage& graph, std::uint32_t i,
                               std::vector<std::uint32_t>& to, std::vector<std::uint16_t>& bits);
 

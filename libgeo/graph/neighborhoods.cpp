@@ -63,6 +63,8 @@ class RowMaker {
 
 void search_all(const NodeSet& nodes, GraphStorage& graph, const NeighborhoodSearch::MarkHidden& mark_hidden,
                 AdjacencyStore& rows) {
+  // Nodes of a run. Smaller: blocks are released earlier; larger: local graphs are shared by more
+  // sources.
   constexpr std::size_t grain = 1024;
   const std::size_t n = nodes.size();
   BlockRelease release(nodes, graph, grain, rows);

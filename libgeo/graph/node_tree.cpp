@@ -1,3 +1,6 @@
+// 30-bit Morton codes are sorted by radix. A cell is split at the highest bit in which its first
+// and last code differ, as in a binary radix tree (Lauterbach et al. 2009). Boxes are joined
+// bottom-up.
 #include "graph/node_tree.h"
 
 #include <algorithm>
@@ -15,6 +18,7 @@ using Cell = NodeTree::Cell;
 constexpr int code_bits = 30, axis_bits = 10;
 constexpr std::uint32_t grain = 1 << 14;  // nodes that are worth a task
 
+// Puts two zero bits between the lower ten bits of x.
 std::uint32_t spread(std::uint32_t x) {
   x = (x | x << 16) & 0x30000ff;
   x = (x | x << 8) & 0x300f00f;
@@ -67,6 +71,7 @@ void encode(std::span<const Vec3> positions, const Box3& box, std::span<std::uin
 // A stable radix sort, lowest digit first. Each chunk counts its digits, and then writes behind
 // lower digits and behind equal digits of earlier chunks.
 void sort_by_digits(UninitializedArray<std::uint64_t>& keyed) {
+  // Three passes over 30 bits; the 1024 counters of a chunk (4 KiB) fit into the first cache.
   constexpr int digit = 10, values = 1 << digit;
   UninitializedArray<std::uint64_t> other(keyed.size());
   std::vector<std::array<std::uint32_t, values>> next(chunk_count(keyed.size()));
@@ -96,8 +101,8 @@ class Splitter {
   Splitter(std::span<const Vec3> positions, UninitializedArray<std::uint64_t>& keyed)
       : positions_(positions), keyed_(keyed) {}
 
-  // Splits a cell at the highest bit in which its first and last code differ, and appends the jobs
-  // of both children, the first child last. False when the cell stays a leaf.
+  // Splits a cell at the highest bit in which its first and last code differ. Appends the jobs of
+  // both children, the first child last. False when the cell stays a leaf.
   bool split(std::vector<Cell>& cells, Job job, std::vector<Job>& jobs) {
     const auto begin = cells[job.cell].begin, end = cells[job.cell].end;
     if (end - begin <= NodeTree::leaf_size) return false;

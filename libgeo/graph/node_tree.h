@@ -1,5 +1,4 @@
-// Nodes in Morton order under a tree of tight boxes: what nearest nodes and the spanning tree
-// search in.
+// Nodes in Morton order under a tree of tight boxes, for nearest nodes and the spanning tree.
 #pragma once
 
 #include <cstdint>

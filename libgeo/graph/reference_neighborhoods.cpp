@@ -1,3 +1,5 @@
+// Dijkstra's algorithm with a binary heap, and the modified Floyd–Warshall algorithm (§ 6.2). Its
+// matrix D has sparse rows: hash tables of the distances that are below the support radius.
 #include "graph/reference_neighborhoods.h"
 
 #include <algorithm>
@@ -40,6 +42,7 @@ class SparseRow {
     PathLength length = far;
   };
   Slot& find(std::uint32_t to) {
+    // Fibonacci hashing: 2654435761 is the prime next to 2³² / φ (Knuth, vol. 3, § 6.4).
     std::size_t at = (to * 2654435761u >> 7) & (slots_.size() - 1);
     while (slots_[at].to != none && slots_[at].to != to) at = (at + 1) & (slots_.size() - 1);
     return slots_[at];

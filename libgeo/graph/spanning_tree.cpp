@@ -1,9 +1,8 @@
 // Borůvka's algorithm: in each round, the shortest edge out of each component. A node's k nearest
-// nodes are tested first. Where none of them is in another component, the tree of nodes is
-// searched, unless the component has an edge shorter than the distance to the k-th. For edges
-// beyond the nearest nodes, everything joined by edges shorter than any node's k-th nearest counts
-// as one component from the start. Where nodes are spread evenly that is all nodes, and no round is
-// left.
+// nodes are tested first. If none of them is in another component, the tree of nodes is searched.
+// It is not if the component has an edge shorter than the distance to the k-th. For edges beyond
+// the nearest nodes, everything joined by edges shorter than any node's k-th nearest counts as one
+// component from the start. Where nodes are spread evenly that is all nodes, and no round is left.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>
@@ -162,6 +161,7 @@ std::vector<std::pair<NodeId, NodeId>> as_pairs(const std::vector<TreeEdge>& edg
 }  // namespace
 
 std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions) {
+  // Nearest nodes tested before the tree is searched; the result does not depend on their number.
   constexpr int k = 8;
   const NodeTree tree(positions);
   const auto near = nearest_nodes(tree, k);

@@ -10,13 +10,12 @@
 
 namespace geo {
 
-/// Edges (i < j) of the Euclidean minimum spanning tree, ascending. Exact; among edges of equal
-/// squared_distance() the one with the lower nodes counts as shorter, so the tree is unique.
+/// Edges (i < j) of the Euclidean minimum spanning tree, ascending. Exact; edges are ordered by
+/// (squared_distance(), i, j), so the tree is unique.
 std::vector<std::pair<NodeId, NodeId>> spanning_tree(std::span<const Vec3> positions);
 
-/// The tree's edges that join no node to one of its k nearest: those that the tree adds to the
-/// graph of nearest nodes. As a rule none, where nodes are spread evenly. `near`:
-/// nearest_nodes(tree, k).
+/// The tree's edges that the graph of k nearest nodes lacks, ascending. Where nodes are spread
+/// evenly, there is none as a rule. `near`: nearest_nodes(tree, k).
 std::vector<std::pair<NodeId, NodeId>> spanning_tree_beyond(const NodeTree& tree, std::span<const Vec3> positions,
                                                             std::span<const NodeId> near, int k);
 

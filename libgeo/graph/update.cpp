@@ -4,8 +4,8 @@
 //   E_new     edges that new nodes get: to their k nearest visible nodes
 //   P_update  nodes whose neighbours may have changed; their rows are recomputed
 // One departure: rows are recomputed on the whole graph. A detour between two nodes of P_update may
-// leave P_update (its middle can be far from the cut while both ends are near), and the paper's
-// subgraph would miss it.
+// leave P_update: its middle can be far from the cut while both ends are near. The paper's subgraph
+// would miss it.
 #include "graph/update.h"
 
 #include <algorithm>
@@ -27,8 +27,8 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// Visibility of pairs of which most share one node: triangles around that node are read once,
-// within a distance that adapts to their number.
+// Visibility of pairs (i, j). Most pairs share i: triangles around i are read once, within a
+// distance that adapts to the number of triangles.
 class PairVisibility {
  public:
   PairVisibility(const NodeSet& nodes, const GraphStorage& graph, const TrianglesNear& near)
@@ -54,6 +54,8 @@ class PairVisibility {
     triangles_.clear(), boxes_.clear();
     near_(covered_, triangles_);
     for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
+    // Each read serves many pairs if the box is large, each test is cheap if it is small: 8 to 32
+    // triangles are kept. The result does not depend on them.
     if (triangles_.size() > 32 && reach_ > (segment.hi - segment.lo).maxCoeff())
       reach_ *= 0.5;
     else if (triangles_.size() < 8)
@@ -69,8 +71,8 @@ class PairVisibility {
   std::vector<Box3> boxes_;
 };
 
-// Finds the nodes whose shortest paths may use a removed edge, by distances before the step: those
-// within a support radius of an end, less the length of the shortest edge that the end loses.
+// Finds the nodes whose shortest paths may use a removed edge. A path from node p that uses edge e
+// at its end q has d(p, q) + length(e) < support radius. Distances d are those before the step.
 class PathUsers {
  public:
   PathUsers(const NodeSet& nodes, const GraphStorage& graph, IdSet& users)
@@ -215,6 +217,7 @@ void GraphUpdater::find_cut_edges() {
 }
 
 void GraphUpdater::prefetch_rows_behind(const CutPairs::Row& row) const {
+  // Rows to prefetch ahead; locations are prefetched twice as early.
   constexpr std::ptrdiff_t ahead = 4;
   const auto left = cut_.rows.data() + cut_.rows.size() - &row;
   const GraphStorage& graph = graph_;
@@ -318,8 +321,8 @@ void GraphUpdater::join_new_guides(PairVisibility& visibility) {
   add_guide_edges(nodes_, visible, graph_);
 }
 
-// P_update also has the nodes that a new or shortened edge may give a shorter path: those within a
-// support radius of one of its ends.
+// A new or shortened edge may give a shorter path to nodes within a support radius of one of its
+// ends. They belong to P_update, too.
 void GraphUpdater::add_users_of_new_edges() {
   std::vector<std::uint32_t> starts = fresh_;
   for (const NodeId r : in_.resized) starts.push_back(r.value);
@@ -369,7 +372,7 @@ void GraphUpdater::find_rows(std::span<const std::uint32_t> sources, const Neigh
         bits[e] |= AdjacencyRow::path_bit;
     }
     if (in_.moved.empty()) return;
-    // Lines of sight to moved nodes are not what they were.
+    // Lines of sight to moved nodes have changed.
     for (std::size_t e = 0; e < to.size(); ++e)
       if (!AdjacencyRow::is_edge(bits[e]) && to[e] < in_.first_new.value && is_fresh(to[e]) &&
           visibility.blocked(i, to[e]))
@@ -390,6 +393,7 @@ void GraphUpdater::recompute_rows() {
     while (cut_row != cut_.rows.end() && cut_row->id < i) ++cut_row;
     sides[cut_row != cut_.rows.end() && cut_row->id == i && cut_row->above].push_back(i);
   }
+  // `few`: below this, threads cost more than they save. `grain`: sources of a thread's task.
   constexpr std::size_t grain = 1024, few = 64;
   if (threads() == 1 || sources.size() <= few) {
     for (const auto& side : sides) find_rows(side, store);

@@ -25,14 +25,14 @@ struct GraphChange {
   NodeId first_new;              ///< P_new: nodes from here on are new and get edges to their k nearest visible nodes
   int k;                         ///< see build_visibility_graph()
   TrianglesNear triangles_near;  ///< of the whole complex after the step. Called only for pairs that were no
-                                 // /< neighbours before, or with a new or moved node
+                                 ///< neighbours before, or with a new or moved node
   std::span<const std::array<Vec3, 3>> new_faces = {};    ///< crack faces and children of skin faces
   std::span<const NodeId> moved = {};                     ///< old nodes at another position: they lose their edges and
-                                                          // /< are connected like new ones
+                                                          ///< are connected like new ones
   std::span<const NodeId> resized = {};                   ///< old nodes at the same position with another radius: they
-                                                          // /< keep their edges, with other lengths
+                                                          ///< keep their edges, with other lengths
   std::span<const std::pair<NodeId, NodeId>> joins = {};  ///< pairs with a new node that see each other and get an edge
-                                                          // /< at any distance
+                                                          ///< at any distance
   GuideChange guides = {};                                ///< added guides stand beside the new faces
 };
 
@@ -43,8 +43,8 @@ struct GraphUpdate {
   std::vector<NodeId> updated_nodes;                   ///< P_update: nodes whose rows were recomputed, ascending
 };
 
-/// Brings edges and neighbours up to date. The cost follows what changes, not the size of the
-/// graph. If `progress` stops it, the graph is lost.
+/// Updates edges and neighbours. The cost depends on the size of the change, not of the graph. If
+/// `progress` stops it, the graph is lost.
 GraphUpdate update_graph(const GraphChange& change, VisibilityGraph& graph, const Progress& progress = {});
 
 }  // namespace geo

@@ -1,3 +1,5 @@
+// Segments with a common first node are tested in batches, so that they share one descent of the
+// BVH.
 #include "graph/visibility.h"
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 namespace geo {
 
 void Visibility::blocked(NodeId i, std::span<const NodeId> to, std::span<std::uint8_t> result) const {
-  constexpr std::size_t batch = 32;
+  constexpr std::size_t batch = 32;  // segments of a descent, on the stack; any size gives the same result
   Vec3 ends[batch];
   for (std::size_t first = 0; first < to.size(); first += batch) {
     const std::size_t count = std::min(batch, to.size() - first);

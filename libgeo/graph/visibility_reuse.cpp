@@ -1,5 +1,6 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each kind
-// of vector.
+// Old and new row ascend and are merged in vectors. Entry e is open (to be tested again) unless it
+// is an edge, or it was visible and no new face hides it: open = ¬(edge ∨ (visible ∧ ¬hidden)).
+// Highway compiles the part from HWY_BEFORE_NAMESPACE on once for each kind of vector.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/visibility_reuse.cpp"
 #include "base/simd_targets.h"
@@ -44,8 +45,8 @@ std::size_t EntriesToRetest(std::span<const std::uint32_t> to, std::span<const s
   for (std::size_t e = 0; e < count; e += lanes) {
     const auto at = std::min(e, count - lanes);
     const auto now = hn::LoadU(d, to.data() + at);
-    // Old rows have nearly all that new ones have: what is sought is as many places on as entries
-    // have gone, or a few more.
+    // The old row has nearly all ids of the new one, which `gone` entries have left so far. So the
+    // search begins at index at + gone of the old row and ends after a few vectors.
     auto same = nothing, visible = nothing;
     for (std::size_t k = at + gone; k <= old_count - lanes; ++k) {
       const auto equal = hn::Eq(now, hn::LoadU(d, old.to.data() + k));

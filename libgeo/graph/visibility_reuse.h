@@ -12,10 +12,10 @@ namespace geo {
 /// Set in entries of entries_to_retest() that a new face hides.
 constexpr std::uint32_t hidden_bit = std::uint32_t(1) << 31;
 
-/// The entries of a node's new row (`to`, `bits`) whose visibility does not follow from its old
-/// row: those that are no edges and were not visible, or are in `hidden` (ascending). Writes their
-/// indices, ascending, with hidden_bit where they were visible and are in `hidden`. Returns their
-/// number.
+/// Entries of a node's new row (`to`, `bits`) whose visibility does not follow from its old row.
+/// Entry e is one if it is no edge, and it was not visible or to[e] is in `hidden` (ascending).
+/// Writes indices e, ascending, with hidden_bit if e was visible and to[e] is in `hidden`. Returns
+/// their number.
 std::size_t entries_to_retest(std::span<const std::uint32_t> to, std::span<const std::uint16_t> bits,
                               const AdjacencyRow& old, std::span<const std::uint32_t> hidden, std::uint32_t* retest);
 

@@ -1,3 +1,5 @@
+// Sections run/… behind those of the body (docs/formats.md): motion, fronts and counts of a run.
+// Doubles are stored as such, so that a run resumes exactly.
 #include "kerf/run_files.h"
 
 #include "io/body_sections.h"

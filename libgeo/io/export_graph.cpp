@@ -1,3 +1,4 @@
+// PLY (binary, little-endian) with nodes as vertices; VTK XML (.vtu) with raw appended data.
 #include <functional>
 
 #include "io/graph_edges.h"

@@ -1,3 +1,5 @@
+// Sections are streamed block by block and printed in the shortest form that reads back exactly
+// (std::to_chars).
 #include <charconv>
 #include <nlohmann/json.hpp>
 

@@ -1,3 +1,5 @@
+// Text, line by line: `front NAME`, then `step T` and a point a line; or `sheet NAME` with points
+// and triangles. OBJ: each object with a polyline is a time step.
 #include "kerf/front_file.h"
 
 #include <algorithm>

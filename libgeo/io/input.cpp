@@ -1,3 +1,4 @@
+// Regular files are read by pread(), which has no common position and is safe in threads.
 #include "kerf/stream.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// As rsync (Tridgell and Mackerras 1996): blocks of `before` are hashed, and windows of `after` are
+// looked up among them. Rows at their own place are compared first, so most arrays need no hashes.
 #include <algorithm>
 #include <utility>
 
@@ -6,6 +8,8 @@
 namespace geo::kerf {
 namespace {
 
+// Bytes of a window, rounded to rows. A run costs 16 bytes, so copying shorter stretches saves
+// little. Larger: fewer hashes, more literal rows.
 constexpr std::size_t window_bytes = 256;
 
 // The blocks of an array by hash. Queries ascend: a block is found while it begins at or after

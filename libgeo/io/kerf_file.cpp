@@ -1,3 +1,6 @@
+// Segments are opened in order, each checked by the hashes of head, table and commit record. The
+// content of a section is a list of extents of the file; an update refers to extents of the section
+// before.
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>

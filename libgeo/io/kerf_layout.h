@@ -26,7 +26,7 @@ constexpr std::uint64_t aligned(std::uint64_t at) { return (at + alignment - 1) 
 /// XXH3 hash of some bytes.
 inline std::uint64_t hash_of(const void* bytes, std::size_t size) { return XXH3_64bits(bytes, size); }
 
-/// Hash of a section: that of its blocks' hashes, which several threads compute.
+/// Hash of a section from the hashes of its blocks, which several threads compute.
 inline std::uint64_t hash_of(const std::vector<std::uint64_t>& blocks) {
   return hash_of(blocks.data(), 8 * blocks.size());
 }

@@ -6,7 +6,8 @@
 
 namespace geo::kerf {
 
-/// An array, or the runs that make it from the array of that name in the segments before.
+/// An array to store: whole, or as runs of rows. A run of rows is copied from the previous version
+/// of the array (same name, earlier segment), or it is literal: stored in this segment.
 struct Stored {
   KerfArray array;
   std::vector<Run> runs;           ///< none: the array is stored whole
@@ -14,11 +15,13 @@ struct Stored {
   std::uint64_t hash = 0;          ///< with runs: of the array that results
 };
 
-/// Size of a row of an array in bytes.
+/// Size of a row of an array in bytes: the product of all dimensions of `shape` but the first
+/// (number of rows), times the size of `dtype`.
 std::uint64_t row_bytes(const std::string& dtype, const std::vector<std::uint64_t>& shape);
 
 /// Writes a segment that begins at `start`, without its commit record. Returns the record, which
-/// the caller writes once the segment is on the disk. `previous`: hash of the commit record before.
+/// the caller writes once the segment is on the disk. `number`: of the segment in the file, from 0.
+/// `previous`: hash of the commit record before; 0 for the first segment.
 Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32_t number, std::uint64_t previous,
                      const std::vector<Stored>& sections);
 

@@ -1,3 +1,6 @@
+// Under a file lock, sections whose hashes differ are appended as one segment: whole, or as runs of
+// rows if these are shorter. The commit record is written after fsync(), so a crash leaves the old
+// state.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -34,7 +37,8 @@ std::vector<std::byte> all_of(const KerfArray& array) {
   return bytes;
 }
 
-// The array as runs over the one before, or whole where that is shorter or there is no telling.
+// The array as runs of rows of its previous version; whole if that is shorter, or if the types
+// differ.
 kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::uint64_t hash, const KerfFile& file) {
   const KerfFile::Section& old = file.sections().at(array.name);
   kerf::Stored s{array, {}, 0, hash};
@@ -174,6 +178,7 @@ std::uint64_t KerfUpdate::commit(const std::vector<KerfArray>& arrays) {
   if (kept && file().version() == kerf_format_version) {
     const auto changed = impl_->changes(arrays);
     const std::uint64_t added = kerf::segment_size(file().committed(), changed);
+    // Appends while the file is at most twice as long as a new one; else it is written anew.
     if (file().committed() + added <= 2 * size) {
       impl_->append(changed);
       return added;

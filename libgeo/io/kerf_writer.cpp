@@ -1,3 +1,5 @@
+// A segment: head, sections aligned to 64 bytes, table of sections as JSON, commit record. The
+// position of the table is known before the arrays are written.
 #include "io/kerf_writer.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// PLY, recognised by its first bytes, else PCD 0.7 (ASCII or binary; Point Cloud Library). A column
+// of a PCD point may have single or double precision.
 #include "kerf/node_file.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// The header gives the layout. Binary elements whose rows have equal size are decoded column by
+// column, all others number by number. All numbers become doubles.
 #include <bit>
 #include <cstdint>
 #include <cstring>

@@ -1,3 +1,5 @@
+// Nodes of a frame are binary PLY in single precision; a series is the JSON that ParaView reads
+// (.series).
 #include "kerf/run_files.h"
 
 #include <array>

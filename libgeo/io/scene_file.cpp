@@ -1,3 +1,5 @@
+// TOML by toml++, key by key through TomlTable, which reports unknown keys. Hashes of all files
+// that the scene names enter its fingerprint.
 #include "kerf/scene_file.h"
 
 #include <algorithm>

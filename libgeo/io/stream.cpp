@@ -1,3 +1,5 @@
+// Outputs go to a temporary file in the same folder, then fsync() and rename(), which is atomic
+// under POSIX.
 #include "kerf/stream.h"
 
 #include <fcntl.h>

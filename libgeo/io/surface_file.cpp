@@ -1,3 +1,5 @@
+// Formats are recognised by their first bytes or lines; anything unknown is read as STL. Seams,
+// i.e. vertices at one position, are welded unless the mesh is two-sided.
 #include "kerf/surface_file.h"
 
 #include "io/line_reader.h"

@@ -21,7 +21,7 @@ TriangleMesh parse_off(const std::string& bytes, const std::string& name);
 /// Reads ASCII or binary STL.
 TriangleMesh parse_stl(const std::string& bytes, const std::string& name);
 
-/// A number as an index; ~0u where it is no index.
+/// A number as an index; ~0u (no index) if it is negative, fractional or too large.
 inline std::uint32_t row_of(double x) {
   if (!(x >= 0 && x < 4294967295.0)) return ~0u;
   const auto row = static_cast<std::uint32_t>(x);
@@ -43,8 +43,8 @@ std::vector<std::array<V, 3>> at_corners(const TriangleMesh& mesh, const std::ve
   return result;
 }
 
-/// Values of corners at vertices: that of the first corner of a vertex, corners of skin before
-/// those of cracks. `agree`: whether all corners of skin have the value of their vertex.
+/// Values of corners at vertices. A vertex takes the value of its first corner; corners of skin
+/// precede corners of cracks. `agree`: whether all corners of skin have the value of their vertex.
 template <class V>
 struct AtVertices {
   std::vector<V> value;

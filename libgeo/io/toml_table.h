@@ -15,8 +15,8 @@
 
 namespace geo {
 
-/// Reader of one table. All get() functions leave the value unchanged where the key is missing, and
-/// throw InputError where the key has another type or is out of range.
+/// Reader of one table. All get() functions leave the value unchanged where the key is missing.
+/// They throw InputError where the key has another type or is out of range.
 class TomlTable {
  public:
   /// `name`: of the file; `path`: dotted prefix of the keys in messages. `table` must outlive the

@@ -1,3 +1,5 @@
+// USD as text (.usda): a mesh with time samples for each value that changes. Frames are read and
+// printed on several threads, and written in order.
 #include "kerf/run_files.h"
 
 #include <charconv>
@@ -186,7 +188,7 @@ void write_usda(std::ostream& out, const UsdRun& run) {
       << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
-  constexpr std::size_t most_kept = 16;
+  constexpr std::size_t most_kept = 16;      // larger: more memory, fewer frames are read twice
   Frames cut;                                // whose triangles differ from those of the frame before
   std::map<std::size_t, TriangleMesh> kept;  // of the first of these frames, which are not read again
   TriangleMesh last;

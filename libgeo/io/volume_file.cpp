@@ -1,3 +1,5 @@
+// Through OpenVDB: volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set
+// from a closed surface. wrapped() does both, in coordinates scaled to voxels.
 #include "kerf/surface_file.h"
 
 #include <openvdb/io/Stream.h>

@@ -1,3 +1,6 @@
+// Simultaneous relaxation: p_i ← p_i + ½ Σ_j (w_ij / d_ij − 1) (p_i − p_j), with d_ij = |p_i − p_j|
+// and w_ij = (s_i + s_j) / 2. The sum runs over j with d_ij < w_ij. Then p_i is clamped to the
+// inner box of its leaf.
 #include "sampling/blue_noise.h"
 
 #include "kerf/parallel.h"
@@ -7,6 +10,8 @@ namespace geo {
 
 void move_apart(NodeSet& nodes, const LeafIndex& leaves, const Lattice& lattice, const std::vector<char>& free,
                 const Progress& progress) {
+  // More steps give a more even pattern at proportional cost. Half of each overlap goes to each
+  // node of a pair (strength).
   constexpr int steps = 8;
   constexpr double strength = 0.5, range = 0.5 - keep_off;
   std::vector<Vec3> moved(nodes.size());

@@ -1,3 +1,6 @@
+// The number of nodes n falls about as a power of the spacing s: log n is interpolated piecewise
+// linearly in log s over all spacings tried, and solved for the wanted number (regula falsi). A
+// selection among leaves with little material gives the exact number.
 #include "sampling/count.h"
 
 #include <cmath>
@@ -55,6 +58,8 @@ class CountCurve {
                       b = between  ? i
                           : i == 0 ? 1
                                    : points_.size() - 2;
+    // The slope d log n / d log s is −3 for a full volume and −2 for a shell. The first guess is
+    // −2.8; extrapolation is bounded to −4 to −1.5.
     double slope = -2.8;
     if (points_.size() > 1) slope = (points_[b].second - points_[a].second) / (points_[b].first - points_[a].first);
     if (!between) slope = std::clamp(slope, -4.0, -1.5);
@@ -85,6 +90,7 @@ std::optional<SpacedLeaves> LeafFinder::at(double spacing, int thin_levels, std:
   shape.root = shape.top;
   const double coarse = shape.lattice.edge(shape.top);
   for (int i = 0; i < 3; ++i) {
+    // 2 % of the spacing keep the surface off the boundary of the lattice.
     const double length = box_.hi[i] - box_.lo[i] + 0.02 * spacing, cells = std::max(1.0, std::ceil(length / coarse));
     shape.lattice.origin[i] = box_.center()[i] - 0.5 * cells * coarse;
     while (std::ldexp(1.0, shape.root - shape.top) < cells) ++shape.root;
@@ -100,6 +106,7 @@ std::optional<SpacedLeaves> LeafFinder::at(double spacing, int thin_levels, std:
 }
 
 SpacedLeaves LeafFinder::with_count(std::size_t count, double volume, SampleReport& report) const {
+  // A trial that would divide more than `most` cells is given up: it costs time and memory.
   const double target = double(count), most = 4 * target + 1000;
   CountCurve curve;
   int thin = thin_levels();
@@ -114,6 +121,7 @@ SpacedLeaves LeafFinder::with_count(std::size_t count, double volume, SampleRepo
   };
   for (look(); thin > 0 && nodes > count; look()) --thin;
   float sure = surely;
+  // Rounds are bounded: where symmetry makes counts jump, no spacing may give the number.
   for (int round = 0; round < 30; ++round) {
     curve.add(spacing, double(nodes));
     if (round == 6) sure = at_worst;

@@ -5,7 +5,8 @@
 
 namespace geo {
 
-/// Decides which leaves get a node: those with enough material; a random ticket breaks ties.
+/// Decides which leaves get a node: a leaf with a larger share of material than `share`, or with
+/// the same share and a ticket of at least `ticket`.
 struct NodeSelection {
   float share = float(least_share);
   std::uint64_t ticket = 0;

@@ -1,3 +1,5 @@
+// A table of blocks of cells gives the range of leaves in each block; codes are sorted, so a binary
+// search within the range finds a leaf.
 #include "sampling/leaf_index.h"
 
 namespace geo {

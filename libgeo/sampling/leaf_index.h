@@ -18,8 +18,8 @@ class LeafIndex {
   std::size_t size() const { return codes_.size(); }
   /// The cell of a leaf.
   Cell cell(std::size_t leaf) const { return {corner_of(codes_[leaf]), levels_[leaf]}; }
-  /// Calls visit(leaf), once each, for the leaves that meet the cell of level `level` that contains
-  /// c, or one of the 26 cells of that size around it. c is of that level or finer.
+  /// Let C be the cell of level `level` that contains c. Calls visit(leaf), once each, for the
+  /// leaves that meet C or one of the 26 cells of that size around C. c is of that level or finer.
   template <class Visit>
   void around(const Cell& c, int level, const Visit& visit) const;
 

@@ -1,3 +1,6 @@
+// Each cut cell is sampled at 4³ points with exact inside tests. The share of inside points
+// estimates its material, and their mean is the node's position, jittered and then moved off the
+// surface.
 #include "sampling/leaves.h"
 
 #include "base/random.h"
@@ -6,7 +9,7 @@
 namespace geo {
 namespace {
 
-constexpr int across = 4;  // sample points across a cell
+constexpr int across = 4;  // sample points across a cell; 4³ = 64 fill one word of region.cpp's bit masks
 constexpr int points = across * across * across;
 
 Vec3 random_shift(const Cell& cell, std::uint64_t seed) {
@@ -17,8 +20,8 @@ Vec3 random_shift(const Cell& cell, std::uint64_t seed) {
   return {x, y, random.uniform(-1, 1)};
 }
 
-/// Moves p off the surface where it is nearer than `away`; false where p is not inside or cannot be
-/// made so.
+/// Moves p to the distance `away` from the closest surface point if it is nearer. It stays where it
+/// is if the new point is within away / 2 of the surface or not inside. False if p is not inside.
 bool settle(const RegionTree& tree, const Region& region, const Box3& box, double away, Vec3& p) {
   if (!tree.inside(region, p)) return false;
   const auto close = tree.tree().closest(p, away);
@@ -58,6 +61,7 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
     return leaf;
   }
   const Vec3 middle = sum / count;
+  // Where a sample point is outside the material, there is less space: 0.3 of the jitter.
   for (const Vec3& p : {Vec3(middle + (count == points ? 1.0 : 0.3) * edge * shift), middle}) {
     leaf.position = p;
     if (settle(tree, region, box, keep_off * edge, leaf.position)) return leaf;

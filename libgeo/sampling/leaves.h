@@ -21,15 +21,16 @@ struct Leaf {
 /// Leaves in Morton order, one list after the other.
 using LeafLists = std::vector<std::vector<Leaf>>;
 
-/// All leaves with material. The node of a whole leaf is displaced at random about its middle. That
-/// of a cut leaf is near the middle of its material, an eighth of the cell off the surface where
-/// possible.
+/// All leaves with material. The node of a whole leaf is displaced at random about its middle. The
+/// node of a cut leaf is near the middle of its material, `keep_off` of the cell's edge away from
+/// the surface where possible.
 LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Divisions& divided,
                       const SampleOptions& options, const Progress& progress);
 
 /// Clearance of nodes from the surface where possible, as a share of the cell's edge.
 constexpr double keep_off = 0.12;
-/// A cell with a smaller share of material gets no node; its volume goes to neighbours.
+/// A cell with a smaller share of material gets no node; its volume goes to the nearest node.
+/// Larger: fewer nodes with little volume at the surface.
 constexpr double least_share = 0.1;
 
 }  // namespace geo

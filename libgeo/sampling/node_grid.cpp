@@ -1,3 +1,5 @@
+// A leaf is divided when it has more than leaf_capacity indices; eight children are appended to the
+// array of cells. A position outside the root rebuilds the tree with twice the extent.
 #include "sampling/node_grid.h"
 
 namespace geo {

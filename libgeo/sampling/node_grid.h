@@ -50,6 +50,8 @@ class NodeGrid {
   std::size_t bytes() const { return cells_.capacity() * sizeof(Cell) + next_.capacity() * sizeof(std::uint32_t); }
 
  private:
+  // leaf_capacity: more nodes a leaf take less memory and more distance tests. max_depth bounds the
+  // tree where positions coincide; a leaf there exceeds its capacity.
   static constexpr std::uint32_t none = ~0u, inner = ~0u, leaf_capacity = 8;
   static constexpr int max_depth = 40;
   struct Cell {

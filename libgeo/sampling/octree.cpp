@@ -1,3 +1,5 @@
+// Cells are classified top-down on all threads. Then the 2:1 rule is applied bottom-up, level by
+// level, on sorted Morton codes (as in Sundar et al. 2008).
 #include "sampling/octree.h"
 
 #include <atomic>

@@ -30,15 +30,16 @@ inline bool is_divided(const Divisions& divided, const Cell& c) {
   return std::binary_search(codes.begin(), codes.end(), morton(c.corner));
 }
 
-/// The thinnest wall with less than `across` regular cells across, and the thinnest with less than
-/// that even of the finest cells.
+/// Thinnest: the thinnest wall with less than `across` regular cells across. Unresolved: the
+/// thinnest wall that even the finest cells do not resolve.
 struct ThinPlaces {
   Wall thinnest, unresolved;
 };
 
-/// Divides cells that the surface cuts down to the regular level, other cells while their middle is
-/// less deep than the cell is large, and all cells while thin material has too few cells across;
-/// then cells for the 2:1 rule. Empty when more than `most` cells would be divided.
+/// Divides three kinds of cells: above the regular level, cut by the surface; above the regular
+/// level, not cut, with their middle nearer to the surface than their edge is long; at any level,
+/// with fewer than `across` cells across thin material. Then cells for the 2:1 rule. Empty if more
+/// than `most` cells would be divided.
 std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& shape, std::size_t most,
                                      ThinPlaces& thin, const Progress& progress);
 

@@ -1,3 +1,6 @@
+// Parity of crossings: a point is inside if the segment from the probe crosses the surface an odd
+// number of times, by exact predicates. A segment that touches an edge or corner, or ends on a
+// triangle, falls back to the BVH. Many points are handled as bits of 64-bit words.
 #include "sampling/region.h"
 
 #include <algorithm>
@@ -149,7 +152,7 @@ void RegionTree::inside(const Region& region, std::span<const Vec3> points, std:
         const int side = 64 * w + k < count ? orient3d_exact(t[0], t[1], t[2], points[64 * w + k]) : 1;
         (side < 0 ? below : above)[w] |= std::uint64_t(side != 0) << k, clear = clear && side != 0;
       }
-    // Where a point is not on the side of the one before it, or in the plane.
+    // Bits of points that are in the plane, or on another side of it than the point before them.
     std::uint64_t over = first > 0, under = first < 0;
     for (std::size_t w = 0; w < words; ++w) {
       ask[w] = (above[w] ^ (above[w] << 1 | over)) | (below[w] ^ (below[w] << 1 | under)) | ~(above[w] | below[w]);

@@ -33,7 +33,7 @@ class RegionTree {
   Region root(const Lattice& lattice, const Cell& cell) const;
   /// The region of any cell: equal to that reached from the root by divide().
   Region at(const Lattice& lattice, const Cell& cell) const;
-  /// Calls each(Region&&) for those of the eight parts of a region that hold material, in Morton
+  /// Calls each(Region&&) for each of the eight parts of a region that holds material, in Morton
   /// order.
   template <class Each>
   void divide(const Lattice& lattice, const Region& region, const Each& each) const {

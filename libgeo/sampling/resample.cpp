@@ -1,3 +1,5 @@
+// Dart throwing (Cook 1986) in the order of faces, with an octree that rejects darts too near to an
+// accepted sample.
 #include "sampling/resample.h"
 
 #include <cmath>
@@ -22,7 +24,7 @@ std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> fa
     if (!(twice_area > 0)) continue;
     double finest = spacing_at((a + b + c) / 3);
     for (const Vec3& p : faces[f]) finest = std::min(finest, spacing_at(p));
-    // Several darts a sample: thinning throws most away.
+    // Four darts for each square of the finest spacing, since most are rejected; 65 a face at most.
     const int darts = 1 + static_cast<int>(std::min(64.0, std::ceil(2 * twice_area / (finest * finest))));
     for (int i = 0; i < darts; ++i) {
       double u = random.uniform(), v = random.uniform();

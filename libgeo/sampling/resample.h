@@ -20,9 +20,9 @@ struct OffsetSample {
 };
 
 /// Points at half the spacing from both sides of the faces, no two closer than 0.8 spacings.
-/// `spacing_at` gives the spacing wanted at a point of a face, positive, model units.
-/// Deterministic: faces in order, random points on each. The caller keeps the samples that lie in
-/// material and see their base.
+/// Larger: fewer samples, more even. `spacing_at` gives the spacing wanted at a point of a face,
+/// positive, model units. Deterministic: faces in order, random points on each. The caller keeps
+/// the samples that lie in material and see their base.
 std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> faces,
                                          const std::function<double(const Vec3&)>& spacing_at, std::uint64_t seed);
 

@@ -1,3 +1,5 @@
+// Octree leaves with material become nodes (Pauly et al. 2005): one node a leaf, with the leaf's
+// edge as spacing and its share of material as volume. Volumes sum to the solid's.
 #include "kerf/nodes.h"
 
 #include <cmath>
@@ -12,8 +14,9 @@
 namespace geo {
 namespace {
 
-/// Material of leaves without a node goes to the nearest node; what cut leaves hold, which is an
-/// estimate, is scaled so that all together have the body's volume.
+/// Volume of leaves without a node goes to the nearest node. Volumes of whole leaves are exact.
+/// Volumes of cut leaves are estimates. They are scaled by (V − Σ whole) / Σ cut, so that the sum
+/// is the body's volume V.
 void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice, const std::vector<char>& whole,
                   const std::vector<Leaf>& orphans, double volume) {
   double exact = 0, estimate = 0;

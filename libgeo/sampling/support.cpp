@@ -1,3 +1,5 @@
+// r_i = max(support · min(s_i, Σ s² / Σ s), 1.05 · min(d_12, 3 s_i)). Sums run over node i and its
+// twelve nearest nodes; d_12 is the distance of the twelfth, infinite if fewer are near.
 #include "sampling/support.h"
 
 #include <cmath>
@@ -15,7 +17,7 @@ struct Near {
   bool operator<(const Near& b) const { return squared != b.squared ? squared < b.squared : row < b.row; }
 };
 
-/// The twelve nodes nearest to node i of those that can be within three spacings.
+/// The twelve nodes nearest to node i within four spacings; fewer if there are fewer.
 void find_dozen(const NodeSet& nodes, const LeafIndex& leaves, std::size_t i, std::vector<Near>& near) {
   const Cell cell = leaves.cell(i);
   // Cells one level coarser cover two spacings, which nearly always suffices; two levels, four.
@@ -51,6 +53,8 @@ void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, 
               squared = std::max(squared, n.squared);
         const double reach =
             near.size() < std::min(dozen, nodes.size() - 1) ? 3 * own : std::min(std::sqrt(squared), 3 * own);
+        // 5 % more than the distance of the twelfth node, which then lies strictly within the
+        // radius.
         nodes.radius[i] = std::max(support * std::min(own, squares / sum), 1.05 * reach);
       }
     });

@@ -1,3 +1,5 @@
+// Rays against triangles by Möller and Trumbore 1997. A triangle's part in a cell is clipped plane
+// by plane (Sutherland and Hodgman 1974).
 #include "sampling/thickness.h"
 
 #include <cmath>
@@ -5,7 +7,7 @@
 namespace geo {
 namespace {
 
-constexpr double facing = 0.9;
+constexpr double facing = 0.9;  // least cosine between a wall's two sides, see thickness.h
 constexpr double none = std::numeric_limits<double>::infinity();
 
 /// The distance at which the ray from p leaves the material; infinite where that is beyond

@@ -12,10 +12,10 @@ struct Wall {
   double area = 0;                                             ///< of both its sides, as far as searched
 };
 
-/// The thinnest wall of those thinner than `limit` that a triangle of a cut cell belongs to,
-/// looking inwards from the middle of its part in the cell. The two sides of a wall face away from
-/// each other within 26° (cosine −0.9): a sharper edge than that counts as a wall that tapers off,
-/// a blunter one as an edge.
+/// The thinnest wall, thinner than `limit`, to which a triangle of a cut cell belongs. A ray goes
+/// inwards from the middle of each triangle's part in the cell. The normals of the two sides of a
+/// wall are opposite within 26° (cosine −0.9). An edge sharper than 26° counts as a wall that
+/// tapers off, a blunter one as an edge.
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit);
 
 /// The same for a wall that point p is inside, of which `closest` (within limit / 2) is one side.

@@ -10,9 +10,9 @@
 
 namespace geo {
 
-/// Calls visit(region, found) for the region of `root`, and for the parts with material of each
-/// region for which it returned true; from any thread. Returns lists of what was found;
-/// concatenated, they have the order of a serial depth-first traversal.
+/// Calls visit(region, found) for the region of `root`. If visit() returns true, the parts of the
+/// region that hold material are visited, too. Calls come from any thread. Returns lists of what
+/// was found; concatenated, they have the order of a serial depth-first traversal.
 template <class Found, class Visit>
 std::vector<std::vector<Found>> walk(const RegionTree& tree, const Lattice& lattice, const Cell& root,
                                      const char* phase, const Progress& progress, const Visit& visit) {

@@ -1,3 +1,4 @@
+// Looks up one row of the graph or one path of the binding, and prints it.
 #include "info/ask.h"
 
 #include <algorithm>

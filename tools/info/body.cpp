@@ -1,3 +1,4 @@
+// Reports a body or checkpoint: sizes, histograms, and the invariants of check_body().
 #include <algorithm>
 #include <cmath>
 #include <numeric>

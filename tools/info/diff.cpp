@@ -1,3 +1,5 @@
+// Nodes and surface vertices are matched by index, edges by their ends. Values are compared bit for
+// bit.
 #include "info/diff.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reports node files, fronts, scenes, and folders or frames of runs.
 #include <algorithm>
 #include <filesystem>
 #include <numeric>

@@ -1,3 +1,5 @@
+// Values are kept as JSON text, so that one list serves people and scripts. Histograms have ten
+// bins.
 #include "info/report.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reports a surface: sizes, cracks, histogram of edges, and the faults of check_surface().
 #include <algorithm>
 
 #include <kerf/check.h>

@@ -1,3 +1,4 @@
+// Pieces have material coordinates. A deformed frame takes them from the checkpoint of its run.
 #include "pieces/subject.h"
 
 #include <filesystem>

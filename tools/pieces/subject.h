@@ -11,7 +11,7 @@ namespace pieces {
 
 struct Subject {
   geo::TriangleMesh mesh;  ///< undeformed, with its attributes; `complex` was made from it. Empty where a body's file
-                           // /< has the complex itself
+                           ///< has the complex itself
   geo::Complex complex;
   std::vector<geo::Vec3> moved;  ///< of a deformed frame: where its vertices are, by their rows in `mesh`; else empty
 };

@@ -1,3 +1,4 @@
+// One JSON object a line (docs/tools/kerf-sim.md), or a line for people.
 #include "sim/frame_line.h"
 
 #include <cstdio>

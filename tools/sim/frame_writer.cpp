@@ -1,3 +1,4 @@
+// A queue between two threads with one mutex. A failed write is thrown by the next call.
 #include "sim/frame_writer.h"
 
 #ifdef __linux__

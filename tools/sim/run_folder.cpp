@@ -1,3 +1,4 @@
+// Names of files are numbered by frame; a folder that holds a run is refused without --resume.
 #include "sim/run_folder.h"
 
 #include <cstdio>

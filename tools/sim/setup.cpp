@@ -1,3 +1,5 @@
+// Overrides of keys come from --set. Warnings compare models, sampling, grips and blades with the
+// scene.
 #include "sim/setup.h"
 
 #include <algorithm>
@@ -75,6 +77,8 @@ void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool
   for (std::size_t b = 0; b < setup.models.bodies.size(); ++b) {
     const geo::TriangleMesh& model = setup.models.bodies[b];
     const double longest = longest_edge(model);
+    // A surface bends at its vertices only. With edges above 4 spacings it is coarser than the
+    // motion of the nodes.
     if (longest <= 4 * coarsest) continue;
     char share[16];
     std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(model).diagonal());

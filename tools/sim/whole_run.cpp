@@ -1,3 +1,4 @@
+// Frames are read again from the folder, a few at a time, so memory does not grow with the run.
 #include "sim/whole_run.h"
 
 #include <vector>

@@ -1,3 +1,4 @@
+// Frames are encoded as they arrive: by libwebp in memory, or piped as raw RGB to ffmpeg.
 #include "view/animation.h"
 
 #include <fcntl.h>

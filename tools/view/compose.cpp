@@ -1,3 +1,4 @@
+// Colours of pieces: hues in steps of the golden angle, which keeps any number of them apart.
 #include "view/compose.h"
 
 #include <algorithm>

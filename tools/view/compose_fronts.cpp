@@ -1,3 +1,5 @@
+// Seams and crack fronts are edges of the derived surface, distinguished by the patches of their
+// two triangles: skin and crack, or the two sides of one crack.
 #include <map>
 
 #include "view/compose_parts.h"

@@ -1,3 +1,5 @@
+// Edges are sticks and nodes spheres. A neighbour that a face hides is shown with the path to it,
+// by Dijkstra's algorithm along edges.
 #include <algorithm>
 #include <map>
 

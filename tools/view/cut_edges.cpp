@@ -1,3 +1,5 @@
+// Edges of the uncut graph that the body lacks. The uncut graph is that of a body before the
+// cracks, or is built within the skin alone.
 #include "view/cut_edges.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Fields of the sampling and graph as stored; fields of the motion from displacements and
+// velocities.
 #include "view/fields.h"
 
 #include <cmath>

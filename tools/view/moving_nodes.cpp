@@ -1,3 +1,5 @@
+// Frames list the first nodes of the checkpoint; younger nodes are at rest there. A piece of the
+// checkpoint is assigned by a vote of up to 64 of its nodes for the nearest piece of the frame.
 #include "view/moving_nodes.h"
 
 #include <algorithm>
@@ -61,6 +63,7 @@ MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const s
     moving.frames.push_back(std::move(frame));
   }
   if (stresses.empty()) return moving;
+  // The 99th percentile: a few nodes with extreme stress do not set the scale of colours.
   const auto mark = stresses.begin() + static_cast<std::ptrdiff_t>(stresses.size() / 100 * 99);
   std::nth_element(stresses.begin(), mark, stresses.end());
   moving.stress_shown = *mark;

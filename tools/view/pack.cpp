@@ -1,3 +1,4 @@
+// Positions are quantised to 16 bits in a box. zlib compresses byte planes of differences well.
 #include "view/pack.h"
 
 #include <zlib.h>

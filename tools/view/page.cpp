@@ -1,3 +1,5 @@
+// Content is packed at a budget of triangles, nodes and pairs. If the page is too large, the budget
+// is reduced in proportion and the page is made again.
 #include "view/page.h"
 
 #include <algorithm>
@@ -255,6 +257,8 @@ Page fitted(const PageOptions& options, const Budget& needed, const std::functio
             std::min(budget.pairs, needed.pairs)};
   for (;;) {
     Page page = attempt(budget);
+    // Below 1000 triangles and nodes, a smaller budget saves nothing. The clamp bounds the number
+    // of attempts.
     const double room = options.megabytes * 1e6 / double(page.html.size());
     if (room >= 1 || budget.triangles + budget.nodes < 1000) return page;
     for (double* b : {&budget.triangles, &budget.nodes, &budget.pairs}) *b *= std::clamp(0.9 * room, 0.2, 0.8);

@@ -1,3 +1,4 @@
+// The assembler's .incbin puts the file into the read-only data of the program.
 #include "view/page_template.h"
 
 asm(".section .rodata\n"

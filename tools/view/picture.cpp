@@ -1,3 +1,4 @@
+// Linear colours become sRGB (IEC 61966-2-1), written by libpng. Labels use a font of 5 × 7 dots.
 #include "view/picture.h"
 
 #include <png.h>

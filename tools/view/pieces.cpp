@@ -1,3 +1,5 @@
+// Connected shells by union-find over triangles. A shell with signed volume ≤ 0 belongs to the
+// smallest shell whose box contains its box.
 #include "view/pieces.h"
 
 #include <limits>

@@ -1,3 +1,5 @@
+// Embree finds hits. Light: a soft key light, sky by ambient occlusion, a rim light. A cut-away
+// shows its section where the winding number of the surface in the cutting plane is positive.
 #include "view/raytrace.h"
 
 #include <embree3/rtcore.h>
@@ -22,7 +24,8 @@ Color mixed(const Color& a, const Color& b, double t) {
   return {float(a[0] + (b[0] - a[0]) * t), float(a[1] + (b[1] - a[1]) * t), float(a[2] + (b[2] - a[2]) * t)};
 }
 
-// Integer hash of a pixel sample: noise that does not depend on threads.
+// Integer hash of a pixel sample (lowbias32 by C. Wellons, 2018): noise that does not depend on
+// threads.
 std::uint32_t hash(std::uint32_t x) {
   x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
   return x;
@@ -55,6 +58,7 @@ class Dice {
   }
 
  private:
+  // The inverse of the golden ratio, whose multiples are evenly spread modulo 1.
   static constexpr double golden = 0.6180339887498949;
   static double unit(std::uint32_t& state) { return (state = hash(state + 0x9e3779b9u)) * 0x1p-32; }
   std::uint32_t state_;
@@ -316,6 +320,7 @@ class Tracer {
   }
 
   Color lit(const Hit& hit, const Vec3& d, Dice& dice) const {
+    // Shares of light: key 0.72, sky 0.42, rim 0.10. They set the look of pictures only.
     const Vec3 key = dice.key(0.12);
     const Vec3 rim_light = Vec3(0.7, 0.5, 0.25).normalized();
     const double facing = hit.normal.dot(key);

@@ -1,3 +1,5 @@
+// Cells begin at edge √(2 area / triangles wanted), exact for a plane, and grow by 15 % until the
+// surface has few enough triangles.
 #include "view/shrink.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The kind of each file is recognised by its content. Bodies bring their surface, nodes and graph.
 #include "view/subject.h"
 
 #include <algorithm>

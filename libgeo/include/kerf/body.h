@@ -27,7 +27,7 @@ struct Binding {
   std::vector<SurfaceVertexId> master;   ///< the root of the vertex's tree; invalid for an orphan
   std::vector<SurfaceVertexId> parent;   ///< next vertex on the way to the master; itself for a master
   std::vector<SurfaceVertexId> closest;  ///< by NodeId: the node's closest visible surface vertex within its
-                                         // /< support radius, or invalid
+                                         ///< support radius, or invalid
   /// Equal in all entries.
   friend bool operator==(const Binding&, const Binding&) = default;
 };
@@ -58,8 +58,7 @@ struct Body {
   double widest_radius = 0;          ///< largest support radius of the original nodes: no node gets a wider one
   std::uint32_t crack_steps = 0;     ///< applied since the build
   std::vector<std::uint8_t> debris;  ///< by NodeId: 1 where the neighbours do not span space. Such a node is rigid
-                                     // /< debris: no linear field can be determined from its
-                                     // neighbours
+                                     ///< debris: its neighbours determine no linear field
   std::vector<Provenance> history;   ///< programs that have written the body, oldest first
 
   /// Data derived from the members above, which steps update instead of deriving them anew; never
@@ -108,12 +107,12 @@ struct BodyDelta {
   std::vector<NodeId> updated_nodes;              ///< P_update: rows changed; new, moved and resized nodes included
   std::vector<SurfaceVertexId> rebound_vertices;  ///< surface vertices with another carrying node
   std::vector<std::vector<NodeId>> detached;      ///< for each piece that came off, its nodes; the component with
-                                                  // /< most nodes counts as the rest
+                                                  ///< most nodes counts as the rest
 };
 
-/// Moves a crack front to `next` through all seven steps of § 4: crack, cut graph, resample, update
-/// neighbours, rebind. Throws GeometryError when the step is not possible; body and front are then
-/// unchanged.
+/// Moves a crack front to `next` (positions of its points, material coordinates) through all seven
+/// steps of § 4: crack, cut graph, resample, update neighbours, rebind. Throws GeometryError when
+/// the step is not possible; body and front are then unchanged.
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options = {},
                 SplitStats* stats = nullptr);
 
@@ -126,8 +125,9 @@ BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats = nu
 /// for bit. The cost follows what changes. Throws InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
-/// Writes the nodes that carry a surface vertex with their Euclidean distances (§ 6.5): its
-/// master's node and that node's neighbours, those whose support radius covers the vertex.
+/// Writes the nodes that carry a surface vertex v, with their Euclidean distances to v (§ 6.5).
+/// Candidates: the node m of v's master, and m's neighbours. A candidate j carries v if
+/// |x_j − v| < r_j. If none does, m carries v, with distance 0. Empty for an orphan.
 void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
 
 /// The result of check_body().

@@ -38,8 +38,7 @@ class KerfFile {
   };
 
   /// Opens a file. A commit that was interrupted is ignored. Throws InputError, with the file's
-  /// name first, where the input is no .kerf file, of a newer version or another byte order,
-  /// damaged, or without a complete commit.
+  /// name first: no .kerf file, a newer version, another byte order, damage, or no complete commit.
   explicit KerfFile(Input input);
   /// Takes the open file of `other`, which must not be used afterwards.
   KerfFile(KerfFile&& other) noexcept;
@@ -97,9 +96,9 @@ class KerfUpdate {
   const KerfFile& file() const;
 
   /// Makes `arrays` the state of the file. Changes are appended: an interrupted write leaves the
-  /// state before. The file is written as a whole where it would become more than twice as long as
-  /// a whole one, loses a section, or has an older version. Call at most once. Returns the number
-  /// of bytes written. Memory: twice the largest array. Throws OutputError; the state before stays.
+  /// state before. The file is written anew if it would become more than twice as long as a new
+  /// one, loses a section, or has an older version. Call at most once. Returns the number of bytes
+  /// written. Memory: twice the largest array. Throws OutputError; the state before stays.
   std::uint64_t commit(const std::vector<KerfArray>& arrays);
 
   /// Rewrites the file in a single segment, with the same state. Throws OutputError.
@@ -126,8 +125,8 @@ Body parse_body(const std::string& bytes, const std::string& name);
 /// Writes a body as a new file. The same body gives the same bytes.
 void write_body(std::ostream& out, const Body& body);
 
-/// Updates a file to a body that was derived from the file's, by appending what changed. Returns
-/// the number of bytes written. Throws as KerfUpdate::commit().
+/// Updates a file to a later state of its body, by appending the changes. Returns the number of
+/// bytes written. Throws as KerfUpdate::commit().
 std::uint64_t write_body(KerfUpdate& file, const Body& body);
 
 }  // namespace geo

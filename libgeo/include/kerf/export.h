@@ -54,11 +54,12 @@ struct GlbOptions {
 };
 
 /// Writes a .glb file (glTF 2.0, binary): a root node with a node for each piece, whose origin is
-/// the piece's centroid, and a material for each group, that of cracks for inner faces. Normals are
-/// those of the mesh; without them, and on cracks, those of the triangles around a corner that
-/// differ by less than 45°. Colours are converted to linear ones, as glTF requires. Hulls have
-/// names UCX_, the piece, and hull_suffix(). The scene's `extras` hold what write_bonds() writes.
-/// Coordinates are in single precision, relative to each centroid.
+/// the piece's centroid, and a material for each group; inner faces have the material of cracks.
+/// Normals are the mesh's. Without them, and on cracks, a corner's normal is the mean over
+/// triangles around it that differ by less than 45°, weighted by area. Colours are converted to
+/// linear ones, as glTF requires. Hulls have names UCX_, the piece, and hull_suffix(). The scene's
+/// `extras` hold what write_bonds() writes. Coordinates are in single precision, relative to each
+/// centroid.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                const ChunkLabels& labels, const GlbOptions& options = {});
 

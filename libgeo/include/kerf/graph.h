@@ -24,17 +24,21 @@ constexpr std::uint32_t unit_radius = 1u << 24;
 struct Neighbor {
   NodeId to;                 ///< the neighbour
   std::uint32_t warped = 0;  ///< graph distance in 2⁻²⁴ support radii, below unit_radius, rounded
-                             // /< down to 2⁻¹⁴ of a radius (§ 6.4)
+                             ///< down to 2⁻¹⁴ of a radius (§ 6.4)
   float distance = 0;        ///< argument of the kernel, model units: Euclidean where the pair sees each
-                             // /< other, else the length of the shortest path
+                             ///< other, else the length of the shortest path
   bool hidden = false;       ///< a face lies between the pair; an edge never joins such a pair
 };
 
 /// A view of one adjacency row: an entry for each node that is joined to the row's node by an edge,
 /// or is its neighbour, or both. A row may also have entries for edges to guides (§ 8); their ids
 /// are above all nodes' ids. Each entry has 16 bits: edge_bit, path_bit, and in the lower 14 bits a
-/// lower bound of the warped distance. Both upper bits together mark an edge that joins no
-/// neighbours: it is as long as the support radius, or leads to a guide.
+/// lower bound of the warped distance:
+///   edge_bit path_bit   meaning
+///   1        0          edge, and neighbour that sees the row's node
+///   0        0          neighbour that sees the row's node, without an edge
+///   0        1          neighbour hidden by a face, with the length of its path in `paths`
+///   1        1          edge that joins no neighbours: as long as the support, or to a guide
 struct AdjacencyRow {
   std::span<const std::uint32_t> to;    ///< ids at the other ends, ascending
   std::span<const std::uint16_t> bits;  ///< one for each entry
@@ -98,7 +102,8 @@ class VisibilityGraph {
   /// The adjacency row of a node. Valid until the graph changes.
   AdjacencyRow row(NodeId i) const;
 
-  /// Writes the component of each node, numbered by lowest node; returns the number of components.
+  /// Writes the component of each node; returns the number of components. Components are numbered
+  /// from 0, ascending by their lowest nodes.
   std::uint32_t components(std::vector<std::uint32_t>& component) const;
   /// Bytes of all rows and guides.
   std::size_t bytes() const;

@@ -44,7 +44,7 @@ struct SampleOptions {
   std::uint64_t seed = 1;  ///< of the displacements
   NodePattern pattern = NodePattern::jitter;  ///< position of a node in its leaf
   int across = 0;  ///< nodes wanted across thin material: cells there are up to 32 times finer, with `count`
-                   // /< as far as it affords; 0: as fine as elsewhere
+                   ///< as far as it affords; 0: as fine as elsewhere
 };
 
 /// Findings of a sampling.

@@ -18,10 +18,10 @@ struct SurfaceFile {
 };
 
 /// Reads a surface from a file, or from standard input where `path` is "-". The format is
-/// recognised by content, then by extension. Polygons are triangulated as fans, by ear clipping
-/// where they are not convex. Coincident vertices of seams are merged unless the mesh has sites.
-/// Throws InputError, with the line or entry, for malformed data, numbers that are not finite,
-/// indices out of range, sizes larger than the file, and trailing bytes.
+/// recognised by content; unknown content is read as STL. Polygons are triangulated as fans, by ear
+/// clipping where they are not convex. Coincident vertices of seams are merged unless the mesh has
+/// sites. Throws InputError, with the line or entry: malformed data, numbers that are not finite,
+/// indices out of range, sizes larger than the file, trailing bytes.
 SurfaceFile read_surface(const std::string& path);
 /// The same from bytes in memory; `name` stands for the file in messages.
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name);
@@ -31,8 +31,8 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name);
 /// exactly.
 void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts = {},
                const std::string& comment = {});
-/// Writes Wavefront OBJ: patches as `g patch_N`, groups as `usemtl`. A vertex has one colour
-/// without alpha, that of the skin, as OBJ has no others.
+/// Writes Wavefront OBJ: patches as `g patch_N`, groups as `usemtl`. OBJ has one colour a vertex,
+/// without alpha: the colour of the skin is written.
 void write_obj(std::ostream& out, const TriangleMesh& mesh);
 
 // ---- Volumes.
@@ -51,7 +51,7 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options =
 
 /// A new surface around a closed one, which may intersect itself: the zero level of its distance
 /// field, with voxels of edge `voxel`, which also rounds edges by that length. `source` is the
-/// nearest triangle of `solid`, and attributes are those of that triangle.
+/// nearest triangle of `solid`, which also gives the attributes.
 TriangleMesh wrapped(const TriangleMesh& solid, double voxel);
 
 /// Writes a mesh as a level set with voxels of edge `voxel`; with `fog` as a density from 0 outside

@@ -5,7 +5,7 @@
 
 using namespace geo;
 
-TEST_CASE("a missing input is an input error; the others are distinct", "[error]") {
+TEST_CASE("a missing input is an input error, and the others are distinct", "[error]") {
   CHECK_THROWS_AS(throw MissingInputError("x"), InputError);
   STATIC_REQUIRE_FALSE(std::is_base_of_v<InputError, OutputError>);
   STATIC_REQUIRE_FALSE(std::is_base_of_v<InputError, GeometryError>);

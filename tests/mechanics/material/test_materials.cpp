@@ -149,7 +149,7 @@ TEST_CASE("a body moves as if the other one had the same material, bit for bit")
   // Only the second one flows.
   Solid solid(body, Materials({first, second}, numbers(body)));
   REQUIRE(mixed.plastic.size() == solid.point_count());
-  double flown[2] = {0, 0};
+  double yielded[2] = {0, 0};
   for (std::size_t b = 0, k = 0; b < solid.discretisation().points.blocks.size(); ++b)
     for (const MaterialPoint& p : solid.discretisation().points.blocks[b].points) {
       CHECK(p.material == (p.position.y() > 0.4));
@@ -165,7 +165,7 @@ TEST_CASE("a clamped body sags as it does without the other one") {
     Material of[2] = {soft(), soft()};
     of[0].damping = of[1].damping = 10, of[1].young = 1.2e5, of[1].density = 900;
     of[0].discretisation = of[1].discretisation = discretisation;
-    const auto hang = [&](const Body& body, const Materials& materials) {
+    const auto sag = [&](const Body& body, const Materials& materials) {
       Solid solid(body, materials);
       State state = at_rest(body);
       const Environment env = clamped(body);

@@ -112,7 +112,10 @@ TEST_CASE("no rotation is nearer to a matrix than the nearest one", "[affine-fit
     Random random(seed);
     Mat3 a;
     for (int i = 0; i < 9; ++i) a(i / 3, i % 3) = random.uniform(-1, 1);
-    const auto [rotation, singular] = nearest_rotation(a);
+    const NearestRotation nearest = nearest_rotation(a);
+    const Mat3& rotation = nearest.rotation;
+    const Vec3& singular = nearest.singular_values;
+    REQUIRE((nearest.u * nearest.sign * nearest.v.transpose() - rotation).norm() < 1e-14);
     REQUIRE((rotation.transpose() * rotation - Mat3::Identity()).norm() < 1e-12);
     REQUIRE(rotation.determinant() == Approx(1).margin(1e-12));
     REQUIRE((singular[0] >= singular[1] && singular[1] >= singular[2] && singular[2] >= 0));

@@ -3,6 +3,7 @@
 #include "mechanics/solver/incremental_potential.h"
 
 #include "mechanics/solver/ground_contact.h"
+#include "mechanics/terms/contact_law.h"
 
 namespace geo {
 
@@ -56,7 +57,7 @@ double IncrementalPotential::nodal_energy(std::size_t node, const Vec3& u) const
   double sum = 0.5 * solid.mass[node] / (dt * dt) * (u - target_[node]).squaredNorm() - load_[node].dot(u - u0);
   if (!env.ground) return sum;
   const double d = ground_depth(env, node, solid.position[node] + u);
-  if (d > 0) sum += 0.5 * solid.mass[node] * env.ground_stiffness * d * d;
+  if (d > 0) sum += penalty_work(solid.mass[node] * env.ground_stiffness * d, d);
   if (friction_stiffness_[node] > 0)
     sum += 0.5 * friction_stiffness_[node] * ground_tangential(env, u - u0).squaredNorm();
   return sum;
@@ -86,7 +87,7 @@ void IncrementalPotential::force(const ActiveIslands& active, const std::vector<
     f += load_[i] - solid.mass[i] / (dt * dt) * (u[i] - target_[i]);
     if (env.ground) {
       const double d = ground_depth_at(i, u);
-      if (d > 0) f += solid.mass[i] * env.ground_stiffness * d * env.ground_normal;
+      if (d > 0) f += penalty_force(solid.mass[i] * env.ground_stiffness, d, env.ground_normal);
       if (friction_stiffness_[i] > 0)
         f -= friction_stiffness_[i] * ground_tangential(env, u[i] - problem_.start.displacement[i]);
     }
@@ -102,7 +103,7 @@ void IncrementalPotential::update_nodal_blocks(const ActiveIslands& active, cons
     nodal_block_[i] = solid.mass[i] / (dt * dt) * Mat3::Identity();
     if (env.ground) {
       const Mat3 nn = env.ground_normal * env.ground_normal.transpose();
-      if (ground_depth_at(i, u) > 0) nodal_block_[i] += solid.mass[i] * env.ground_stiffness * nn;
+      if (ground_depth_at(i, u) > 0) nodal_block_[i] += penalty_hessian(solid.mass[i] * env.ground_stiffness, nn);
       if (friction_stiffness_[i] > 0) nodal_block_[i] += friction_stiffness_[i] * (Mat3::Identity() - nn);
     }
   });

@@ -36,8 +36,8 @@ RigidMotion motion_of(const Moments& sums, const Vec3& base, Freedom freedom) {
   if (freedom == Freedom::translation || !(motion.radius > 0) || !product.allFinite()) return motion;
   const double rounding = 1e-9 * moment.trace();  // a moment below it is that of a line or plane
   const NearestRotation nearest = nearest_rotation(moment + product);
-  // Eigen rounds a product that is assigned unlike one that is constructed. Runs of earlier versions
-  // have the first.
+  // Eigen rounds a product that is assigned unlike one that is constructed. Runs of earlier
+  // versions have the first.
   if (nearest.singular_values[1] > rounding) motion.rotation = nearest.u * nearest.sign * nearest.v.transpose();
   // Σ m a × d, from the antisymmetric part of Σ m d aᵀ.
   const Vec3 momentum(product(2, 1) - product(1, 2), product(0, 2) - product(2, 0), product(1, 0) - product(0, 1));

@@ -57,6 +57,7 @@ int graph(const Options& options);
 int concave(const Options& options);
 int contact(const Options& options);
 int mechanics(const Options& options);
+int score(const Options& options);
 int validate(const Options& options);
 
 /// Figures by name: one JSON object on a line, or a table.

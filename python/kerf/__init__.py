@@ -1,0 +1,6 @@
+"""Kerf: split deforming solids along any crack. Arrays in, arrays out.
+
+Reference and examples: docs/python.md.
+"""
+from kerf._kerf import *  # noqa: F401,F403
+from kerf._kerf import __version__  # noqa: F401

@@ -1,0 +1,41 @@
+// The classes Mesh and Solid: immutable triangle meshes whose arrays Python sees without a copy.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "arrays.h"
+#include "kerf/mesh.h"
+
+namespace kerf_python {
+
+/// A mesh that never changes after it was made: views of its arrays stay valid as long as they
+/// live.
+struct Mesh {
+  /// Takes the mesh over.
+  explicit Mesh(geo::TriangleMesh m) : mesh(std::move(m)) {}
+  virtual ~Mesh() = default;
+  const geo::TriangleMesh mesh;  ///< as given
+};
+
+/// A valid model: closed, manifold, oriented outwards, free of self-intersection.
+struct Solid : Mesh {
+  /// Checks the mesh with geo::require_solid() unless it is known to be one; throws InputError.
+  explicit Solid(geo::TriangleMesh m, bool known = false);
+};
+
+/// The arrays of a mesh as Python gives them; None where there is none.
+struct MeshArguments {
+  py::object vertices, faces, uv, normals, colors, groups, group_names, patch, site, source;
+  std::string materials;  ///< the file that describes materials, or empty
+};
+
+/// Checks and copies the arrays of a mesh. Attributes may have one value per vertex or per corner.
+/// Throws geo::InputError in one sentence.
+geo::TriangleMesh mesh_from(const MeshArguments& arguments);
+
+/// The mesh of an argument that is a Mesh, or an object with `vertices` and `faces`. Throws
+/// InputError for any other object.
+std::shared_ptr<const Mesh> mesh_argument(py::handle object, const std::string& name);
+
+}  // namespace kerf_python

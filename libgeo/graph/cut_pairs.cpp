@@ -1,5 +1,6 @@
-// Segments from each candidate to all entries of its row are tested exactly against a BVH of the
-// new faces. A slab around the faces rejects ends on the same side first. Each pair is tested once.
+// From each cut candidate (cut_candidates.h), segments to the entries of its row are tested exactly
+// against a BVH of the new faces. Left out are entries beyond the slab on the candidate's side, and
+// those that an earlier candidate has tested.
 #include "graph/cut_pairs.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// Number of guides in a row. Ids ascend, and those of guides are the largest.
 std::size_t guides_in(const AdjacencyRow& row) {
   std::size_t count = 0;
   while (count < row.to.size() && GraphStorage::is_guide(row.to[row.to.size() - 1 - count])) ++count;
@@ -24,7 +26,7 @@ std::size_t guides_in(const AdjacencyRow& row) {
 }
 
 struct Pair {
-  std::uint32_t a, b;  // numbers of ids
+  std::uint32_t a, b;  // numbers that IdNumbering gave to the ids, not ids
   std::uint16_t bits;
 };
 
@@ -75,7 +77,7 @@ class CutPairSearch {
   CutPairs finish() { return rows_of(pairs_, numbers_, above_); }
 
  private:
-  // Memory is kept from one update to the next.
+  // Memory is kept from one update to the next. So at most one search lives on a thread at a time.
   static IdSet& thread_set() {
     thread_local IdSet set;
     return set;
@@ -93,9 +95,10 @@ class CutPairSearch {
     std::size_t count = 0;
     const auto select = [&](std::uint32_t k, const Vec3& x) {
       const double h = slab.height(x);
-      selected_[count] = k;
+      selected_[count] = k;  // written always, counted only within the slab: no branch
       count += (h >= least) & (h <= most);
     };
+    // Nodes first, whose positions need no test for a guide; then the guides at the row's end.
     std::uint32_t k = 0;
     for (const auto end = static_cast<std::uint32_t>(row.to.size() - guides_in(row)); k < end; ++k)
       select(k, nodes_.position[row.to[k]]);
@@ -136,11 +139,7 @@ CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const N
   if (ids.empty()) return {};
   CutPairSearch search(nodes, graph, tree);
   for (std::uint32_t at = 0; at < ids.size(); ++at) {
-    // Rows to prefetch ahead; locations are prefetched twice as early.
-    constexpr std::size_t ahead = 4;
-    if (at + 2 * ahead < ids.size())
-      graph.store(ids[at + 2 * ahead]).prefetch_location(GraphStorage::index_of(ids[at + 2 * ahead]));
-    if (at + ahead < ids.size()) graph.store(ids[at + ahead]).prefetch(GraphStorage::index_of(ids[at + ahead]));
+    graph.prefetch_after(at, ids.size(), [&](std::size_t i) { return ids[i]; });
     search.add_pairs_of(ids[at], candidates.slab[candidates.slabs[at]]);
   }
   return search.finish();

@@ -1,4 +1,4 @@
-// Pairs that new faces cut (§ 6.3): edges (E_cut) and neighbours that lose sight of each other.
+// Pairs that new faces come between (§ 6.3): edges (E_cut), and neighbours, hidden before or not.
 #pragma once
 
 #include <array>
@@ -22,7 +22,9 @@ struct CutPairs {
   struct Row {
     std::uint32_t id;          ///< node or guide
     std::uint32_t begin, end;  ///< its range of `entries`
-    bool above;                ///< on which side of the faces, where these have two sides
+    /// Above the middle of the slab in which the id was found first (cut_candidates.h). A hint for
+    /// grouping searches: results do not depend on it.
+    bool above;
   };
   std::vector<Row> rows;       ///< ascending by id; none is empty
   std::vector<Entry> entries;  ///< ascending in each row
@@ -31,7 +33,8 @@ struct CutPairs {
 };
 
 /// Searches guides and the nodes before `first_new`, at a cost that follows the area of the faces.
-/// `grid` is over all nodes.
+/// Nodes from `first_new` on are new in this step: nothing has an edge to them yet. `grid` is over
+/// all nodes. At most one search runs on a thread at a time.
 CutPairs find_cut_pairs(const NodeSet& nodes, const GraphStorage& graph, const NodeGrid& grid, NodeId first_new,
                         std::span<const std::array<Vec3, 3>> faces);
 

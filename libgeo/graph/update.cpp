@@ -188,7 +188,7 @@ class GraphUpdater {
   GraphStorage& graph_;
   const Progress& progress_;
   IdSet& update_;                                   // P_update
-  CutPairs cut_;                                    // E_cut, and neighbours that lose sight of each other
+  CutPairs cut_;                                    // E_cut, and neighbours that new faces come between
   std::vector<std::pair<NodeId, NodeId>> removed_;  // other edges that go, from one end or both
   std::vector<std::uint32_t> fresh_;                // P_new and moved nodes; ascending once edges are added
   std::uint32_t first_new_guide_ = 0;
@@ -217,18 +217,8 @@ void GraphUpdater::find_cut_edges() {
 }
 
 void GraphUpdater::prefetch_rows_behind(const CutPairs::Row& row) const {
-  // Rows to prefetch ahead; locations are prefetched twice as early.
-  constexpr std::ptrdiff_t ahead = 4;
-  const auto left = cut_.rows.data() + cut_.rows.size() - &row;
-  const GraphStorage& graph = graph_;
-  if (left > 2 * ahead) {
-    const auto id = (&row)[2 * ahead].id;
-    graph.store(id).prefetch_location(GraphStorage::index_of(id));
-  }
-  if (left > ahead) {
-    const auto id = (&row)[ahead].id;
-    graph.store(id).prefetch(GraphStorage::index_of(id));
-  }
+  const auto at = static_cast<std::size_t>(&row - cut_.rows.data());
+  graph_.prefetch_after(at, cut_.rows.size(), [&](std::size_t i) { return cut_.rows[i].id; });
 }
 
 void GraphUpdater::detach_retired_guides(PathUsers& users) {
@@ -349,15 +339,9 @@ void GraphUpdater::find_rows(std::span<const std::uint32_t> sources, const Neigh
   std::vector<std::uint32_t> hidden, retest;  // hidden: neighbours that a new face hides
   auto cut_row = std::lower_bound(cut_.rows.begin(), cut_.rows.end(), sources.empty() ? 0 : sources.front(),
                                   [](const auto& row, std::uint32_t id) { return row.id < id; });
-  auto ahead = sources.begin();
-  const auto prefetch_next = [&] {
-    constexpr std::ptrdiff_t rows = 4;
-    if (sources.end() - ahead > 2 * rows) graph.rows().prefetch_location(ahead[2 * rows]);
-    if (sources.end() - ahead > rows) graph.rows().prefetch(ahead[rows]);
-    ++ahead;
-  };
+  std::size_t at = 0;  // of the source at hand
   const auto mark_hidden = [&](std::uint32_t i, std::span<const std::uint32_t> to, std::span<std::uint16_t> bits) {
-    prefetch_next();
+    graph.prefetch_after(at++, sources.size(), [&](std::size_t k) { return sources[k]; });
     while (cut_row != cut_.rows.end() && cut_row->id < i) ++cut_row;
     hidden.clear();
     if (cut_row != cut_.rows.end() && cut_row->id == i)

@@ -1,8 +1,8 @@
 // det = n · (x − a) with n the cross product of two edges; its sign counts if |det| exceeds
 // orient3d_error times the permanent (sum of absolute products, Shewchuk 1997).
 //
-// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
-// that the filter's error bound holds.
+// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products
+// (-ffp-contract=off), so that the filter's error bound holds.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/orientation_lanes.cpp"
 #include "base/simd_targets.h"

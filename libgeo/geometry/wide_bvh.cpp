@@ -1,6 +1,5 @@
 // Packets of up to 32 segments with a common end descend together. Tests in this order: boxes, slab
 // of the triangle, filtered orientations in lanes, exact predicate for what is left.
-//
 // Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "geometry/wide_bvh.cpp"

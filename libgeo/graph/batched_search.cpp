@@ -1,6 +1,5 @@
 // A label-correcting search: a FIFO queue of nodes of which a distance fell (Bellman–Ford–Moore),
-// with sixteen distances a node. Highway compiles the part between HWY_BEFORE_NAMESPACE and
-// HWY_AFTER_NAMESPACE once for each kind of vector.
+// with sixteen distances a node. Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/batched_search.cpp"
 #include "base/simd_targets.h"

@@ -85,7 +85,8 @@ class GraphStorage {
   /// The store that holds the row of an id.
   const AdjacencyStore& store(std::uint32_t id) const { return is_guide(id) ? guide_rows_ : rows_; }
   /// For loops over rows: prefetches the row of an id that comes later, so that memory answers
-  /// while the rows between are handled. `id_at(i)`: the i-th of `count` ids; `at`: the one at hand.
+  /// while the rows between are handled. `id_at(i)`: the i-th of `count` ids; `at`: the one at
+  /// hand.
   template <class IdAt>
   void prefetch_after(std::size_t at, std::size_t count, const IdAt& id_at) const {
     // Rows ahead. The location of a row is prefetched twice as early, since its address depends on

@@ -1,11 +1,15 @@
-// Nearest nodes by groups. The nodes of a small cell search together:
+// Nearest nodes by groups: the nodes of a small cell search together. Compiled for each instruction
+// set (base/simd_targets.h), whose width changes the speed only.
+//
 //   1. Candidates within √reach of the cell's box are gathered once, as floats relative to the box.
 //   2. Each node selects those within √reach of itself and ranks them by counting.
 //   3. It puts the first k in exact order by doubles.
 // The result holds when the last node is within reach, since all nodes left out are farther
-// (NodeTree::Cell::gap). The width of the vectors changes the speed only.
+// (NodeTree::Cell::gap).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/nearest_lanes.cpp"
+#include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>

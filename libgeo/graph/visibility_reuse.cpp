@@ -1,6 +1,6 @@
 // Old and new row ascend and are merged in vectors. Entry e is open (to be tested again) unless it
 // is an edge, or it was visible and no new face hides it: open = ¬(edge ∨ (visible ∧ ¬hidden)).
-// Highway compiles the part from HWY_BEFORE_NAMESPACE on once for each kind of vector.
+// Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "graph/visibility_reuse.cpp"
 #include "base/simd_targets.h"

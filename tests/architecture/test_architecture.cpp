@@ -263,6 +263,21 @@ TEST_CASE("heavy libraries stay behind their doors", "[architecture]") {
   CHECK(seen > 20);
 }
 
+TEST_CASE("sources with SIMD kernels choose the instruction sets before Highway does", "[architecture]") {
+  std::size_t seen = 0;
+  for (const auto& file : sources_below(libgeo)) {
+    const auto includes = includes_of(file);
+    const auto at = [&](const std::string& name) {
+      return std::find_if(includes.begin(), includes.end(), [&](const Include& i) { return i.name == name; });
+    };
+    if (at("hwy/foreach_target.h") == includes.end()) continue;
+    ++seen;
+    INFO(file.string() << " must include base/simd_targets.h before hwy/foreach_target.h");
+    CHECK(at("base/simd_targets.h") < at("hwy/foreach_target.h"));
+  }
+  CHECK(seen > 10);
+}
+
 TEST_CASE("the library neither prints nor exits, and only io opens files", "[architecture]") {
   const std::regex prints(R"(std::c(out|err)\b|\bprintf\s*\(|\bf?puts\s*\(|\bstd::exit\b|\bexit\s*\(|\babort\s*\()");
   const std::regex opens(R"(\b(i|o)?fstream\b|\bfopen\s*\()");

@@ -1,11 +1,11 @@
 // Culling in three stages: swept boxes in the frame of the surface's affine motion, cheap axes
-// (triangle normals, difference of centroids), then all axes of separating_axes.h.
+// (triangle normals, difference of centroids), then all axes of candidate_axes.h.
 #include "contact/detection/contact_candidates.h"
 
 #include <algorithm>
 #include <tuple>
 
-#include "contact/detection/separating_axes.h"
+#include "contact/detection/candidate_axes.h"
 #include "contact/detection/triangle_planes.h"
 #include "geometry/affine_fit.h"
 #include "kerf/parallel.h"
@@ -18,23 +18,23 @@ using Pairs = std::vector<BroadPhase::Pair>;
 // Sets normal, closest points and gap from the axes of the pair. Returns false if the pair is no
 // candidate: an axis has start separation ≥ gap and end separation ≥ reach, or the start distance
 // is not positive.
-bool set_candidate(const SurfaceMotion& m, const SeparatingAxes& axes, std::size_t lane, ContactCandidate& candidate) {
-  for (int k = 0; k < SeparatingAxes::between_closest; ++k)
+bool set_candidate(const SurfaceMotion& m, const CandidateAxes& axes, std::size_t lane, ContactCandidate& candidate) {
+  for (int k = 0; k < CandidateAxes::between_closest; ++k)
     if (axes.start_separation[k][lane] >= m.gap && axes.end_separation[k][lane] >= m.reach) return false;
   const auto normal = [&](int k) {
     return Vec3(axes.normal[k][0][lane], axes.normal[k][1][lane], axes.normal[k][2][lane]);
   };
-  const double distance = axes.start_separation[SeparatingAxes::between_closest][lane];
+  const double distance = axes.start_separation[CandidateAxes::between_closest][lane];
   if (!(distance > 0)) return false;
-  int chosen = SeparatingAxes::between_closest;
+  int chosen = CandidateAxes::between_closest;
   double best = axes.end_separation[chosen][lane];
   if (distance >= m.gap && best >= m.reach) return false;
   for (int k = 0; k < 3; ++k)
     candidate.closest.weights_a[k] = axes.weights_a[k][lane], candidate.closest.weights_b[k] = axes.weights_b[k][lane];
-  candidate.closest.difference = distance * normal(SeparatingAxes::between_closest);
+  candidate.closest.difference = distance * normal(CandidateAxes::between_closest);
   // Prefer the axis of largest end separation among axes with start separation ≥ min(d, gap) / 2,
   // where d is the distance. A factor above 1/2 leaves fewer axes to choose from.
-  for (int k = 0; k < SeparatingAxes::between_closest; ++k)
+  for (int k = 0; k < CandidateAxes::between_closest; ++k)
     if (axes.start_separation[k][lane] >= 0.5 * std::min(distance, m.gap) && axes.end_separation[k][lane] > best)
       best = axes.end_separation[k][lane], chosen = k;
   candidate.normal = normal(chosen);
@@ -166,17 +166,17 @@ std::vector<ContactCandidate> find_contact_candidates(const SurfaceMotion& m, Br
   std::vector<std::vector<ContactCandidate>> found((pairs.size() + chunk - 1) / chunk);
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const auto primitives = [&](std::size_t i) {
+      const auto simplex_pair = [&](std::size_t i) {
         const auto &a = surface.triangles[pairs[i].first], &b = surface.triangles[pairs[i].second];
-        return PrimitivePair{{{a[0], a[1], a[2]}, 3}, {{b[0], b[1], b[2]}, 3}};
+        return SimplexPair{{{a[0], a[1], a[2]}, 3}, {{b[0], b[1], b[2]}, 3}};
       };
-      const auto examine = [&](std::size_t i, const SeparatingAxes& axes, std::size_t lane) {
-        const PrimitivePair pair = primitives(i);
+      const auto examine = [&](std::size_t i, const CandidateAxes& axes, std::size_t lane) {
+        const SimplexPair pair = simplex_pair(i);
         ContactCandidate candidate{pair.a, pair.b, Vec3::Zero(), {}, 0};
         if (set_candidate(m, axes, lane, candidate)) found[c].push_back(candidate);
       };
-      SeparatingAxisBatch<decltype(examine)> batch(m.from, m.to, false, examine);
-      for (std::size_t i = c * chunk; i < std::min(pairs.size(), (c + 1) * chunk); ++i) batch.add(primitives(i), i);
+      CandidateAxisBatch<decltype(examine)> batch(m.from, m.to, false, examine);
+      for (std::size_t i = c * chunk; i < std::min(pairs.size(), (c + 1) * chunk); ++i) batch.add(simplex_pair(i), i);
       batch.finish();
     }
   });

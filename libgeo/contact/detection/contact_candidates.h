@@ -2,7 +2,7 @@
 // separates them at the start.
 //
 // If one axis separates two convex sets at both ends of a straight motion, they do not meet during
-// it (separating_axes.h). Triangles that share vertices are not candidates.
+// it (candidate_axes.h). Triangles that share vertices are not candidates.
 #pragma once
 
 #include <span>

@@ -1,8 +1,8 @@
 // Separating-plane and separating-edge tests of eight triangle pairs at a time. Signs of the
 // determinants count only beyond the static error bounds of Shewchuk (1997); else the pair is kept.
 //
-// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
-// that error bounds hold.
+// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products
+// (-ffp-contract=off), so that error bounds hold.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/disjointness_filter.cpp"
 #include "base/simd_targets.h"

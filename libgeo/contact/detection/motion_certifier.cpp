@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "contact/detection/candidate_axes.h"
 #include "contact/detection/find_crossings.h"
-#include "contact/detection/separating_axes.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -55,27 +55,27 @@ void MotionCertifier::certify(std::span<const Pair> pairs, const std::vector<std
   }
   planes_.remove_separated(disjoint, rounding, rounding);
   planes_.remove_centroid_separated(disjoint, rounding, rounding);
-  const auto primitives = [&](const Pair& p) {
+  const auto simplex_pair = [&](const Pair& p) {
     const auto simplex = [&](std::uint32_t t) {
       return Simplex{{triangles[t][0], triangles[t][1], triangles[t][2]}, 3};
     };
-    return PrimitivePair{simplex(p.first), simplex(p.second)};
+    return SimplexPair{simplex(p.first), simplex(p.second)};
   };
   const auto separates = [&](double at_start, double at_end) { return at_start > rounding && at_end > rounding; };
-  const auto certify_one = [&](std::size_t i, const SeparatingAxes& axes, std::size_t lane) {
-    for (int k = 0; k < SeparatingAxes::count; ++k)
+  const auto certify_one = [&](std::size_t i, const CandidateAxes& axes, std::size_t lane) {
+    for (int k = 0; k < CandidateAxes::count; ++k)
       if (separates(axes.start_separation[k][lane], axes.end_separation[k][lane])) return;
-    if (any_tilted_axis(primitives(disjoint[i]), axes, lane, m_.start, m_.next,
+    if (any_tilted_axis(simplex_pair(disjoint[i]), axes, lane, m_.start, m_.next,
                         [&](const Vec3&, double at_start, double at_end) { return separates(at_start, at_end); }))
       return;
     if (known_disjoint(disjoint[i].first, disjoint[i].second,
-                       axes.start_separation[SeparatingAxes::between_closest][lane]))
+                       axes.start_separation[CandidateAxes::between_closest][lane]))
       test_exactly(disjoint[i]);
     else
       uncertified.push_back(disjoint[i]);
   };
-  SeparatingAxisBatch<decltype(certify_one)> batch(m_.start, m_.next, true, certify_one);
-  for (std::size_t i = 0; i < disjoint.size(); ++i) batch.add(primitives(disjoint[i]), i);
+  CandidateAxisBatch<decltype(certify_one)> batch(m_.start, m_.next, true, certify_one);
+  for (std::size_t i = 0; i < disjoint.size(); ++i) batch.add(simplex_pair(disjoint[i]), i);
   batch.finish();
 }
 

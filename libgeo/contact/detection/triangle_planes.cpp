@@ -1,8 +1,8 @@
 // Support intervals along the start normal n of triangle p. Triangle o is separated above if
 // min n · o − max n · p exceeds the bound at both ends of the motion; below, likewise.
 //
-// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
-// that all give the same results.
+// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products
+// (-ffp-contract=off), so that all give the same results.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "contact/detection/triangle_planes.cpp"
 #include "base/simd_targets.h"

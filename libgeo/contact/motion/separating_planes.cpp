@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/detection/separating_axes.h"
+#include "contact/detection/candidate_axes.h"
 #include "contact/detection/simplex.h"
 #include "contact/detection/triangle_planes.h"
 #include "kerf/parallel.h"
@@ -22,7 +22,7 @@ struct SeparatingPlane {
 using PlaneSide = std::pair<const SeparatingPlane*, double>;  // 1: the side of a, −1: of b
 
 // How far the two sub-simplices may approach each other: max limit over a + max limit over b.
-double approach_of(const PlaneSeparatedMotion& m, const PrimitivePair& pair) {
+double approach_of(const PlaneSeparatedMotion& m, const SimplexPair& pair) {
   double a = 0, b = 0;
   for (int k = 0; k < pair.a.size; ++k) a = std::max(a, m.limit[pair.a.v[k]]);
   for (int k = 0; k < pair.b.size; ++k) b = std::max(b, m.limit[pair.b.v[k]]);
@@ -31,17 +31,17 @@ double approach_of(const PlaneSeparatedMotion& m, const PrimitivePair& pair) {
 
 // Places the plane between the sub-simplices of `out`. Returns false if an axis separates them by
 // more than they may approach, plus the gap. `adjacent`: their triangles have a common vertex.
-bool place_plane(const PlaneSeparatedMotion& m, const std::vector<Vec3>& at, bool adjacent, const SeparatingAxes& axes,
+bool place_plane(const PlaneSeparatedMotion& m, const std::vector<Vec3>& at, bool adjacent, const CandidateAxes& axes,
                  std::size_t lane, SeparatingPlane& out) {
   const double reach = approach_of(m, {out.a, out.b}) + m.gap;
   // The difference of closest points is used only if no other axis separates by the gap.
-  int chosen = SeparatingAxes::between_centroids;
-  for (int k = 0; k < SeparatingAxes::between_closest; ++k) {
+  int chosen = CandidateAxes::between_centroids;
+  for (int k = 0; k < CandidateAxes::between_closest; ++k) {
     if (axes.start_separation[k][lane] > reach) return false;
     if (axes.start_separation[k][lane] > axes.start_separation[chosen][lane]) chosen = k;
   }
   if (adjacent || axes.start_separation[chosen][lane] < m.gap) {
-    chosen = SeparatingAxes::between_closest;
+    chosen = CandidateAxes::between_closest;
     if (axes.start_separation[chosen][lane] > reach) return false;
   }
   out.normal = {axes.normal[chosen][0][lane], axes.normal[chosen][1][lane], axes.normal[chosen][2][lane]};
@@ -108,7 +108,7 @@ std::vector<std::vector<SeparatingPlane>> find_planes(const PlaneSeparatedMotion
     for (std::size_t c = begin; c < end; ++c) {
       // Numbers: 4 · pair + 2 · which of its pairs of sub-simplices + whether the triangles are
       // adjacent.
-      const auto add_plane = [&](std::size_t number, const SeparatingAxes& axes, std::size_t lane) {
+      const auto add_plane = [&](std::size_t number, const CandidateAxes& axes, std::size_t lane) {
         const auto& [t, o] = m.pairs[number / 4];
         const bool adjacent = number % 2 != 0;
         disjoint_subsimplices(m.triangles[t], m.triangles[o], parts);
@@ -116,7 +116,7 @@ std::vector<std::vector<SeparatingPlane>> find_planes(const PlaneSeparatedMotion
         SeparatingPlane plane{a, b, Vec3::Zero(), 0, 0};
         if (place_plane(m, at, adjacent, axes, lane, plane)) found[c].push_back(plane);
       };
-      SeparatingAxisBatch<decltype(add_plane)> batch(at, at, false, add_plane);
+      CandidateAxisBatch<decltype(add_plane)> batch(at, at, false, add_plane);
       for (std::size_t i = c * chunk; i < std::min(m.pairs.size(), (c + 1) * chunk); ++i) {
         const auto& [t, o] = m.pairs[i];
         const double reach = farthest[t] + farthest[o] + m.gap;
@@ -124,7 +124,7 @@ std::vector<std::vector<SeparatingPlane>> find_planes(const PlaneSeparatedMotion
         std::pair<Simplex, Simplex> own[2];
         const int count = disjoint_subsimplices(m.triangles[t], m.triangles[o], own);
         for (int k = 0; k < count; ++k) {
-          const PrimitivePair pair{own[k].first, own[k].second};
+          const SimplexPair pair{own[k].first, own[k].second};
           const double approach = approach_of(m, pair);
           if (approach > 0 && centroid_separation(pair, at, at).start <= approach + m.gap)
             batch.add(pair, 4 * i + 2 * static_cast<std::size_t>(k) + (count == 2));

@@ -21,7 +21,7 @@ struct PlaneSeparatedMotion {
 
 /// Moves the vertices `at`, of which no two triangles cross, towards their wanted positions: each
 /// as far as the separating planes of its pairs allow, sliding along them. A plane is normal to an
-/// axis of SeparatingAxes, at the middle of the wanted positions of both sides, clamped to the free
+/// axis of CandidateAxes, at the middle of the wanted positions of both sides, clamped to the free
 /// interval. At the end nothing crosses: the planes of a vertex do not depend on others' moves.
 /// Floating point, with half the gap to spare; sub-simplices whose distance is of the order of
 /// rounding stay where they are. Returns the number of planes.

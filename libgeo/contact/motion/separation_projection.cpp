@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "contact/detection/separating_axes.h"
+#include "contact/detection/candidate_axes.h"
 #include "geometry/affine_fit.h"
 #include "kerf/parallel.h"
 
@@ -38,7 +38,7 @@ struct ConstraintsOfVertices {
 }  // namespace
 
 // `next`: the end of the motion, which the axes at the end refer to.
-void SeparationProjection::choose_axis(Constraint& c, const SeparatingAxes& axes, std::size_t lane,
+void SeparationProjection::choose_axis(Constraint& c, const CandidateAxes& axes, std::size_t lane,
                                        const std::vector<Vec3>& next) const {
   const bool adjacent = c.a.size < 3 || c.b.size < 3;
   const double share = adjacent ? 0.5 : 1;  // adjacent triangles may become thinner as the body is squeezed
@@ -50,7 +50,7 @@ void SeparationProjection::choose_axis(Constraint& c, const SeparatingAxes& axes
       best = end, c.axis = axis, c.separation = std::min(gap_, share * start);
     return false;  // consider all
   };
-  for (int k = 0; k < SeparatingAxes::count; ++k)
+  for (int k = 0; k < CandidateAxes::count; ++k)
     consider({axes.normal[k][0][lane], axes.normal[k][1][lane], axes.normal[k][2][lane]},
              axes.start_separation[k][lane], axes.end_separation[k][lane]);
   if (!adjacent) any_tilted_axis({c.a, c.b}, axes, lane, start_, next, consider);
@@ -73,10 +73,10 @@ void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Ve
     }
   }
   parallel_for(added.size(), 64, [&](std::size_t begin, std::size_t end) {
-    const auto choose = [&](std::size_t i, const SeparatingAxes& axes, std::size_t lane) {
+    const auto choose = [&](std::size_t i, const CandidateAxes& axes, std::size_t lane) {
       choose_axis(constraints_[i], axes, lane, next);
     };
-    SeparatingAxisBatch<decltype(choose)> batch(start_, next, true, choose);
+    CandidateAxisBatch<decltype(choose)> batch(start_, next, true, choose);
     for (std::size_t i = begin; i < end; ++i) batch.add({constraints_[added[i]].a, constraints_[added[i]].b}, added[i]);
     batch.finish();
   });

@@ -14,7 +14,7 @@
 
 namespace geo {
 
-struct SeparatingAxes;
+struct CandidateAxes;
 
 /// Constraints between pairs of triangles. The axis of each separates its pair at the start of the
 /// motion and has to separate it at the end: then the pair does not meet in between.
@@ -54,7 +54,7 @@ class SeparationProjection {
     double separation;   // to be kept, model units
     std::uint32_t s, t;  // the triangles
   };
-  void choose_axis(Constraint& c, const SeparatingAxes& axes, std::size_t lane, const std::vector<Vec3>& next) const;
+  void choose_axis(Constraint& c, const CandidateAxes& axes, std::size_t lane, const std::vector<Vec3>& next) const;
   const std::vector<Triangle>& triangles_;
   const std::vector<Vec3>& start_;
   double gap_;

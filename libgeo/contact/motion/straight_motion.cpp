@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "contact/detection/separating_axes.h"
+#include "contact/detection/candidate_axes.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -82,9 +82,9 @@ class StraightMotion {
   void judge_pairs() {
     parallel_for(pairs_.size(), 512, [&](std::size_t begin, std::size_t end) {
       // Numbers: 2 · pair + whether its triangles are adjacent.
-      const auto judge_axes = [&](std::size_t number, const SeparatingAxes& axes, std::size_t lane) {
+      const auto judge_axes = [&](std::size_t number, const CandidateAxes& axes, std::size_t lane) {
         bool any = false, any_always = false;
-        for (int k = 0; k < SeparatingAxes::count; ++k) {
+        for (int k = 0; k < CandidateAxes::count; ++k) {
           const PairSeparation p{axes.start_separation[k][lane], axes.end_separation[k][lane],
                                  axes.swept_separation[k][lane]};
           any |= is_separated(p, number % 2 != 0), any_always |= is_always_separated(p, number % 2 != 0);
@@ -95,7 +95,7 @@ class StraightMotion {
         else if (!any_always && verdict == always_separated)
           verdict = separated;
       };
-      SeparatingAxisBatch<decltype(judge_axes)> batch(start_, at_, true, judge_axes);
+      CandidateAxisBatch<decltype(judge_axes)> batch(start_, at_, true, judge_axes);
       std::pair<Simplex, Simplex> simplices[2];
       for (std::size_t i = begin; i < end; ++i) {
         const auto& [s, t] = pairs_[i];
@@ -107,7 +107,7 @@ class StraightMotion {
         const int count = disjoint_subsimplices(triangles_[s], triangles_[t], simplices);
         const bool adjacent = count == 2;
         for (int k = 0; k < count; ++k) {
-          const PrimitivePair pair{simplices[k].first, simplices[k].second};
+          const SimplexPair pair{simplices[k].first, simplices[k].second};
           const PairSeparation p = centroid_separation(pair, start_, at_);
           if (!is_separated(p, adjacent))
             batch.add(pair, 2 * i + adjacent);

@@ -1,5 +1,5 @@
-// Compiled once per vector target, like point_lanes.cpp. Products and sums are not fused, so all
-// targets give the same bits.
+// Compiled for each instruction set (base/simd_targets.h). Products and sums are not fused
+// (-ffp-contract=off), so all give the same bits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/discretisation/nodal_gradient_lanes.cpp"
 #include "base/simd_targets.h"

@@ -1,7 +1,6 @@
-// Highway compiles the part between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once per vector
-// target. Each lane has its own sum. MulAdd is one operation on all targets that have it, so these
-// give the same bits, and other targets differ by rounding. Add of Mul, as in AddKernelWeighted, is
-// two operations on every target: the same bits on all.
+// Each lane has its own sum. MulAdd is one operation on all targets that have it (simd_targets.h):
+// these give the same bits, others differ by rounding. Add of Mul, as in AddKernelWeighted, is two
+// operations on every target (-ffp-contract=off): the same bits on all.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/discretisation/point_lanes.cpp"
 #include "base/simd_targets.h"

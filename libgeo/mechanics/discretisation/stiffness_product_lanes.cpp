@@ -1,4 +1,4 @@
-// Compiled once per vector target, like point_lanes.cpp. Products and sums are fused where the
+// Compiled for each instruction set (base/simd_targets.h). MulAdd fuses products and sums where the
 // processor can, because arithmetic limits the speed of a stiffness product. All targets that fuse
 // give the same bits.
 #undef HWY_TARGET_INCLUDE

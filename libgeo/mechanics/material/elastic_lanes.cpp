@@ -1,6 +1,6 @@
 // Energy and stress of both models from invariants of the Green strain, one point per lane; the
-// formulas are those of elasticity.cpp. Compiled once per vector target, like point_lanes.cpp; all
-// give the same bits.
+// formulas are those of elasticity.cpp. Compiled for each instruction set
+// (base/simd_targets.h); all give the same bits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/material/elastic_lanes.cpp"
 #include "base/simd_targets.h"

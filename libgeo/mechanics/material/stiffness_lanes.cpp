@@ -1,6 +1,6 @@
 // F = U Σ Vᵀ by cyclic Jacobi on FᵀF, then ∂²Ψ/∂F² in the principal frame with negative eigenvalues
-// set to zero (Stomakhin et al. 2012; Smith, de Goes and Kim 2018). Compiled once per vector
-// target, like point_lanes.cpp; all give the same bits.
+// set to zero (Stomakhin et al. 2012; Smith, de Goes and Kim 2018). Compiled for each
+// instruction set (base/simd_targets.h); all give the same bits.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/material/stiffness_lanes.cpp"
 #include "base/simd_targets.h"

@@ -1,5 +1,5 @@
-// Compiled once for each vector instruction set, like point_lanes.cpp; products and sums are not
-// fused, so that all give the same numbers.
+// Compiled for each instruction set (base/simd_targets.h). Products and sums are not fused
+// (-ffp-contract=off), so that all give the same numbers.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/band_lanes.cpp"
 #include "base/simd_targets.h"

@@ -1,6 +1,6 @@
 // Pᵀ K P of a block's points: strains of each aggregate's rigid motions, their stresses, and the
-// products of both. Compiled once for each vector instruction set, like point_lanes.cpp; products
-// and sums are fused only in the loop over pairs of slots.
+// products of both. Compiled for each instruction set (base/simd_targets.h). Products and sums are
+// fused only in the loop over pairs of slots, by MulAdd.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/coarse_lanes.cpp"
 #include "base/simd_targets.h"

@@ -1,6 +1,6 @@
 // Stiffness tiles Σ w (μ (g_a · g_b) 1 + μ g_b g_aᵀ + λ g_a g_bᵀ) of eight subdomains, inverted by
-// the sweep operator, one subdomain per lane. Compiled once for each vector instruction set, like
-// point_lanes.cpp.
+// the sweep operator, one subdomain per lane. Compiled for each instruction set
+// (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mechanics/solver/subdomain_lanes.cpp"
 #include "base/simd_targets.h"

@@ -1,34 +1,36 @@
-// Axes in lanes: difference of centroids, both normals, difference of closest points. The last has
-// the largest separation of all axes of disjoint convex sets. So the cross products of edges of the
-// usual separating-axis test are not needed.
+// Five axes in lanes: difference of centroids, both normals, difference of closest points at the
+// start and at the end. Compiled for each instruction set (base/simd_targets.h). Sums are never
+// fused with products (-ffp-contract=off), so that all give the same results.
 //
-// Compiled for each instruction set (base/simd_targets.h). Sums are never fused with products, so
-// that all give the same results.
+// At its own instant a difference of closest points has the largest separation of all directions,
+// where the simplices are disjoint. So the cross products of edges of the usual separating-axis
+// test are not needed.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "contact/detection/separating_axes.cpp"
+#define HWY_TARGET_INCLUDE "contact/detection/candidate_axes.cpp"
 #include "base/simd_targets.h"
 
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>
 
-#include "contact/detection/separating_axes.h"
+#include "contact/detection/candidate_axes.h"
 
-#ifndef KERF_SEPARATING_AXES_ONCE
-#define KERF_SEPARATING_AXES_ONCE
+// The source is included once for each instruction set.
+#ifndef KERF_CANDIDATE_AXES_ONCE
+#define KERF_CANDIDATE_AXES_ONCE
 namespace geo {
 namespace {
 
 // The corners of a, then those of b.
 struct Corners {
-  alignas(64) double at[6][3][SeparatingAxes::width];
+  alignas(64) double at[6][3][CandidateAxes::width];
 };
 
 // The features with the closest points, and parameters of the points. 0 to 8: edge feature / 3 of
 // a with parameter s and edge feature % 3 of b with parameter t. 9 to 11: corner feature % 3 of a
 // and the interior of b with parameters (s, t). 12 to 14: a corner of b and the interior of a.
 struct ClosestFeatures {
-  alignas(64) double feature[SeparatingAxes::width], s[SeparatingAxes::width], t[SeparatingAxes::width];
+  alignas(64) double feature[CandidateAxes::width], s[CandidateAxes::width], t[CandidateAxes::width];
 };
 
 // Input of the tilted axes n + τ c: `normal` n, `tilt` τ, `closest` c (unit difference of closest
@@ -47,7 +49,7 @@ namespace geo {
 namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, SeparatingAxes::width>;
+using Doubles = hn::CappedTag<double, CandidateAxes::width>;
 using V = hn::Vec<Doubles>;
 struct V3 {
   V x, y, z;
@@ -83,13 +85,13 @@ struct Closest {
   V3 difference;
   V feature, s, t;
 
-  // Takes the candidate of feature `number` where it is valid and shorter than the best so far.
-  HWY_INLINE void offer(int number, const V3& candidate, const V& at_s, const V& at_t, const hn::Mask<Doubles>& valid) {
-    const V length = dot(candidate, candidate);
+  // Takes the difference of feature `number` where it is valid and shorter than the best so far.
+  HWY_INLINE void offer(int number, const V3& offered, const V& at_s, const V& at_t, const hn::Mask<Doubles>& valid) {
+    const V length = dot(offered, offered);
     const auto better = hn::And(valid, hn::Lt(length, squared));
     squared = hn::IfThenElse(better, length, squared);
-    difference = {hn::IfThenElse(better, candidate.x, difference.x), hn::IfThenElse(better, candidate.y, difference.y),
-                  hn::IfThenElse(better, candidate.z, difference.z)};
+    difference = {hn::IfThenElse(better, offered.x, difference.x), hn::IfThenElse(better, offered.y, difference.y),
+                  hn::IfThenElse(better, offered.z, difference.z)};
     feature = hn::IfThenElse(better, hn::Set(Doubles(), double(number)), feature);
     s = hn::IfThenElse(better, at_s, s), t = hn::IfThenElse(better, at_t, t);
   }
@@ -147,14 +149,15 @@ HWY_INLINE Closest closest_of(const V3 (&a)[3], const V3 (&b)[3]) {
 
 // Axes of all lanes at the corners `from` (start) and `to` (end). `end`: computes the axis of the
 // closest points at the end, too. `features`: closest features at the start.
-void compute_axes(const Corners& from, const Corners& to, bool end, SeparatingAxes& out, ClosestFeatures& features) {
+void compute_axes(const Corners& from, const Corners& to, bool end, CandidateAxes& out, ClosestFeatures& features) {
   const Doubles d;
-  for (std::size_t lane = 0; lane < SeparatingAxes::width; lane += hn::Lanes(d)) {
-    V3 a[3], b[3], c[3], e[3];
+  for (std::size_t lane = 0; lane < CandidateAxes::width; lane += hn::Lanes(d)) {
+    V3 a[3], b[3], end_a[3], end_b[3];
     for (int k = 0; k < 3; ++k)
-      a[k] = load(from, k, lane), b[k] = load(from, 3 + k, lane), c[k] = load(to, k, lane),
-      e[k] = load(to, 3 + k, lane);
+      a[k] = load(from, k, lane), b[k] = load(from, 3 + k, lane), end_a[k] = load(to, k, lane),
+      end_b[k] = load(to, 3 + k, lane);
     // Stores axis n = ± direction / |direction|, negated where `flip` is set, and its separations.
+    // Normals are flipped so that they point from b to a, as the difference of centroids does.
     const auto put = [&](int axis, const V3& direction, const hn::Mask<Doubles>& flip) HWY_ATTR {
       const V length = hn::Sqrt(dot(direction, direction)), one = inverse(length);
       const V3 n = hn::IfThenElse(flip, hn::Neg(one), one) * direction;
@@ -162,7 +165,7 @@ void compute_axes(const Corners& from, const Corners& to, bool end, SeparatingAx
                              HWY_ATTR { return hn::Min(hn::Min(dot(n, p[0]), dot(n, p[1])), dot(n, p[2])); };
       const auto most = [&](const V3(&p)[3])
                             HWY_ATTR { return hn::Max(hn::Max(dot(n, p[0]), dot(n, p[1])), dot(n, p[2])); };
-      const V a_start = least(a), b_start = most(b), a_end = least(c), b_end = most(e);
+      const V a_start = least(a), b_start = most(b), a_end = least(end_a), b_end = most(end_b);
       hn::Store(n.x, d, out.normal[axis][0] + lane), hn::Store(n.y, d, out.normal[axis][1] + lane),
           hn::Store(n.z, d, out.normal[axis][2] + lane);
       hn::Store(hn::Sub(a_start, b_start), d, out.start_separation[axis] + lane);
@@ -172,19 +175,20 @@ void compute_axes(const Corners& from, const Corners& to, bool end, SeparatingAx
     const V zero = hn::Zero(d);
     const auto never = hn::Lt(zero, zero);
     const V3 between = (a[0] + a[1] + a[2]) - (b[0] + b[1] + b[2]);
-    put(SeparatingAxes::between_centroids, between, never);
+    put(CandidateAxes::between_centroids, between, never);
     const V3 normal_a = cross(a[1] - a[0], a[2] - a[0]), normal_b = cross(b[1] - b[0], b[2] - b[0]);
-    put(SeparatingAxes::a_normal, normal_a, hn::Lt(dot(normal_a, between), zero));
-    put(SeparatingAxes::b_normal, normal_b, hn::Lt(dot(normal_b, between), zero));
+    put(CandidateAxes::a_normal, normal_a, hn::Lt(dot(normal_a, between), zero));
+    put(CandidateAxes::b_normal, normal_b, hn::Lt(dot(normal_b, between), zero));
     const Closest closest = closest_of(a, b);
-    put(SeparatingAxes::between_closest, closest.difference, never);
+    put(CandidateAxes::between_closest, closest.difference, never);
     hn::Store(closest.feature, d, features.feature + lane), hn::Store(closest.s, d, features.s + lane),
         hn::Store(closest.t, d, features.t + lane);
-    if (end) put(SeparatingAxes::between_closest_at_end, closest_of(c, e).difference, never);
+    if (end) put(CandidateAxes::between_closest_at_end, closest_of(end_a, end_b).difference, never);
   }
 }
 
-// Unit axes n + τ c and their separations min n · a − max n · b at both ends.
+// Unit axes n + τ c (zero where that is zero) and their separations min n · a − max n · b at both
+// ends.
 void compute_tilted(const TiltInput& input, TiltedAxes& out) {
   const Doubles d;
   for (std::size_t lane = 0; lane < TiltedAxes::width; lane += hn::Lanes(d)) {
@@ -217,19 +221,21 @@ namespace geo {
 HWY_EXPORT(compute_axes);
 HWY_EXPORT(compute_tilted);
 
-void find_tilted_axes(const PrimitivePair& pair, const SeparatingAxes& axes, std::size_t lane,
+void find_tilted_axes(const SimplexPair& pair, const CandidateAxes& axes, std::size_t lane,
                       const std::vector<Vec3>& from, const std::vector<Vec3>& to, TiltedAxes& out) {
-  // Factors of c in n + τ c, where n is the unit normal of a, of b, or their sum. A geometric
-  // series: surfaces that slide over each other need a tilt of the order of their unevenness. The
-  // last is padding.
+  // Factors of c in n + τ c, where n is the unit normal of a, of b, or their sum. Surfaces that
+  // slide over each other need a tilt of the order of their unevenness, which is not known: hence a
+  // geometric series. It turns a unit n, where c is perpendicular to it, by 0.6° to 15°. A pair
+  // that needs another tilt gets no axis here, which costs time or motion, but nothing crosses. The
+  // last factor is padding.
   constexpr double tilt[] = {0, 0.01, 0.03, 0.09, 0.27, 0};
   TiltInput input;
   for (std::size_t i = 0; i < TiltedAxes::width; ++i) input.tilt[i] = tilt[i / 3];
   for (int axis = 0; axis < 3; ++axis) {
-    const double a = axes.normal[SeparatingAxes::a_normal][axis][lane],
-                 b = axes.normal[SeparatingAxes::b_normal][axis][lane], of[3] = {a, b, a + b};
+    const double a = axes.normal[CandidateAxes::a_normal][axis][lane],
+                 b = axes.normal[CandidateAxes::b_normal][axis][lane], of[3] = {a, b, a + b};
     for (std::size_t i = 0; i < TiltedAxes::width; ++i) input.normal[axis][i] = of[i % 3];
-    input.closest[axis] = axes.normal[SeparatingAxes::between_closest][axis][lane];
+    input.closest[axis] = axes.normal[CandidateAxes::between_closest][axis][lane];
     for (int k = 0; k < 6; ++k) {
       const Simplex& s = k < 3 ? pair.a : pair.b;
       const auto v = s.v[std::min(k % 3, s.size - 1)];
@@ -239,11 +245,12 @@ void find_tilted_axes(const PrimitivePair& pair, const SeparatingAxes& axes, std
   HWY_DYNAMIC_DISPATCH(compute_tilted)(input, out);
 }
 
-void find_separating_axes(const PrimitivePair* pairs, std::size_t size, const std::vector<Vec3>& from,
-                          const std::vector<Vec3>& to, bool end, SeparatingAxes& out) {
+void find_candidate_axes(const SimplexPair* pairs, std::size_t size, const std::vector<Vec3>& from,
+                         const std::vector<Vec3>& to, bool end, CandidateAxes& out) {
+  if (size == 0) return;
   Corners start_corners, end_corners;
-  for (std::size_t lane = 0; lane < SeparatingAxes::width; ++lane) {
-    const PrimitivePair& pair = pairs[std::min(lane, size - 1)];
+  for (std::size_t lane = 0; lane < CandidateAxes::width; ++lane) {
+    const SimplexPair& pair = pairs[std::min(lane, size - 1)];
     for (std::size_t k = 0; k < 6; ++k) {
       const Simplex& s = k < 3 ? pair.a : pair.b;
       const auto v = s.v[std::min<int>(static_cast<int>(k % 3), s.size - 1)];  // an edge is a degenerate triangle

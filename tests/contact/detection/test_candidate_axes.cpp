@@ -6,9 +6,9 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "contact/detection/candidate_axes.h"
 #include "contact/detection/disjointness_filter.h"
 #include "contact/detection/find_crossings.h"
-#include "contact/detection/separating_axes.h"
 #include "contact/detection/triangle_planes.h"
 #include "simd_targets.h"
 
@@ -160,12 +160,12 @@ TEST_CASE("separations of axes are as stated, the largest between closest points
     Random random(seed);
     const bool grid = random.below(3) == 0;  // many parallel edges, and parts that touch
     std::vector<Vec3> from, to;
-    std::vector<PrimitivePair> pairs;
+    std::vector<SimplexPair> pairs;
     const auto somewhere = [&](double scale) {
       return grid ? Vec3(double(random.below(3)), double(random.below(3)), double(random.below(3)))
                   : Vec3(scale * random.uniform(0, 1) * random.direction());
     };
-    for (std::uint32_t c = 0; c < 1 + random.below(SeparatingAxes::width); ++c) {
+    for (std::uint32_t c = 0; c < 1 + random.below(CandidateAxes::width); ++c) {
       const auto simplex = [&](double x) {
         Simplex s{{}, 1 + static_cast<int>(random.below(3))};
         for (int k = 0; k < s.size; ++k)
@@ -176,20 +176,20 @@ TEST_CASE("separations of axes are as stated, the largest between closest points
       const Simplex a = simplex(0), b = simplex(grid ? random.below(4) : random.uniform(0.5, 2.5));
       pairs.push_back({a, b});
     }
-    SeparatingAxes p;
-    find_separating_axes(pairs.data(), pairs.size(), from, to, true, p);
+    CandidateAxes p;
+    find_candidate_axes(pairs.data(), pairs.size(), from, to, true, p);
     for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
       const auto& [a, b] = pairs[lane];
-      for (int k = 0; k < SeparatingAxes::count; ++k) {
+      for (int k = 0; k < CandidateAxes::count; ++k) {
         const Vec3 n(p.normal[k][0][lane], p.normal[k][1][lane], p.normal[k][2][lane]);
         CHECK((n.isZero(0) || std::abs(n.norm() - 1) < 1e-12));
         CHECK(std::abs(separation_along(n, a, b, from) - p.start_separation[k][lane]) < 1e-12);
         CHECK(std::abs(separation_along(n, a, b, to) - p.end_separation[k][lane]) < 1e-12);
         CHECK(p.swept_separation[k][lane] <= std::min(p.start_separation[k][lane], p.end_separation[k][lane]));
         CHECK(p.start_separation[k][lane] <=
-              std::max(0.0, p.start_separation[SeparatingAxes::between_closest][lane]) + 1e-9);
+              std::max(0.0, p.start_separation[CandidateAxes::between_closest][lane]) + 1e-9);
         CHECK(p.end_separation[k][lane] <=
-              std::max(0.0, p.end_separation[SeparatingAxes::between_closest_at_end][lane]) + 1e-9);
+              std::max(0.0, p.end_separation[CandidateAxes::between_closest_at_end][lane]) + 1e-9);
       }
       const auto corners = [&](const Simplex& s, Vec3(&out)[3]) {
         for (int k = 0; k < 3; ++k) out[k] = from[s.v[std::min(k, s.size - 1)]];
@@ -204,21 +204,21 @@ TEST_CASE("separations of axes are as stated, the largest between closest points
             of_b += p.weights_b[k][lane];
       }
       CHECK(std::abs(of_a - 1) + std::abs(of_b - 1) < 1e-12);
-      if (p.start_separation[SeparatingAxes::between_closest][lane] < 1e-6) continue;
+      if (p.start_separation[CandidateAxes::between_closest][lane] < 1e-6) continue;
       // Separated by their distance: no points are closer.
-      CHECK(std::abs(between.norm() - p.start_separation[SeparatingAxes::between_closest][lane]) < 1e-9);
+      CHECK(std::abs(between.norm() - p.start_separation[CandidateAxes::between_closest][lane]) < 1e-9);
       ++apart;
     }
     // Tilted directions: the normals, their sum, and these turned towards the closest places.
     TiltedAxes tilted;
     find_tilted_axes(pairs[0], p, 0, from, to, tilted);
     const auto direction = [&](int k) { return Vec3(p.normal[k][0][0], p.normal[k][1][0], p.normal[k][2][0]); };
-    const Vec3 normals[] = {direction(SeparatingAxes::a_normal), direction(SeparatingAxes::b_normal),
-                            direction(SeparatingAxes::a_normal) + direction(SeparatingAxes::b_normal)};
+    const Vec3 normals[] = {direction(CandidateAxes::a_normal), direction(CandidateAxes::b_normal),
+                            direction(CandidateAxes::a_normal) + direction(CandidateAxes::b_normal)};
     for (int k = 0; k < TiltedAxes::count; ++k) {
       const Vec3 n(tilted.normal[0][k], tilted.normal[1][k], tilted.normal[2][k]),
           wanted = normals[k % 3] + std::array{0.0, 0.01, 0.03, 0.09, 0.27}[static_cast<std::size_t>(k / 3)] *
-                                        direction(SeparatingAxes::between_closest);
+                                        direction(CandidateAxes::between_closest);
       CHECK((n - wanted.normalized()).norm() < 1e-12);
       CHECK(std::abs(separation_along(n, pairs[0].a, pairs[0].b, from) - tilted.start_separation[k]) < 1e-12);
       CHECK(std::abs(separation_along(n, pairs[0].a, pairs[0].b, to) - tilted.end_separation[k]) < 1e-12);
@@ -231,10 +231,10 @@ TEST_CASE("separations of axes are as stated, the largest between closest points
         CHECK((same.start_separation[k] == tilted.start_separation[k] &&
                same.end_separation[k] == tilted.end_separation[k]));
       }
-      SeparatingAxes other;
-      find_separating_axes(pairs.data(), pairs.size(), from, to, true, other);
+      CandidateAxes other;
+      find_candidate_axes(pairs.data(), pairs.size(), from, to, true, other);
       for (std::size_t lane = 0; lane < pairs.size(); ++lane)
-        for (int k = 0; k < SeparatingAxes::count; ++k) {
+        for (int k = 0; k < CandidateAxes::count; ++k) {
           for (int axis = 0; axis < 3; ++axis) CHECK(other.normal[k][axis][lane] == p.normal[k][axis][lane]);
           CHECK(other.start_separation[k][lane] == p.start_separation[k][lane]);
           CHECK(other.end_separation[k][lane] == p.end_separation[k][lane]);

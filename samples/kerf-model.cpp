@@ -3,10 +3,8 @@
 #include <cmath>
 
 #include <kerf/error.h>
-#include <kerf/front_file.h>
-#include <kerf/shapes.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
+#include <kerf/mesh.h>
 #include "tool.h"
 
 int main(int argc, char** argv) {

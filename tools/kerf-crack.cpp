@@ -3,10 +3,8 @@
 #include <iostream>
 
 #include <kerf/crack.h>
-#include <kerf/crack_edits.h>
-#include <kerf/front_file.h>
+#include <kerf/files.h>
 #include <kerf/pieces.h>
-#include <kerf/stream.h>
 #include "model.h"
 #include "tool.h"
 

@@ -5,9 +5,7 @@
 
 #include <kerf/body_file.h>
 #include <kerf/export.h>
-#include <kerf/front_file.h>
-#include <kerf/node_file.h>
-#include <kerf/stream.h>
+#include <kerf/files.h>
 #include "info/ask.h"
 #include "info/diff.h"
 #include "info/files.h"

@@ -5,9 +5,8 @@
 #include <filesystem>
 
 #include <kerf/export.h>
+#include <kerf/files.h>
 #include <kerf/pieces.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
 #include "pieces/subject.h"
 #include "tool.h"
 

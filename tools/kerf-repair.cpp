@@ -1,8 +1,9 @@
 // kerf-repair: makes a valid solid from a surface with faults, or wraps it in a new surface.
 #include <iostream>
 
-#include <kerf/repair.h>
-#include <kerf/surface_file.h>
+#include <kerf/check.h>
+#include <kerf/files.h>
+#include <kerf/mesh.h>
 #include "model.h"
 #include "tool.h"
 

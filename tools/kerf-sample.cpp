@@ -3,11 +3,9 @@
 #include <iostream>
 #include <map>
 
-#include <kerf/node_file.h>
+#include <kerf/files.h>
 #include <kerf/nodes.h>
 #include <kerf/progress.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
 #include "model.h"
 #include "tool.h"
 

@@ -4,9 +4,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include <kerf/front_file.h>
+#include <kerf/files.h>
 #include <kerf/score.h>
-#include <kerf/stream.h>
 #include "model.h"
 #include "tool.h"
 

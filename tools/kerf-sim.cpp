@@ -7,12 +7,12 @@
 #include <sstream>
 #include <utility>
 
+#include <kerf/body_file.h>
+#include <kerf/files.h>
 #include <kerf/pieces.h>
 #include <kerf/progress.h>
-#include <kerf/run_files.h>
 #include <kerf/simulation.h>
 #include <kerf/solid.h>
-#include <kerf/stream.h>
 #include "sim/frame_writer.h"
 #include "sim/setup.h"
 #include "sim/whole_run.h"

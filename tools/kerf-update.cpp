@@ -5,7 +5,7 @@
 
 #include <kerf/body.h>
 #include <kerf/body_file.h>
-#include <kerf/stream.h>
+#include <kerf/files.h>
 #include "model.h"
 #include "tool.h"
 #include "version.h"

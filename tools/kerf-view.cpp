@@ -5,8 +5,7 @@
 #include <filesystem>
 
 #include <kerf/body_file.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
 #include "tool.h"
 #include "view/animation.h"
 #include "view/compose.h"

@@ -7,8 +7,7 @@
 #include <kerf/check.h>
 #include <kerf/complex.h>
 #include <kerf/error.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
 
 namespace tool {
 

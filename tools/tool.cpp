@@ -21,8 +21,8 @@
 #include <thread>
 
 #include <kerf/error.h>
+#include <kerf/files.h>
 #include <kerf/parallel.h>
-#include <kerf/stream.h>
 #include "describe.h"
 #include "version.h"
 

@@ -1,7 +1,7 @@
 // Edge collapses from a priority queue, the shortest edge first. Each vertex carries a bound of the
 // surface's deviation near it; a collapse adds its own deviation to those of its faces' corners and
 // is refused where one exceeds the tolerance.
-#include "kerf/crack_edits.h"
+#include "kerf/crack.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,10 @@
 // Sections run/… behind those of the body (docs/formats.md): motion, fronts and counts of a run.
 // Doubles are stored as such, so that a run resumes exactly.
-#include "kerf/run_files.h"
+#include "kerf/body_file.h"
 
 #include "io/body_sections.h"
 #include "io/json_integer.h"
-#include "kerf/body_file.h"
-#include "kerf/surface_file.h"
+#include "kerf/files.h"
 #include "simulation/fracture_front.h"
 
 namespace geo {

@@ -1,12 +1,11 @@
 // Text, line by line: `front NAME`, then `step T` and a point a line; or `sheet NAME` with points
 // and triangles. OBJ: each object with a polyline is a time step.
-#include "kerf/front_file.h"
+#include "kerf/files.h"
 
 #include <algorithm>
 #include <map>
 
 #include "io/line_reader.h"
-#include "kerf/stream.h"
 
 namespace geo {
 namespace {

@@ -1,5 +1,5 @@
 // Regular files are read by pread(), which has no common position and is safe in threads.
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -16,7 +16,7 @@
 #include "io/kerf_writer.h"
 #include "kerf/body_file.h"
 #include "kerf/error.h"
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 namespace geo {
 namespace {

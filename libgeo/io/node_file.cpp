@@ -1,6 +1,6 @@
 // PLY, recognised by its first bytes, else PCD 0.7 (ASCII or binary; Point Cloud Library). A column
 // of a PCD point may have single or double precision.
-#include "kerf/node_file.h"
+#include "kerf/files.h"
 
 #include <array>
 #include <cstring>
@@ -8,7 +8,6 @@
 #include "io/line_reader.h"
 #include "io/ply.h"
 #include "kerf/body_file.h"
-#include "kerf/stream.h"
 
 namespace geo {
 namespace {

@@ -1,12 +1,12 @@
 // Nodes of a frame are binary PLY in single precision; a series is the JSON that ParaView reads
 // (.series).
-#include "kerf/run_files.h"
+#include "kerf/export.h"
+#include "kerf/files.h"
 
 #include <array>
 
 #include "io/ply.h"
 #include "kerf/error.h"
-#include "kerf/node_file.h"
 
 namespace geo {
 

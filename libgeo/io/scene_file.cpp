@@ -1,6 +1,6 @@
 // TOML by toml++, key by key through TomlTable, which reports unknown keys. Hashes of all files
 // that the scene names enter its fingerprint.
-#include "kerf/scene_file.h"
+#include "kerf/files.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,9 +9,6 @@
 
 #include "io/scene_keys.h"
 #include "kerf/check.h"
-#include "kerf/front_file.h"
-#include "kerf/stream.h"
-#include "kerf/surface_file.h"
 
 namespace geo {
 namespace {

@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "io/scene_keys.h"
-#include "kerf/scene_file.h"
+#include "kerf/files.h"
 
 namespace geo {
 namespace {

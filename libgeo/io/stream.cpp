@@ -1,6 +1,6 @@
 // Outputs go to a temporary file in the same folder, then fsync() and rename(), which is atomic
 // under POSIX.
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,11 +1,10 @@
 // Formats are recognised by their first bytes or lines; anything unknown is read as STL. Seams,
 // i.e. vertices at one position, are welded unless the mesh is two-sided.
-#include "kerf/surface_file.h"
+#include "kerf/files.h"
 
 #include "io/line_reader.h"
 #include "io/surface_formats.h"
 #include "kerf/body_file.h"
-#include "kerf/stream.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "kerf/files.h"
 #include "kerf/mesh.h"
-#include "kerf/surface_file.h"
 
 namespace geo {
 

@@ -1,6 +1,6 @@
 // USD as text (.usda): a mesh with time samples for each value that changes. Frames are read and
 // printed on several threads, and written in order.
-#include "kerf/run_files.h"
+#include "kerf/export.h"
 
 #include <charconv>
 #include <iterator>

@@ -1,6 +1,6 @@
 // Through OpenVDB: volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set
 // from a closed surface. wrapped() does both, in coordinates scaled to voxels.
-#include "kerf/surface_file.h"
+#include "kerf/files.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -12,7 +12,6 @@
 
 #include "geometry/bvh.h"
 #include "kerf/error.h"
-#include "kerf/stream.h"
 
 namespace geo {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "kerf/crack.h"
 #include "kerf/error.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kerf/crack.h"
-#include "kerf/run.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kerf/body.h"
-#include "kerf/run.h"
+#include "kerf/simulation.h"
 #include "simulation/fracture_tip.h"
 
 namespace geo {

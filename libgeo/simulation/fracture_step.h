@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "kerf/run.h"
 #include "kerf/scene.h"
+#include "kerf/simulation.h"
 #include "kerf/solid.h"
 #include "simulation/fracture_front.h"
 

@@ -9,8 +9,8 @@
 
 #include "contact/response/body_contact_penalty.h"
 #include "contact/response/obstacle_penalty.h"
-#include "kerf/run.h"
 #include "kerf/scene.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 

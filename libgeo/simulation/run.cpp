@@ -1,5 +1,5 @@
 // Sums of statistics, member by member. Energy, forces and torques are those of the later frame.
-#include "kerf/run.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kerf/error.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 namespace {

@@ -1,7 +1,7 @@
 // Phases: weld, drop degenerate and duplicate triangles, orient components by flood fill (majority
 // wins), fill the loops of open edges, arrange shells by nesting depth. A shell at odd depth is a
 // cavity if it was oriented against the shell around it, else it is dropped.
-#include "kerf/repair.h"
+#include "kerf/check.h"
 
 #include <algorithm>
 #include <map>
@@ -12,7 +12,6 @@
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_index.h"
-#include "kerf/check.h"
 #include "surface/fair_patch.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"

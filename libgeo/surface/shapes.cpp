@@ -1,7 +1,7 @@
 // Geodesic spheres divide each face of an icosahedron into frequency² triangles and project them
 // along rays from the centre. Radius functions are sums of bumps exp(−x²) and sines. Points are
 // shared by integer coordinates, never by comparison of doubles.
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 #include <cmath>
 #include <iterator>

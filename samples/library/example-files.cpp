@@ -6,9 +6,9 @@
 #include <kerf/body.h>
 #include <kerf/body_file.h>
 #include <kerf/error.h>
+#include <kerf/files.h>
+#include <kerf/mesh.h>
 #include <kerf/nodes.h>
-#include <kerf/shapes.h>
-#include <kerf/surface_file.h>
 
 int main() {
   const geo::TriangleMesh solid = geo::make_sphere(4);

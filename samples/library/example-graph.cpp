@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <kerf/body.h>
+#include <kerf/mesh.h>
 #include <kerf/nodes.h>
-#include <kerf/shapes.h>
 
 int main() {
   const geo::TriangleMesh solid = geo::make_pumpkin(12);

@@ -3,9 +3,8 @@
 #include <fstream>
 
 #include <kerf/check.h>
-#include <kerf/repair.h>
-#include <kerf/shapes.h>
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
+#include <kerf/mesh.h>
 
 int main() {
   {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include <kerf/crack.h>
+#include <kerf/mesh.h>
 #include <kerf/pieces.h>
-#include <kerf/shapes.h>
 
 int main() {
   geo::Complex complex = geo::Complex::from_skin(geo::make_pumpkin(12));

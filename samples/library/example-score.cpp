@@ -5,11 +5,10 @@
 #include <string>
 
 #include <kerf/crack.h>
-#include <kerf/crack_edits.h>
 #include <kerf/export.h>
+#include <kerf/mesh.h>
 #include <kerf/pieces.h>
 #include <kerf/score.h>
-#include <kerf/shapes.h>
 
 int main() {
   const geo::TriangleMesh ball = geo::make_sphere(8);

@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <fstream>
 
+#include <kerf/body_file.h>
+#include <kerf/files.h>
+#include <kerf/mesh.h>
 #include <kerf/pieces.h>
-#include <kerf/run_files.h>
-#include <kerf/shapes.h>
 #include <kerf/simulation.h>
-#include <kerf/surface_file.h>
 
 int main() {
   geo::Scene scene;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <kerf/body.h>
-#include <kerf/shapes.h>
+#include <kerf/mesh.h>
 #include <kerf/solid.h>
 
 int main() {

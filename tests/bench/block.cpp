@@ -7,7 +7,7 @@
 #include "../crack/block_cuts.h"
 #include "bench.h"
 #include "kerf/error.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 namespace bench {
 namespace {

@@ -6,10 +6,10 @@
 #include "body/veto.h"
 #include "contact/self_contact.h"
 #include "contact_peers.h"
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
 #include "kerf/parallel.h"
-#include "kerf/shapes.h"
 
 namespace bench {
 

@@ -8,9 +8,9 @@
 #include "crack_peers.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
-#include "kerf/surface_file.h"
 
 namespace bench {
 namespace {

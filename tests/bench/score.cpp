@@ -5,11 +5,11 @@
 
 #include "bench.h"
 #include "kerf/crack.h"
+#include "kerf/mesh.h"
 #include "kerf/parallel.h"
 #include "kerf/pieces.h"
 #include "kerf/progress.h"
 #include "kerf/score.h"
-#include "kerf/shapes.h"
 
 namespace bench {
 namespace {

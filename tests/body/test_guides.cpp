@@ -7,8 +7,8 @@
 #include "invariants/cut_bodies.h"
 #include "kerf/body.h"
 #include "kerf/error.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -12,8 +12,8 @@
 #include "kerf/body.h"
 #include "kerf/error.h"
 #include "kerf/graph.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -6,9 +6,9 @@
 #include "base/random.h"
 #include "cases.h"
 #include "contact/cut_body.h"
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "kerf/crack_edits.h"
+#include "kerf/crack.h"
 
 /// A front from a random point of the block's skin: its start and four steps.
 inline std::vector<std::vector<geo::Vec3>> block_cut(geo::Random& random) {

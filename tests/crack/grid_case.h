@@ -12,9 +12,9 @@
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
-#include "kerf/front_file.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 struct GridCrack {
   bool closed = false;

@@ -8,8 +8,8 @@
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

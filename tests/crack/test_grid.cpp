@@ -8,9 +8,9 @@
 #include "crack/grid_case.h"
 #include "crack/shrink.h"
 #include "kerf/crack.h"
+#include "kerf/files.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
-#include "kerf/stream.h"
 
 using namespace geo;
 

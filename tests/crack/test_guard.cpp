@@ -7,8 +7,8 @@
 #include "crack/local_edit.h"
 #include "crack/noise.h"
 #include "kerf/check.h"
-#include "kerf/crack_edits.h"
-#include "kerf/shapes.h"
+#include "kerf/crack.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

@@ -8,10 +8,10 @@
 #include "crack/block_cuts.h"
 #include "geometry/distance.h"
 #include "kerf/check.h"
-#include "kerf/crack_edits.h"
+#include "kerf/crack.h"
 #include "kerf/error.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 #include "surface/delta_sum.h"
 
 using namespace geo;

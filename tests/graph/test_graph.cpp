@@ -8,9 +8,9 @@
 #include "geometry/predicates.h"
 #include "graph/build_graph.h"
 #include "kerf/graph.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
 #include "kerf/parallel.h"
-#include "kerf/shapes.h"
 #include "node_cases.h"
 
 using namespace geo;

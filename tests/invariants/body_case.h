@@ -15,7 +15,7 @@
 #include "crack/shrink.h"
 #include "invariants/models.h"
 #include "kerf/body.h"
-#include "kerf/crack_edits.h"
+#include "kerf/crack.h"
 #include "kerf/nodes.h"
 
 struct BodyCase {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "kerf/error.h"
-#include "kerf/shapes.h"
-#include "kerf/surface_file.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 
 namespace invariants {
 

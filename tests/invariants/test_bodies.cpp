@@ -12,8 +12,8 @@
 #include "invariants/body_faults.h"
 #include "invariants/random_sweeps.h"
 #include "kerf/error.h"
+#include "kerf/files.h"
 #include "kerf/parallel.h"
-#include "kerf/stream.h"
 #include "simd_targets.h"
 
 using namespace geo;

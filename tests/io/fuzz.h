@@ -17,7 +17,7 @@
 #include "cases.h"
 #include "io/mutate.h"
 #include "kerf/error.h"
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 // Callback of the sanitizers, if any: reports the case that they stop.
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());

@@ -12,7 +12,7 @@
 #include "base/random.h"
 #include "io/kerf_writer.h"
 #include "kerf/body_file.h"
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 /// Arrays with rows of fixed and of variable length.
 struct Values {

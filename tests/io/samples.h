@@ -11,13 +11,9 @@
 
 #include "kerf/body.h"
 #include "kerf/body_file.h"
-#include "kerf/front_file.h"
-#include "kerf/node_file.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/run_files.h"
-#include "kerf/shapes.h"
-#include "kerf/stream.h"
-#include "kerf/surface_file.h"
 
 template <class Write>
 std::string bytes_of(const Write& write) {

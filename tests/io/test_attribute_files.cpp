@@ -6,9 +6,9 @@
 #include "cases.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
-#include "kerf/surface_file.h"
 
 using namespace geo;
 

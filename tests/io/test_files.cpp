@@ -15,13 +15,10 @@
 #include "kerf/body.h"
 #include "kerf/body_file.h"
 #include "kerf/error.h"
-#include "kerf/front_file.h"
-#include "kerf/node_file.h"
+#include "kerf/export.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/run_files.h"
-#include "kerf/shapes.h"
-#include "kerf/stream.h"
-#include "kerf/surface_file.h"
 
 using namespace geo;
 

@@ -10,8 +10,8 @@
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"
+#include "kerf/files.h"
 #include "kerf/pieces.h"
-#include "kerf/scene_file.h"
 
 using namespace geo;
 using fuzz::Use;

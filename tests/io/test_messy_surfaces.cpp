@@ -5,8 +5,8 @@
 
 #include "kerf/check.h"
 #include "kerf/error.h"
-#include "kerf/shapes.h"
-#include "kerf/surface_file.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

@@ -6,8 +6,7 @@
 #include <filesystem>
 #include <random>
 
-#include "kerf/node_file.h"
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 TEST_CASE("PCL reads the nodes that are written") {
   geo::NodeSet nodes;

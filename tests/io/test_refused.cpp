@@ -6,7 +6,7 @@
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
-#include "kerf/scene_file.h"
+#include "kerf/files.h"
 
 using namespace geo;
 

@@ -9,9 +9,9 @@
 #include "geometry/bvh.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
-#include "kerf/surface_file.h"
 
 using namespace geo;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 namespace geo {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 namespace solids {
 

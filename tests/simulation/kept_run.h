@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "kerf/run_files.h"
+#include "kerf/body_file.h"
 #include "kerf/simulation.h"
 
 namespace geo {

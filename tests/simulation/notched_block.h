@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kerf/body.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 #include "simulation/fracture_front.h"
 
 struct Notched {

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/parallel.h"
-#include "kerf/scene_file.h"
-#include "kerf/shapes.h"
 #include "simulation/kept_run.h"
 
 using namespace geo;

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "kerf/error.h"
-#include "kerf/scene_file.h"
-#include "kerf/shapes.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "simulation/kept_run.h"
 
 using namespace geo;

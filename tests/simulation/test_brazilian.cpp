@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kerf/scene_file.h"
+#include "kerf/files.h"
 #include "kerf/simulation.h"
 #include "mechanics/disk.h"
 

@@ -5,8 +5,8 @@
 #include "base/random.h"
 #include "cases.h"
 #include "kerf/check.h"
+#include "kerf/mesh.h"
 #include "kerf/parallel.h"
-#include "kerf/shapes.h"
 #include "simulation/kept_run.h"
 
 using namespace geo;

@@ -6,9 +6,9 @@
 
 #include "kerf/body_file.h"
 #include "kerf/error.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/parallel.h"
-#include "kerf/scene_file.h"
-#include "kerf/shapes.h"
 #include "simulation/kept_run.h"
 
 using namespace geo;

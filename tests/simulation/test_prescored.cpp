@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "kerf/check.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 #include "kerf/simulation.h"
 
 using namespace geo;

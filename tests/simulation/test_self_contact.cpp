@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/scene_file.h"
-#include "kerf/shapes.h"
 #include "kerf/simulation.h"
 #include "simulation/collisions.h"
 

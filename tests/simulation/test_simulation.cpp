@@ -2,9 +2,9 @@
 
 #include "kerf/check.h"
 #include "kerf/error.h"
+#include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/scene_file.h"
-#include "kerf/shapes.h"
 #include "kerf/simulation.h"
 
 using namespace geo;

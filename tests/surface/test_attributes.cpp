@@ -4,7 +4,6 @@
 #include "invariants/random_cuts.h"
 #include "kerf/error.h"
 #include "kerf/mesh.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 using random_cuts::cases;

@@ -2,8 +2,8 @@
 
 #include "cases.h"
 #include "invariants/random_cuts.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

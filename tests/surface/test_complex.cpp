@@ -2,8 +2,8 @@
 
 #include "kerf/check.h"
 #include "kerf/error.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -4,8 +4,8 @@
 #include "cases.h"
 #include "geometry/bvh.h"
 #include "kerf/check.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

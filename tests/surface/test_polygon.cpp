@@ -1,7 +1,7 @@
 // Triangulated polygons, welded seams, summed deltas.
 #include <catch2/catch.hpp>
 
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 #include "surface/delta_sum.h"
 #include "surface/face_key.h"
 #include "surface/polygon.h"

@@ -5,8 +5,7 @@
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
-#include "kerf/repair.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

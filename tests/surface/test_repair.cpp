@@ -4,8 +4,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "kerf/check.h"
-#include "kerf/repair.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

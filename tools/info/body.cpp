@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include <kerf/body_file.h>
 #include <kerf/check.h>
 #include <kerf/pieces.h>
-#include <kerf/run_files.h>
 #include "info/files.h"
 #include "tool.h"
 

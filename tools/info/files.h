@@ -5,7 +5,7 @@
 #include <kerf/body.h>
 #include <kerf/body_file.h>
 #include <kerf/crack.h>
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
 #include "info/report.h"
 
 namespace info {

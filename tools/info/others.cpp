@@ -5,8 +5,7 @@
 
 #include <kerf/body_file.h>
 #include <kerf/error.h>
-#include <kerf/scene_file.h>
-#include <kerf/stream.h>
+#include <kerf/files.h>
 #include "info/files.h"
 #include "model.h"
 #include "tool.h"

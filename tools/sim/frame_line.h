@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include <kerf/run.h>
+#include <kerf/simulation.h>
 
 namespace sim {
 

@@ -8,9 +8,8 @@
 
 #include <iostream>
 
+#include <kerf/files.h>
 #include <kerf/parallel.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
 
 namespace sim {
 namespace {

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include <kerf/crossing.h>
-#include <kerf/run_files.h>
+#include <kerf/contact.h>
+#include <kerf/files.h>
 #include "sim/frame_line.h"
 #include "sim/run_folder.h"
 

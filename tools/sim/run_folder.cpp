@@ -5,7 +5,7 @@
 #include <ostream>
 
 #include <kerf/error.h>
-#include <kerf/stream.h>
+#include <kerf/files.h>
 
 namespace sim {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include <kerf/stream.h>
+#include <kerf/files.h>
 #include "model.h"
 
 namespace sim {

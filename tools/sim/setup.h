@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <kerf/scene_file.h>
+#include <kerf/files.h>
 #include <kerf/simulation.h>
 #include "tool.h"
 

@@ -3,9 +3,8 @@
 
 #include <vector>
 
-#include <kerf/run_files.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
+#include <kerf/export.h>
+#include <kerf/files.h>
 
 namespace sim {
 

@@ -14,7 +14,7 @@
 #include <memory>
 
 #include <kerf/error.h>
-#include <kerf/stream.h>
+#include <kerf/files.h>
 
 extern char** environ;
 

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include <kerf/files.h>
 #include <kerf/mesh.h>
-#include <kerf/run_files.h>
-#include <kerf/stream.h>
 #include "view/pieces.h"
 
 namespace view {

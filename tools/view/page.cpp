@@ -8,7 +8,7 @@
 #include <functional>
 #include <numeric>
 
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
 #include "version.h"
 #include "view/cut_edges.h"
 #include "view/fields.h"

@@ -6,11 +6,7 @@
 
 #include <kerf/body_file.h>
 #include <kerf/error.h>
-#include <kerf/front_file.h>
-#include <kerf/node_file.h>
-#include <kerf/run_files.h>
-#include <kerf/stream.h>
-#include <kerf/surface_file.h>
+#include <kerf/files.h>
 #include "kind.h"
 
 namespace view {

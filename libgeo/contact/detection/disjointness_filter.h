@@ -10,7 +10,7 @@
 
 namespace geo {
 
-/// Removes the pairs of triangles that provably do not cross (kerf/crossing.h): pairs that are
+/// Removes the pairs of triangles that provably do not cross (kerf/contact.h): pairs that are
 /// disjoint, and pairs that touch in shared vertices and edges only. The others stay in order.
 /// A pair is removed in two cases. First, the unshared vertices of one triangle lie strictly on one
 /// side of the other's plane. Second, one triangle lies strictly beyond an edge of the other,

@@ -1,5 +1,5 @@
 // Pairs without a common vertex come from a tree of boxes, pairs at a vertex from fans that are not
-// height fields. A floating-point filter precedes the exact test faces_cross() (kerf/crossing.h).
+// height fields. A floating-point filter precedes the exact test faces_cross() (kerf/contact.h).
 #include "contact/detection/find_crossings.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "contact/detection/aabb_tree.h"
 #include "contact/detection/disjointness_filter.h"
 #include "kerf/check.h"
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
 #include "kerf/parallel.h"
 
 namespace geo {

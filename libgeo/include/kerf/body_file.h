@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "kerf/body.h"
-#include "kerf/stream.h"
+#include "kerf/files.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 
@@ -128,5 +129,19 @@ void write_body(std::ostream& out, const Body& body);
 /// Updates a file to a later state of its body, by appending the changes. Returns the number of
 /// bytes written. Throws as KerfUpdate::commit().
 std::uint64_t write_body(KerfUpdate& file, const Body& body);
+
+// ---- Checkpoints: the body of a run and its state in one `.kerf` file, replaced by one rename.
+
+struct Checkpoint {
+  Body body;
+  RunState state;
+  std::uint64_t scene = 0;  ///< fingerprint of the scene and its models
+};
+
+/// Writes a body as write_body() does, then sections `run/…`. The same run gives the same bytes.
+void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene);
+/// Reads a checkpoint. Throws InputError as read_body(), and where sections of the run are missing
+/// or impossible.
+Checkpoint read_checkpoint(const KerfFile& file);
 
 }  // namespace geo

@@ -1,5 +1,5 @@
-// Validity of meshes and crack complexes. Geometric tests are exact; reports name the first
-// offending ids.
+// Validity of meshes and crack complexes, and repair of meshes. Geometric tests are exact; reports
+// name the first offending ids.
 #pragma once
 
 #include <array>
@@ -62,5 +62,32 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
 /// True when the half-planes from line ab through the points are in radial order: counter-clockwise
 /// about a→b, each strictly after the one before it. Exact.
 bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through);
+
+// ---- Repair: turns a surface that is nearly solid into a solid.
+
+/// The changes that repair() made, in its order.
+struct RepairStats {
+  std::size_t welded_vertices = 0;    ///< vertices merged into others
+  std::size_t dropped_triangles = 0;  ///< degenerate (a vertex twice) or duplicate
+  std::size_t flipped_triangles = 0;  ///< orientation reversed
+  std::size_t filled_holes = 0;
+  std::size_t added_triangles = 0;  ///< in holes
+  std::size_t smooth_fills = 0;     ///< holes that are filled by fair patches
+  std::size_t dropped_shells = 0;   ///< solid shells wholly inside another solid one
+  /// True when the mesh is as it was.
+  bool nothing() const {
+    return welded_vertices + dropped_triangles + flipped_triangles + filled_holes + dropped_shells == 0;
+  }
+};
+
+/// Repairs the topology of a plain mesh (no sites), in this order: welds seams, open ones also
+/// where their vertices are up to `weld_distance` apart (model units); drops triangles that bound
+/// nothing; orients neighbours alike; fills each hole by triangles between its corners, or, with
+/// `smooth_fill` and where nothing crosses, by a fair patch that continues the surface around it;
+/// turns shells outwards, cavities inwards; drops vertices without triangles.
+///
+/// Attributes stay with their triangles; a filled hole has those of its rim. Intersecting triangles
+/// and edges of more than two triangles remain: check_surface() finds them.
+RepairStats repair(TriangleMesh& mesh, double weld_distance = 0, bool smooth_fill = false);
 
 }  // namespace geo

@@ -1,13 +1,16 @@
-// Bodies, pieces and bonds for other programs: VTK, PLY, NumPy, JSON, glTF (docs/formats.md).
+// Bodies, pieces, bonds and runs for other programs: VTK, PLY, NumPy, JSON, glTF, USD
+// (docs/formats.md).
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "kerf/body.h"
 #include "kerf/body_file.h"
+#include "kerf/mesh.h"
 #include "kerf/pieces.h"
 
 namespace geo {
@@ -65,5 +68,29 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
 
 /// Suffix of the name of hull `part` of `parts`: "" for a single one, else _00, _01 …
 std::string hull_suffix(std::size_t part, std::size_t parts);
+
+// ---- All frames of a run.
+
+/// Writes a ParaView series (`.ply.series`, JSON): paths of numbered frames, relative to the
+/// series, and their times. ParaView's collections, `.pvd`, take VTK's own formats only.
+void write_series(std::ostream& out, const std::vector<std::string>& frames, double frame_rate);
+
+/// The frames of a run as write_usda() reads them. `surface` and `obstacles` are called from
+/// several threads: once for each frame, and several times for frames whose triangles change where
+/// there are many. Memory: one frame for each thread and one more, and the triangles of the first
+/// few changes.
+struct UsdRun {
+  std::size_t frames = 0;
+  double frame_rate = 24;                              ///< frames per second
+  char up = 'Z';                                       ///< vertical axis, 'Y' or 'Z', as USD has no other
+  std::function<TriangleMesh(std::size_t)> surface;    ///< of the bodies in a frame, metres
+  std::function<TriangleMesh(std::size_t)> obstacles;  ///< in a frame, with the same triangles in all; may be empty
+};
+
+/// Writes a run as USD text (Universal Scene Description). The mesh /run/body has a time sample of
+/// points for each frame, and of its triangles where they change; texture coordinates where the
+/// surface has them; skin and cracks as subsets bound to two materials; and the crack of each
+/// triangle as primvars:patch. Obstacles are the mesh /run/obstacles.
+void write_usda(std::ostream& out, const UsdRun& run);
 
 }  // namespace geo

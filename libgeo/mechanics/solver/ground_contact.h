@@ -2,7 +2,7 @@
 // start of the step.
 #pragma once
 
-#include "kerf/state.h"
+#include "kerf/solid.h"
 
 namespace geo {
 

@@ -9,7 +9,7 @@
 
 #include "kerf/body.h"
 #include "kerf/material.h"
-#include "kerf/state.h"
+#include "kerf/solid.h"
 #include "mechanics/discretisation/galerkin.h"
 #include "mechanics/discretisation/nodal_gradients.h"
 #include "mechanics/discretisation/point_lanes.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "kerf/state.h"
+#include "kerf/solid.h"
 #include "mechanics/solver/solid_discretisation.h"
 
 namespace geo {

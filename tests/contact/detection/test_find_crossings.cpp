@@ -8,8 +8,8 @@
 #include "base/random.h"
 #include "cases.h"
 #include "contact/detection/find_crossings.h"
-#include "kerf/crossing.h"
-#include "kerf/shapes.h"
+#include "kerf/contact.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

@@ -6,9 +6,9 @@
 #include "cases.h"
 #include "contact/cut_body.h"
 #include "contact/self_contact.h"
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

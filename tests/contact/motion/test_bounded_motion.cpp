@@ -10,7 +10,7 @@
 #include "contact/motion/straight_motion.h"
 #include "contact/response/contact_constraints.h"
 #include "geometry/predicates.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

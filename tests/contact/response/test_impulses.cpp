@@ -3,8 +3,8 @@
 #include "base/random.h"
 #include "cases.h"
 #include "contact/response/impulses.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -5,8 +5,8 @@
 #include "cases.h"
 #include "contact/response/obstacle_penalty.h"
 #include "contact/response/self_contact_penalty.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

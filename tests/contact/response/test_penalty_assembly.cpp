@@ -5,8 +5,8 @@
 #include "assembled_potential.h"
 #include "contact/cut_body.h"
 #include "contact/response/impulse_response.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "geometry/distance.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

@@ -13,9 +13,9 @@
 #include "contact/response/body_contact_penalty.h"
 #include "contact/response/self_contact_penalty.h"
 #include "contact/self_contact.h"
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

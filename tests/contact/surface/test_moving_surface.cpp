@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "contact/surface/surface_targets.h"
+#include "kerf/mesh.h"
 #include "kerf/nodes.h"
-#include "kerf/shapes.h"
 
 using namespace geo;
 

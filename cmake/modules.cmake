@@ -19,7 +19,14 @@ if(KERF_FUZZ)
   target_link_options(kerf_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-set(KERF_MODULES base geometry surface sampling graph crack score body mechanics contact simulation io)
+# Modules and inner modules in their order: each includes only those before it. The test `architecture` has the order
+# from here. KERF_MODULES are the folders of libgeo alone.
+set(KERF_MODULE_ORDER base geometry surface sampling graph crack score body
+  mechanics/material mechanics/terms mechanics/discretisation mechanics/solver
+  contact/detection contact/surface contact/response contact/motion contact/embedding contact
+  simulation io)
+string(REGEX REPLACE "/[^;]*" "" KERF_MODULES "${KERF_MODULE_ORDER}")
+list(REMOVE_DUPLICATES KERF_MODULES)
 
 function(kerf_module module)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${module}/*.cpp)

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,27 +17,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Modules and inner modules, lowest first. A folder that is not named here is not a module.
-const std::vector<std::string> modules{"base",
-                                       "geometry",
-                                       "surface",
-                                       "sampling",
-                                       "graph",
-                                       "crack",
-                                       "score",
-                                       "body",
-                                       "mechanics/material",
-                                       "mechanics/terms",
-                                       "mechanics/discretisation",
-                                       "mechanics/solver",
-                                       "contact/detection",
-                                       "contact/surface",
-                                       "contact/response",
-                                       "contact/motion",
-                                       "contact/embedding",
-                                       "contact",
-                                       "simulation",
-                                       "io"};
+// Modules and inner modules, lowest first, as cmake/modules.cmake lists them. A folder that is not
+// named there is not a module.
+const std::vector<std::string> modules = [] {
+  std::istringstream order(KERF_MODULE_ORDER);
+  return std::vector<std::string>(std::istream_iterator<std::string>(order), {});
+}();
 
 // The module of each public header: the lowest one that defines functions of it.
 const std::map<std::string, std::string> public_headers{

@@ -1,0 +1,100 @@
+"""The interface to Kerf: arrays in, pieces and bonds out. The Python module does the work, or the command-line tools where it is
+not installed (with_module.py, with_tools.py). Nothing here needs Blender."""
+
+import dataclasses
+import typing
+
+import numpy
+
+
+class Refused(Exception):
+    """The model cannot be used as it is; the text is Kerf's sentence."""
+
+
+class Failed(Exception):
+    """Kerf is not there, or did not succeed for a reason that is not the model's."""
+
+
+class Stopped(Exception):
+    """The user has stopped the work."""
+
+
+@dataclasses.dataclass
+class Model:
+    """A closed triangle mesh: vertices (n, 3) float64, triangles (m, 3) int32."""
+
+    vertices: numpy.ndarray
+    triangles: numpy.ndarray
+
+
+@dataclasses.dataclass
+class Options:
+    """Where and how a model breaks. Lengths are fractions of the diagonal of the model's box, points are in its coordinates."""
+
+    pattern: str = "voronoi"
+    pieces: int = 20
+    jagged: float = 0.0
+    bumps: float = 8.0
+    seed: int = 1
+    axis: typing.Optional[tuple] = None  # none: the pattern's own default
+    impact: typing.Optional[tuple] = None
+    cluster: float = 0.15
+    grain: float = 5.0
+    tile: float = 0.25  # one unit of the inner faces' texture coordinates
+    hulls: int = 0  # convex parts of a piece, at most; 0: no hulls
+    corners: int = 32  # of a hull, at most
+
+
+@dataclasses.dataclass
+class Piece:
+    """A closed piece. `patch` (m,) is 0 on the skin. `source` (m,) is the model's triangle. `uv` (m, 3, 2) is valid on inner
+    faces. `hulls` are pairs of vertices and triangles."""
+
+    vertices: numpy.ndarray
+    triangles: numpy.ndarray
+    patch: numpy.ndarray
+    source: numpy.ndarray
+    uv: numpy.ndarray
+    volume: float
+    centroid: numpy.ndarray
+    hulls: list
+
+
+@dataclasses.dataclass
+class Bond:
+    """The wall between pieces `a` and `b`: area, unit normal from a to b, centroid."""
+
+    a: int
+    b: int
+    area: float
+    normal: tuple
+    centroid: tuple
+
+
+@dataclasses.dataclass
+class Fracture:
+    pieces: list
+    bonds: list
+    notes: list = dataclasses.field(default_factory=list)  # sentences for the user
+
+
+# progress(words, fraction) -> bool, False to stop; it is called now and then from the thread that does the work.
+Progress = typing.Callable[[str, float], bool]
+
+
+def choose(kind="AUTO", tools="", module=""):
+    """The backend: an object with fracture(model, options, progress) -> Fracture, walls(model, options, progress) ->
+    (vertices, triangles), repair(model, voxel, smooth, progress) -> (vertices, triangles, words), and a `name`. `kind` is AUTO,
+    MODULE or TOOLS; `tools` and `module` are folders to look in first. Throws Failed when there is none."""
+    from . import with_module, with_tools
+
+    if kind != "TOOLS":
+        found = with_module.find(module)
+        if found:
+            return found
+        if kind == "MODULE":
+            raise Failed("The Python module kerf is not installed: install the package python3-kerf, or set its folder in the preferences")
+    found = with_tools.find(tools)
+    if found:
+        return found
+    raise Failed("Kerf is not installed: install the package python3-kerf or kerf, or set their folders in the preferences")

@@ -1,0 +1,8 @@
+"""Kerf by its Python module."""
+
+import importlib
+import sys
+
+
+def find(folder=""):
+    return None

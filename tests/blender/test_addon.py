@@ -1,0 +1,379 @@
+"""The add-on in Blender without a window; tests/blender/run.sh runs it. KERF_BACKEND: TOOLS or MODULE."""
+
+import os
+import sys
+import tempfile
+import time
+
+import bpy
+import mathutils
+import mathutils.bvhtree
+import numpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import scenes  # noqa: E402
+from scenes import box, ball, ring, select  # noqa: E402
+
+KIND = os.environ["KERF_BACKEND"]
+
+
+def fracture(**options):
+    assert bpy.ops.object.kerf_fracture(**{"pieces": 8, **options}) == {"FINISHED"}
+
+
+def refused(call, words, **options):
+    """The operator refuses in a sentence with these words and makes nothing."""
+    before = [len(getattr(bpy.data, kind)) for kind in ("objects", "meshes", "materials", "collections")]
+    try:
+        call(**options)
+    except RuntimeError as error:
+        assert words in str(error), error
+    else:
+        raise AssertionError(f"not refused: {words}")
+    assert before == [len(getattr(bpy.data, kind)) for kind in ("objects", "meshes", "materials", "collections")]
+
+
+def test_backend():
+    import kerf_fracture.backend
+
+    preferences = kerf_fracture.settings.preferences(bpy.context)
+    assert kerf_fracture.backend.choose(*preferences).name == KIND.lower()
+
+
+def test_attributes():
+    """Texture coordinates, colours, materials and normals of the skin; a slot and texture coordinates of inner faces."""
+    found = ring()
+    scenes.paint(found)
+    simple = found.modifiers.new("finer", "SUBSURF")
+    simple.subdivision_type, simple.levels = "SIMPLE", 1
+    select(found)
+    fracture(pieces=12, jagged=0.01)
+    pieces = scenes.check_pieces(found, 12)
+    assert scenes.skin_distance(found, pieces) < 1e-5
+    assert found.hide_get() and found.hide_render
+    seen = [0, 0, 0]
+    for piece in pieces:
+        mesh = piece.data
+        assert [m.name for m in mesh.materials] == ["red", "green", "Kerf Inner"]
+        assert [layer.name for layer in mesh.uv_layers] == ["first", "second"] and mesh.uv_layers.active.name == "second"
+        assert [layer.name for layer in mesh.color_attributes] == [layer.name for layer in found.data.color_attributes]
+        assert mesh.color_attributes.active_color.name == found.data.color_attributes.active_color.name
+        if hasattr(mesh, "calc_normals_split"):
+            mesh.calc_normals_split()
+        inner_uvs = set()
+        outer = {v for polygon in mesh.polygons if polygon.material_index < 2 for v in polygon.vertices}
+        for polygon in mesh.polygons:
+            material = polygon.material_index
+            seen[material] += 1
+            for loop in polygon.loop_indices:
+                vertex = mesh.vertices[mesh.loops[loop].vertex_index]
+                at = piece.matrix_world @ vertex.co  # the ring lies at the origin
+                got = [layer.data[loop].uv for layer in mesh.uv_layers]
+                shade = [mesh.color_attributes["corner"].data[loop].color, mesh.color_attributes["point"].data[vertex.index].color]
+                if material == 2:
+                    inner_uvs.add(tuple(got[0]))
+                    assert got[0][:] == got[1][:]
+                    assert max(abs(x - 0.5) for x in shade[0][:3]) < 1e-6 and (vertex.index in outer or shade[1][:] == shade[0][:])
+                    continue
+                for a, b in zip(got, scenes.uvs(at, material)):
+                    assert max(abs(x - y) for x, y in zip(a, b)) < 2e-5, (piece.name, a, b)
+                assert all(max(abs(x - y) for x, y in zip(one, scenes.color(at))) < 2e-5 for one in shade), piece.name
+                middle = mathutils.Vector((at.x, at.y, 0)).normalized()
+                assert (at - middle).normalized().dot(mesh.loops[loop].normal) > 0.97, (piece.name, at)
+        assert len(inner_uvs) > 10
+    assert min(seen) > 100
+
+
+def test_plain():
+    """Without materials and texture coordinates: the skin keeps no material, inner faces have theirs and coordinates."""
+    found = box()
+    found.data.uv_layers.remove(found.data.uv_layers[0])
+    select(found)
+    fracture(pieces=5, jagged=0, inner_material="stone", hide_original=False)
+    assert not found.hide_get()
+    for piece in scenes.check_pieces(found, 5):
+        assert [m and m.name for m in piece.data.materials] == [None, "stone"] and len(piece.data.uv_layers) == 1
+        for polygon in piece.data.polygons:
+            outside = max(abs(x) for x in piece.matrix_world @ polygon.center) > 1 - 1e-5
+            assert polygon.material_index == (0 if outside else 1)
+
+
+def test_transforms():
+    """Several objects at once: modifiers, parents, scale, mirrors, shear. Each has a collection beside itself."""
+    frame = bpy.data.objects.new("frame", None)
+    bpy.context.scene.collection.objects.link(frame)
+    frame.location, frame.rotation_euler, frame.scale = (3, -2, 1), (0.4, 0.5, 0.6), (2, 1, 0.5)
+    room = bpy.data.collections.new("room")
+    bpy.context.scene.collection.children.link(room)
+    objects = []
+    for number, made in enumerate((box("a"), ball("b"), ring("c"), ball("d"))):
+        made.location, made.rotation_euler = (4 * number, 1, 2), (0.3 * number, 0.2, 0.1)
+        objects.append(made)
+    a, b, c, d = objects
+    a.scale, b.scale, c.scale = (1, 2, 3), (-1, 1.5, 1), (0.01, 0.01, 0.02)
+    a.modifiers.new("bevel", "BEVEL").width = 0.1
+    array = a.modifiers.new("array", "ARRAY")
+    array.count, array.relative_offset_displace = 2, (1.5, 0, 0)
+    room.objects.link(b)
+    bpy.context.scene.collection.objects.unlink(b)
+    d.parent = frame
+    scenes.paint(b)
+    select(*objects)
+    fracture(pieces=6)
+    for found in objects:
+        pieces = scenes.check_pieces(found, 6)
+        size = max(found.dimensions)
+        assert scenes.skin_distance(found, pieces) < 2e-5 * max(size, 1), found.name
+        assert {piece.parent for piece in pieces} == {found.parent}
+    assert "b Pieces" in room.children and "a Pieces" in bpy.context.scene.collection.children
+    for piece in scenes.pieces_of("b"):  # mirrored: the same place in the object's coordinates
+        for polygon in piece.data.polygons:
+            for loop in polygon.loop_indices if polygon.material_index < 2 else ():
+                at = b.matrix_world.inverted() @ piece.matrix_world @ piece.data.vertices[piece.data.loops[loop].vertex_index].co
+                assert (mathutils.Vector(scenes.uvs(at, polygon.material_index)[0]) - piece.data.uv_layers["first"].data[loop].uv).length < 1e-4
+
+
+def test_other_kinds():
+    """Objects that are no meshes are broken as their meshes are."""
+    bpy.ops.object.metaball_add(type="BALL")
+    found = scenes.last_object("meta")
+    found.data.resolution = 0.3
+    select(found)
+    fracture(pieces=4)
+    assert len(scenes.pieces_of("meta")) == 4 and all(scenes.closed(piece) for piece in scenes.pieces_of("meta"))
+
+
+def test_patterns():
+    found = box()
+    select(found)
+    found.rotation_euler = (0, 0, 0.5)
+    bpy.context.scene.cursor.location = (0.9, 0.9, 0.9)
+    for pattern in ("voronoi", "planes", "crossing", "radial", "glass", "wood", "bricks"):
+        fracture(pattern=pattern, pieces=9, jagged=0, seed=3, hide_original=False, at_cursor=True, axis="Y")
+        pieces = scenes.check_pieces(found, len(scenes.pieces_of("box")))
+        assert 6 <= len(pieces) <= 10, (pattern, len(pieces))
+        if pattern == "planes":  # slices across the object's own axis
+            own = found.matrix_world.to_3x3().col[1]
+            along = sorted(own.dot(piece.location) for piece in pieces)
+            assert along[-1] - along[0] > 1.3 and all(abs(own.cross(piece.location).length) < 0.2 for piece in pieces)
+        if pattern == "voronoi":
+            near = min(pieces, key=lambda piece: (piece.location - bpy.context.scene.cursor.location).length)
+            assert near["volume"] < 1 / 9 * 8
+        bpy.data.collections.remove(bpy.data.collections["box Pieces"])
+        for piece in pieces:
+            bpy.data.objects.remove(piece)
+        select(found)
+
+
+def test_same_seed():
+    """The same seed gives the same pieces, another one others."""
+    found = box()
+    places = []
+    for seed in (4, 4, 5):
+        select(found)
+        fracture(seed=seed, hide_original=False)
+        pieces = scenes.pieces_of("box")
+        places.append(numpy.concatenate([[v.co[:] for v in piece.data.vertices] for piece in pieces]))
+        bpy.data.collections["box Pieces"].name = f"used {len(places)}"
+        for piece in pieces:
+            piece.name = f"used {len(places)}"
+    assert numpy.array_equal(places[0], places[1]) and not numpy.array_equal(places[0], places[2])
+
+
+def test_hulls():
+    """Hulls are convex, children of their pieces, around them."""
+    found = ring()
+    select(found)
+    fracture(pieces=5, hulls=4, corners=24)
+    for piece in scenes.check_pieces(found, 5):
+        assert 1 <= len(piece.children) <= 4
+        for hull in piece.children:
+            assert hull.name.startswith(f"UCX_{piece.name}_") and hull.hide_render and len(hull.data.vertices) <= 24
+            points = numpy.array([v.co for v in hull.data.vertices], float)
+            for polygon in hull.data.polygons:
+                above = (points - numpy.array(polygon.center, float)) @ numpy.array(polygon.normal, float)
+                assert above.max() < 1e-4, (hull.name, above.max())
+        low = numpy.min([numpy.array(v.co) for hull in piece.children for v in hull.data.vertices], axis=0)
+        own = numpy.min([numpy.array(v.co) for v in piece.data.vertices], axis=0)
+        assert numpy.abs(low - own).max() < 0.15 * max(piece.dimensions)
+    assert len(bpy.data.collections["ring Hulls"].objects) == sum(len(piece.children) for piece in scenes.pieces_of("ring"))
+
+
+def drop(frames=60, **options):
+    """A ball falls on the ground by Blender's own rigid bodies. Returns the distances between centroids, before and after."""
+    scenes.empty_scene()
+    bpy.ops.mesh.primitive_plane_add(size=20)
+    bpy.ops.rigidbody.object_add(type="PASSIVE")
+    found = ball()
+    found.location.z = 3
+    select(found)
+    fracture(pieces=10, jagged=0, rigid_bodies=True, **options)
+    pieces = scenes.check_pieces(found, 10)
+    for piece in pieces:
+        assert piece.rigid_body.type == "ACTIVE" and abs(piece.rigid_body.mass - 1000 * piece["volume"]) < 1e-3 * piece.rigid_body.mass
+    scene = bpy.context.scene
+    places = []
+    for frame in range(1, frames + 1):
+        scene.frame_set(frame)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        places.append(numpy.array([piece.evaluated_get(depsgraph).matrix_world.to_translation() for piece in pieces]))
+    places = numpy.array(places)
+    assert numpy.isfinite(places).all() and places[..., 2].min() > 0, "a piece is below the ground"
+    assert places[-1, :, 2].max() < 2 and abs(places[-1]).max() < 10
+    fallen = places[0, :, 2].mean() - places[11, :, 2].mean()
+    assert abs(fallen - 9.81 / 2 * (11 / 24) ** 2) < 0.15, fallen
+    between = [numpy.linalg.norm(p[:, None] - p[None], axis=-1) for p in (places[0], places[-1])]
+    return pieces, between
+
+
+def test_drop():
+    """Strong bonds hold through the fall of 60 frames; weak ones break; without bonds the pieces part."""
+    pieces, (before, after) = drop(strength=1e9)
+    bonds = bpy.data.collections["ball Bonds"].objects
+    assert len(bonds) >= 9 and {bond.rigid_body_constraint.type for bond in bonds} == {"FIXED"}
+    for bond in bonds:
+        constraint = bond.rigid_body_constraint
+        assert constraint.object1 in pieces and constraint.object2 in pieces and constraint.use_breaking
+        assert abs(constraint.breaking_threshold - 1e9 * bond["area"] / 240) < 1e-3 * constraint.breaking_threshold
+    assert numpy.abs(after - before).max() < 0.05, numpy.abs(after - before).max()
+    _, (before, after) = drop(strength=10)
+    assert (after - before).max() > 0.2, (after - before).max()
+    _, (before, after) = drop(bonds=False, hulls=2)
+    assert (after - before).max() > 0.2 and "ball Bonds" not in bpy.data.collections
+
+
+def test_at_rest():
+    """The broken object's own rigid body leaves the world; its pieces have its friction, and rest until touched."""
+    found = ball()
+    bpy.ops.rigidbody.object_add()
+    found.rigid_body.friction = 0.25
+    select(found)
+    fracture(pieces=4, rigid_bodies=True, at_rest=True)
+    assert found.rigid_body is None
+    pieces = scenes.pieces_of("ball")
+    assert all(piece.rigid_body.friction == 0.25 for piece in pieces)
+    for frame in range(1, 11):
+        bpy.context.scene.frame_set(frame)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    assert all((piece.evaluated_get(depsgraph).matrix_world.to_translation() - piece.location).length < 1e-4 for piece in pieces)
+
+
+def test_refused():
+    """What is no solid is refused in the library's sentence, repaired by the button, and then broken."""
+    found = scenes.open_box()
+    scenes.paint(found)
+    select(found)
+    refused(bpy.ops.object.kerf_fracture, "open: the surface is open: edge")
+    assert "open" in bpy.context.window_manager.kerf_refusals["open"].sentence
+    found.scale = (-1, 2, 1)
+    select(found)
+    assert bpy.ops.object.kerf_repair() == {"FINISHED"}
+    assert not bpy.context.window_manager.kerf_refusals
+    assert abs(scenes.volume(found) - 16) < 1e-4 and found.scale[:] == (-1, 2, 1)
+    assert [m.name for m in found.data.materials] == ["red", "green"] and len(found.data.uv_layers) == 2
+    kept = sum(
+        all((mathutils.Vector(scenes.uvs(found.data.vertices[found.data.loops[i].vertex_index].co, p.material_index)[0])
+             - found.data.uv_layers["first"].data[i].uv).length < 1e-5 for i in p.loop_indices)
+        for p in found.data.polygons
+    )
+    assert kept >= 10, kept
+    fracture(pieces=6)
+    scenes.check_pieces(found, 6)
+
+    first, second = box("first"), box("second")
+    second.location = (1, 1, 1)
+    select(first, second)
+    bpy.ops.object.join()
+    select(first)
+    refused(bpy.ops.object.kerf_fracture, "intersect")
+    refused(bpy.ops.object.kerf_repair, "intersect")
+    assert bpy.ops.object.kerf_repair(voxel=0.01) == {"FINISHED"}
+    assert abs(scenes.volume(first) - 15) < 0.3
+    fracture(pieces=6)
+    scenes.check_pieces(first, 6)
+
+
+def test_refused_others():
+    """One of several is refused: the others are broken. Objects without faces, or scaled to nothing, are refused."""
+    whole, broken = box("whole"), scenes.open_box("broken")
+    select(whole, broken)
+    fracture(pieces=4)
+    scenes.check_pieces(whole, 4)
+    assert "broken Pieces" not in bpy.data.collections and not broken.hide_get()
+    flat = box("flat")
+    flat.scale = (1, 1, 0)
+    select(flat)
+    refused(bpy.ops.object.kerf_fracture, "scale")
+    bare = box("bare")
+    bare.data.clear_geometry()
+    select(bare)
+    refused(bpy.ops.object.kerf_fracture, "no faces")
+
+
+def test_repair_leaves_solids():
+    found = box()
+    found.modifiers.new("bevel", "BEVEL")
+    select(found)
+    assert bpy.ops.object.kerf_repair() == {"FINISHED"} and len(found.modifiers) == 1 and len(found.data.polygons) == 6
+
+
+def test_preview():
+    """The walls that are shown are those of the pieces; the fracture removes them."""
+    found = box()
+    found.location = (1, 2, 3)
+    select(found)
+    for _ in range(2):
+        assert bpy.ops.object.kerf_preview(pieces=8, jagged=0) == {"FINISHED"}
+    walls = [o for o in bpy.data.objects if o.name.startswith("box Walls")]
+    assert len(walls) == 1 and walls[0].display_type == "WIRE"
+    bpy.context.view_layer.update()
+    area = sum(polygon.area for polygon in walls[0].data.polygons)
+    assert all(max(abs(x) for x in walls[0].matrix_world @ v.co - found.location) < 1 + 1e-5 for v in walls[0].data.vertices)
+    select(found)
+    fracture(pieces=8, jagged=0)
+    assert not [o for o in bpy.data.objects if o.name.startswith("box Walls")]
+    inner = sum(polygon.area for piece in scenes.pieces_of("box") for polygon in piece.data.polygons if polygon.material_index == 1)
+    assert abs(inner - 2 * area) < 1e-4 * inner, (inner, area)
+    found.hide_set(False)
+    select(found)
+    bpy.ops.object.kerf_preview(pieces=8)
+    assert bpy.ops.object.kerf_remove_preview() == {"FINISHED"} and len([o for o in bpy.data.objects if "Walls" in o.name]) == 0
+
+
+def test_stop():
+    """The work ends soon after it is stopped, and leaves nothing behind."""
+    import kerf_fracture
+
+    kerf = kerf_fracture.backend.choose(*kerf_fracture.settings.preferences(bpy.context))
+    found = ball(subdivisions=5)
+    select(found)
+    own = kerf_fracture.source.read(found, bpy.context.evaluated_depsgraph_get())
+    options = kerf_fracture.backend.Options(pieces=3000, jagged=0.01, bumps=30)
+    files = set(os.listdir(tempfile.gettempdir()))
+    job = kerf_fracture.job.Job([own.model, own.model], lambda model, progress: kerf.fracture(model, options, progress))
+    job.start()
+    time.sleep(1)
+    assert job.running()
+    begin = time.monotonic()
+    job.stop()
+    assert time.monotonic() - begin < 5 and not job.running() and job.stopped() and len(job.outcomes) == 1
+    assert not {name for name in set(os.listdir(tempfile.gettempdir())) - files if name.startswith("kerf-")}
+
+
+def main():
+    chosen = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    passed = 0
+    for name, test in list(globals().items()):
+        if name.startswith("test_") and (not chosen or name in chosen):
+            begin = time.monotonic()
+            scenes.empty_scene()
+            preferences = bpy.context.preferences.addons["kerf_fracture"].preferences
+            preferences.backend = KIND
+            test()
+            print(f"{name} {time.monotonic() - begin:.1f} s", flush=True)
+            passed += 1
+    assert passed, "no test"
+    print(f"{passed} passed, 0 failed")
+
+
+main()

@@ -28,7 +28,7 @@ class VIEW3D_PT_kerf_fracture(bpy.types.Panel):
     def draw_refusals(self, context):
         """What was refused among the selected objects, and the buttons that repair it."""
         refused = [context.window_manager.kerf_refusals.get(o.name) for o in context.selected_objects]
-        width = max(20, int(context.region.width / (7 * context.preferences.system.ui_scale)))
+        width = max(20, int(context.region.width / (8.5 * context.preferences.system.ui_scale)))
         for refusal in filter(None, refused):
             box = self.layout.box()
             for number, line in enumerate(textwrap.wrap(f"{refusal.name}: {refusal.sentence}.", width)):

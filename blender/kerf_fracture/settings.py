@@ -39,7 +39,7 @@ class Settings:
     )
     grain: FloatProperty(name="Grain", default=5, min=1, max=100, description="Wood: how many times longer than thick pieces are")
     inner_material: StringProperty(
-        name="Inner Material", default="Kerf Inner", description="Material of inner faces, in a slot of its own; made when it is not there"
+        name="Inner Material", description="Material of inner faces, in a slot of its own; made when it is not there. Empty: Kerf Inner"
     )
     tile: FloatProperty(
         name="Tile", default=0.25, min=0.001, max=100, description="Size of one texture tile on inner faces, as a fraction of the diagonal"

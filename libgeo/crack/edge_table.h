@@ -15,7 +15,8 @@ struct EdgeUse {
   std::uint8_t k;                ///< the edge from the child's k-th corner to the next
 };
 
-/// Edge-uses by edge. Diagonals inside an element are not entered: no other element has them.
+/// Edge-uses by edge. edges_of_complex() leaves out diagonals inside an element, which no other
+/// element has; other tables may hold them.
 class EdgeTable {
  public:
   /// An empty table for edges between this many points.

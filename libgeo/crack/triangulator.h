@@ -15,6 +15,8 @@ namespace geo::crack {
 /// Kinds of a child's edge: part of the face's own edge 0, 1 or 2, part of a constraint, or a
 /// diagonal.
 enum EdgeKind : std::uint8_t { edge_constraint = 3, edge_diagonal = 4 };
+/// Whether an edge of this kind is part of the face's own edges.
+constexpr bool on_face_edge(std::uint8_t kind) { return kind < edge_constraint; }
 
 /// A triangle that a face is divided into.
 struct Child {

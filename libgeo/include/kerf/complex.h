@@ -85,7 +85,8 @@ struct ComplexEdit {
   std::vector<Vec3> new_vertices;
   std::vector<FaceId> removed_faces;
   std::vector<NewFace> new_faces;
-  /// One for every edge that has three or more faces after the commit and gains or loses one in it.
+  /// One for every edge with three or more faces after the commit that gains a face other than the
+  /// child of one that it had. At other edges children take their parents' places.
   std::vector<RadialOrder> radial_orders;
   /// True for an edit that changes nothing.
   bool empty() const { return removed_faces.empty() && new_faces.empty() && new_vertices.empty(); }

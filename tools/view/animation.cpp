@@ -10,7 +10,7 @@
 
 #include <cerrno>
 #include <cmath>
-#include <csignal>
+#include <cstring>
 #include <memory>
 
 #include <kerf/error.h>
@@ -21,101 +21,105 @@ extern char** environ;
 namespace view {
 namespace {
 
-[[noreturn]] void failed(const std::string& what) { throw geo::OutputError("the animation cannot be made: " + what); }
+[[noreturn]] void fail(const std::string& what) { throw geo::OutputError("the animation cannot be made: " + what); }
 
 // A WebP picture, freed by the destructor.
 struct WebpPicture : WebPPicture {
   explicit WebpPicture(const Picture& from) {
-    if (!WebPPictureInit(this)) failed("libwebp is of another version");
+    if (!WebPPictureInit(this)) fail("libwebp is of another version");
     width = from.width, height = from.height, use_argb = 1;
-    if (!WebPPictureImportRGB(this, rgb_bytes(from).data(), 3 * from.width)) failed("out of memory");
+    if (!WebPPictureImportRGB(this, rgb_bytes(from).data(), 3 * from.width)) fail("out of memory");
   }
   ~WebpPicture() { WebPPictureFree(this); }
   WebpPicture(const WebpPicture&) = delete;
 };
 
-// A child process that reads its standard input.
-class Fed {
+// A child process that reads its standard input. SIGPIPE is ignored (tools/tool.cpp): a write to a
+// program that has ended fails.
+class PipedProgram {
  public:
-  explicit Fed(const std::vector<std::string>& words) : program_(words[0]) {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) failed("no pipe");
+  explicit PipedProgram(const std::vector<std::string>& command) : program_(command[0]) {
+    int pipe_ends[2];
+    if (::pipe2(pipe_ends, O_CLOEXEC) != 0) fail("no pipe");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[0], 0);
+    posix_spawn_file_actions_adddup2(&actions, pipe_ends[0], 0);
     std::vector<char*> argv;
-    for (const auto& w : words) argv.push_back(const_cast<char*>(w.c_str()));
+    for (const auto& w : command) argv.push_back(const_cast<char*>(w.c_str()));
     argv.push_back(nullptr);
     const int error = ::posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[0]);
-    in_ = ends[1];
+    ::close(pipe_ends[0]);
+    to_program_ = pipe_ends[1];
     if (error != 0) {
-      ::close(in_);
-      failed(program_ + " is not installed; install it, or write .webp");
+      ::close(to_program_);
+      fail(error == ENOENT ? program_ + " is not installed; install it, or write .webp"
+                           : program_ + " cannot be started: " + std::strerror(error));
     }
-    before_ = std::signal(SIGPIPE, SIG_IGN);
   }
-  ~Fed() { end(); }
-  Fed(const Fed&) = delete;
+  ~PipedProgram() { end(); }
+  PipedProgram(const PipedProgram&) = delete;
   void put(const std::vector<std::uint8_t>& bytes) {
     for (std::size_t at = 0; at < bytes.size();) {
-      const auto n = ::write(in_, bytes.data() + at, bytes.size() - at);
+      const auto n = ::write(to_program_, bytes.data() + at, bytes.size() - at);
       if (n < 0 && errno == EINTR) continue;
-      if (n < 0) failed(program_ + " stopped early");
+      if (n < 0) fail(program_ + " stopped early");
       at += static_cast<std::size_t>(n);
     }
   }
-  // Closes its input and returns its exit code.
+  // Closes its input and waits for it. Returns the status of waitpid(): 0 if it succeeded.
   int end() {
-    if (in_ < 0) return status_;
-    ::close(in_);
-    in_ = -1;
+    if (to_program_ < 0) return status_;
+    ::close(to_program_);
+    to_program_ = -1;
     while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
     }
-    std::signal(SIGPIPE, before_);
     return status_;
   }
 
  private:
   std::string program_;
   pid_t pid_ = 0;
-  int in_ = -1, status_ = 0;
-  void (*before_)(int) = SIG_DFL;
+  int to_program_ = -1, status_ = 0;
 };
 
 }  // namespace
 
 void write_webp(std::ostream& out, int count, double frame_rate, const Sequence& picture) {
+  if (count < 1) fail("it has no pictures");
   std::unique_ptr<WebPAnimEncoder, void (*)(WebPAnimEncoder*)> encoder(nullptr, WebPAnimEncoderDelete);
   WebPConfig config;
-  if (!WebPConfigInit(&config)) failed("libwebp is of another version");
-  config.quality = 82;
+  if (!WebPConfigInit(&config)) fail("libwebp is of another version");
+  config.quality = 82;  // of 100; libwebp's default is 75. Higher: better pictures, larger files
   const auto milliseconds = [&](int frame) { return static_cast<int>(std::lround(1000 * frame / frame_rate)); };
   for (int i = 0; i < count; ++i) {
     const Picture shown = picture(i);
     if (!encoder) encoder.reset(WebPAnimEncoderNew(shown.width, shown.height, nullptr));
     WebpPicture frame(shown);
     if (!encoder || !WebPAnimEncoderAdd(encoder.get(), &frame, milliseconds(i), &config))
-      failed(encoder ? WebPAnimEncoderGetError(encoder.get()) : "out of memory");
+      fail(encoder ? WebPAnimEncoderGetError(encoder.get()) : "out of memory");
   }
   WebPData data;
   WebPDataInit(&data);
   if (!encoder || !WebPAnimEncoderAdd(encoder.get(), nullptr, milliseconds(count), nullptr) ||
       !WebPAnimEncoderAssemble(encoder.get(), &data))
-    failed("libwebp has no memory for it");
+    fail("libwebp has no memory for it");
   out.write(reinterpret_cast<const char*>(data.bytes), static_cast<std::streamsize>(data.size));
   WebPDataClear(&data);
 }
 
 void write_mp4(const std::string& path, int count, double frame_rate, const Sequence& picture) {
-  const std::string aside = path + "." + std::to_string(::getpid()) + ".tmp";
-  geo::TemporaryOutput unfinished(aside);
-  std::unique_ptr<Fed> ffmpeg;
+  if (count < 1) fail("it has no pictures");
+  const std::string temporary = path + "." + std::to_string(::getpid()) + ".tmp";
+  // Declared before ffmpeg, which writes it: so it is removed after ffmpeg has ended.
+  geo::TemporaryOutput unfinished(temporary);
+  // pad: yuv420p needs even sizes. crf: 0 to 51, x264's default is 23; lower: better pictures, larger
+  // files. One thread and bitexact: the same pictures give the same bytes.
+  std::unique_ptr<PipedProgram> ffmpeg;
   for (int i = 0; i < count; ++i) {
     const Picture shown = picture(i);
     if (!ffmpeg)
-      ffmpeg = std::make_unique<Fed>(
+      ffmpeg = std::make_unique<PipedProgram>(
           std::vector<std::string>{"ffmpeg",    "-loglevel",
                                    "error",     "-y",
                                    "-f",        "rawvideo",
@@ -132,10 +136,10 @@ void write_mp4(const std::string& path, int count, double frame_rate, const Sequ
                                    "-flags:v",  "+bitexact",
                                    "-movflags", "+faststart",
                                    "-f",        "mp4",
-                                   aside});
+                                   temporary});
     ffmpeg->put(rgb_bytes(shown));
   }
-  if (!ffmpeg || ffmpeg->end() != 0) failed("ffmpeg failed");
+  if (!ffmpeg || ffmpeg->end() != 0) fail("ffmpeg failed");
   unfinished.commit(path);
 }
 

@@ -1,5 +1,5 @@
-// § 6.5 after a step: closest vertices of nodes near the change, then the trees that lost or found
-// a root.
+// rebind() of body/binding.h. § 6.5 after a step: closest vertices of nodes near the change, then
+// the trees that lost or found a root.
 #include <algorithm>
 #include <numbers>
 #include <queue>

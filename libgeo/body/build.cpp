@@ -1,5 +1,5 @@
-// From the nodes and faces of K: visibility graph (§ 6.1), repairs of its connectivity (§ 6.4),
-// guides (§ 8), neighbours (§ 6.2), binding (§ 6.5), in this order.
+// build_body() of kerf/body.h. From the nodes and faces of K: visibility graph (§ 6.1), repairs of
+// its connectivity (§ 6.4), guides (§ 8), neighbours (§ 6.2), binding (§ 6.5), in this order.
 #include <numeric>
 
 #include "body/connectivity.h"

@@ -1,5 +1,5 @@
-// Every invariant is tested independently of the updates: nodes, edges and pieces by exact
-// predicates; neighbours and binding against a build from scratch, bit for bit.
+// check_body() of kerf/body.h. Every invariant is tested independently of the updates: nodes, edges
+// and pieces by exact predicates; neighbours and binding against a build from scratch, bit for bit.
 #include <algorithm>
 
 #include "body/connectivity.h"

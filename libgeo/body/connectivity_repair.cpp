@@ -1,6 +1,6 @@
-// Repairs of G (§ 6.4): passages too narrow for the sampling, and pieces without a node. In this
-// order: an edge between components that see each other, new nodes at the passage's walls, nodes
-// along a taut path (docs/decisions/032).
+// repair_connectivity() of body/connectivity.h. Repairs of G (§ 6.4): passages too narrow for the
+// sampling, and pieces without a node. In this order: an edge between components that see each
+// other, new nodes at the passage's walls, nodes along a taut path (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>

@@ -1,5 +1,5 @@
-// A radius changes warped lengths: rows near the node are recomputed, and its closest vertex is
-// searched within the new radius.
+// resize_nodes() of kerf/body.h. A radius changes warped lengths: rows near the node are
+// recomputed, and its closest vertex is searched within the new radius.
 #include <algorithm>
 #include <string>
 

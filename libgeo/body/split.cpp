@@ -1,3 +1,5 @@
+// split() and update_body() of kerf/body.h.
+//
 // The seven steps of § 4. advance() of crack/ does steps 1 to 3 on K: front, splitting surface,
 // mesh. The rest follows here: 4 cut the graph, 5 resample, 6 update neighbours, 7 rebind surface
 // vertices. New nodes are placed before the graph is cut, so that one update serves steps 4 and 6.

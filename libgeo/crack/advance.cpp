@@ -1,6 +1,6 @@
-// One step of a crack: sweep, meet, split, classify, stitch, guard, commit (docs/design.md). A
-// refused attempt is repeated with the new front displaced at random; the front's contacts follow
-// from the vertices along the strip's new edges.
+// advance() of kerf/crack.h. One step of a crack: sweep, meet, split, classify, stitch, guard,
+// commit (docs/design.md). A refused attempt is repeated with the new front displaced at random;
+// the front's contacts follow from the vertices along the strip's new edges.
 #include "kerf/crack.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// Edge collapses from a priority queue, the shortest edge first. Each vertex carries a bound of the
-// surface's deviation near it; a collapse adds its own deviation to those of its faces' corners and
-// is refused where one exceeds the tolerance.
+// decimate() of kerf/crack.h. Edge collapses from a priority queue, the shortest edge first.
+// Each vertex carries a bound of the surface's deviation near it; a collapse adds its own deviation
+// to those of its faces' corners and is refused where one exceeds the tolerance.
 #include "kerf/crack.h"
 
 #include <algorithm>

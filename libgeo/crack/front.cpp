@@ -1,5 +1,5 @@
-// Resampling is linear along the polyline, at equal fractions of arc length. Substeps:
-// ⌈max_i |next_i − previous_i| / limit⌉.
+// resample_front() and substep_count() of kerf/crack.h. Resampling is linear along the polyline, at
+// equal fractions of arc length. Substeps: ⌈max_i |next_i − previous_i| / limit⌉.
 #include "kerf/crack.h"
 
 #include <algorithm>

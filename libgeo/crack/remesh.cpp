@@ -1,6 +1,6 @@
-// A queue of faces below the wanted angle; each tries flip, collapse, vertex move and bisection, in
-// this order, until one is accepted. Quality of an edit: its largest cotangent of a smallest angle,
-// before and after.
+// remesh() of kerf/crack.h. A queue of faces below the wanted angle; each tries flip,
+// collapse, vertex move and bisection, in this order, until one is accepted. Quality of an edit:
+// its largest cotangent of a smallest angle, before and after.
 #include "kerf/crack.h"
 
 #include <algorithm>

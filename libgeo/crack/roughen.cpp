@@ -1,3 +1,5 @@
+// roughen() of kerf/crack.h.
+//
 // Longest-edge bisection (Rivara and Inostroza 1997); then each inner vertex moves along its normal
 // to p + amplitude · min(1, d / fade) · Σ_o 0.6^o · noise_o(p), d: distance along edges to the
 // nearest fixed vertex (Dijkstra). A refused move is tried at 1/2 and 1/4, then in later rounds.

@@ -1,5 +1,6 @@
-// As advance(): attempt 0 with the sheet as given, later ones with each vertex displaced at random
-// by up to the attempt's jitter. The sheet is a strip without a front: no contacts are kept.
+// insert_sheet() of kerf/crack.h. As advance(): attempt 0 with the sheet as given, later ones with
+// each vertex displaced at random by up to the attempt's jitter. The sheet is a strip without a
+// front: no contacts are kept.
 #include "kerf/crack.h"
 
 #include "base/random.h"

@@ -90,7 +90,8 @@ class Stitcher {
   }
 
   // Edges of K without a crack face keep their radial order. Where such an edge was divided its
-  // parts need orders of their own; at a whole edge, Complex::apply() lets children inherit the order.
+  // parts need orders of their own; at a whole edge, Complex::apply() lets children inherit the
+  // order.
   void order_divided_edges() {
     for (auto e = a_.strip_size; e < a_.elements.size(); ++e) {
       const Element& element = a_.elements[e];
@@ -174,8 +175,8 @@ class Stitcher {
   const EdgeTable& edges_;
   std::vector<VertexId>& vertex_;
   ComplexEdit edit_;
-  EdgeTable crack_edges_;        // of the kept children
-  std::vector<FaceId> face_of_;  // per child
+  EdgeTable crack_edges_;                           // of the kept children
+  std::vector<FaceId> face_of_;                     // per child
   std::vector<EdgeUse> complex_uses_, crack_uses_;  // of the edge at hand, by faces of K and by crack faces
   std::vector<RadialEntry> cycle_;
 };

@@ -22,14 +22,14 @@ namespace {
 
 constexpr std::size_t packet_size = 32;  // one bit a segment in a 32-bit mask
 
-// Segments with a common end, in the frame of the boxes.
+// Segments with a common end, in box coordinates.
 struct Packet {
   float p[3];
   alignas(64) double exact_end[3][packet_size];  // in model coordinates
   alignas(64) float end[3][packet_size], lo[3][packet_size], hi[3][packet_size];
   float all_lo[3], all_hi[3];
   std::size_t count = 0;
-  bool slabs_valid = true;  // all segments are within twice the frame
+  bool slabs_valid = true;  // all box coordinates are within [−2, 2]
 };
 
 // The plane through three points, for filtered orientations (Shewchuk's A-stage) of a fourth point.
@@ -66,7 +66,7 @@ std::uint32_t bits_of(const Mask& mask) {
   return bytes[0] | std::uint32_t(bytes[1]) << 8;
 }
 
-// The lanes of the boxes of a block that meet the box [lo, hi].
+// The lanes of the boxes of a group that meet the box [lo, hi].
 std::uint32_t meeting(const WideBvh::Boxes& boxes, const float* lo, const float* hi) {
   const Floats d;
   std::uint32_t bits = 0;
@@ -82,7 +82,7 @@ std::uint32_t meeting(const WideBvh::Boxes& boxes, const float* lo, const float*
   return bits;
 }
 
-// The segments of a packet whose boxes meet one box of a block.
+// The segments of a packet whose boxes meet one box of a group.
 std::uint32_t meeting(const Packet& packet, const WideBvh::Boxes& boxes, std::uint32_t lane) {
   const Floats d;
   std::uint32_t bits = 0;
@@ -117,7 +117,7 @@ std::uint32_t within_slab(const Packet& packet, const WideBvh::Slabs& slabs, std
   return ~apart;
 }
 
-// Transforms the segments from p to `ends` to the frame. Unused lanes hold p itself.
+// Transforms the segments from p to `ends` to box coordinates. Unused lanes hold p itself.
 void fill(const WideBvh& tree, const Vec3& p, const Vec3* ends, Packet& packet) {
   const hn::CappedTag<double, WideBvh::width> dd;
   const hn::Rebind<float, decltype(dd)> df;
@@ -207,17 +207,17 @@ void blocked_packet(const WideBvh& tree, Corners corners, Order order, const Vec
   fill(tree, p, ends.data(), packet);
   const auto& levels = tree.levels();
   struct Entry {
-    std::uint32_t level, block;
+    std::uint32_t level, group;
   };
   Entry stack[8 * WideBvh::width];  // 2³² triangles have eight levels
   int top = 0;
   stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
   std::uint32_t undecided = packet.count == 32 ? ~0u : (1u << packet.count) - 1;
   while (top > 0 && undecided != 0) {
-    const auto [level, block] = stack[--top];
-    const auto& boxes = levels[level][block];
+    const auto [level, group] = stack[--top];
+    const auto& boxes = levels[level][group];
     for (auto lanes = meeting(boxes, packet.all_lo, packet.all_hi); lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), child = block * WideBvh::width + lane;
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), child = group * WideBvh::width + lane;
       if (level > 1) {
         stack[top++] = {level - 1, child};
         continue;
@@ -256,6 +256,9 @@ WideBvh::WideBvh(Corners corners, Order order) {
   for (const auto& t : corners) box.add(box_of(t[0], t[1], t[2]));
   middle_ = 0.5 * box.lo + 0.5 * box.hi;
   const double extent = (box.hi - middle_).cwiseMax(middle_ - box.lo).maxCoeff();
+  // Smaller extents keep the scale 1: the reciprocal of a subnormal number overflows. All boxes
+  // then meet at 0, and the exact predicate decides each segment. 1e-150 is far above these
+  // numbers.
   if (extent > 1e-150) scale_ = 1 / extent;
   const auto empty_level = [](std::size_t count) {
     Boxes none;
@@ -264,7 +267,7 @@ WideBvh::WideBvh(Corners corners, Order order) {
         none.lo[axis][lane] = INFINITY, none.hi[axis][lane] = -INFINITY;
     return std::vector<Boxes>((count + width - 1) / width, none);
   };
-  // Error bound of slabs. Coordinates in the frame, at most 2, have an error of 2⁻²³ (1 + 2⁻²⁸).
+  // Error bound of slabs. Box coordinates of at most 2 have an error of 2⁻²³ (1 + 2⁻²⁸).
   // A dot product with a unit vector adds √3 times that, and 3 · 2⁻²⁴ · 2 √3 of its own rounding:
   // together less than 15 · 2⁻²⁴. Rounding of `from` and `to` adds 2⁻²³ at most.
   constexpr double margin = 0x1p-19;

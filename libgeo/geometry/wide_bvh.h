@@ -1,4 +1,5 @@
-// A 16-wide bounding volume hierarchy for packets of short segments, in SIMD lanes.
+// A 16-wide bounding volume hierarchy for packets of up to 32 short segments with a common end, in
+// SIMD lanes. Part of TriangleBvh (bvh.h).
 #pragma once
 
 #include <cstdint>
@@ -9,22 +10,24 @@
 
 namespace geo {
 
-/// A tree of boxes over triangles, sixteen boxes to a block. Boxes are floats in a frame in which
-/// the triangles' coordinates are at most 1 in magnitude. The transformation to the frame is
-/// monotone, rounding included: boxes that meet still meet there. Exact predicates decide what
-/// the boxes and slabs leave open.
+/// A tree of boxes over triangles, in groups of sixteen boxes. Boxes are floats in box coordinates,
+/// in which the triangles' coordinates are at most 1 in magnitude. The transformation to box
+/// coordinates is monotone, rounding included: boxes that meet still meet there. Exact predicates
+/// decide what the boxes and slabs leave open. The accessors are for the kernels in wide_bvh.cpp.
 class WideBvh {
  public:
-  /// Boxes to a block.
+  /// Boxes in a group.
   static constexpr std::uint32_t width = 16;
 
-  /// The boxes of a block; unused ones are empty.
+  /// The boxes of a group; unused ones are empty.
   struct Boxes {
     alignas(64) float lo[3][width], hi[3][width];
   };
-  /// For each triangle of a block: a direction close to its normal, and the interval [from, to]
-  /// that the triangle covers along it. The interval is widened by the rounding error of such
-  /// products for points within twice the frame: a segment beyond it does not touch the triangle.
+  /// For each triangle of a group: a direction close to its normal, and the interval [from, to]
+  /// that the triangle covers along it. A segment with both ends beyond the same end of the
+  /// interval does not touch the triangle. The interval is widened by the rounding error of such
+  /// products for box coordinates of at most 2 in magnitude; blocked() does not use slabs for
+  /// others.
   struct Slabs {
     alignas(64) float normal[3][width], from[width], to[width];
   };
@@ -32,7 +35,7 @@ class WideBvh {
   /// A tree over no triangles.
   WideBvh() = default;
   /// `order`: a permutation of the indices of `corners` that keeps neighbours together. Sixteen
-  /// consecutive triangles form a block, sixteen consecutive blocks the next one, and so on.
+  /// consecutive triangles form a group, sixteen consecutive groups the next one, and so on.
   WideBvh(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order);
 
   /// For each closed segment from p to a point of `ends`, writes 1 to `result` if it touches a
@@ -40,16 +43,17 @@ class WideBvh {
   void blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p,
                std::span<const Vec3> ends, std::uint8_t* result) const;
 
-  /// The origin of the frame, in model coordinates.
+  /// The origin of box coordinates, in model coordinates.
   const Vec3& middle() const { return middle_; }
-  /// The scale of the frame: 1 / largest distance of a coordinate from the origin.
+  /// The scale of box coordinates: 1 / largest distance of a coordinate from the origin, or 1 where
+  /// that is too small for a reciprocal.
   double scale() const { return scale_; }
-  /// A coordinate in the frame.
+  /// A model coordinate in box coordinates.
   float local(double x, int axis) const { return static_cast<float>((x - middle_[axis]) * scale_); }
-  /// levels()[0] holds boxes of triangles, levels()[l] those of blocks of levels()[l − 1]. There
-  /// are two levels or more.
+  /// levels()[0] holds boxes of triangles, levels()[l] those of groups of levels()[l − 1]. There
+  /// are two levels or more, or none without triangles.
   const std::vector<std::vector<Boxes>>& levels() const { return levels_; }
-  /// The slabs of the triangles, by block of levels()[0].
+  /// The slabs of the triangles, by group of levels()[0].
   const std::vector<Slabs>& slabs() const { return slabs_; }
 
  private:

@@ -1,4 +1,5 @@
-// Neighbours of all nodes from scratch (§ 6.2), by three methods that agree bit for bit.
+// build_neighborhoods() of kerf/graph.h and graph/build_graph.h. Neighbours of all nodes from
+// scratch (§ 6.2), by three methods that agree bit for bit.
 #include <algorithm>
 #include <numeric>
 #include <optional>

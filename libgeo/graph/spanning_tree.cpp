@@ -1,8 +1,10 @@
-// Borůvka's algorithm: in each round, the shortest edge out of each component. A node's k nearest
-// nodes are tested first. If none of them is in another component, the tree of nodes is searched.
-// It is not if the component has an edge shorter than the distance to the k-th. For edges beyond
-// the nearest nodes, everything joined by edges shorter than any node's k-th nearest counts as one
-// component from the start. Where nodes are spread evenly that is all nodes, and no round is left.
+// Borůvka's algorithm: in each round, the shortest edge out of each component.
+//
+// A node's k nearest nodes are tested first. If none of them is in another component, the tree of
+// nodes is searched. It is not if the component has an edge shorter than the distance to the k-th.
+// For edges beyond the nearest nodes, everything joined by edges shorter than any node's k-th
+// nearest counts as one component from the start. Where nodes are spread evenly that is all nodes,
+// and no round is left.
 #include "graph/spanning_tree.h"
 
 #include <algorithm>

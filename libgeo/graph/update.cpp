@@ -1,4 +1,6 @@
-// § 6.3 and 6.4. Symbols of the paper:
+// The update of the graph after a crack step (§ 6.3, 6.4).
+//
+// Symbols of the paper:
 //   E_cut     edges that a new face touches
 //   P_new     new nodes
 //   E_new     edges that new nodes get: to their k nearest visible nodes

@@ -1,4 +1,5 @@
-// The public face of the graph: everything forwards to GraphStorage.
+// VisibilityGraph of kerf/graph.h. The public face of the graph: everything forwards to
+// GraphStorage.
 #include <algorithm>
 
 #include "graph/graph_storage.h"

@@ -1,5 +1,6 @@
-// A body as sections of a .kerf file (docs/formats.md). Reading checks every index and value, and
-// derives what is not stored: lengths, edges of guides from both ends, the grid.
+// read_body() and write_body() of kerf/body_file.h. A body as sections of a .kerf file
+// (docs/formats.md). Reading checks every index and value, and derives what is not stored: lengths,
+// edges of guides from both ends, the grid.
 #include "kerf/body_file.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// Sections run/… behind those of the body (docs/formats.md): motion, fronts and counts of a run.
-// Doubles are stored as such, so that a run resumes exactly.
+// read_checkpoint() and write_checkpoint() of kerf/body_file.h. Sections run/… behind those of the
+// body (docs/formats.md): motion, fronts and counts of a run. Doubles are stored as such, so that a
+// run resumes exactly.
 #include "kerf/body_file.h"
 
 #include "io/body_sections.h"

@@ -1,4 +1,5 @@
-// PLY (binary, little-endian) with nodes as vertices; VTK XML (.vtu) with raw appended data.
+// write_graph_ply() and write_vtu() of kerf/export.h. PLY (binary, little-endian) with nodes as
+// vertices; VTK XML (.vtu) with raw appended data.
 #include <functional>
 
 #include "io/graph_edges.h"

@@ -1,4 +1,4 @@
-// VTKHDF 1.0, which ParaView 5.11 opens:
+// write_vtkhdf() of kerf/export.h. VTKHDF 1.0, which ParaView 5.11 opens:
 // https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 #include <hdf5.h>
 

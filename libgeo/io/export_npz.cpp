@@ -1,5 +1,5 @@
-// The zip format is PKWARE's APPNOTE 6.3, with the 64-bit fields of its § 4.5.3 in every entry;
-// .npy is NumPy's NEP 1.
+// write_npz() of kerf/export.h. The zip format is PKWARE's APPNOTE 6.3, with the 64-bit fields of
+// its § 4.5.3 in every entry; .npy is NumPy's NEP 1.
 #include <array>
 
 #include "io/kerf_layout.h"

@@ -1,5 +1,6 @@
-// Text, line by line: `front NAME`, then `step T` and a point a line; or `sheet NAME` with points
-// and triangles. OBJ: each object with a polyline is a time step.
+// Fronts of kerf/files.h. Text, line by line: `front NAME`, then `step T` and a
+// point a line; or `sheet NAME` with points and triangles. OBJ: each object with a polyline is a
+// time step.
 #include "kerf/files.h"
 
 #include <algorithm>

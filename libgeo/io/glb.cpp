@@ -1,5 +1,6 @@
-// Binary glTF 2.0: a header, a JSON chunk and a binary chunk. Corners with equal attributes share a
-// vertex; colours are converted from sRGB to linear.
+// write_glb() and write_bonds() of kerf/export.h. Binary glTF 2.0: a header, a JSON chunk and a
+// binary chunk. Corners with equal attributes share a vertex; colours are converted from sRGB to
+// linear.
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
-// Regular files are read by pread(), which has no common position and is safe in threads.
+// Input of kerf/files.h. Regular files are read by pread(), which has no common position and is
+// safe in threads.
 #include "kerf/files.h"
 
 #include <fcntl.h>

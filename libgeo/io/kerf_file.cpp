@@ -1,6 +1,6 @@
-// Segments are opened in order, each checked by the hashes of head, table and commit record. The
-// content of a section is a list of extents of the file; an update refers to extents of the section
-// before.
+// KerfFile of kerf/body_file.h. Segments are opened in order, each checked by the hashes of head,
+// table and commit record. The content of a section is a list of extents of the file; an update
+// refers to extents of the section before.
 #include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 #include "io/json_integer.h"
 #include "io/kerf_segment.h"
 #include "io/kerf_writer.h"
-#include "io/line_reader.h"
+#include "io/shown.h"
 #include "kerf/body_file.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"

@@ -1,6 +1,6 @@
-// Under a file lock, sections whose hashes differ are appended as one segment: whole, or as runs of
-// rows if these are shorter. The commit record is written after fsync(), so a crash leaves the old
-// state.
+// KerfUpdate of kerf/body_file.h. Under a file lock, sections whose hashes differ are appended as
+// one segment: whole, or as runs of rows if these are shorter. The commit record is written after
+// fsync(), so a crash leaves the old state.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>

@@ -12,7 +12,8 @@
 
 namespace geo {
 
-/// Collects the bytes of one array in order, and passes them on in blocks.
+/// Collects the bytes of one array in order, and passes them on in blocks: for writing, and for
+/// reading by KerfFile::stream().
 class KerfSink {
  public:
   using Take = std::function<void(std::span<const std::byte>)>;

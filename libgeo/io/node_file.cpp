@@ -1,5 +1,5 @@
-// PLY, recognised by its first bytes, else PCD 0.7 (ASCII or binary; Point Cloud Library). A column
-// of a PCD point may have single or double precision.
+// Nodes of kerf/files.h. PLY, recognised by its first bytes, else PCD 0.7 (ASCII
+// or binary; Point Cloud Library). A column of a PCD point may have single or double precision.
 #include "kerf/files.h"
 
 #include <array>

@@ -1,5 +1,5 @@
-// Nodes of a frame are binary PLY in single precision; a series is the JSON that ParaView reads
-// (.series).
+// write_frame_nodes() of kerf/files.h, write_series() of kerf/export.h. Nodes of a frame are binary
+// PLY in single precision; a series is the JSON that ParaView reads (.series).
 #include "kerf/export.h"
 #include "kerf/files.h"
 

@@ -1,5 +1,5 @@
-// TOML by toml++, key by key through TomlTable, which reports unknown keys. Hashes of all files
-// that the scene names enter its fingerprint.
+// read_scene() of kerf/files.h. TOML by toml++, key by key through TomlTable, which reports
+// unknown keys. Hashes of all files that the scene names enter its fingerprint.
 #include "kerf/files.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "io/line_reader.h"
 #include "io/scene_keys.h"
 #include "kerf/files.h"
 

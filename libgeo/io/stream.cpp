@@ -1,5 +1,5 @@
-// Outputs go to a temporary file in the same folder, then fsync() and rename(), which is atomic
-// under POSIX.
+// Output files of kerf/files.h. Outputs go to a temporary file in the same folder, then fsync() and
+// rename(), which is atomic under POSIX.
 #include "kerf/files.h"
 
 #include <fcntl.h>

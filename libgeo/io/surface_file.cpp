@@ -1,5 +1,6 @@
-// Formats are recognised by their first bytes or lines; anything unknown is read as STL. Seams,
-// i.e. vertices at one position, are welded unless the mesh is two-sided.
+// read_surface() of kerf/files.h. Formats are recognised by their first bytes or lines;
+// anything unknown is read as STL. Seams, i.e. vertices at one position, are welded unless the mesh
+// is two-sided.
 #include "kerf/files.h"
 
 #include "io/line_reader.h"

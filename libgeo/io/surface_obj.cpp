@@ -1,4 +1,5 @@
-// Wavefront OBJ: texture coordinates, normals, colours of vertices, materials or groups.
+// parse_obj() of io/surface_formats.h, write_obj() of kerf/files.h. Wavefront OBJ: texture
+// coordinates, normals, colours of vertices, materials or groups.
 #include <bit>
 #include <map>
 

@@ -1,4 +1,4 @@
-// OFF, with normals (NOFF) and colours (COFF) of vertices.
+// parse_off() of io/surface_formats.h. OFF, with normals (NOFF) and colours (COFF) of vertices.
 #include <algorithm>
 
 #include "io/line_reader.h"

@@ -1,4 +1,5 @@
-// Reading a surface from PLY: cut or plain, with its attributes and fronts.
+// parse_surface_ply() of io/surface_formats.h. Reading a surface from PLY: cut or plain, with its
+// attributes and fronts.
 #include <algorithm>
 #include <initializer_list>
 #include <map>

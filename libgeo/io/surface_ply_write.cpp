@@ -1,4 +1,5 @@
-// Writes a surface as binary little-endian PLY, with all that reading it back bit by bit needs.
+// write_ply() of kerf/files.h. Writes a surface as binary little-endian PLY, with all that
+// reading it back bit by bit needs.
 #include <cfloat>
 #include <cmath>
 #include <span>

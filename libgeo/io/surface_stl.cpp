@@ -1,4 +1,4 @@
-// STL, ASCII and binary: triangles only, three vertices each.
+// parse_stl() of io/surface_formats.h. STL, ASCII and binary: triangles only, three vertices each.
 #include <cstring>
 
 #include "io/line_reader.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/line_reader.h"
+#include "io/shown.h"
 #include "kerf/error.h"
 #include "kerf/vec.h"
 

@@ -1,5 +1,5 @@
-// USD as text (.usda): a mesh with time samples for each value that changes. Frames are read and
-// printed on several threads, and written in order.
+// write_usda() of kerf/export.h. USD as text (.usda): a mesh with time samples for each value
+// that changes. Frames are read and printed on several threads, and written in order.
 #include "kerf/export.h"
 
 #include <charconv>

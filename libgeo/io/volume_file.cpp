@@ -1,5 +1,6 @@
-// Through OpenVDB: volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set
-// from a closed surface. wrapped() does both, in coordinates scaled to voxels.
+// read_volume(), wrapped() and write_level_set() of kerf/files.h. Through OpenVDB:
+// volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set from a closed
+// surface. wrapped() does both, in coordinates scaled to voxels.
 #include "kerf/files.h"
 
 #include <openvdb/io/Stream.h>

@@ -1,5 +1,6 @@
-// Octree leaves with material become nodes (Pauly et al. 2005): one node a leaf, with the leaf's
-// edge as spacing and its share of material as volume. Volumes sum to the solid's.
+// sample_nodes() of kerf/nodes.h. Octree leaves with material become nodes (Pauly et al. 2005): one
+// node a leaf, with the leaf's edge as spacing and its share of material as volume. Volumes sum to
+// the solid's.
 #include "kerf/nodes.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// make_score() of kerf/score.h.
+//
 // Search over the number of cells of a pattern: pieces are counted by cutting a copy of the model.
 // The next number follows from the pieces missing or the ratio of surplus, bracketed by bisection;
 // a new seed starts the search again. A small surplus of pieces is joined.

@@ -1,5 +1,5 @@
-// Order: sample and build the body, insert the prescored cracks, then assign velocities. Nodes that
-// a crack inserts belong to the body of their donor.
+// begin_run() of kerf/simulation.h. Order: sample and build the body, insert the prescored cracks,
+// then assign velocities. Nodes that a crack inserts belong to the body of their donor.
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"

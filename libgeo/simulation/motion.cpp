@@ -1,5 +1,5 @@
-// Between keys: linear in position; linear in the angle about a common axis, else spherical
-// interpolation of quaternions (Shoemake 1985).
+// Motion::at() of kerf/scene.h. Between keys: linear in position; linear in the angle about a
+// common axis, else spherical interpolation of quaternions (Shoemake 1985).
 #include "kerf/scene.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// A vertex x of a model stands at pose · (scale · x). Models that stay where they were modelled
-// keep their coordinates bit for bit.
+// place_models() and place_obstacles() of kerf/simulation.h. A vertex x of a model stands at pose ·
+// (scale · x). Models that stay where they were modelled keep their coordinates bit for bit.
 #include <algorithm>
 
 #include "kerf/error.h"

@@ -1,4 +1,5 @@
-// Sums of statistics, member by member. Energy, forces and torques are those of the later frame.
+// FrameStats of kerf/simulation.h. Sums of statistics, member by member. Energy, forces and torques
+// are those of the later frame.
 #include "kerf/simulation.h"
 
 namespace geo {

@@ -1,4 +1,5 @@
-// World = motion · place: a keyframed motion is applied after the pose at rest.
+// Poses of blades and obstacles of kerf/scene.h. World = motion · place: a keyframed motion is
+// applied after the pose at rest.
 #include "kerf/scene.h"
 
 namespace geo {

@@ -1,6 +1,6 @@
-// A time step: cut by blades, place grips, add contact, integrate, move the surface, grow cracks by
-// stress. Self-contact may veto a crack step before its commit; the step is then counted as
-// refused.
+// Simulation of kerf/simulation.h. A time step: cut by blades, place grips, add contact, integrate,
+// move the surface, grow cracks by stress. Self-contact may veto a crack step before its commit;
+// the step is then counted as refused.
 #include "kerf/simulation.h"
 
 #include <algorithm>

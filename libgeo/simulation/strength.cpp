@@ -10,9 +10,15 @@
 
 namespace geo {
 
+namespace {
+// Where noise · variation is near −1 or below, the strength would be zero or negative, and any
+// stress would start a crack. The weakest places keep a twentieth instead.
+constexpr double least_factor = 0.05;
+}  // namespace
+
 double strength_factor(const Strength& s, std::uint64_t seed, double diagonal, const Vec3& x) {
   if (s.variation == 0) return 1;
-  return std::max(0.05, 1 + s.variation * gradient_noise(x / (s.grain > 0 ? s.grain : 0.1 * diagonal), seed));
+  return std::max(least_factor, 1 + s.variation * gradient_noise(x / (s.grain > 0 ? s.grain : 0.1 * diagonal), seed));
 }
 
 bool may_break(const FractureOptions& f, const Vec3& x) {

@@ -1,4 +1,5 @@
-// Strength and crack speed of a material at a point, from the scene's fracture options.
+// Resistance to fracture: variation of the strength, boxes without fracture, Rayleigh speed, stress
+// of a toughness. Used by fracture_step.cpp and fracture_start.cpp.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +10,12 @@
 
 namespace geo {
 
-/// Factor on strength and toughness at material point x: max(0.05, 1 + variation · noise), so that
-/// no variation makes strength negative. `diagonal`: of the box of all bodies, model units; a tenth
-/// of it is the default length scale of the noise.
+/// Factor on strength and toughness at x, material coordinates: max(0.05, 1 + variation · noise).
+/// `diagonal`: of the box of all bodies before any cut, model units; a tenth of it is the default
+/// length scale of the noise.
 double strength_factor(const Strength& strength, std::uint64_t seed, double diagonal, const Vec3& x);
 
-/// False where material point x is in a box without fracture.
+/// False where x, material coordinates, is in or on a box of fracture.off.
 bool may_break(const FractureOptions& fracture, const Vec3& x);
 
 /// Speed of the Rayleigh wave at rest, model units per second: c_s (0.862 + 1.14 ν) / (1 + ν), with

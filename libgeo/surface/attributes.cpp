@@ -1,3 +1,5 @@
+// transfer_attributes() of kerf/mesh.h.
+//
 // A corner gets barycentric weights in its source triangle: 1 at a corner, linear on an edge within
 // 8 ulps of it, else height over the longest edge first, then position along it. Edges are directed
 // by position, so that both triangles of an edge compute equal values.

@@ -1,5 +1,6 @@
-// Edges are counted by direction in a hash map. Pairs of near triangles come from a spatial index;
-// faces_cross() decides each by the corners that they share: 0, 1 or 2 leave different exact tests.
+// Checks of kerf/check.h. Edges are counted by direction in a hash map. Pairs of near triangles
+// come from a spatial index; faces_cross() decides each by the corners that they share: 0, 1 or 2
+// leave different exact tests.
 #include "kerf/check.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// find_bonds() and make_chunks() of kerf/pieces.h.
+//
 // A bond sums its crack faces, weighted by area. Texture coordinates of inner faces project onto
 // the bond's mean plane; u is reversed on the far side, so that no side shows a mirrored texture.
 // Centroid of a piece: Σ V_t (p + q + r) / 4 / Σ V_t over tetrahedra from the middle of its box.

@@ -1,6 +1,6 @@
-// Corners at a vertex form a linked list in ascending order; radial_ links the faces around an edge
-// in a cycle. The neighbour of a side on S_A is the next or previous face there: the other face of
-// the same wedge, seen from that wedge.
+// Complex of kerf/complex.h: storage and queries. Corners at a vertex form a linked list in
+// ascending order; radial_ links the faces around an edge in a cycle. The neighbour of a side on
+// S_A is the next or previous face there: the other face of the same wedge, seen from that wedge.
 #include "kerf/complex.h"
 
 #include <algorithm>

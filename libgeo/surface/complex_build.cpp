@@ -1,6 +1,6 @@
-// A skin gives pairs of faces by edge. In a two-sided surface, triangles of equal sites and patches
-// ±c are the two sides of one crack face; edges of S_A give the wedges, and exact angles order the
-// chains of faces that wedges join.
+// Complex::from_skin() and from_two_sided() of kerf/complex.h. A skin gives pairs of faces by edge.
+// In a two-sided surface, triangles of equal sites and patches ±c are the two sides of one crack
+// face; edges of S_A give the wedges, and exact angles order the chains of faces that wedges join.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,5 +1,6 @@
-// Faces with equal vertices, crack and orientation are kept. A new face is the child of the removed
-// face of its crack nearest to its centroid. Radial orders are copied from the other complex.
+// Complex::difference() of kerf/complex.h. Faces with equal vertices, crack and orientation are
+// kept. A new face is the child of the removed face of its crack nearest to its centroid. Radial
+// orders are copied from the other complex.
 #include <algorithm>
 #include <map>
 #include <set>

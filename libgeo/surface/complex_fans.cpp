@@ -1,6 +1,6 @@
-// A fan is a closed cycle of sides at a vertex: walk from side to side across the edges at it, each
-// time to the other side of the same wedge of material. A rebuilt fan keeps the lowest unclaimed id
-// that its corners had.
+// FanBuilder of surface/complex_impl.h. A fan is a closed cycle of sides at a vertex: walk from
+// side to side across the edges at it, each time to the other side of the same wedge of material. A
+// rebuilt fan keeps the lowest unclaimed id that its corners had.
 #include <algorithm>
 
 #include "surface/complex_impl.h"

@@ -1,3 +1,5 @@
+// convex_decomposition() of kerf/pieces.h.
+//
 // Greedy division (after Mamou and Ghorbel 2009): of seven planes across each principal axis, the
 // one with the largest V(hull) − V(hull₁) − V(hull₂) divides a solid; the solid that saves most is
 // divided first. Cuts are closed by a fan around the centroid of their rim.

@@ -1,4 +1,5 @@
-// Block letters: a pen's distance field on a grid, contoured by marching squares, extruded.
+// make_letter() of kerf/mesh.h. Block letters: a pen's distance field on a grid, contoured by
+// marching squares, extruded.
 #include <algorithm>
 #include <cmath>
 #include <map>

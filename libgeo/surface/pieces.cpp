@@ -1,3 +1,5 @@
+// find_pieces() and piece_mesh() of kerf/pieces.h.
+//
 // Shells are the connected components of S_A, flooded across wedges; their volumes are Kahan sums.
 // Shells joined by crack faces form a group, which divides space (Alexander duality). Cavities and
 // internal cracks belong to the smallest outer shell around them (point in solid test).

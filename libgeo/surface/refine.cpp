@@ -1,5 +1,6 @@
-// Passes of edge bisection: all edges that are too long are divided at once. Each triangle follows
-// the pattern of its 1, 2 or 3 divided edges; with two, the shorter diagonal divides the quad.
+// refined() of kerf/mesh.h. Passes of edge bisection: all edges that are too long are divided at
+// once. Each triangle follows the pattern of its 1, 2 or 3 divided edges; with two, the shorter
+// diagonal divides the quad.
 #include "kerf/mesh.h"
 
 #include <algorithm>

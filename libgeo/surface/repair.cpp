@@ -1,3 +1,5 @@
+// repair() of kerf/mesh.h.
+//
 // Phases: weld, drop degenerate and duplicate triangles, orient components by flood fill (majority
 // wins), fill the loops of open edges, arrange shells by nesting depth. A shell at odd depth is a
 // cavity if it was oriented against the shell around it, else it is dropped.

@@ -1,3 +1,5 @@
+// Shapes of kerf/mesh.h other than letters.
+//
 // Geodesic spheres divide each face of an icosahedron into frequency² triangles and project them
 // along rays from the centre. Radius functions are sums of bumps exp(−x²) and sines. Points are
 // shared by integer coordinates, never by comparison of doubles.

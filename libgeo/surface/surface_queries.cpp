@@ -1,5 +1,6 @@
-// Nearest triangles come from a box tree over the mesh. Faces on a segment are candidates of K's
-// spatial index that pass the exact test.
+// nearest_triangles() of kerf/mesh.h, faces_on_segment() of kerf/complex.h. Nearest triangles come
+// from a box tree over the mesh. Faces on a segment are candidates of K's spatial index that pass
+// the exact test.
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "kerf/complex.h"

@@ -1,5 +1,5 @@
-// Volume: Σ a · (b × c) / 6 from the middle of the box (divergence theorem). Area:
-// Σ |(b − a) × (c − a)| / 2. Both are compensated sums (Neumaier 1974).
+// Measures of kerf/mesh.h: box, area, volume. Volume: Σ a · (b × c) / 6 from the middle of the box
+// (divergence theorem). Area: Σ |(b − a) × (c − a)| / 2. Both are compensated sums (Neumaier 1974).
 #include "kerf/mesh.h"
 
 #include <Eigen/Geometry>

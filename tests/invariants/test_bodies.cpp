@@ -1,7 +1,8 @@
 // Bodies cut at random: after every step graph, rows and binding are those of scratch, components
-// are pieces, nodes are inside, whatever the number of threads and the vectors. A campaign:
-// KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]'; one case of it: KERF_CASE=7000123 and the
-// name of the test; KERF_TELL=1 tells of every step.
+// are pieces, nodes are inside, whatever the number of threads and the vectors.
+//
+// A campaign: KERF_CASES=25 KERF_SEED=7 test_invariants '[bodies]'; one case of it:
+// KERF_CASE=7000123 and the name of the test; KERF_TELL=1 tells of every step.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>

@@ -1,4 +1,5 @@
-// Reports a body or checkpoint: sizes, histograms, and the invariants of check_body().
+// Reports a body or checkpoint: sizes, histograms, and the invariants of check_body() (declared in
+// info/files.h).
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,4 +1,4 @@
-// Reports node files, fronts, scenes, and folders or frames of runs.
+// Reports node files, fronts, scenes, and folders or frames of runs (declared in info/files.h).
 #include <algorithm>
 #include <filesystem>
 #include <numeric>

@@ -1,4 +1,5 @@
-// Reports a surface: sizes, cracks, histogram of edges, and the faults of check_surface().
+// Reports a surface: sizes, cracks, histogram of edges, and the faults of check_surface() (declared
+// in info/files.h).
 #include <algorithm>
 
 #include <kerf/check.h>

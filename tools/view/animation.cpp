@@ -113,8 +113,8 @@ void write_mp4(const std::string& path, int count, double frame_rate, const Sequ
   const std::string temporary = path + "." + std::to_string(::getpid()) + ".tmp";
   // Declared before ffmpeg, which writes it: so it is removed after ffmpeg has ended.
   geo::TemporaryOutput unfinished(temporary);
-  // pad: yuv420p needs even sizes. crf: 0 to 51, x264's default is 23; lower: better pictures, larger
-  // files. One thread and bitexact: the same pictures give the same bytes.
+  // pad: yuv420p needs even sizes. crf: 0 to 51, x264's default is 23; lower: better pictures,
+  // larger files. One thread and bitexact: the same pictures give the same bytes.
   std::unique_ptr<PipedProgram> ffmpeg;
   for (int i = 0; i < count; ++i) {
     const Picture shown = picture(i);

@@ -1,5 +1,6 @@
-// Seams and crack fronts are edges of the derived surface, distinguished by the patches of their
-// two triangles: skin and crack, or the two sides of one crack.
+// add_seams() and add_fronts() of view/compose_parts.h. Seams and crack fronts are edges of the
+// derived surface, distinguished by the patches of their two triangles: skin and crack, or the two
+// sides of one crack.
 #include <map>
 
 #include "view/compose_parts.h"

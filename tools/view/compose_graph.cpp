@@ -1,5 +1,5 @@
-// Edges are sticks and nodes spheres. A neighbour that a face hides is shown with the path to it,
-// by Dijkstra's algorithm along edges.
+// add_nodes() and add_trees() of view/compose_parts.h. Edges are sticks and nodes spheres. A
+// neighbour that a face hides is shown with the path to it, by Dijkstra's algorithm along edges.
 #include <algorithm>
 #include <map>
 

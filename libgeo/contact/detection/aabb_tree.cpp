@@ -1,4 +1,4 @@
-// Boxes sorted along a Hilbert curve and packed bottom-up into blocks of 16, as in a Hilbert R-tree
+// Boxes sorted along a Hilbert curve and packed bottom-up into groups of 16, as in a Hilbert R-tree
 // (Kamel and Faloutsos 1993). Queries descend from the root once for each 256 neighbouring boxes.
 // Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
@@ -25,8 +25,8 @@ namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The lanes of the boxes of a block that meet one box of another block.
-HWY_INLINE std::uint32_t meeting(const AabbTree::Block& boxes, const AabbTree::Block& other, std::uint32_t lane) {
+// The lanes of the boxes of a group that meet one box of another group.
+HWY_INLINE std::uint32_t meeting(const AabbTree::BoxGroup& boxes, const AabbTree::BoxGroup& other, std::uint32_t lane) {
   const hn::CappedTag<float, AabbTree::width> d;
   std::uint32_t bits = 0;
   for (std::size_t at = 0; at < AabbTree::width; at += hn::Lanes(d)) {
@@ -43,12 +43,12 @@ HWY_INLINE std::uint32_t meeting(const AabbTree::Block& boxes, const AabbTree::B
   return bits;
 }
 
-// The lanes of the triangles of a block that share a vertex with one triangle of another block.
-HWY_INLINE std::uint32_t sharing(const AabbTree::Corners& block, const AabbTree::Corners& other, std::uint32_t lane) {
+// The lanes of the triangles of a group that share a vertex with one triangle of another group.
+HWY_INLINE std::uint32_t sharing(const AabbTree::Corners& group, const AabbTree::Corners& other, std::uint32_t lane) {
   const hn::CappedTag<std::uint32_t, AabbTree::width> d;
   std::uint32_t bits = 0;
   for (std::size_t at = 0; at < AabbTree::width; at += hn::Lanes(d)) {
-    const auto a = hn::Load(d, block.v[0] + at), b = hn::Load(d, block.v[1] + at), c = hn::Load(d, block.v[2] + at);
+    const auto a = hn::Load(d, group.v[0] + at), b = hn::Load(d, group.v[1] + at), c = hn::Load(d, group.v[2] + at);
     const auto in_any = [&](int k) HWY_ATTR {
       const auto corner = hn::Set(d, other.v[k][lane]);
       return hn::Or(hn::Eq(a, corner), hn::Or(hn::Eq(b, corner), hn::Eq(c, corner)));
@@ -63,11 +63,11 @@ HWY_INLINE std::uint32_t sharing(const AabbTree::Corners& block, const AabbTree:
 
 }  // namespace
 
-// Fills blocks [begin, end) of the lowest level with boxes in the given order, and the boxes
-// around these blocks in the level above. Coordinates beyond the range of floats become the
-// largest float, never infinity, which marks unused lanes. The last block may be partly unused.
-void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> order, const Vec3& middle, std::size_t begin,
-                 std::size_t end, std::vector<std::vector<AabbTree::Block>>& levels) {
+// Fills groups [begin, end) of the lowest level with boxes in the given order, and the boxes
+// around these groups in the level above. Coordinates beyond the range of floats become the
+// largest float, never infinity, which marks unused lanes. The last group may be partly unused.
+void fill_groups(const Box3* boxes, std::span<const std::uint32_t> order, const Vec3& middle, std::size_t begin,
+                 std::size_t end, std::vector<std::vector<AabbTree::BoxGroup>>& levels) {
   static_assert(sizeof(Box3) == 6 * sizeof(double) && offsetof(Box3, hi) == 3 * sizeof(double));
   constexpr std::size_t width = AabbTree::width;
   const hn::CappedTag<double, width / 2> d;
@@ -75,7 +75,7 @@ void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> order, const 
   const hn::Rebind<std::int64_t, decltype(d)> number;
   const auto largest = hn::Set(d, std::numeric_limits<float>::max());
   for (std::size_t b = begin; b < end; ++b) {
-    AabbTree::Block& block = levels[0][b];
+    AabbTree::BoxGroup& group = levels[0][b];
     const std::size_t count = std::min(width, order.size() - b * width);
     alignas(64) std::int64_t first[width];
     for (std::size_t k = 0; k < width; ++k) first[k] = 6 * std::int64_t(order[b * width + std::min(k, count - 1)]);
@@ -92,21 +92,21 @@ void fill_blocks(const Box3* boxes, std::span<const std::uint32_t> order, const 
         const auto origin = hn::Set(d, middle[axis]);
         const auto low = hn::Min(hn::Max(hn::Sub(lo[axis], origin), hn::Neg(largest)), largest),
                    high = hn::Min(hn::Max(hn::Sub(hi[axis], origin), hn::Neg(largest)), largest);
-        hn::Store(hn::DemoteTo(f, low), f, block.lo[axis] + at),
-            hn::Store(hn::DemoteTo(f, high), f, block.hi[axis] + at);
+        hn::Store(hn::DemoteTo(f, low), f, group.lo[axis] + at),
+            hn::Store(hn::DemoteTo(f, high), f, group.hi[axis] + at);
       }
       if (hn::AllTrue(d, full)) continue;
       alignas(64) double used[width];
       hn::Store(hn::IfThenElseZero(full, largest), d, used);
       for (std::size_t k = 0; k < hn::Lanes(d); ++k)
         for (int axis = 0; axis < 3 && used[k] == 0; ++axis)
-          block.lo[axis][at + k] = INFINITY, block.hi[axis][at + k] = -INFINITY;
+          group.lo[axis][at + k] = INFINITY, group.hi[axis][at + k] = -INFINITY;
     }
     const hn::CappedTag<float, AabbTree::width> all;
     for (int axis = 0; axis < 3; ++axis) {
-      auto lo = hn::Load(all, block.lo[axis]), hi = hn::Load(all, block.hi[axis]);
+      auto lo = hn::Load(all, group.lo[axis]), hi = hn::Load(all, group.hi[axis]);
       for (std::size_t at = hn::Lanes(all); at < width; at += hn::Lanes(all))
-        lo = hn::Min(lo, hn::Load(all, block.lo[axis] + at)), hi = hn::Max(hi, hn::Load(all, block.hi[axis] + at));
+        lo = hn::Min(lo, hn::Load(all, group.lo[axis] + at)), hi = hn::Max(hi, hn::Load(all, group.hi[axis] + at));
       levels[1][b / width].lo[axis][b % width] = hn::GetLane(hn::MinOfLanes(all, lo)),
                                         levels[1][b / width].hi[axis][b % width] = hn::GetLane(hn::MaxOfLanes(all, hi));
     }
@@ -147,62 +147,62 @@ void hilbert_positions(AabbTree::Cells& cells) {
   }
 }
 
-// The blocks of level 1, from block `first` on, that meet the box around block `own` of that level.
-void overlapping_blocks(const std::vector<std::vector<AabbTree::Block>>& levels, std::uint32_t own, std::uint32_t first,
-                        std::vector<std::uint32_t>& out) {
+// The groups of level 1, from group `first` on, that meet the box around group `own` of that level.
+void overlapping_groups(const std::vector<std::vector<AabbTree::BoxGroup>>& levels, std::uint32_t own,
+                        std::uint32_t first, std::vector<std::uint32_t>& out) {
   constexpr std::uint32_t width = AabbTree::width;
-  out.assign(levels.size() == 2 ? 1 : 0, 0);  // two levels: there is one block
+  out.assign(levels.size() == 2 ? 1 : 0, 0);  // two levels: there is one group
   if (levels.size() == 2) return;
   struct Entry {
-    std::uint32_t level, block;
+    std::uint32_t level, group;
   };
   Entry stack[8 * width];  // 2³² boxes have eight levels
   int top = 0;
   stack[top++] = {static_cast<std::uint32_t>(levels.size() - 1), 0};
   while (top > 0) {
-    const auto [level, block] = stack[--top];
+    const auto [level, group] = stack[--top];
     if (level == 1) {
-      out.push_back(block);
+      out.push_back(group);
       continue;
     }
-    auto lanes = meeting(levels[level][block], levels[2][own / width], own % width);
-    // Descendants of earlier blocks come before `first`.
+    auto lanes = meeting(levels[level][group], levels[2][own / width], own % width);
+    // Descendants of earlier groups come before `first`.
     const std::uint32_t earliest = first >> std::countr_zero(width) * (level - 2);
-    if (earliest > block * width) lanes &= ~0u << (earliest - block * width);
+    if (earliest > group * width) lanes &= ~0u << (earliest - group * width);
     for (; lanes != 0; lanes &= lanes - 1)
-      stack[top++] = {level - 1, block * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
+      stack[top++] = {level - 1, group * width + static_cast<std::uint32_t>(std::countr_zero(lanes))};
   }
 }
 
-// Appends pairs of places (lane positions in the tree) for the boxes of block `own` in the lanes
+// Appends pairs of places (lane positions in the tree) for the boxes of group `own` in the lanes
 // `queried`. Without `marked`, pairs with later places; with it, with all places except marked
 // ones that are not later, since these report the pair themselves. Pairs of triangles with a
-// common vertex are left out if `corners` is not null. `near`: overlapping_blocks() of the block
+// common vertex are left out if `corners` is not null. `near`: overlapping_groups() of the group
 // around `own`.
-void pairs_of_block(const std::vector<std::vector<AabbTree::Block>>& levels, const AabbTree::Corners* corners,
+void pairs_of_group(const std::vector<std::vector<AabbTree::BoxGroup>>& levels, const AabbTree::Corners* corners,
                     std::uint32_t own, std::uint32_t queried, const std::uint8_t* marked,
                     std::span<const std::uint32_t> near, std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) {
   constexpr std::uint32_t width = AabbTree::width;
-  const AabbTree::Block &mine = levels[0][own], &around = levels[1][own / width];
-  const auto pairs_with = [&, boxes = levels[0].data(), corners](std::uint32_t block, std::uint32_t lanes) HWY_ATTR {
+  const AabbTree::BoxGroup &mine = levels[0][own], &around = levels[1][own / width];
+  const auto pairs_with = [&, boxes = levels[0].data(), corners](std::uint32_t group, std::uint32_t lanes) HWY_ATTR {
     for (lanes &= queried; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes)), place = own * width + lane;
-      auto met = meeting(boxes[block], mine, lane);
-      if (block == own && !marked) met &= ~((2u << lane) - 1);
-      if (corners && met != 0) met &= ~sharing(corners[block], corners[own], lane);
+      auto met = meeting(boxes[group], mine, lane);
+      if (group == own && !marked) met &= ~((2u << lane) - 1);
+      if (corners && met != 0) met &= ~sharing(corners[group], corners[own], lane);
       for (; met != 0; met &= met - 1)
-        if (const auto other = block * width + static_cast<std::uint32_t>(std::countr_zero(met));
+        if (const auto other = group * width + static_cast<std::uint32_t>(std::countr_zero(met));
             !marked || !(marked[other] && other <= place))
           out.push_back({place, other});
     }
   };
   for (const auto above : near) {
-    const AabbTree::Block& blocks = levels[1][above];
-    auto met = meeting(blocks, around, own % width);
+    const AabbTree::BoxGroup& groups = levels[1][above];
+    auto met = meeting(groups, around, own % width);
     if (above == own / width && !marked) met &= ~0u << own % width;
     for (; met != 0; met &= met - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(met));
-      pairs_with(above * width + lane, meeting(mine, blocks, lane));
+      pairs_with(above * width + lane, meeting(mine, groups, lane));
     }
   }
 }
@@ -213,10 +213,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace geo {
-HWY_EXPORT(fill_blocks);
+HWY_EXPORT(fill_groups);
 HWY_EXPORT(hilbert_positions);
-HWY_EXPORT(overlapping_blocks);
-HWY_EXPORT(pairs_of_block);
+HWY_EXPORT(overlapping_groups);
+HWY_EXPORT(pairs_of_group);
 namespace {
 
 using CurveOrder = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // position on the curve, index of the box
@@ -234,19 +234,19 @@ void sort_by_position(CurveOrder& boxes) {
   }
 }
 
-// Blocks of empty boxes, enough for this number.
-std::vector<AabbTree::Block> empty_blocks(std::size_t boxes) {
-  AabbTree::Block none;
+// Groups of empty boxes, enough for this number.
+std::vector<AabbTree::BoxGroup> empty_groups(std::size_t boxes) {
+  AabbTree::BoxGroup none;
   for (int axis = 0; axis < 3; ++axis)
     std::fill_n(none.lo[axis], AabbTree::width, INFINITY), std::fill_n(none.hi[axis], AabbTree::width, -INFINITY);
-  return std::vector<AabbTree::Block>((boxes + AabbTree::width - 1) / AabbTree::width, none);
+  return std::vector<AabbTree::BoxGroup>((boxes + AabbTree::width - 1) / AabbTree::width, none);
 }
 
-// Extends one box of a block to contain one of another. Returns whether that changed it.
-bool extend(AabbTree::Block& block, std::uint32_t lane, const AabbTree::Block& other, std::uint32_t other_lane) {
+// Extends one box of a group to contain one of another. Returns whether that changed it.
+bool extend(AabbTree::BoxGroup& group, std::uint32_t lane, const AabbTree::BoxGroup& other, std::uint32_t other_lane) {
   bool larger = false;
   for (int axis = 0; axis < 3; ++axis) {
-    float &own_lo = block.lo[axis][lane], &own_hi = block.hi[axis][lane];
+    float &own_lo = group.lo[axis][lane], &own_hi = group.hi[axis][lane];
     const float lo = other.lo[axis][other_lane], hi = other.hi[axis][other_lane];
     larger |= lo < own_lo || hi > own_hi;
     own_lo = std::min(own_lo, lo), own_hi = std::max(own_hi, hi);
@@ -293,7 +293,7 @@ AabbTree::AabbTree(std::vector<Box3> boxes, std::span<const Triangle> triangles)
     }
   });
   for (std::size_t size = order_.size(); levels_.size() < 2 || size > 1; size = levels_.back().size())
-    levels_.push_back(empty_blocks(size));
+    levels_.push_back(empty_groups(size));
   fill();
   built_extents_ = sum_of_extents();
 }
@@ -309,19 +309,19 @@ bool AabbTree::refit(std::vector<Box3>& boxes) {
 
 void AabbTree::fill() {
   parallel_for(levels_[0].size(), 64, [&](std::size_t begin, std::size_t end) {
-    HWY_DYNAMIC_DISPATCH(fill_blocks)(boxes_.data(), order_, middle_, begin, end, levels_);
+    HWY_DYNAMIC_DISPATCH(fill_groups)(boxes_.data(), order_, middle_, begin, end, levels_);
   });
   for (std::size_t l = 1; l + 1 < levels_.size(); ++l)
     for (std::size_t i = 0; i < levels_[l].size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
-        const Block& lower = levels_[l][i];
+        const BoxGroup& lower = levels_[l][i];
         levels_[l + 1][i / width].lo[axis][i % width] = *std::min_element(lower.lo[axis], lower.lo[axis] + width);
         levels_[l + 1][i / width].hi[axis][i % width] = *std::max_element(lower.hi[axis], lower.hi[axis] + width);
       }
 }
 
 void AabbTree::refit_or_rebuild(std::vector<Box3> boxes, std::span<const Triangle> triangles) {
-  // Ratios of the sum of extents to that of construction. Above `largest`, blocks overlap more and
+  // Ratios of the sum of extents to that of construction. Above `largest`, groups overlap more and
   // queries slow down. Below `least`, the boxes are flat: they are so far from the origin of the
   // floats that these no longer resolve them. Both affect speed alone.
   constexpr double largest = 1.2, least = 0.2;
@@ -334,7 +334,7 @@ void AabbTree::refit_or_rebuild(std::vector<Box3> boxes, std::span<const Triangl
 double AabbTree::sum_of_extents() const {
   if (levels_.empty()) return 0;
   double sum = 0;
-  for (const Block& b : levels_[1])
+  for (const BoxGroup& b : levels_[1])
     for (int axis = 0; axis < 3; ++axis)
       for (std::uint32_t k = 0; k < width; ++k)
         if (b.lo[axis][k] <= b.hi[axis][k]) sum += double(b.hi[axis][k]) - double(b.lo[axis][k]);
@@ -343,12 +343,12 @@ double AabbTree::sum_of_extents() const {
 
 void AabbTree::enlarge(std::uint32_t index, const Box3& box) {
   boxes_[index].add(box);
-  std::uint32_t block = place_[index] / width;
-  HWY_DYNAMIC_DISPATCH(fill_blocks)(boxes_.data(), order_, middle_, block, block + 1, levels_);
-  for (std::size_t l = 1; l + 1 < levels_.size() && extend(levels_[l + 1][block / width / width], block / width % width,
-                                                           levels_[l][block / width], block % width);
+  std::uint32_t group = place_[index] / width;
+  HWY_DYNAMIC_DISPATCH(fill_groups)(boxes_.data(), order_, middle_, group, group + 1, levels_);
+  for (std::size_t l = 1; l + 1 < levels_.size() && extend(levels_[l + 1][group / width / width], group / width % width,
+                                                           levels_[l][group / width], group % width);
        ++l)
-    block /= width;
+    group /= width;
 }
 
 AabbTree::Pairs AabbTree::pairs(const std::vector<std::uint8_t>* marked,
@@ -359,22 +359,22 @@ AabbTree::Pairs AabbTree::pairs(const std::vector<std::uint8_t>* marked,
     marked_places.resize(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) marked_places[i] = (*marked)[order_[i]];
   }
-  std::vector<Pairs> found(levels_[1].size());  // by block of level 1
+  std::vector<Pairs> found(levels_[1].size());  // by group of level 1
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     Pairs some;
     for (std::size_t s = begin; s < end; ++s) {
       some.clear();
-      std::uint32_t queried[width] = {}, any = 0;  // lanes of each block of level 0
+      std::uint32_t queried[width] = {}, any = 0;  // lanes of each group of level 0
       for (std::size_t i = s * width * width; i < std::min(order_.size(), (s + 1) * width * width); ++i) {
         const auto bit = std::uint32_t(!marked || marked_places[i]) << i % width;
         queried[i / width % width] |= bit, any |= bit;
       }
       if (any == 0) continue;
       const auto own = static_cast<std::uint32_t>(s);
-      HWY_DYNAMIC_DISPATCH(overlapping_blocks)(levels_, own, marked ? 0 : own, near);
+      HWY_DYNAMIC_DISPATCH(overlapping_groups)(levels_, own, marked ? 0 : own, near);
       for (std::uint32_t b = 0; b < width; ++b)
-        if (queried[b] != 0) HWY_DYNAMIC_DISPATCH(pairs_of_block)
+        if (queried[b] != 0) HWY_DYNAMIC_DISPATCH(pairs_of_group)
       (levels_, corners_.empty() ? nullptr : corners_.data(), own * width + b, queried[b],
        marked ? marked_places.data() : nullptr, near, some);
       std::size_t count = 0;

@@ -11,18 +11,18 @@
 
 namespace geo {
 
-/// A 16-wide tree over boxes in the order of a Hilbert curve. Its blocks hold floats relative to
+/// A 16-wide tree over boxes in the order of a Hilbert curve. Its groups hold floats relative to
 /// the middle of all boxes. Rounding to floats is monotone, so boxes that meet still do; the
 /// boxes themselves then decide which pairs meet.
 class AabbTree {
  public:
-  /// Boxes to a block.
+  /// Boxes in a group.
   static constexpr std::uint32_t width = 16;
-  /// The boxes of a block; unused ones are empty.
-  struct Block {
+  /// The boxes of a group; unused ones are empty.
+  struct BoxGroup {
     alignas(64) float lo[3][width], hi[3][width];
   };
-  /// The vertices of the triangles whose boxes are in a block.
+  /// The vertices of the triangles whose boxes are in a group.
   struct Corners {
     alignas(64) std::uint32_t v[3][width];
   };
@@ -46,7 +46,7 @@ class AabbTree {
   bool refit(std::vector<Box3>& boxes);
 
   /// Takes new boxes of the same triangles by refit(), or builds the tree anew. The latter if
-  /// refit() fails, or if the sum of the blocks' extents is > 1.2 or < 0.2 times that at the
+  /// refit() fails, or if the sum of the groups' extents is > 1.2 or < 0.2 times that at the
   /// construction. It is small where boxes are too far from the origin of the floats.
   void refit_or_rebuild(std::vector<Box3> boxes, std::span<const Triangle> triangles);
 
@@ -61,19 +61,19 @@ class AabbTree {
   /// enlarge() it may differ from that of a new tree.
   Pairs pairs(const std::vector<std::uint8_t>* marked = nullptr, const std::function<void(Pairs&)>& filter = {}) const;
 
-  /// levels()[0] holds the boxes, levels()[l] those around blocks of levels()[l − 1].
-  const std::vector<std::vector<Block>>& levels() const { return levels_; }
+  /// levels()[0] holds the boxes, levels()[l] those around groups of levels()[l − 1].
+  const std::vector<std::vector<BoxGroup>>& levels() const { return levels_; }
 
  private:
-  double sum_of_extents() const;  // of the boxes around blocks: lengths along the three axes
+  double sum_of_extents() const;  // of the boxes around groups: lengths along the three axes
   void fill();
 
   std::vector<Box3> boxes_;
   Vec3 middle_ = Vec3::Zero();                // of the boxes at the construction: origin of the floats
   double built_extents_ = 0;                  // sum_of_extents() at the construction
   std::vector<std::uint32_t> order_, place_;  // index of the box at each place of the tree; the inverse
-  std::vector<std::vector<Block>> levels_;
-  std::vector<Corners> corners_;  // by block of the lowest level; empty: no triangles are known
+  std::vector<std::vector<BoxGroup>> levels_;
+  std::vector<Corners> corners_;  // by group of the lowest level; empty: no triangles are known
 };
 
 /// All pairs (i < j) of boxes that meet, each once. `boxes` and `marked`: as in AabbTree.

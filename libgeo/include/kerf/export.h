@@ -33,7 +33,8 @@ void write_vtkhdf(std::ostream& out, const Body& body);
 void write_npz(std::ostream& out, const KerfFile& file);
 
 /// Writes all sections of a file as JSON: numbers in the shortest form that is read back exactly,
-/// rows of arrays as lists.
+/// NaN and infinity as null, rows of arrays as lists. Sections of an unknown type are left out.
+/// Throws InputError where the file is damaged.
 void write_json(std::ostream& out, const KerfFile& file);
 
 // ---- Pieces and bonds.

@@ -11,9 +11,9 @@
 
 namespace geo {
 
-/// Eq. 1: the displacement at material point x, a blend of the nodes' affine motions u_i + ∇u_i (x
-/// − x_i). `nodes`: ids with their distance to x, not empty. `gradient[i]`: ∇u at node i. If no
-/// kernel reaches x, the first node's motion.
+/// Eq. 1: the displacement at x, material coordinates, a blend of the nodes' affine motions u_i +
+/// ∇u_i (x − x_i). `nodes`: ids with their distance to x, not empty. `gradient[i]`: ∇u at node i.
+/// If no kernel reaches x, the first node's motion.
 template <class Gradients>
 Vec3 displacement_at(const Vec3& x, std::span<const std::pair<NodeId, double>> nodes, const NodeSet& set,
                      const std::vector<Vec3>& u, const Gradients& gradient) {

@@ -1,6 +1,6 @@
-// Saint-Venant–Kirchhoff, and the stable neo-Hookean energy of Smith, de Goes and Kim (2018), which
-// is defined for inverted elements, too. Notation: F deformation gradient, J = det F, E = ½ (FᵀF −
-// 1), I = tr FᵀF.
+// Energies of kerf/material.h, their derivatives of stress_derivative.h. Saint-Venant–Kirchhoff,
+// and the stable neo-Hookean energy of Smith, de Goes and Kim (2018), which is defined for inverted
+// elements, too. Notation: F deformation gradient, J = det F, E = ½ (FᵀF − 1), I = tr FᵀF.
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

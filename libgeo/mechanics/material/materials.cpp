@@ -1,4 +1,5 @@
-// The table is checked once, in the constructor. A single material needs no index per node.
+// Materials of kerf/material.h. The table is checked once, in the constructor. A single material
+// needs no index per node.
 
 #include "kerf/error.h"
 #include "kerf/material.h"

@@ -1,4 +1,5 @@
-// The explicit time step: symplectic Euler with substeps that resolve the fastest wave.
+// Solid::step_explicit() of kerf/solid.h. The explicit time step: symplectic Euler with substeps
+// that resolve the fastest wave.
 #include <algorithm>
 #include <cmath>
 #include <limits>

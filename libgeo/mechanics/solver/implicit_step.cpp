@@ -1,5 +1,5 @@
-// The implicit time step: backward Euler, with steps halved where Newton's method does not
-// converge.
+// Solid::step_implicit() of kerf/solid.h. The implicit time step: backward Euler, with steps halved
+// where Newton's method does not converge.
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
 #include "mechanics/solver/elastic_potential.h"

@@ -1,5 +1,5 @@
-// Transfer of motion over a cut: to new and moved nodes, with the momenta of each component of the
-// graph.
+// SolidDiscretisation::update_nodes() of solid_discretisation.h. Transfer of motion over a cut: to
+// new and moved nodes, with the momenta of each component of the graph.
 #include <algorithm>
 #include <utility>
 

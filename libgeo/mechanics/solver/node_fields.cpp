@@ -1,5 +1,6 @@
-// Fields for pictures: Eq. 1 at the nodes' own positions, and the von Mises stress
-// √(½ Σ (σ_ii − σ_jj)² + 3 Σ σ_ij²), over pairs i < j, of the averaged stress.
+// material_displacement() and von_mises_stress() of kerf/solid.h. Fields for pictures: Eq. 1 at the
+// nodes' own positions, and the von Mises stress √(½ Σ (σ_ii − σ_jj)² + 3 Σ σ_ij²), over pairs i <
+// j, of the averaged stress.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// Solid forwards to SolidDiscretisation. Computed here: Cauchy stress σ = P Fᵀ / J averaged by
-// kernel weights, momenta, and kinetic energy.
+// Solid of kerf/solid.h, except for its time steps. Solid forwards to SolidDiscretisation. Computed
+// here: Cauchy stress σ = P Fᵀ / J averaged by kernel weights, momenta, and kinetic energy.
 #include "kerf/solid.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // Interface of an energy that acts on nodes in addition to elasticity: contact, friction,
-// penalties. Each of its terms depends on one relative displacement d = Σ w_i u_i, as in
+// penalties.
+//
+// Each of its terms depends on one relative displacement d = Σ w_i u_i, as in
 // incremental potential contact (Li et al. 2020). The nodes i and weights w_i of a term are its
 // contact stencil, one row of the contact Jacobian.
 #pragma once

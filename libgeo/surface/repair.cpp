@@ -1,4 +1,4 @@
-// repair() of kerf/mesh.h.
+// repair() of kerf/check.h.
 //
 // Phases: weld, drop degenerate and duplicate triangles, orient components by flood fill (majority
 // wins), fill the loops of open edges, arrange shells by nesting depth. A shell at odd depth is a

@@ -5,7 +5,7 @@
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 
 using namespace geo;
 

@@ -7,7 +7,7 @@
 #include "io/kerf_writer.h"
 #include "kerf/body_file.h"
 #include "kerf/export.h"
-#include "kerf/stream.h"
+#include "kerf/files.h"
 
 using namespace geo;
 

@@ -1,7 +1,7 @@
 // Welded seams.
 #include <catch2/catch.hpp>
 
-#include "kerf/shapes.h"
+#include "kerf/mesh.h"
 #include "surface/weld.h"
 
 using namespace geo;

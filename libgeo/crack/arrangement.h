@@ -31,9 +31,10 @@ class Arrangement {
   Arrangement(const Complex& complex, const Strip& strip);
 
   /// Finds the faces of K that the strip meets, and all intersections of the strip with them and
-  /// with itself.
+  /// with itself. Throws GeometryError when two triangles meet in more than a segment.
   void meet(CrackStats& stats);
-  /// Triangulates each element alone, constrained to its intersections.
+  /// Triangulates each element alone, constrained to its intersections. Throws as
+  /// Triangulator::triangulate().
   void split();
 
   /// All points.

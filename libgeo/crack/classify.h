@@ -16,7 +16,8 @@ struct ChildRef {
 /// The strip's children that lie in the material and on no face, in order of children. A child with
 /// an edge on K is decided by the wedge of K in which it lies; flood fill decides its neighbours; a
 /// component without such an edge is decided by ray parity against the skin. Throws GeometryError
-/// when two edges of a component disagree.
+/// when a child lies on a face at an edge, when two edges of a component disagree, and as
+/// inside_material().
 std::vector<ChildRef> children_in_material(const Arrangement& arrangement, const Complex& complex,
                                            const EdgeTable& edges);
 

@@ -46,7 +46,8 @@ class Triangulator {
 
   /// Appends the children of a face to `out`. `steiner`: its points other than the corners, each
   /// once; `constraints`: segments between its points. Throws GeometryError for a face without
-  /// area, for coinciding points, and for constraints that cross when `canonicalize` is empty.
+  /// area, for points that coincide or lie outside, for constraints that leave the face, meet a
+  /// vertex unlisted, or cross when `canonicalize` is empty.
   void triangulate(const std::array<PointIndex, 3>& corner, std::span<const SteinerPoint> steiner,
                    std::span<const std::pair<PointIndex, PointIndex>> constraints, const Canonicalize& canonicalize,
                    std::vector<Child>& out);

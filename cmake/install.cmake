@@ -1,5 +1,6 @@
 # Install rules, the exported package (find_package(kerf) gives kerf::geo), and Debian packages: kerf (the tools), libgeo0
-# (the shared library) and libgeo-dev (headers, static library, CMake files). `cpack -G DEB` in the build folder makes them.
+# (the shared library), libgeo-dev (headers, static library, CMake files) and python3-kerf (the Python module).
+# `cpack -G DEB` in the build folder makes them; KERF_SHARED and KERF_PYTHON say which there are.
 include(CMakePackageConfigHelpers)
 
 set(KERF_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/kerf)
@@ -16,10 +17,11 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/kerf-config.cmake ${CMAKE_CURRENT_BINA
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/kerf COMPONENT tools)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/kerf COMPONENT tools FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 install(DIRECTORY samples/scenes samples/events DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/kerf/examples COMPONENT tools)
-foreach(package IN ITEMS kerf libgeo0 libgeo-dev)
+foreach(package IN ITEMS kerf libgeo0 libgeo-dev python3-kerf)
   set(component_kerf tools)
   set(component_libgeo0 library)
   set(component_libgeo-dev dev)
+  set(component_python3-kerf python)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component_${package}} RENAME copyright)
 endforeach()
 
@@ -30,6 +32,9 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL tools dev)
 if(KERF_SHARED)
   list(APPEND CPACK_COMPONENTS_ALL library)
+endif()
+if(KERF_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -48,4 +53,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 # What find_package(kerf) asks for.
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgeo0 (= ${PROJECT_VERSION}), libeigen3-dev, libtbb-dev, libhwy-dev, libcgal-dev, libgmp-dev, libmpfr-dev, libopenvdb-dev, libimath-dev, libblosc-dev, libboost-iostreams-dev, libtomlplusplus-dev, libxxhash-dev, libhdf5-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "library that splits deforming solids (development files)\nHeaders, static library and CMake package of libgeo.")
+if(KERF_PYTHON)
+  include(cmake/python-package.cmake)
+endif()
 include(CPack)

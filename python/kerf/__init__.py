@@ -4,3 +4,4 @@ Reference and examples: docs/python.md.
 """
 from kerf._kerf import *  # noqa: F401,F403
 from kerf._kerf import __version__  # noqa: F401
+from kerf.pictures import picture  # noqa: F401

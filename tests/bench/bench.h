@@ -57,6 +57,7 @@ int graph(const Options& options);
 int concave(const Options& options);
 int contact(const Options& options);
 int mechanics(const Options& options);
+int python(const Options& options);  ///< where the module is built
 int score(const Options& options);
 int validate(const Options& options);
 

@@ -10,29 +10,36 @@ int main(int argc, char** argv) {
   std::string what;
   bench::Options options;
   std::vector<std::string> frequencies, nodes;
-  t.argument("WHAT", what,
-             "crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its parts beside other "
-             "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; mechanics: "
-             "time steps beside Bullet; score: prescoring, one thread and all; validate: mechanics against formulas");
+  t.argument(
+      "WHAT", what,
+      "crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its parts beside other "
+      "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; mechanics: "
+      "time steps beside Bullet; python: the module beside C++; score: prescoring, one thread and all; validate: "
+      "mechanics against formulas");
   t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
   t.option("--nodes", nodes,
            "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700)");
   t.option("--cuts", options.cuts, "How many cuts go through the block");
   t.option("--model", options.models, "Closed meshes to measure as well");
   return t.run(argc, argv, [&] {
-    const std::map<std::string, int (*)(const bench::Options&)> known{
+    std::map<std::string, int (*)(const bench::Options&)> known{
         {"crack", bench::crack},     {"block", bench::block},      {"graph", bench::graph},
         {"concave", bench::concave}, {"contact", bench::contact},  {"mechanics", bench::mechanics},
         {"score", bench::score},     {"validate", bench::validate}};
+#ifdef KERF_PYTHON_SCRIPT
+    known["python"] = bench::python;
+#endif
     if (!known.count(what))
       throw tool::UsageError("nothing is known about '" + what +
-                             "'; there are crack, block, graph, concave, contact, mechanics, score and validate");
+                             "'; there are crack, block, graph, concave, contact, mechanics, score, validate and, with "
+                             "KERF_PYTHON, python");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));
     for (const int f : options.frequencies)
       if (f < 1 || f > 2000) throw tool::UsageError("--frequency is from 1 to 2000");
     if (frequencies.empty())
-      options.frequencies = what == "score" ? std::vector<int>{45} : std::vector<int>{11, 22, 45, 89, 179};
+      options.frequencies =
+          what == "score" || what == "python" ? std::vector<int>{45} : std::vector<int>{11, 22, 45, 89, 179};
     for (const auto& n : nodes) options.nodes.push_back(std::strtoul(n.c_str(), nullptr, 10));
     for (const auto n : options.nodes)
       if (n < 100 || n > 100000000) throw tool::UsageError("--nodes is from 100 to 100000000");

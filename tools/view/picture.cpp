@@ -59,19 +59,22 @@ std::vector<std::uint8_t> rgb_bytes(const Picture& picture) {
 }
 
 void write_png(std::ostream& out, const Picture& picture) {
+  write_png(out, rgb_bytes(picture).data(), picture.width, picture.height);
+}
+
+void write_png(std::ostream& out, const std::uint8_t* rgb, int width, int height) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned);
   if (!png) throw geo::OutputError("PNG cannot be written: out of memory");
   png_infop info = png_create_info_struct(png);
   try {
     if (!info) throw geo::OutputError("PNG cannot be written: out of memory");
     png_set_write_fn(png, &out, png_put, png_flush_nothing);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height), 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
-    const auto bytes = rgb_bytes(picture);
-    for (int y = 0; y < picture.height; ++y)
-      png_write_row(png, bytes.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) * 3);
+    for (int y = 0; y < height; ++y)
+      png_write_row(png, rgb + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 3);
     png_write_end(png, info);
   } catch (...) {
     png_destroy_write_struct(&png, &info);

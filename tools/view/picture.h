@@ -26,6 +26,8 @@ std::vector<std::uint8_t> rgb_bytes(const Picture& picture);
 
 /// 8-bit sRGB PNG. Throws geo::OutputError.
 void write_png(std::ostream& out, const Picture& picture);
+/// The same from three bytes a pixel, row by row from the top, as rgb_bytes() gives them.
+void write_png(std::ostream& out, const std::uint8_t* rgb, int width, int height);
 
 /// Pictures of one size in rows of `columns`, with thin margins, each labelled at the lower left.
 Picture contact_sheet(const std::vector<Picture>& pictures, const std::vector<std::string>& labels, int columns);

@@ -408,7 +408,7 @@ double middle_of_view(const std::vector<Vec3>& points, const Vec3& axis, const V
 
 }  // namespace
 
-Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options) {
+Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options, const geo::Progress& progress) {
   const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
   const Stage near =
       placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius, camera.y_up);
@@ -431,7 +431,7 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
 
   const int samples = options.samples * options.samples, rays = (options.occlusion + samples - 1) / samples;
   Picture picture(options.width, options.height);
-  geo::parallel_for(static_cast<std::size_t>(options.height), 4, [&](std::size_t begin, std::size_t end) {
+  const auto draw_rows = [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (int x = 0; x < options.width; ++x) {
         Color sum{};
@@ -449,7 +449,13 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
         }
         picture.at(x, static_cast<int>(y)) = scaled(sum, 1.0 / samples);
       }
-  });
+  };
+  const auto height = static_cast<std::size_t>(options.height), band = std::max<std::size_t>(64, height / 8);
+  for (std::size_t top = 0; top < height; top += band) {
+    geo::report(progress, "render", top, height);
+    geo::parallel_for(std::min(band, height - top), 4,
+                      [&](std::size_t begin, std::size_t end) { draw_rows(top + begin, top + end); });
+  }
   return picture;
 }
 

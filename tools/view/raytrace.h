@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <kerf/mesh.h>
+#include <kerf/progress.h>
 #include "view/picture.h"
 
 namespace view {
@@ -60,7 +61,9 @@ struct RenderOptions {
   int occlusion = 36;  ///< rays for each pixel for ambient light, at least one for each sample
 };
 
-/// Draws a stage. The picture does not depend on the number of threads.
-Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options);
+/// Draws a stage. The picture does not depend on the number of threads. Throws geo::Interrupted
+/// where `progress` requests it.
+Picture render(const Stage& stage, const Camera& camera, const RenderOptions& options,
+               const geo::Progress& progress = {});
 
 }  // namespace view

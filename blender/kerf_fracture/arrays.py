@@ -63,3 +63,22 @@ def smooth_normals(vertices, triangles, degrees=45.0):
     length = numpy.linalg.norm(total, axis=1, keepdims=True)
     total = numpy.where(length > 0, total / numpy.where(length > 0, length, 1), numpy.repeat(own, 3, axis=0))
     return total.reshape(count, 3, 3)
+
+
+def used(vertices, triangles):
+    """The mesh without vertices that no triangle uses."""
+    kept, numbers = numpy.unique(triangles, return_inverse=True)
+    return vertices[kept], numbers.reshape(-1, 3).astype(numpy.int32)
+
+
+def welded(vertices, triangles):
+    """The mesh with open vertices at exactly one place merged, as Kerf's readers of files do."""
+    edges = numpy.sort(numpy.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    edges, count = numpy.unique(edges, axis=0, return_counts=True)
+    rim = numpy.unique(edges[count == 1])
+    if not len(rim):
+        return vertices, triangles
+    _, first, place = numpy.unique(vertices[rim], axis=0, return_index=True, return_inverse=True)
+    number = numpy.arange(len(vertices))
+    number[rim] = rim[first[place.ravel()]]
+    return used(vertices, number[triangles])

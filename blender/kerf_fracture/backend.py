@@ -89,11 +89,11 @@ def choose(kind="AUTO", tools="", module=""):
     from . import with_module, with_tools
 
     if kind != "TOOLS":
-        found = with_module.find(module)
-        if found:
-            return found
-        if kind == "MODULE":
-            raise Failed("The Python module kerf is not installed: install the package python3-kerf, or set its folder in the preferences")
+        try:
+            return with_module.load(module)
+        except Failed:
+            if kind == "MODULE":
+                raise
     found = with_tools.find(tools)
     if found:
         return found

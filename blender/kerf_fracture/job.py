@@ -21,12 +21,13 @@ class Job:
         return self._thread.is_alive()
 
     def stop(self):
-        """Stops the work and waits until it has ended."""
+        """Stops the work. A step that reports no progress for two seconds is left to end by itself; its result is dropped."""
         self._stop.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(2)
 
     def stopped(self):
+        """Whether the work has ended because it was stopped."""
         return any(isinstance(outcome, Stopped) for outcome in self.outcomes)
 
     def run(self):

@@ -3,6 +3,112 @@
 import importlib
 import sys
 
+import numpy
 
-def find(folder=""):
-    return None
+from . import arrays
+from .backend import Bond, Failed, Fracture, Piece, Refused, Stopped
+
+NEEDED = ("Solid", "Mesh", "score", "InputError", "GeometryError", "Interrupted")
+
+
+def load(folder=""):
+    """The module in the folder, or where Python looks. Throws Failed when it is not there or cannot be loaded."""
+    if folder and folder not in sys.path:
+        sys.path.insert(0, folder)
+    try:
+        kerf = importlib.import_module("kerf")
+    except ImportError as error:
+        raise Failed(f"The Python module kerf cannot be loaded ({error}): install the package python3-kerf, or set its folder in the preferences") from error
+    missing = [name for name in NEEDED if not hasattr(kerf, name)]
+    if missing:
+        raise Failed(f"The Python module kerf is of another version: it has no {missing[0]}; install the package python3-kerf again")
+    return Module(kerf)
+
+
+class Module:
+    name = "module"
+
+    def __init__(self, kerf):
+        self.kerf = kerf
+
+    def fracture(self, model, options, progress):
+        with _Sentences(self.kerf):
+            cut, notes = self._crack(model, options, progress, 0.7)
+            hulls = {"hulls": True, "parts": options.hulls, "corners": options.corners} if options.hulls else {}
+            found = cut.pieces(tile=options.tile, progress=_span(progress, 0.7, 1.0), **hulls)
+            bonds = [Bond(int(b["a"]), int(b["b"]), float(b["area"]), tuple(b["normal"]), tuple(b["centroid"])) for b in cut.bonds]
+            return Fracture([_piece(piece) for piece in found], bonds, notes)
+
+    def walls(self, model, options, progress):
+        with _Sentences(self.kerf):
+            cut, _ = self._crack(model, options, progress, 1.0)
+            surface = cut.surface()
+            return arrays.used(surface.vertices, surface.faces[surface.patch > 0])
+
+    def repair(self, model, voxel, smooth, progress):
+        with _Sentences(self.kerf):
+            mesh = self.kerf.Mesh(*arrays.welded(model.vertices, model.triangles))
+            progress("repair", 0.0)
+            mended, stats = mesh.repair(smooth=smooth)
+            words = str(stats)
+            if voxel:
+                mended = mended.wrap(voxel)
+                words += f"; wrapped in {len(mended.faces)} triangles"
+            self.kerf.Solid(mended)  # refuses what is still none
+            if not progress("repair", 1.0):
+                raise Stopped()
+            return numpy.array(mended.vertices), numpy.array(mended.faces, numpy.int32), words
+
+    def _crack(self, model, options, progress, end):
+        """The cut complex, and sentences for the user."""
+        solid = self.kerf.Solid(*arrays.welded(model.vertices, model.triangles))
+        wanted = {name: getattr(options, name) for name in ("pieces", "jagged", "seed", "cluster", "grain")}
+        wanted.update({name: list(getattr(options, name)) for name in ("axis", "impact") if getattr(options, name) is not None})
+        score = self.kerf.score(solid, options.pattern, frequency=options.bumps, progress=_span(progress, 0, end / 2), **wanted)
+        notes = []
+        if score.pieces != options.pieces:
+            notes.append(f"{score.pieces} pieces, not {options.pieces}; another seed may find them")
+        return solid.crack(score, progress=_span(progress, end / 2, end)), notes
+
+
+class _Sentences:
+    """Turns the module's exceptions into the backend's."""
+
+    def __init__(self, kerf):
+        self.kerf = kerf
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is None:
+            return False
+        if issubclass(kind, self.kerf.Interrupted):
+            raise Stopped() from error
+        if issubclass(kind, (self.kerf.InputError, self.kerf.GeometryError)):
+            raise Refused(str(error)) from error
+        if issubclass(kind, self.kerf.Error):
+            raise Failed(str(error)) from error
+        return False
+
+
+def _span(progress, begin, end):
+    """The module's progress, from a part of the whole."""
+
+    def report(phase, done, total):
+        return progress(phase, begin + (end - begin) * (done / total if total else 0.0))
+
+    return report
+
+
+def _piece(piece):
+    return Piece(
+        numpy.array(piece.vertices),
+        numpy.array(piece.faces, numpy.int32),
+        numpy.array(piece.patch),
+        numpy.array(piece.source, numpy.int64),
+        numpy.array(piece.uv),
+        piece.volume,
+        numpy.array(piece.centroid),
+        [(numpy.array(hull.vertices), numpy.array(hull.faces, numpy.int32)) for hull in piece.hulls],
+    )

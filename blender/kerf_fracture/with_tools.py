@@ -10,7 +10,7 @@ import threading
 
 import numpy
 
-from . import ply
+from . import arrays, ply
 from .backend import Bond, Failed, Fracture, Piece, Refused, Stopped
 
 NAMES = ("kerf-score", "kerf-crack", "kerf-pieces", "kerf-repair")
@@ -46,7 +46,7 @@ class Tools:
         with tempfile.TemporaryDirectory(prefix="kerf-") as folder:
             self._crack(folder, model, options, progress)
             vertices, faces = ply.read(os.path.join(folder, "cut.ply"))
-            return _used(vertices, faces["vertex_indices"][faces["patch"] > 0])
+            return arrays.used(vertices, faces["vertex_indices"][faces["patch"] > 0])
 
     def repair(self, model, voxel, smooth, progress):
         with tempfile.TemporaryDirectory(prefix="kerf-") as folder:
@@ -126,12 +126,6 @@ def _listen(pipe, state):
                 state["lines"].append(line.removeprefix("\x1b[K").strip())
         if not some:
             return
-
-
-def _used(vertices, triangles):
-    """The mesh without vertices that no triangle uses."""
-    used, numbers = numpy.unique(triangles, return_inverse=True)
-    return vertices[used], numbers.reshape(-1, 3).astype(numpy.int32)
 
 
 def _read_pieces(folder, notes):

@@ -65,7 +65,7 @@ def measure(path, name, call):
     for piece in made:
         mesh = bmesh.new()
         mesh.from_mesh(piece.data)
-        bmesh.ops.remove_doubles(mesh, verts=mesh.verts, dist=1e-9)  # Cell Fracture splits sharp edges
+        bmesh.ops.remove_doubles(mesh, verts=mesh.verts, dist=1e-5)  # Cell Fracture splits sharp edges
         closed += bool(mesh.faces) and all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges)
         connected += parts(mesh)
         total += mesh.calc_volume(signed=True)

@@ -38,7 +38,10 @@ class Job:
                 return not self._stop.is_set()
 
             try:
-                self.outcomes.append(self.work(item, progress))
+                outcome = self.work(item, progress)
+                if self._stop.is_set():
+                    raise Stopped()
+                self.outcomes.append(outcome)
             except Exception as error:  # the main thread reports it
                 self.outcomes.append(error)
                 if isinstance(error, Stopped):

@@ -50,9 +50,10 @@ class Module:
             mesh = self.kerf.Mesh(*arrays.welded(model.vertices, model.triangles))
             progress("repair", 0.0)
             mended, stats = mesh.repair(smooth=smooth)
-            words = str(stats)
+            words = _words(stats)
             if voxel:
-                mended = mended.wrap(voxel)
+                size = numpy.linalg.norm(numpy.ptp(numpy.array(mended.vertices), axis=0))
+                mended = mended.wrap(voxel * size)
                 words += f"; wrapped in {len(mended.faces)} triangles"
             self.kerf.Solid(mended)  # refuses what is still none
             if not progress("repair", 1.0):
@@ -90,6 +91,19 @@ class _Sentences:
         if issubclass(kind, self.kerf.Error):
             raise Failed(str(error)) from error
         return False
+
+
+def _words(stats):
+    """What a repair has done, in a sentence."""
+    counts = {
+        "vertices welded": stats.welded_vertices,
+        "triangles dropped": stats.dropped_triangles,
+        "triangles flipped": stats.flipped_triangles,
+        "holes filled": stats.filled_holes,
+        "triangles added": stats.added_triangles,
+        "shells dropped": stats.dropped_shells,
+    }
+    return ", ".join(f"{count} {what}" for what, count in counts.items() if count) or "nothing to repair"
 
 
 def _span(progress, begin, end):

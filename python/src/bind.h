@@ -10,5 +10,14 @@ namespace py = pybind11;
 void bind_errors(py::module_& module);   ///< exceptions; first
 void bind_threads(py::module_& module);  ///< number of threads
 void bind_mesh(py::module_& module);     ///< Mesh and Solid
+void bind_deltas(py::module_& module);   ///< CrackDelta and ComplexEdit
+void bind_complex(py::module_& module);  ///< Complex
+void bind_complex_queries(py::module_& module);  ///< faces, radial cycles, sides
+void bind_fronts(py::module_& module);           ///< Front and FrontState
+void bind_score(py::module_& module);            ///< scores
+void bind_crack(py::module_& module);            ///< cracks given whole
+void bind_pieces(py::module_& module);           ///< pieces, bonds and hulls
+void bind_crack_edits(py::module_& module);      ///< remeshing, roughening, decimation
+void bind_checks(py::module_& module);           ///< reports, predicates, crossings
 
 }  // namespace kerf_python

@@ -3,6 +3,7 @@
 #include "kerf/error.h"
 
 #include "bind.h"
+#include "busy.h"
 
 namespace kerf_python {
 namespace {
@@ -33,6 +34,8 @@ void translate(std::exception_ptr pointer) {
     PyErr_SetString(classes.output, e.what());
   } catch (const geo::Interrupted& e) {
     PyErr_SetString(classes.interrupted, e.what());
+  } catch (const BusyError& e) {
+    PyErr_SetString(classes.error, e.what());
   }
 }
 

@@ -131,6 +131,18 @@ Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
   }
 }
 
+std::shared_ptr<const geo::Complex> Solid::uncut() {
+  if (!uncut_) {
+    std::shared_ptr<const geo::Complex> made;
+    {
+      py::gil_scoped_release release;
+      made = std::make_shared<const geo::Complex>(geo::Complex::from_skin(mesh));
+    }
+    if (!uncut_) uncut_ = std::move(made);
+  }
+  return uncut_;
+}
+
 void bind_mesh(py::module_& module) {
   py::class_<Mesh, std::shared_ptr<Mesh>> mesh(module, "Mesh", mesh_doc);
   const auto optional = [](const char* name) { return py::arg_v(name, py::none()); };

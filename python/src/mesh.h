@@ -5,6 +5,7 @@
 #include <string>
 
 #include "arrays.h"
+#include "kerf/complex.h"
 #include "kerf/mesh.h"
 
 namespace kerf_python {
@@ -22,6 +23,11 @@ struct Mesh {
 struct Solid : Mesh {
   /// Checks the mesh with geo::require_solid() unless it is known to be one; throws InputError.
   explicit Solid(geo::TriangleMesh m, bool known = false);
+  /// Its crack complex without cracks, made at the first call. To be called with the GIL.
+  std::shared_ptr<const geo::Complex> uncut();
+
+ private:
+  std::shared_ptr<const geo::Complex> uncut_;
 };
 
 /// The arrays of a mesh as Python gives them; None where there is none.
@@ -36,6 +42,6 @@ geo::TriangleMesh mesh_from(const MeshArguments& arguments);
 
 /// The mesh of an argument that is a Mesh, or an object with `vertices` and `faces`. Throws
 /// InputError for any other object.
-std::shared_ptr<const Mesh> mesh_argument(py::handle object, const std::string& name);
+std::shared_ptr<Mesh> mesh_argument(py::handle object, const std::string& name);
 
 }  // namespace kerf_python

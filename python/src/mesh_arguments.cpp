@@ -102,7 +102,7 @@ geo::TriangleMesh mesh_from(const MeshArguments& arguments) {
   return mesh;
 }
 
-std::shared_ptr<const Mesh> mesh_argument(py::handle object, const std::string& name) {
+std::shared_ptr<Mesh> mesh_argument(py::handle object, const std::string& name) {
   if (py::isinstance<Mesh>(object)) return object.cast<std::shared_ptr<Mesh>>();
   if (!object.is_none() && py::hasattr(object, "vertices") && py::hasattr(object, "faces")) {
     MeshArguments arguments;
@@ -111,7 +111,7 @@ std::shared_ptr<const Mesh> mesh_argument(py::handle object, const std::string& 
       *at = py::none();
     arguments.vertices = object.attr("vertices");
     arguments.faces = object.attr("faces");
-    return std::make_shared<const Mesh>(mesh_from(arguments));
+    return std::make_shared<Mesh>(mesh_from(arguments));
   }
   throw geo::InputError(name + ": give a kerf.Mesh, or an object with vertices and faces");
 }

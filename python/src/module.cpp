@@ -11,4 +11,13 @@ PYBIND11_MODULE(_kerf, module) {
   bind_errors(module);
   bind_threads(module);
   bind_mesh(module);
+  bind_deltas(module);
+  bind_complex(module);
+  bind_complex_queries(module);
+  bind_fronts(module);
+  bind_score(module);
+  bind_crack(module);
+  bind_pieces(module);
+  bind_crack_edits(module);
+  bind_checks(module);
 }

@@ -1,0 +1,155 @@
+// Cracks given whole: sheets, scores and fronts with all their steps.
+#include <pybind11/stl.h>
+
+#include "bind.h"
+#include "fronts.h"
+#include "kerf/error.h"
+#include "options.h"
+#include "score.h"
+
+namespace kerf_python {
+namespace {
+
+using Shared = std::shared_ptr<Complex>;
+
+std::shared_ptr<Delta> insert(Complex& self, const geo::TriangleMesh& sheet, const geo::CrackOptions& options) {
+  geo::CrackStats work;
+  const auto crack = self.next_crack();
+  auto delta = self.edit({}, true, [&] { return geo::insert_sheet(self.complex, sheet, crack, options, &work); });
+  delta->stats = dict_of(work);
+  return delta;
+}
+
+geo::TriangleMesh sheet_of(const geo::Front& front) {
+  geo::TriangleMesh sheet;
+  sheet.vertices = front.steps[0];
+  sheet.triangles = front.triangles;
+  return sheet;
+}
+
+// Sweeps a front through all its steps, or inserts a sheet; a report before each.
+void sweep(const Shared& self, const geo::Front& front, const geo::CrackOptions& options, double max_move,
+           ProgressReport& progress) {
+  const auto total = front.is_sheet() ? 1 : front.steps.size() - 1;
+  const auto tell = [&](std::size_t done) {
+    progress.run([&](const geo::Progress& report) { geo::report(report, "crack " + front.name, done, total); });
+  };
+  tell(0);
+  if (front.is_sheet()) {
+    insert(*self, sheet_of(front), options);
+    return tell(1);
+  }
+  LiveFront live{self, nullptr};
+  {
+    const Writing writing(self->busy);
+    live.record = std::make_shared<FrontRecord>(
+        FrontRecord{geo::begin_front(front.steps[0], front.closed, self->next_crack()), options, {}});
+    live.record->state.name = front.name;
+    self->fronts.push_back(live.record);
+  }
+  for (std::size_t step = 0; step < total; ++step) {
+    std::vector<geo::Vec3> start;
+    for (const auto& p : live.record->state.points) start.push_back(p.position);
+    const auto end = geo::resample_front(start, front.steps[step + 1], front.closed);
+    const int parts = max_move > 0 ? geo::substep_count(start, end, max_move) : 1;
+    for (int i = 1; i <= parts; ++i) {
+      auto next = end;
+      if (i < parts)
+        for (std::size_t p = 0; p < next.size(); ++p) next[p] = start[p] + (end[p] - start[p]) * (double(i) / parts);
+      step_front(live, std::move(next));
+    }
+    live.record->state.step = static_cast<std::uint32_t>(step + 1);
+    tell(step + 1);
+  }
+}
+
+bool is_sheet(py::handle what) {
+  return py::isinstance<ScoreResult>(what) || py::isinstance<Mesh>(what) || py::hasattr(what, "faces");
+}
+
+// The sheet of a score, of a mesh, or of an object like one.
+std::shared_ptr<Mesh> sheet_argument(py::handle what) {
+  if (py::isinstance<ScoreResult>(what)) return what.cast<const ScoreResult&>().sheet;
+  return mesh_argument(what, "sheet");
+}
+
+void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& options, double max_move,
+              ProgressReport& progress) {
+  if (is_sheet(what)) {
+    insert(*self, sheet_argument(what)->mesh, options);
+    return;
+  }
+  if (py::isinstance<py::list>(what) || py::isinstance<py::tuple>(what)) {
+    bool mixed = py::len(what) > 0;
+    for (const auto item : what) mixed = mixed && (is_sheet(item) || py::isinstance<geo::Front>(item));
+    if (mixed) {
+      for (const auto item : what) crack_by(self, item, options, max_move, progress);
+      return;
+    }
+  }
+  for (const auto& front : fronts_from(what, "what")) {
+    if (!front.is_sheet() && front.steps.size() < 2)
+      throw geo::InputError("what: the front '" + front.name + "' has one step; give two at least");
+    sweep(self, front, options, max_move, progress);
+  }
+}
+
+constexpr const char* crack_doc =
+    "what: a Score, a Mesh (a sheet), a Front, an array (steps, points, 3), a list of lines (points, 3), or a list of\n"
+    "scores, meshes and fronts. max_move divides steps in which a front point moves farther, model units; 0: never.\n"
+    "Keywords, with the defaults of CrackOptions: snap, face_offset, clearance and jitter, lengths relative to the\n"
+    "diagonal; attempts; seed. progress: a callable of (phase, done, total), called before each step; False stops.\n"
+    "Raises InputError for what cannot be used, GeometryError where no attempt of a step passes the guard, Interrupted.";
+
+}  // namespace
+
+void bind_crack(py::module_& module) {
+  static const std::string of_solid =
+      std::string("The crack complex of the model with one or more cracks (§ 5).\n\n") + crack_doc;
+  static const std::string of_complex =
+      std::string("Adds one or more cracks, each with a number of its own (§ 5). Steps before one that fails stay.\n\n") +
+      crack_doc;
+  py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
+      .def(
+          "crack",
+          [](const std::shared_ptr<Solid>& self, const py::object& what, double max_move, py::object progress,
+             py::kwargs given) {
+            Keywords keywords(std::move(given), "crack");
+            const auto options = crack_options(keywords);
+            keywords.finish();
+            ProgressReport report(std::move(progress));
+            const auto uncut = self->uncut();
+            const auto made =
+                without_gil([&] { return std::make_shared<Complex>(geo::Complex(*uncut), self); });
+            crack_by(made, what, options, max_move, report);
+            return made;
+          },
+          py::arg("what"), py::arg("max_move") = 0.0, py::arg_v("progress", py::none()), of_solid.c_str());
+  py::class_<Complex, Shared>(module.attr("Complex"))
+      .def(
+          "crack",
+          [](const Shared& self, const py::object& what, double max_move, py::object progress, py::kwargs given) {
+            Keywords keywords(std::move(given), "crack");
+            const auto options = crack_options(keywords);
+            keywords.finish();
+            ProgressReport report(std::move(progress));
+            crack_by(self, what, options, max_move, report);
+          },
+          py::arg("what"), py::arg("max_move") = 0.0, py::arg_v("progress", py::none()), of_complex.c_str())
+      .def(
+          "insert",
+          [](Complex& self, const py::object& sheet, py::kwargs given) {
+            Keywords keywords(std::move(given), "insert");
+            const auto options = crack_options(keywords);
+            keywords.finish();
+            const auto mesh = sheet_argument(sheet);
+            return insert(self, mesh->mesh, options);
+          },
+          py::arg("sheet"),
+          "Inserts the parts of a sheet (a Mesh or a Score) in the material as one crack, in one step, and returns the\n"
+          "CrackDelta (§ 5.2, § 7). Any triangles will do, connected or not, crossing each other or not. Keywords as for\n"
+          "front(). Raises InputError for a sheet that cannot be used; GeometryError where no attempt passes the guard:\n"
+          "the complex is then unchanged.");
+}
+
+}  // namespace kerf_python

@@ -1,0 +1,30 @@
+// The class Piece: a mesh of one region of material, with its measures and hulls.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kerf/pieces.h"
+#include "mesh.h"
+
+namespace kerf_python {
+
+/// A piece of a cut model (§ 7).
+struct Piece : Mesh {
+  /// Takes the chunk over.
+  Piece(geo::Chunk&& chunk, std::uint32_t number)
+      : Mesh(std::move(chunk.mesh)), index(number), volume(chunk.volume), centroid(chunk.centroid) {}
+  const std::uint32_t index;                 ///< its number among the pieces, by descending volume
+  const double volume;                       ///< model units cubed
+  const geo::Vec3 centroid;                  ///< of the material
+  std::vector<std::shared_ptr<Mesh>> hulls;  ///< convex hulls that cover it; empty unless wanted
+};
+
+/// Bonds as a structured array with the fields a, b, area, normal, centroid.
+py::array bonds_array(std::vector<geo::Bond>&& bonds);
+
+/// Labels for write_bonds() and write_glb(): piece_000, piece_001 and so on.
+std::vector<std::string> piece_names(std::size_t count);
+
+}  // namespace kerf_python

@@ -7,11 +7,11 @@ namespace kerf_python {
 
 namespace py = pybind11;
 
-void bind_errors(py::module_& module);   ///< exceptions; first
-void bind_threads(py::module_& module);  ///< number of threads
-void bind_mesh(py::module_& module);     ///< Mesh and Solid
-void bind_deltas(py::module_& module);   ///< CrackDelta and ComplexEdit
-void bind_complex(py::module_& module);  ///< Complex
+void bind_errors(py::module_& module);           ///< exceptions; first
+void bind_threads(py::module_& module);          ///< number of threads
+void bind_mesh(py::module_& module);             ///< Mesh and Solid
+void bind_deltas(py::module_& module);           ///< CrackDelta and ComplexEdit
+void bind_complex(py::module_& module);          ///< Complex
 void bind_complex_queries(py::module_& module);  ///< faces, radial cycles, sides
 void bind_fronts(py::module_& module);           ///< Front and FrontState
 void bind_score(py::module_& module);            ///< scores
@@ -19,5 +19,10 @@ void bind_crack(py::module_& module);            ///< cracks given whole
 void bind_pieces(py::module_& module);           ///< pieces, bonds and hulls
 void bind_crack_edits(py::module_& module);      ///< remeshing, roughening, decimation
 void bind_checks(py::module_& module);           ///< reports, predicates, crossings
+void bind_mesh_methods(py::module_& module);     ///< repair, refinement, hulls
+void bind_imports(py::module_& module);          ///< meshes of trimesh and Open3D
+void bind_surface_files(py::module_& module);    ///< files of surfaces
+void bind_front_files(py::module_& module);      ///< files of fronts
+void bind_shapes(py::module_& module);           ///< procedural models
 
 }  // namespace kerf_python

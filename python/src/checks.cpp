@@ -7,8 +7,8 @@
 
 #include "bind.h"
 #include "complex.h"
-#include "kerf/crack_edits.h"
-#include "kerf/crossing.h"
+#include "kerf/contact.h"
+#include "kerf/crack.h"
 #include "kerf/error.h"
 
 namespace kerf_python {
@@ -67,13 +67,12 @@ void add_to_classes(py::module_& module) {
             return without_gil([&] { return geo::check_surface(self.mesh, crossings); });
           },
           py::arg("self_intersections") = true,
-          "Checks that the mesh is closed, manifold, oriented and without degenerate or intersecting triangles; exact.\n"
+          "Checks that the mesh is closed, manifold, oriented and without degenerate or intersecting triangles; "
+          "exact.\n"
           "A two-sided surface is checked as a crack complex. Returns a SurfaceReport.")
       .def(
           "crossings",
-          [](const Mesh& self) {
-            return without_gil([&] { return geo::count_crossings(countable(self)); });
-          },
+          [](const Mesh& self) { return without_gil([&] { return geo::count_crossings(countable(self)); }); },
           "Number of pairs of triangles that cross: have a common point other than shared vertices and edges. On a\n"
           "two-sided surface, copies of a site at one place count as one vertex. Exact. Raises InputError where a\n"
           "triangle has a vertex twice.");
@@ -85,7 +84,8 @@ void add_to_classes(py::module_& module) {
             return without_gil([&] { return geo::check_complex(self.complex, crossings); });
           },
           py::arg("self_intersections") = true,
-          "Checks that radial cycles are in geometric order, wedges are all material or all air, the two-sided surface\n"
+          "Checks that radial cycles are in geometric order, wedges are all material or all air, the two-sided "
+          "surface\n"
           "is closed, oriented and manifold, no face is degenerate, and no two faces intersect. Exact. Returns a\n"
           "SurfaceReport.")
       .def(
@@ -96,7 +96,8 @@ void add_to_classes(py::module_& module) {
             return without_gil([&] { return geo::check_near(self.complex, ids); });
           },
           py::arg("faces"),
-          "The structural part of check() for some faces, (k,) ids, and the faces that share a corner with them: a step\n"
+          "The structural part of check() for some faces, (k,) ids, and the faces that share a corner with them: a "
+          "step\n"
           "with these new faces can break nothing else. Returns a SurfaceReport. Raises InputError for unknown ids.")
       .def(
           "self_intersections",
@@ -105,12 +106,13 @@ void add_to_classes(py::module_& module) {
             std::vector<geo::FaceId> ids;
             if (!only.is_none()) ids = ids_from<geo::FaceId>(only, "only", self.complex.face_count());
             std::erase_if(ids, [&](geo::FaceId f) { return !self.complex.alive(f); });
-            auto pairs = without_gil(
-                [&] { return geo::self_intersections(self.complex, only.is_none() ? nullptr : &ids); });
+            auto pairs =
+                without_gil([&] { return geo::self_intersections(self.complex, only.is_none() ? nullptr : &ids); });
             return moved<std::uint32_t>(std::move(pairs), {2});
           },
           py::arg_v("only", py::none()),
-          "Pairs of faces that meet other than in shared vertices and edges, (k, 2) uint32. only: (k,) ids of faces, of\n"
+          "Pairs of faces that meet other than in shared vertices and edges, (k, 2) uint32. only: (k,) ids of faces, "
+          "of\n"
           "which a pair has one at least; dead ones are skipped. Exact. Raises InputError for unknown ids.");
 }
 
@@ -122,7 +124,8 @@ void bind_predicates(py::module_& module) {
                                 triangle_from(q, "q"));
       },
       py::arg("f"), py::arg("p"), py::arg("g"), py::arg("q"),
-      "Whether two triangles, of vertex ids f and g, (3,), and points p and q, (3, 3), meet other than in vertices and\n"
+      "Whether two triangles, of vertex ids f and g, (3,), and points p and q, (3, 3), meet other than in vertices "
+      "and\n"
       "edges shared by id. Exact. Raises InputError.");
   module.def(
       "in_radial_order",
@@ -133,10 +136,12 @@ void bind_predicates(py::module_& module) {
         return geo::in_radial_order(from, to, points);
       },
       py::arg("a"), py::arg("b"), py::arg("through"),
-      "Whether the half-planes from line ab through the points, (n, 3), are in radial order: counter-clockwise about a\n"
+      "Whether the half-planes from line ab through the points, (n, 3), are in radial order: counter-clockwise about "
+      "a\n"
       "to b, each strictly after the one before it. Exact. Raises InputError.");
   module.def(
-      "smallest_angle", [](const py::object& corners) { return geo::smallest_angle(triangle_from(corners, "corners")); },
+      "smallest_angle",
+      [](const py::object& corners) { return geo::smallest_angle(triangle_from(corners, "corners")); },
       py::arg("corners"), "The smallest angle of a triangle, (3, 3) corners, in degrees. Raises InputError.");
   module.def(
       "face_normal",
@@ -169,7 +174,8 @@ void bind_counter(py::module_& module) {
             return without_gil([&] { return self.counter.count(mesh->mesh); });
           },
           py::arg("surface"),
-          "The number of pairs of triangles of a Mesh that cross, as Mesh.crossings(). Raises InputError where a triangle\n"
+          "The number of pairs of triangles of a Mesh that cross, as Mesh.crossings(). Raises InputError where a "
+          "triangle\n"
           "has a vertex twice.");
 }
 

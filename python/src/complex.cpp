@@ -78,16 +78,21 @@ namespace {
 
 void add_state(py::class_<Complex, std::shared_ptr<Complex>>& complex) {
   complex
-      .def_property_readonly("model", [](const Complex& self) { return self.model; },
-                             "The surface that the complex was made of, a Mesh, or None.")
-      .def_property_readonly("vertex_count", [](const Complex& self) { return self.complex.vertex_count(); },
-                             "Number of vertices, those without faces included.")
-      .def_property_readonly("face_count", [](const Complex& self) { return self.complex.face_count(); },
-                             "Number of ids of faces, dead ones included.")
-      .def_property_readonly("live_face_count", [](const Complex& self) { return self.complex.live_face_count(); },
-                             "Number of living faces.")
-      .def_property_readonly("crack_count", [](const Complex& self) { return self.complex.crack_count(); },
-                             "The largest number of a crack.")
+      .def_property_readonly(
+          "model", [](const Complex& self) { return self.model; },
+          "The surface that the complex was made of, a Mesh, or None.")
+      .def_property_readonly(
+          "vertex_count", [](const Complex& self) { return self.complex.vertex_count(); },
+          "Number of vertices, those without faces included.")
+      .def_property_readonly(
+          "face_count", [](const Complex& self) { return self.complex.face_count(); },
+          "Number of ids of faces, dead ones included.")
+      .def_property_readonly(
+          "live_face_count", [](const Complex& self) { return self.complex.live_face_count(); },
+          "Number of living faces.")
+      .def_property_readonly(
+          "crack_count", [](const Complex& self) { return self.complex.crack_count(); },
+          "The largest number of a crack.")
       .def_property_readonly(
           "extent",
           [](const Complex& self) {
@@ -130,10 +135,11 @@ void add_calls(py::class_<Complex, std::shared_ptr<Complex>>& complex) {
             return std::make_shared<Complex>(self);
           },
           py::arg("memo"))
-      .def("undo", &Complex::undo,
-           "Reverts the last insert(), advance() or apply(): complex and fronts are as before it, down to the ids that\n"
-           "the next edit assigns. Only one call can be reverted, and none of remesh(), roughen() and decimate().\n"
-           "Raises GeometryError where there is nothing to revert.")
+      .def(
+          "undo", &Complex::undo,
+          "Reverts the last insert(), advance() or apply(): complex and fronts are as before it, down to the ids that\n"
+          "the next edit assigns. Only one call can be reverted, and none of remesh(), roughen() and decimate().\n"
+          "Raises GeometryError where there is nothing to revert.")
       .def(
           "apply",
           [](Complex& self, const geo::ComplexEdit& edit) {
@@ -143,7 +149,8 @@ void add_calls(py::class_<Complex, std::shared_ptr<Complex>>& complex) {
             return self.edit({}, true, [&] { return self.complex.apply(edit); });
           },
           py::arg("edit"),
-          "Applies a ComplexEdit: all or nothing; returns the CrackDelta. Cost follows the edit. Raises GeometryError,\n"
+          "Applies a ComplexEdit: all or nothing; returns the CrackDelta. Cost follows the edit. Raises "
+          "GeometryError,\n"
           "the complex unchanged, for an edit that breaks a structural rule. Positions are not tested: see check().")
       .def(
           "difference",

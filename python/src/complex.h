@@ -96,5 +96,4 @@ class ModelReading {
 /// geo::InputError.
 std::shared_ptr<Complex> complex_of(std::shared_ptr<Mesh> surface);
 
-
 }  // namespace kerf_python

@@ -1,4 +1,5 @@
-// Faces, vertices, radial cycles and sides of a Complex. Every id is checked, every array is a copy.
+// Faces, vertices, radial cycles and sides of a Complex. Every id is checked, every array is a
+// copy.
 #include <pybind11/stl.h>
 
 #include "bind.h"
@@ -80,7 +81,8 @@ void add_arrays(Class& complex) {
           [](Complex& self) {
             return per_face<std::array<geo::VertexId, 3>>(self, {3}, [](const Face& f) { return f.v; });
           },
-          "Vertices of all faces, (face_count, 3) uint32; the rows of dead faces stay. Counter-clockwise from the side\n"
+          "Vertices of all faces, (face_count, 3) uint32; the rows of dead faces stay. Counter-clockwise from the "
+          "side\n"
           "that the normal points to.")
       .def_property_readonly(
           "alive",
@@ -129,7 +131,8 @@ void add_incidence(Class& complex) {
             return moved_ids(std::vector<geo::FaceId>(cycle.begin(), cycle.end()));
           },
           py::arg("a"), py::arg("b"),
-          "The radial cycle of edge ab: its faces counter-clockwise about the edge from its lower to its higher vertex,\n"
+          "The radial cycle of edge ab: its faces counter-clockwise about the edge from its lower to its higher "
+          "vertex,\n"
           "(k,) uint32; empty where there is no such edge. Raises InputError for an unknown id.")
       .def(
           "faces_at",
@@ -186,7 +189,8 @@ void add_sides(Class& complex) {
             return (which == 0 || which == 1) && self.complex.has({face(self, f), which});
           },
           py::arg("face"), py::arg("which"),
-          "Whether a face has a side: 0, the material behind it, for every living face; 1, the material before it, for\n"
+          "Whether a face has a side: 0, the material behind it, for every living face; 1, the material before it, "
+          "for\n"
           "faces of cracks. Raises InputError for an unknown id.")
       .def(
           "neighbor",
@@ -196,7 +200,8 @@ void add_sides(Class& complex) {
             return py::make_tuple(n.face.value, n.which);
           },
           py::arg("face"), py::arg("which"), py::arg("corner"),
-          "The neighbour of a side on the two-sided surface, across the edge from the face's corner to the next one: a\n"
+          "The neighbour of a side on the two-sided surface, across the edge from the face's corner to the next one: "
+          "a\n"
           "tuple (face, which). Raises InputError.")
       .def(
           "surface_vertex",

@@ -99,7 +99,8 @@ constexpr const char* crack_doc =
     "scores, meshes and fronts. max_move divides steps in which a front point moves farther, model units; 0: never.\n"
     "Keywords, with the defaults of CrackOptions: snap, face_offset, clearance and jitter, lengths relative to the\n"
     "diagonal; attempts; seed. progress: a callable of (phase, done, total), called before each step; False stops.\n"
-    "Raises InputError for what cannot be used, GeometryError where no attempt of a step passes the guard, Interrupted.";
+    "Raises InputError for what cannot be used, GeometryError where no attempt of a step passes the guard, "
+    "Interrupted.";
 
 }  // namespace
 
@@ -107,7 +108,8 @@ void bind_crack(py::module_& module) {
   static const std::string of_solid =
       std::string("The crack complex of the model with one or more cracks (§ 5).\n\n") + crack_doc;
   static const std::string of_complex =
-      std::string("Adds one or more cracks, each with a number of its own (§ 5). Steps before one that fails stay.\n\n") +
+      std::string(
+          "Adds one or more cracks, each with a number of its own (§ 5). Steps before one that fails stay.\n\n") +
       crack_doc;
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
       .def(
@@ -119,8 +121,7 @@ void bind_crack(py::module_& module) {
             keywords.finish();
             ProgressReport report(std::move(progress));
             const auto uncut = self->uncut();
-            const auto made =
-                without_gil([&] { return std::make_shared<Complex>(geo::Complex(*uncut), self); });
+            const auto made = without_gil([&] { return std::make_shared<Complex>(geo::Complex(*uncut), self); });
             crack_by(made, what, options, max_move, report);
             return made;
           },
@@ -146,9 +147,12 @@ void bind_crack(py::module_& module) {
             return insert(self, mesh->mesh, options);
           },
           py::arg("sheet"),
-          "Inserts the parts of a sheet (a Mesh or a Score) in the material as one crack, in one step, and returns the\n"
-          "CrackDelta (§ 5.2, § 7). Any triangles will do, connected or not, crossing each other or not. Keywords as for\n"
-          "front(). Raises InputError for a sheet that cannot be used; GeometryError where no attempt passes the guard:\n"
+          "Inserts the parts of a sheet (a Mesh or a Score) in the material as one crack, in one step, and returns "
+          "the\n"
+          "CrackDelta (§ 5.2, § 7). Any triangles will do, connected or not, crossing each other or not. Keywords as "
+          "for\n"
+          "front(). Raises InputError for a sheet that cannot be used; GeometryError where no attempt passes the "
+          "guard:\n"
           "the complex is then unchanged.");
 }
 

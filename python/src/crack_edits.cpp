@@ -1,6 +1,6 @@
 // Local edits of a whole complex: remeshing, roughening, decimation. Contacts of its fronts are
 // kept.
-#include "kerf/crack_edits.h"
+#include "kerf/crack.h"
 
 #include <pybind11/stl.h>
 
@@ -50,8 +50,8 @@ std::shared_ptr<Delta> remesh(Complex& self, const py::object& region, py::objec
   if (!test.callable.is_none())
     options.may_sweep = [&test](const std::array<geo::Vec3, 4>& corners) { return test(corners); };
   geo::RemeshStats done;
-  auto delta = self.edit(self.fronts, false,
-                         [&] { return geo::remesh(self.complex, faces, self.states(), options, &done); });
+  auto delta =
+      self.edit(self.fronts, false, [&] { return geo::remesh(self.complex, faces, self.states(), options, &done); });
   if (test.error) std::rethrow_exception(test.error);
   auto& stats = delta->stats;
   stats["faces"] = done.faces, stats["flips"] = done.flips, stats["collapses"] = done.collapses;
@@ -75,8 +75,7 @@ std::shared_ptr<Delta> roughen(Complex& self, py::kwargs given) {
     for (const auto c : integers_from(cracks, "cracks", 1, self.complex.crack_count()))
       options.cracks.push_back(static_cast<std::int32_t>(c));
   geo::RoughenStats done;
-  auto delta =
-      self.edit(self.fronts, false, [&] { return geo::roughen(self.complex, self.states(), options, &done); });
+  auto delta = self.edit(self.fronts, false, [&] { return geo::roughen(self.complex, self.states(), options, &done); });
   auto& stats = delta->stats;
   stats["divisions"] = done.divisions, stats["moves"] = done.moves, stats["lowered"] = done.lowered;
   stats["refused"] = done.refused, stats["seconds"] = done.seconds;
@@ -103,25 +102,29 @@ std::shared_ptr<Delta> decimate(Complex& self, py::kwargs given) {
 
 void bind_crack_edits(py::module_& module) {
   py::class_<Complex, std::shared_ptr<Complex>>(module.attr("Complex"))
-      .def("remesh", &remesh, py::arg_v("region", py::none()), py::arg_v("may_sweep", py::none()),
-           "Improves faces by flips, collapses, moves and divisions; returns the CrackDelta, with counts in its stats.\n"
-           "Kept are the skin's surface, lines where cracks meet each other and the skin, tips, creases, and contacts of\n"
-           "fronts (§ 5.2).\n\n"
-           "region: (k,) ids of faces, by default all. Keywords: angle=15 degrees, faces with a smaller angle are\n"
-           "improved; deviation=1e-4, how far a crack may move in one edit, and shortest=2e-3, no edge is divided into\n"
-           "shorter ones, fractions of the diagonal; crease=20 degrees. may_sweep: a callable of (4, 3) corners that\n"
-           "refuses an edit sweeping that tetrahedron by returning False. Raises InputError for options out of range.")
-      .def("roughen", &roughen,
-           "Divides the inner edges of cracks and displaces their inner vertices along the normal by fractal noise;\n"
-           "returns the CrackDelta, with counts in its stats. The noise fades towards skin, other cracks and tips. The\n"
-           "pieces' volumes keep their sum (§ 8).\n\n"
-           "Keywords: amplitude=0.01, a fraction of the diagonal; frequency=8, bumps per diagonal; octaves=4; edge=0,\n"
-           "longest edge inside a crack, a fraction of the diagonal, 0: 1 / (12 frequency); seed=1; cracks, their\n"
-           "numbers, by default all. Raises InputError for options out of range.")
+      .def(
+          "remesh", &remesh, py::arg_v("region", py::none()), py::arg_v("may_sweep", py::none()),
+          "Improves faces by flips, collapses, moves and divisions; returns the CrackDelta, with counts in its stats.\n"
+          "Kept are the skin's surface, lines where cracks meet each other and the skin, tips, creases, and contacts "
+          "of\n"
+          "fronts (§ 5.2).\n\n"
+          "region: (k,) ids of faces, by default all. Keywords: angle=15 degrees, faces with a smaller angle are\n"
+          "improved; deviation=1e-4, how far a crack may move in one edit, and shortest=2e-3, no edge is divided into\n"
+          "shorter ones, fractions of the diagonal; crease=20 degrees. may_sweep: a callable of (4, 3) corners that\n"
+          "refuses an edit sweeping that tetrahedron by returning False. Raises InputError for options out of range.")
+      .def(
+          "roughen", &roughen,
+          "Divides the inner edges of cracks and displaces their inner vertices along the normal by fractal noise;\n"
+          "returns the CrackDelta, with counts in its stats. The noise fades towards skin, other cracks and tips. The\n"
+          "pieces' volumes keep their sum (§ 8).\n\n"
+          "Keywords: amplitude=0.01, a fraction of the diagonal; frequency=8, bumps per diagonal; octaves=4; edge=0,\n"
+          "longest edge inside a crack, a fraction of the diagonal, 0: 1 / (12 frequency); seed=1; cracks, their\n"
+          "numbers, by default all. Raises InputError for options out of range.")
       .def("decimate", &decimate,
            "Collapses edges of skin and cracks, the shortest first; returns the CrackDelta, with counts in its stats.\n"
            "Lines where surfaces meet, tips and creases stay lines. Volumes change within the deviation.\n\n"
-           "Keywords: deviation=1e-3, how far the surface may move, a fraction of the diagonal; faces=0, no fewer living\n"
+           "Keywords: deviation=1e-3, how far the surface may move, a fraction of the diagonal; faces=0, no fewer "
+           "living\n"
            "faces than this; crease=30 degrees; angle=5 degrees, no face gets a smaller one unless it had one. Raises\n"
            "InputError for options out of range.");
 }

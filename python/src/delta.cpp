@@ -43,9 +43,11 @@ void bind_delta(py::module_& module) {
       .def_property_readonly("copied_from", ids_getter(&D::copied_from),
                              "For each of new_surface_vertices the one at whose site it appeared; 2**32 - 1: a new\n"
                              "site.")
-      .def_property_readonly("stats", [](const Delta& self) { return py::dict(self.stats.attr("copy")()); },
-                             "Counts and seconds of the call, a dict with the names of the C++ structure.")
-      .def("__bool__", [](const Delta& self) { return !self.delta.empty(); }, "Whether a face changed.")
+      .def_property_readonly(
+          "stats", [](const Delta& self) { return py::dict(self.stats.attr("copy")()); },
+          "Counts and seconds of the call, a dict with the names of the C++ structure.")
+      .def(
+          "__bool__", [](const Delta& self) { return !self.delta.empty(); }, "Whether a face changed.")
       .def("__repr__", [](const Delta& self) {
         return "<kerf.CrackDelta: " + std::to_string(self.delta.removed_faces.size()) + " faces removed, " +
                std::to_string(self.delta.new_faces.size()) + " added, " +
@@ -101,12 +103,15 @@ void bind_edit(py::module_& module) {
       module, "ComplexEdit",
       "Changes that Complex.apply() makes at once. Ids refer to the complex as it is before; the i-th new vertex has\n"
       "the id vertex_count + i, the i-th new face face_count + i. Arrays are copies.")
-      .def(py::init(&edit_from), py::kw_only(), none("new_vertices"), none("removed_faces"), none("new_faces"),
-           none("cracks"), none("parents"), none("radial_orders"),
-           "new_vertices: (n, 3) numbers. removed_faces: (r,) ids. new_faces: (m, 3) vertex ids. cracks: (m,) integers,\n"
-           "0 for skin. parents: (m,) ids of removed faces that contain the new ones, or 2**32 - 1. radial_orders: for\n"
-           "each edge that has three or more faces afterwards and gains or loses one, a triple of vertex a, vertex b and\n"
-           "the ids of the faces around it, counter-clockwise about a to b. Raises InputError.")
+      .def(
+          py::init(&edit_from), py::kw_only(), none("new_vertices"), none("removed_faces"), none("new_faces"),
+          none("cracks"), none("parents"), none("radial_orders"),
+          "new_vertices: (n, 3) numbers. removed_faces: (r,) ids. new_faces: (m, 3) vertex ids. cracks: (m,) "
+          "integers,\n"
+          "0 for skin. parents: (m,) ids of removed faces that contain the new ones, or 2**32 - 1. radial_orders: for\n"
+          "each edge that has three or more faces afterwards and gains or loses one, a triple of vertex a, vertex b "
+          "and\n"
+          "the ids of the faces around it, counter-clockwise about a to b. Raises InputError.")
       .def_property_readonly(
           "new_vertices", [](const E& self) { return moved_points(std::vector<geo::Vec3>(self.new_vertices)); },
           "Positions of added vertices, (n, 3) float64.")
@@ -138,7 +143,8 @@ void bind_edit(py::module_& module) {
             return out;
           },
           "The faces around edges of three or more faces: a list of (a, b, faces).")
-      .def("__bool__", [](const E& self) { return !self.empty(); }, "Whether the edit changes anything.");
+      .def(
+          "__bool__", [](const E& self) { return !self.empty(); }, "Whether the edit changes anything.");
 }
 
 }  // namespace

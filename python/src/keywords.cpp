@@ -35,9 +35,9 @@ void Keywords::take(const char* name, double& out, double least, double greatest
   if (!(number >= least && number <= greatest)) {
     const double most = std::numeric_limits<double>::max();
     throw geo::InputError(call_ + ": " + name + " must be " +
-                          (least == -most      ? "finite"
+                          (least == -most     ? "finite"
                            : greatest == most ? "finite and at least " + text(least)
-                                               : "from " + text(least) + " to " + text(greatest)));
+                                              : "from " + text(least) + " to " + text(greatest)));
   }
   out = number;
 }

@@ -4,8 +4,6 @@
 #include <pybind11/stl.h>
 
 #include "bind.h"
-#include "kerf/check.h"
-#include "kerf/error.h"
 
 namespace kerf_python {
 namespace {
@@ -123,25 +121,6 @@ constexpr const char* solid_doc =
     "Arguments as for Mesh. Raises InputError, which says what is wrong and how to repair it, for any other mesh.";
 
 }  // namespace
-
-Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
-  if (!known) {
-    py::gil_scoped_release release;
-    geo::require_solid(mesh);
-  }
-}
-
-std::shared_ptr<const geo::Complex> Solid::uncut() {
-  if (!uncut_) {
-    std::shared_ptr<const geo::Complex> made;
-    {
-      py::gil_scoped_release release;
-      made = std::make_shared<const geo::Complex>(geo::Complex::from_skin(mesh));
-    }
-    if (!uncut_) uncut_ = std::move(made);
-  }
-  return uncut_;
-}
 
 void bind_mesh(py::module_& module) {
   py::class_<Mesh, std::shared_ptr<Mesh>> mesh(module, "Mesh", mesh_doc);

@@ -105,15 +105,17 @@ py::array bonds_of(Complex& self, const py::object& moved) {
 void bind_piece(py::module_& module) {
   py::class_<Piece, Mesh, std::shared_ptr<Piece>>(
       module, "Piece",
-      "A piece of a cut model: the closed boundary of a connected region of material (§ 7). A Mesh whose patch is 0 on\n"
+      "A piece of a cut model: the closed boundary of a connected region of material (§ 7). A Mesh whose patch is 0 "
+      "on\n"
       "the skin and whose source names the triangle of the model, 2**32 - 1 on cracks. Inner faces have the group\n"
       "\"crack\" and texture coordinates.")
       .def_readonly("index", &Piece::index, "Its number among the pieces, in descending order of volume.")
       .def_readonly("volume", &Piece::volume, "Volume, model units cubed.")
-      .def_property_readonly("centroid", [](const Piece& self) { return point(self.centroid); },
-                             "Centroid of the material, (3,) float64.")
-      .def_property_readonly("hulls", [](const Piece& self) { return self.hulls; },
-                             "Convex hulls that cover it, a list of Mesh; empty unless pieces(hulls=True).");
+      .def_property_readonly(
+          "centroid", [](const Piece& self) { return point(self.centroid); }, "Centroid of the material, (3,) float64.")
+      .def_property_readonly(
+          "hulls", [](const Piece& self) { return self.hulls; },
+          "Convex hulls that cover it, a list of Mesh; empty unless pieces(hulls=True).");
 }
 
 void add_to_complex(py::module_& module) {
@@ -129,14 +131,17 @@ void add_to_complex(py::module_& module) {
           py::arg_v("moved", py::none()), py::arg_v("progress", py::none()),
           "The pieces, a list of Piece in descending order of volume, with the attributes of the model (§ 7). Their\n"
           "volumes sum to the skin's.\n\n"
-          "hulls: also convex hulls, at most `parts` for each piece, of at most `corners` vertices each. tile: size of a\n"
-          "texture tile on inner faces, a fraction of the diagonal. moved: (n, 3) deformed positions of the vertices of\n"
+          "hulls: also convex hulls, at most `parts` for each piece, of at most `corners` vertices each. tile: size of "
+          "a\n"
+          "texture tile on inner faces, a fraction of the diagonal. moved: (n, 3) deformed positions of the vertices "
+          "of\n"
           "surface(); meshes, volumes and centroids are then deformed ones. progress: a callable of (phase, done,\n"
           "total), or a tqdm bar. Raises InputError for arguments out of range, Interrupted.")
-      .def_property_readonly("bonds", [](Complex& self) { return bonds_of(self, py::none()); },
-                             "The crack faces that two pieces share, ordered by (a, b): a structured array with the\n"
-                             "fields a and b (pieces, a < b), area (model units squared), normal (mean, a unit vector\n"
-                             "from a to b; zero where the faces close around one piece) and centroid (§ 7).")
+      .def_property_readonly(
+          "bonds", [](Complex& self) { return bonds_of(self, py::none()); },
+          "The crack faces that two pieces share, ordered by (a, b): a structured array with the\n"
+          "fields a and b (pieces, a < b), area (model units squared), normal (mean, a unit vector\n"
+          "from a to b; zero where the faces close around one piece) and centroid (§ 7).")
       .def("find_bonds", &bonds_of, py::arg_v("moved", py::none()),
            "As bonds. moved: (n, 3) deformed positions of the vertices of surface(); then normals and centroids are\n"
            "deformed ones, half way between the two sides, and areas still undeformed ones. Raises InputError.")

@@ -74,8 +74,7 @@ geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords) {
   o.jagged.seed = o.pattern.seed;
   if (const auto axis = keywords.object("axis"); !axis.is_none()) o.pattern.axis = axis_from(axis);
   if (o.pattern.axis && !(o.pattern.axis->norm() > 0)) throw geo::InputError("axis: has no length");
-  if (const auto impact = keywords.object("impact"); !impact.is_none())
-    o.pattern.impact = point_from(impact, "impact");
+  if (const auto impact = keywords.object("impact"); !impact.is_none()) o.pattern.impact = point_from(impact, "impact");
   if (const auto curves = keywords.object("curves"); !curves.is_none()) o.pattern.curves = curves_from(curves);
   if (const auto sheets = keywords.object("sheets"); !sheets.is_none()) o.pattern.sheets = sheets_from(sheets);
   if ((o.pattern.pattern == geo::Pattern::curves) == o.pattern.curves.empty())
@@ -92,8 +91,8 @@ std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& p
   keywords.finish();
   ProgressReport report(std::move(progress));
   const ModelReading reading(model, "model");
-  auto made = report.run(
-      [&](const geo::Progress& progress) { return geo::make_score(reading.complex(), options, progress); });
+  auto made =
+      report.run([&](const geo::Progress& progress) { return geo::make_score(reading.complex(), options, progress); });
   return std::make_shared<ScoreResult>(
       ScoreResult{std::make_shared<Mesh>(std::move(made.sheet)), made.pieces, made.attempts});
 }
@@ -103,15 +102,15 @@ std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& p
 void bind_score(py::module_& module) {
   py::class_<ScoreResult, std::shared_ptr<ScoreResult>>(
       module, "Score", "The walls of a fracture pattern as one sheet that divides a model (§ 7, Fig. 7).")
-      .def_property_readonly("sheet", [](const ScoreResult& self) { return self.sheet; },
-                             "The walls, a Mesh; walls that meet share vertices.")
+      .def_property_readonly(
+          "sheet", [](const ScoreResult& self) { return self.sheet; },
+          "The walls, a Mesh; walls that meet share vertices.")
       .def_readonly("pieces", &ScoreResult::pieces, "Pieces into which a score of full depth divides the model.")
       .def_readonly("attempts", &ScoreResult::attempts, "Number of patterns that were tried.")
-      .def("__repr__", [](const ScoreResult& self) {
-        return "<kerf.Score for " + std::to_string(self.pieces) + " pieces>";
-      });
-  module.attr("PATTERNS") = py::tuple(py::cast(std::vector<std::string>(geo::pattern_names.begin(),
-                                                                        geo::pattern_names.end())));
+      .def("__repr__",
+           [](const ScoreResult& self) { return "<kerf.Score for " + std::to_string(self.pieces) + " pieces>"; });
+  module.attr("PATTERNS") =
+      py::tuple(py::cast(std::vector<std::string>(geo::pattern_names.begin(), geo::pattern_names.end())));
   module.def(
       "score", &score, py::arg("model"), py::arg("pattern") = "voronoi", py::arg_v("progress", py::none()),
       "Tries patterns, coarser, finer and of other seeds, until one divides the model into as many pieces as wanted;\n"
@@ -119,9 +118,11 @@ void bind_score(py::module_& module) {
       "model: a Solid, a Complex, or a Mesh that is a valid solid. pattern: one of kerf.PATTERNS. Keywords, with the\n"
       "defaults of the C++ structures: pieces=20, from 1 to 1000000; attempts=60; seed=1; depth=1, below 1 a partial\n"
       "score: how deep walls are cut in, as a fraction of their greatest depth.\n"
-      "Fractal bumps: jagged=0.02, the amplitude, a fraction of the diagonal, 0: flat; frequency=8, bumps per diagonal;\n"
+      "Fractal bumps: jagged=0.02, the amplitude, a fraction of the diagonal, 0: flat; frequency=8, bumps per "
+      "diagonal;\n"
       "octaves=3; edge=0, the longest edge, a fraction of the diagonal, 0: 1 / (8 frequency).\n"
-      "Pattern: axis, 'x', 'y', 'z' or three numbers (planes: normal; wood: grain; bricks: courses; radial, glass: axis;\n"
+      "Pattern: axis, 'x', 'y', 'z' or three numbers (planes: normal; wood: grain; bricks: courses; radial, glass: "
+      "axis;\n"
       "curves: extrusion); impact, three numbers, where cracks meet or cells are small; cluster=0.15, its radius, a\n"
       "fraction of the diagonal; grain=5, length to thickness of wood's cells. curves: lines (n, 3) or Front objects;\n"
       "sheets: meshes.\n"

@@ -1,0 +1,40 @@
+"""Files: what load() reads is decided by content."""
+from kerf import _kerf
+
+
+def load(path):
+    """Reads a file of any kind, recognised by its content.
+
+    A valid solid gives a Solid, a cut surface a Complex with its fronts, any other surface a Mesh; an OpenVDB volume
+    the Solid of its surface; fronts and sheets a list of Front; a .kerf file a Body; nodes a NodeSet.
+    Raises InputError, with the line or entry, for a malformed file; MissingInputError where there is none.
+    """
+    kind = _kerf._kind(path)
+    if kind == "surface":
+        return _kerf._load_surface(path)
+    if kind == "fronts":
+        return _kerf.load_fronts(path)
+    if kind == "volume":
+        return read_volume(path)
+    return (_kerf.Body if kind == "body" else _kerf.NodeSet).load(path)
+
+
+def read_volume(path, grid="", iso=None, adaptivity=0.0):
+    """The surface of a scalar grid in an OpenVDB file, a Solid, in world units.
+
+    grid: its name; by default the only scalar grid. iso: level of the surface, by default 0 of a level set and 0.5 of a
+    fog volume; inside are values below the level for a level set, above it else. adaptivity: 0, triangles of voxel
+    size, to 1, larger ones where the surface is flat. Raises InputError where there is no such grid or no closed surface.
+    """
+    from kerf import _formats
+    return _formats.read_volume(path, grid, iso, adaptivity)
+
+
+def write_level_set(path, mesh, voxel, fog=False):
+    """Writes a closed Mesh as an OpenVDB level set, with voxels of edge `voxel`, model units.
+
+    fog: a density from 0 outside to 1 inside instead. Raises OutputError; InputError unless voxel is 0.0005 to 0.1 of
+    the diagonal.
+    """
+    from kerf import _formats
+    _formats.write_level_set(path, mesh, voxel, fog)

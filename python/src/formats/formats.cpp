@@ -1,0 +1,9 @@
+// The extension kerf._formats: what needs OpenVDB or HDF5, loaded with the first call that does.
+#include "formats.h"
+
+PYBIND11_MODULE(_formats, module) {
+  using namespace kerf_python;
+  module.doc() = "Formats of files that need large libraries; the package kerf loads this.";
+  pybind11::module_::import("kerf._kerf");  // the classes of arguments and results
+  bind_volumes(module);
+}

@@ -1,0 +1,218 @@
+// Methods of meshes: measures by face, repair, refinement, wrapping, hulls, attributes.
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "arguments.h"
+#include "bind.h"
+#include "busy.h"
+#include "checks.h"
+#include "kerf/crack.h"
+#include "kerf/error.h"
+#include "kerf/pieces.h"
+#include "mesh.h"
+
+namespace kerf_python {
+namespace {
+
+using Shared = std::shared_ptr<Mesh>;
+
+const geo::TriangleMesh& plain(const Mesh& mesh, const char* call) {
+  if (mesh.mesh.two_sided())
+    throw geo::InputError(std::string(call) + ": the mesh is two-sided; give the model before the cut");
+  return mesh.mesh;
+}
+
+py::object wrap(const Shared& self, double voxel) {
+  return py::module_::import("kerf._formats").attr("wrapped")(self, voxel);
+}
+
+std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool smooth) {
+  plain(self, "repair");
+  if (!(weld >= 0 && weld <= geo::largest_coordinate)) throw geo::InputError("repair: weld must be 0 or more");
+  return without_gil([&] {
+    auto mesh = self.mesh;
+    const auto stats = geo::repair(mesh, weld, smooth);
+    return std::pair{std::make_shared<Mesh>(std::move(mesh)), stats};
+  });
+}
+
+geo::TriangleMesh refined(const Mesh& self, double longest) {
+  plain(self, "refine");
+  if (!(longest > 0)) throw geo::InputError("refine: longest must be positive");
+  // A triangle with edges of that length has at most the area of the equilateral one.
+  if (geo::area(self.mesh) > 20e6 * 0.25 * std::sqrt(3.0) * longest * longest)
+    throw geo::InputError("refine: edges so short would make more than 20 million triangles; let them be longer");
+  return without_gil([&] { return geo::refined(self.mesh, longest); });
+}
+
+std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool smooth, double voxel, double longest) {
+  auto mesh = repaired(*mesh_argument(model, "mesh"), weld, smooth).first;
+  if (mesh->mesh.triangles.empty()) throw geo::InputError("repaired: no triangle of the mesh bounds anything");
+  if (voxel != 0) mesh = wrap(mesh, voxel).cast<Shared>();
+  if (longest != 0) mesh = std::make_shared<Mesh>(refined(*mesh, longest));
+  try {
+    return std::make_shared<Solid>(geo::TriangleMesh(mesh->mesh));
+  } catch (const geo::InputError& e) {
+    const std::string what = e.what();
+    throw geo::InputError(what.substr(0, what.rfind("; ")) +
+                          (voxel > 0 ? "; try another voxel" : "; wrap it in a new surface: voxel=0.005 * diagonal"));
+  }
+}
+
+std::vector<Shared> hulls(const Mesh& self, std::int64_t count, std::int64_t corners) {
+  if (count < 1 || count > 1000) throw geo::InputError("hulls: count must be from 1 to 1000");
+  if (corners < 4 || corners > 100000) throw geo::InputError("hulls: corners must be from 4 to 100000");
+  if (collapsed_triangles(self.mesh) > 0 || self.mesh.triangles.empty())
+    throw geo::InputError("hulls: the mesh is empty, or a triangle has a vertex twice; repair it");
+  return without_gil([&] {
+    std::vector<Shared> out;
+    for (auto& hull :
+         geo::convex_decomposition(self.mesh, static_cast<std::size_t>(count), static_cast<std::size_t>(corners)))
+      out.push_back(std::make_shared<Mesh>(std::move(hull)));
+    return out;
+  });
+}
+
+py::array nearest(const Mesh& self, const py::object& points) {
+  const auto at = points_from(points, "points");
+  if (self.mesh.triangles.empty()) throw geo::InputError("nearest: the mesh has no triangles");
+  return moved<std::uint32_t>(without_gil([&] { return geo::nearest_triangles(self.mesh, at); }));
+}
+
+py::dict trimesh_arguments(const py::object& self) {
+  py::dict out;
+  out["vertices"] = self.attr("vertices");
+  out["faces"] = self.attr("faces");
+  out["process"] = false;
+  const auto& mesh = self.cast<const Mesh&>().mesh;
+  py::dict of_faces;
+  if (!mesh.patch.empty()) of_faces["patch"] = self.attr("patch");
+  if (!mesh.source.empty()) of_faces["source"] = self.attr("source");
+  if (!mesh.attributes.group.empty()) of_faces["groups"] = self.attr("groups");
+  if (!of_faces.empty()) out["face_attributes"] = of_faces;
+  return out;
+}
+
+void bind_repair_stats(py::module_& module) {
+  using S = geo::RepairStats;
+  py::class_<S>(module, "RepairStats", "The changes that Mesh.repair() made, in its order. False where there are none.")
+      .def_readonly("welded_vertices", &S::welded_vertices, "Vertices merged into others.")
+      .def_readonly("dropped_triangles", &S::dropped_triangles, "Degenerate or duplicate triangles.")
+      .def_readonly("flipped_triangles", &S::flipped_triangles, "Triangles whose orientation was reversed.")
+      .def_readonly("filled_holes", &S::filled_holes, "Holes that were filled.")
+      .def_readonly("added_triangles", &S::added_triangles, "Triangles in holes.")
+      .def_readonly("smooth_fills", &S::smooth_fills, "Holes filled by fair patches.")
+      .def_readonly("dropped_shells", &S::dropped_shells, "Solid shells wholly inside another one.")
+      .def(
+          "__bool__", [](const S& self) { return !self.nothing(); }, "Whether anything was changed.")
+      .def("__repr__", [](const S& s) {
+        return "<kerf.RepairStats: " + std::to_string(s.welded_vertices) + " vertices welded, " +
+               std::to_string(s.dropped_triangles) + " triangles dropped, " + std::to_string(s.flipped_triangles) +
+               " flipped, " + std::to_string(s.filled_holes) + " holes filled, " + std::to_string(s.dropped_shells) +
+               " shells dropped>";
+      });
+}
+
+void add_measures(py::class_<Mesh, Shared>& mesh) {
+  mesh.def_property_readonly(
+          "face_normals",
+          [](const Mesh& self) {
+            return moved_points(without_gil([&] {
+              std::vector<geo::Vec3> out;
+              for (const auto& [a, b, c] : geo::corners_of(self.mesh)) out.push_back(geo::face_normal(a, b, c));
+              return out;
+            }));
+          },
+          "Unit normal of each triangle, (m, 3) float64; zero where it has no area.")
+      .def_property_readonly(
+          "corners",
+          [](const Mesh& self) {
+            return moved<double>(geo::corners_of(self.mesh), {3, 3});
+          },
+          "Positions of the corners of each triangle, (m, 3, 3) float64.")
+      .def_property_readonly(
+          "smallest_angles",
+          [](const Mesh& self) {
+            return moved<double>(without_gil([&] {
+              std::vector<double> out;
+              for (const auto& corners : geo::corners_of(self.mesh)) out.push_back(geo::smallest_angle(corners));
+              return out;
+            }));
+          },
+          "Smallest angle of each triangle, (m,) float64, degrees.")
+      .def("nearest", &nearest, py::arg("points"),
+           "The triangle nearest to each point, (n, 3): (n,) uint32. Raises InputError for an empty mesh.")
+      .def("hulls", &hulls, py::arg("count") = 1, py::arg("corners") = 64,
+           "Approximate convex decomposition of a closed mesh: at most `count` convex hulls, a list of Mesh, of at "
+           "most\n"
+           "`corners` vertices each (after Mamou and Ghorbel 2009). Hulls with no limit on vertices cover the mesh. "
+           "Empty\n"
+           "for a planar mesh. Raises InputError.");
+}
+
+void add_changes(py::class_<Mesh, Shared>& mesh) {
+  mesh.def("repair", &repaired, py::arg("weld") = 0.0, py::arg("smooth") = false,
+           "Repairs the topology of a plain mesh; returns a tuple (Mesh, RepairStats). Welds seams, open ones also "
+           "where\n"
+           "vertices are up to `weld` apart, model units; drops triangles that bound nothing; orients neighbours "
+           "alike;\n"
+           "fills each hole, with `smooth` by a fair patch that continues the surface around it; turns shells "
+           "outwards.\n"
+           "Attributes stay with their triangles. Intersecting triangles remain: see check(). Raises InputError.")
+      .def(
+          "refine", [](const Mesh& self, double longest) { return std::make_shared<Mesh>(refined(self, longest)); },
+          py::arg("longest"),
+          "A plain mesh with edges of at most `longest`, model units: longer ones are bisected. The shape stays to\n"
+          "rounding; attributes are interpolated. Raises InputError where over 20 million triangles would result.")
+      .def("wrap", &wrap, py::arg("voxel"),
+           "A new surface around a closed one, which may intersect itself: the zero level of its distance field, with\n"
+           "voxels of edge `voxel`, model units, which also rounds edges by that length. Its source is the nearest\n"
+           "triangle, which gives the attributes. Returns a Mesh. Raises InputError unless voxel is 0.0005 to 0.1 of "
+           "the\n"
+           "diagonal.")
+      .def(
+          "transfer_attributes",
+          [](const Mesh& self, const py::object& original) {
+            const auto from = mesh_argument(original, "original");
+            return without_gil([&] {
+              auto mesh = self.mesh;
+              geo::transfer_attributes(from->mesh, mesh);
+              return std::make_shared<Mesh>(std::move(mesh));
+            });
+          },
+          py::arg("original"),
+          "This mesh, whose source names triangles of `original`, with the attributes of that: values at corners of\n"
+          "triangles are copied, others interpolated; cracks get defaults. Returns a Mesh. Raises InputError where a\n"
+          "source is missing or out of range.")
+      .def("to_trimesh_kwargs", &trimesh_arguments,
+           "Keyword arguments for trimesh.Trimesh: vertices, faces, process=False, and patch, source and groups as\n"
+           "face_attributes.");
+}
+
+}  // namespace
+
+void bind_mesh_methods(py::module_& module) {
+  bind_repair_stats(module);
+  py::class_<Mesh, Shared> mesh(module.attr("Mesh"));
+  add_measures(mesh);
+  add_changes(mesh);
+  py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
+      .def(py::init([](const py::object& given) {
+             const auto mesh = mesh_argument(given, "mesh");
+             plain(*mesh, "Solid");
+             return std::make_shared<Solid>(geo::TriangleMesh(mesh->mesh));
+           }),
+           py::arg("mesh"), "Of a Mesh, or an object with vertices and faces.")
+      .def(
+          "refine", [](const Solid& self, double longest) { return std::make_shared<Solid>(refined(self, longest)); },
+          py::arg("longest"), "As Mesh.refine(); the result is checked to be a valid model.")
+      .def_static(
+          "repaired", &repaired_solid, py::arg("mesh"), py::arg("weld") = 0.0, py::arg("smooth") = false,
+          py::arg("voxel") = 0.0, py::arg("longest") = 0.0,
+          "A valid model of a surface with faults: Mesh.repair(weld, smooth), then, unless they are 0, Mesh.wrap(\n"
+          "voxel) and Mesh.refine(longest); lengths in model units. Raises InputError where the result is still\n"
+          "none.");
+}
+
+}  // namespace kerf_python

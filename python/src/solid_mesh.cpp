@@ -1,0 +1,26 @@
+// Solids are tested once, when they are made, without the GIL.
+#include "kerf/check.h"
+#include "mesh.h"
+
+namespace kerf_python {
+
+Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
+  if (!known) {
+    py::gil_scoped_release release;
+    geo::require_solid(mesh);
+  }
+}
+
+std::shared_ptr<const geo::Complex> Solid::uncut() {
+  if (!uncut_) {
+    std::shared_ptr<const geo::Complex> made;
+    {
+      py::gil_scoped_release release;
+      made = std::make_shared<const geo::Complex>(geo::Complex::from_skin(mesh));
+    }
+    if (!uncut_) uncut_ = std::move(made);
+  }
+  return uncut_;
+}
+
+}  // namespace kerf_python

@@ -1,0 +1,227 @@
+// Files of surfaces: PLY, OBJ, STL and OFF in; PLY, OBJ and glTF out. What a file holds is decided
+// by its content.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "arguments.h"
+#include "bind.h"
+#include "complex.h"
+#include "kerf/check.h"
+#include "kerf/error.h"
+#include "kerf/export.h"
+#include "kerf/files.h"
+#include "kind.h"
+#include "pieces.h"
+
+namespace kerf_python {
+namespace {
+
+[[noreturn]] void unknown_ending(const std::string& path) {
+  throw geo::InputError(path + ": ends in no known format; give .ply, .obj or .glb");
+}
+
+geo::SurfaceFile parsed(const std::string& bytes, const std::string& name) {
+  return without_gil([&] { return geo::parse_surface(bytes, name); });
+}
+
+geo::SurfaceFile read(const Path& path) {
+  return without_gil([&] { return geo::read_surface(path.text); });
+}
+
+std::shared_ptr<Complex> with_fronts(geo::SurfaceFile&& file, const std::string& name) {
+  const auto fronts = std::move(file.fronts);
+  try {
+    auto complex = complex_of(std::make_shared<Mesh>(std::move(file.mesh)));
+    for (const auto& state : fronts)
+      complex->fronts.push_back(std::make_shared<FrontRecord>(FrontRecord{state, {}, {}}));
+    return complex;
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(name + ": " + e.what());
+  }
+}
+
+// Removes the sites of a surface that no crack has cut: frames of a run have them from the first.
+void forget_sites(geo::TriangleMesh& mesh) {
+  if (!std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
+    mesh.patch.clear(), mesh.site.clear();
+}
+
+std::shared_ptr<Solid> solid_of(geo::SurfaceFile&& file, const std::string& name) {
+  forget_sites(file.mesh);
+  if (file.mesh.two_sided()) throw geo::InputError(name + ": is cut already; give it to kerf.Complex.load()");
+  try {
+    return std::make_shared<Solid>(std::move(file.mesh));
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(name + ": " + e.what() + ", or try kerf.Solid.repaired()");
+  }
+}
+
+// A Complex where the surface is cut, a Solid where it is one, else a Mesh.
+py::object any_surface(const Path& path) {
+  auto file = read(path);
+  const bool valid = without_gil([&] {
+    const auto report = geo::check_surface(file.mesh, true);
+    return report.good() && (file.mesh.two_sided() || geo::signed_volume(file.mesh) > 0);
+  });
+  if (!valid) return py::cast(std::make_shared<Mesh>(std::move(file.mesh)));
+  if (file.fronts.empty()) forget_sites(file.mesh);
+  if (file.mesh.two_sided()) return py::cast(with_fronts(std::move(file), path.text));
+  return py::cast(std::make_shared<Solid>(std::move(file.mesh), true));
+}
+
+// A mesh as the only chunk: with all arrays that write_glb() expects.
+geo::Chunk chunk_of(const Mesh& given) {
+  const auto* piece = dynamic_cast<const Piece*>(&given);
+  const auto box = geo::bounding_box(given.mesh);
+  if (box.empty()) throw geo::InputError("save: a mesh without triangles is no .glb");
+  geo::Chunk chunk{given.mesh, piece ? piece->volume : geo::signed_volume(given.mesh),
+                   piece ? piece->centroid : box.center()};
+  auto& mesh = chunk.mesh;
+  const auto count = mesh.triangles.size();
+  mesh.site.clear();
+  mesh.patch.resize(count, 0);
+  mesh.attributes.uv.resize(count, {geo::Vec2::Zero(), geo::Vec2::Zero(), geo::Vec2::Zero()});
+  if (mesh.attributes.group.empty()) {
+    mesh.attributes.group.assign(count, 0);
+    mesh.attributes.group_names = {"skin"};
+  }
+  return chunk;
+}
+
+// One node, whose origin is the middle of the box; a piece's is its centroid.
+void write_glb(std::ostream& out, const Mesh& mesh) {
+  const auto* piece = dynamic_cast<const Piece*>(&mesh);
+  geo::write_glb(out, {chunk_of(mesh)}, {},
+                 {"node", {piece ? piece_names(piece->index + 1).back() : std::string("mesh")}, 1});
+}
+
+void save_mesh(const Mesh& self, const Path& path) {
+  const std::string& p = path.text;
+  if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
+  without_gil([&] {
+    geo::write_all(p, [&](std::ostream& out) {
+      p.ends_with(".ply")   ? geo::write_ply(out, self.mesh)
+      : p.ends_with(".obj") ? geo::write_obj(out, self.mesh)
+                            : write_glb(out, self);
+    });
+  });
+}
+
+struct Exported {
+  std::vector<geo::Chunk> chunks;
+  std::vector<geo::Bond> bonds;
+  geo::ChunkLabels labels;
+};
+
+// To be called without the GIL.
+Exported exported(const Complex& self, const geo::Pieces& found, double tile, double strength) {
+  static const geo::TriangleMesh no_model;
+  Exported out{geo::make_chunks(self.complex, found, self.model ? self.model->mesh : no_model,
+                                tile * self.complex.extent().diagonal()),
+               geo::find_bonds(self.complex, found),
+               {"node", piece_names(found.count), strength}};
+  return out;
+}
+
+void require_tile(double tile, double strength) {
+  if (!(tile > 0 && tile <= 1e6)) throw geo::InputError("save: tile must be above 0 and at most 1000000");
+  if (!(strength >= 0 && strength <= 1e100)) throw geo::InputError("save: strength must be 0 or more");
+}
+
+void save_complex(Complex& self, const Path& path, int corners, int parts, double tile, double strength, bool z_up) {
+  const std::string& p = path.text;
+  if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
+  require_tile(tile, strength);
+  if (corners != 0 && (corners < 4 || corners > 100000))
+    throw geo::InputError("save: corners must be 0 or from 4 to 100000");
+  if (parts < 1 || parts > 1000) throw geo::InputError("save: parts must be from 1 to 1000");
+  const Reading reading(self.busy);
+  const auto found = p.ends_with(".glb") ? self.found() : nullptr;
+  std::vector<geo::FrontState> fronts;
+  for (const auto& front : self.fronts) fronts.push_back(front->state);
+  without_gil([&] {
+    geo::write_all(p, [&](std::ostream& out) {
+      if (p.ends_with(".ply")) return geo::write_ply(out, self.surface(), fronts);
+      if (p.ends_with(".obj")) return geo::write_obj(out, self.surface());
+      const auto e = exported(self, *found, tile, strength);
+      geo::write_glb(out, e.chunks, e.bonds, e.labels,
+                     {static_cast<std::size_t>(corners), static_cast<std::size_t>(parts), z_up});
+    });
+  });
+}
+
+void save_bonds(Complex& self, const Path& path, double strength) {
+  require_tile(1, strength);
+  const Reading reading(self.busy);
+  const auto found = self.found();
+  without_gil([&] {
+    const auto e = exported(self, *found, 1, strength);
+    geo::write_all(path, [&](std::ostream& out) { geo::write_bonds(out, e.chunks, e.bonds, e.labels); });
+  });
+}
+
+std::string kind_name(const Path& path) {
+  const auto bytes = without_gil([&] { return geo::read_all(path.text); });
+  static constexpr const char* names[] = {"body", "nodes", "fronts", "surface"};
+  // The first bytes of every OpenVDB file: " BDV" as a 64-bit number.
+  if (bytes.starts_with(std::string(" BDV\0\0\0\0", 8))) return "volume";
+  return names[static_cast<int>(tool::kind_of(bytes, path.text))];
+}
+
+constexpr const char* read_doc =
+    "Reads PLY, OBJ, STL or OFF, recognised by content. Polygons are triangulated; coincident vertices of seams are\n"
+    "merged. ";
+
+}  // namespace
+
+void bind_surface_files(py::module_& module) {
+  static const std::string mesh_doc =
+      std::string(read_doc) +
+      "The mesh is not tested: kerf.load() does. Raises InputError, with the line, for a\n"
+      "malformed file.";
+  static const std::string solid_doc =
+      std::string(read_doc) + "Raises InputError for a malformed file and for a surface that is no valid solid.";
+  static const std::string complex_doc = std::string(read_doc) +
+                                         "With the fronts that were cutting a two-sided surface. Raises\nInputError "
+                                         "for a malformed file, and as Complex().";
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
+      .def_static(
+          "load", [](const Path& path) { return std::make_shared<Mesh>(read(path).mesh); }, py::arg("path"),
+          mesh_doc.c_str())
+      .def_static(
+          "parse",
+          [](const py::bytes& data, const std::string& name) {
+            return std::make_shared<Mesh>(parsed(data.cast<std::string>(), name).mesh);
+          },
+          py::arg("data"), py::arg("name") = "bytes",
+          "As load(), from bytes in memory; `name` stands for the file in messages.")
+      .def(
+          "save", &save_mesh, py::arg("path"),
+          "Writes .ply (binary, with all arrays), .obj or .glb (glTF 2.0), by the path's ending. The file is replaced\n"
+          "when it is complete. Raises OutputError where it cannot be written, InputError for another ending.");
+  py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
+      .def_static(
+          "load", [](const Path& path) { return solid_of(read(path), path.text); }, py::arg("path"), solid_doc.c_str());
+  py::class_<Complex, std::shared_ptr<Complex>>(module.attr("Complex"))
+      .def_static(
+          "load", [](const Path& path) { return with_fronts(read(path), path.text); }, py::arg("path"),
+          complex_doc.c_str())
+      .def(
+          "save", &save_complex, py::arg("path"), py::arg("corners") = 0, py::arg("parts") = 1, py::arg("tile") = 0.25,
+          py::arg("strength") = 1.0, py::arg("z_up") = false,
+          "Writes surface(): .ply with its fronts, which load() reads back, or .obj; or the pieces with their bonds "
+          "as\n"
+          ".glb (glTF 2.0): a node for each piece (§ 7). For .glb: corners of convex hulls, 0: no hulls; parts, hulls\n"
+          "for each piece; tile, size of a texture tile on inner faces, a fraction of the diagonal; strength, force "
+          "per\n"
+          "unit of area; z_up: the model's z axis is vertical. Raises OutputError, InputError.")
+      .def("save_bonds", &save_bonds, py::arg("path"), py::arg("strength") = 1.0,
+           "Writes pieces and bonds as JSON (docs/formats.md). strength: force per unit of area that a bond "
+           "withstands.\n"
+           "Raises OutputError, InputError.");
+  module.def("_kind", &kind_name, py::arg("path"));
+  module.def("_load_surface", &any_surface, py::arg("path"));
+}
+
+}  // namespace kerf_python

@@ -1,0 +1,226 @@
+"""Meshes of the module kerf: repair, refinement, hulls, imports from other packages, shapes, files."""
+import os
+import tempfile
+import types
+import unittest
+
+import kerf
+import numpy as np
+from test_geometry import CUBE, CUBE_FACES, LINE, NO_ID, STEP, cube, plane
+
+
+class Meshes(unittest.TestCase):
+    def test_measures(self):
+        m = cube()
+        self.assertEqual((m.volume, m.area), (1, 6))
+        np.testing.assert_array_equal(m.bounds, [[0, 0, 0], [1, 1, 1]])
+        np.testing.assert_allclose(m.smallest_angles, 45)
+        np.testing.assert_array_equal(m.corners, CUBE[CUBE_FACES])
+        np.testing.assert_array_equal(m.face_normals[:2], [[-1, 0, 0], [-1, 0, 0]])
+        at = m.corners.mean(axis=1) + 0.1 * m.face_normals
+        np.testing.assert_array_equal(m.nearest(at), np.arange(12))
+
+    def test_check(self):
+        self.assertTrue(cube().check())
+        open_cube = kerf.Mesh(CUBE, CUBE_FACES[1:])
+        report = open_cube.check()
+        self.assertFalse(report or report.closed)
+        self.assertTrue(report.manifold and report.oriented)
+        self.assertIn("open", report.first_problem)
+        with self.assertRaises(kerf.InputError):
+            kerf.Solid(CUBE, CUBE_FACES[1:])
+        with self.assertRaises(kerf.InputError):
+            kerf.Solid(CUBE, CUBE_FACES[:, ::-1])
+
+    def test_repair(self):
+        holed = kerf.Mesh(CUBE, np.vstack([CUBE_FACES[1:6], CUBE_FACES[6:, ::-1]]), groups=["a"] * 11)
+        mesh, stats = holed.repair()
+        self.assertTrue(stats and mesh.check())
+        self.assertEqual((stats.filled_holes, stats.added_triangles, stats.flipped_triangles > 0), (1, 1, True))
+        self.assertAlmostEqual(mesh.volume, 1)
+        self.assertEqual(mesh.group_names, ("a",))
+        self.assertFalse(cube().repair()[1])
+        self.assertEqual(kerf.Solid.repaired(holed).volume, 1)
+        soup = kerf.Mesh(CUBE[CUBE_FACES].reshape(-1, 3), np.arange(36).reshape(-1, 3))
+        self.assertEqual(soup.repair()[1].welded_vertices, 28)
+        with self.assertRaises(kerf.InputError):
+            cube().crack(plane()).surface().repair()
+
+    def test_refine(self):
+        fine = kerf.Solid(CUBE, CUBE_FACES, uv=CUBE[:, :2]).refine(0.3)
+        self.assertIsInstance(fine, kerf.Solid)
+        edges = fine.corners - np.roll(fine.corners, 1, axis=1)
+        self.assertLessEqual(np.linalg.norm(edges, axis=2).max(), 0.3)
+        self.assertAlmostEqual(fine.volume, 1)
+        np.testing.assert_allclose(fine.uv, fine.corners[:, :, :2], atol=1e-12)
+        for longest in (0, -1, float("nan"), 1e-9):
+            with self.assertRaises(kerf.InputError):
+                cube().refine(longest)
+
+    def test_wrap(self):
+        two = kerf.Mesh(np.vstack([CUBE, CUBE + 0.5]), np.vstack([CUBE_FACES, CUBE_FACES + 8]))
+        self.assertGreater(two.crossings(), 0)
+        whole = kerf.Solid.repaired(two, voxel=0.05)
+        self.assertAlmostEqual(whole.volume, 2 - 0.125, delta=0.1)
+        self.assertLess(whole.source.max(), 24)
+        with self.assertRaises(kerf.InputError):
+            two.wrap(1e-9)
+
+    def test_hulls(self):
+        l_shape = kerf.Solid.repaired(kerf.Mesh(np.vstack([CUBE * [2, 1, 1], CUBE * [1, 1, 1] + [0, 1, 0]]),
+                                                np.vstack([CUBE_FACES, CUBE_FACES + 8])), voxel=0.05)
+        one, two = l_shape.hulls(), l_shape.hulls(2, corners=1000)
+        self.assertEqual((len(one), len(two)), (1, 2))
+        self.assertLess(sum(h.volume for h in two), one[0].volume)
+        for bad in (dict(count=0), dict(corners=3)):
+            with self.assertRaises(kerf.InputError):
+                l_shape.hulls(**bad)
+
+    def test_attributes_are_transferred(self):
+        model = cube(colors=CUBE)
+        bare = kerf.Solid(CUBE, CUBE_FACES).crack(plane()).surface()
+        np.testing.assert_array_equal(bare.source[bare.patch != 0], NO_ID)
+        surface = bare.transfer_attributes(model)
+        skin = surface.patch == 0
+        np.testing.assert_allclose(surface.colors[skin][..., :3], surface.corners[skin], atol=1e-12)
+        with self.assertRaises(kerf.InputError):
+            cube().transfer_attributes(model)
+
+    def test_other_packages(self):
+        visual = types.SimpleNamespace(uv=CUBE[:, :2], kind="texture")
+        t = types.SimpleNamespace(vertices=CUBE, faces=CUBE_FACES, visual=visual)
+        np.testing.assert_array_equal(kerf.Solid.from_trimesh(t).uv, CUBE[CUBE_FACES][..., :2])
+        colors = np.arange(48, dtype=np.uint8).reshape(12, 4)
+        t.visual = types.SimpleNamespace(kind="face", face_colors=colors)
+        np.testing.assert_allclose(kerf.Solid.from_trimesh(t).colors[:, 1], colors / 255)
+        o = types.SimpleNamespace(vertices=CUBE, triangles=CUBE_FACES, vertex_colors=[], vertex_normals=[],
+                                  triangle_uvs=CUBE[CUBE_FACES][..., :2].reshape(-1, 2),
+                                  triangle_material_ids=np.arange(12) % 2)
+        s = kerf.Solid.from_open3d(o)
+        np.testing.assert_array_equal(s.uv, CUBE[CUBE_FACES][..., :2])
+        self.assertEqual(len(s.group_names), 2)
+        tensors = types.SimpleNamespace(vertex={"positions": CUBE}, triangle={"indices": CUBE_FACES})
+        self.assertEqual(kerf.Solid.from_open3d(tensors).volume, 1)
+        self.assertEqual(kerf.Solid(t).volume, 1)
+        arguments = s.to_trimesh_kwargs()
+        self.assertIs(arguments["process"], False)
+        np.testing.assert_array_equal(arguments["faces"], CUBE_FACES)
+        for call in (kerf.Solid.from_trimesh, kerf.Solid.from_open3d):
+            for bad in (None, 3, types.SimpleNamespace(vertices=CUBE), types.SimpleNamespace(vertices=1, faces=2)):
+                with self.assertRaises(kerf.InputError):
+                    call(bad)
+
+
+class Shapes(unittest.TestCase):
+    def test_volumes(self):
+        self.assertAlmostEqual(kerf.shapes.sphere(20).volume, 4 / 3 * np.pi, delta=0.03)
+        self.assertAlmostEqual(kerf.shapes.block((1, 2, 3), 0.5).volume, 6)
+        self.assertAlmostEqual(kerf.shapes.star(20, lambda d: 2.0).volume, 32 / 3 * np.pi, delta=0.2)
+        for shape in (kerf.shapes.pumpkin(8), kerf.shapes.apple(8), kerf.shapes.polyp(12), kerf.shapes.letter("K")):
+            self.assertIsInstance(shape, kerf.Solid)
+            self.assertTrue(shape.check())
+
+    def test_refusals(self):
+        s = kerf.shapes
+        for call in (lambda: s.sphere(0), lambda: s.sphere(10**9), lambda: s.block((1, 0, 1)), lambda: s.block(edge=0),
+                     lambda: s.block(edge=1e-9), lambda: s.letter("ab"), lambda: s.letter("?"),
+                     lambda: s.letter("A", resolution=3), lambda: s.star(3, lambda d: -1), lambda: s.star(3, lambda d: np.nan)):
+            with self.assertRaises(kerf.InputError):
+                call()
+        for call in (lambda: s.sphere(2.5), lambda: s.star(3, 1), lambda: s.star(3, lambda d: "a")):
+            with self.assertRaises(TypeError):
+                call()
+        with self.assertRaises(ZeroDivisionError):
+            s.star(3, lambda d: 1 / 0)
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def test_models(self):
+        s = kerf.Solid(CUBE, CUBE_FACES, uv=CUBE[:, :2], groups=["a", "b"] * 6)
+        for name in ("cube.ply", "cube.obj"):
+            s.save(self.path(name))
+            read = kerf.load(self.path(name))
+            self.assertIsInstance(read, kerf.Solid)
+            np.testing.assert_array_equal(read.corners, s.corners)
+            np.testing.assert_allclose(read.uv, s.uv)
+            self.assertEqual(read.group_names, ("a", "b"))
+        with open(self.path("cube.ply"), "rb") as file:
+            self.assertEqual(len(kerf.Mesh.parse(file.read())), 12)
+        s.save(self.path("cube.glb"))
+        with open(self.path("cube.glb"), "rb") as file:
+            self.assertEqual(file.read(4), b"glTF")
+        kerf.Mesh(CUBE, CUBE_FACES[1:]).save(self.path("open.ply"))
+        self.assertIs(type(kerf.load(self.path("open.ply"))), kerf.Mesh)
+        with self.assertRaises(kerf.InputError):
+            kerf.Solid.load(self.path("open.ply"))
+
+    def test_cut_models_go_on(self):
+        c = kerf.Solid(CUBE, CUBE_FACES, groups=["a"] * 12).complex()
+        c.front(LINE, name="halve").advance(LINE + STEP)
+        c.save(self.path("cut.ply"))
+        d = kerf.load(self.path("cut.ply"))
+        self.assertIsInstance(d, kerf.Complex)
+        f = d.fronts[0]
+        self.assertEqual((f.name, f.crack, f.step), ("halve", 1, 1))
+        f.advance(LINE + 2 * STEP)
+        self.assertEqual(d.piece_count, 2)
+        self.assertEqual(set(d.pieces()[0].group_names), {"a", "crack"})
+        d.save(self.path("pieces.glb"), corners=16)
+        d.save(self.path("cut.obj"))
+        d.save_bonds(self.path("bonds.json"), strength=2)
+        with open(self.path("bonds.json")) as file:
+            import json
+            bond = json.load(file)["bonds"][0]
+        self.assertAlmostEqual(bond["area"], 1)
+        self.assertAlmostEqual(bond["strength"], 2)
+        d.pieces()[1].save(self.path("piece.glb"))
+        self.assertEqual(kerf.Complex.load(self.path("cut.ply")).crack_count, 1)
+
+    def test_fronts(self):
+        front = kerf.Front([LINE, LINE + STEP], name="halve")
+        sheet = kerf.Front([plane().vertices], name="half", triangles=plane().faces)
+        kerf.save_fronts(self.path("a.front"), [front, sheet])
+        a, b = kerf.load(self.path("a.front"))
+        self.assertEqual((a.name, a.is_sheet, b.name, b.is_sheet), ("halve", False, "half", True))
+        np.testing.assert_array_equal(a.steps[1], LINE + STEP)
+        np.testing.assert_array_equal(b.triangles, plane().faces)
+        with open(self.path("a.front"), "rb") as file:
+            self.assertEqual(len(kerf.parse_fronts(file.read())), 2)
+        self.assertEqual(cube().crack(kerf.load(self.path("a.front"))).crack_count, 2)
+        self.assertEqual(len(kerf.load_curves(self.path("a.front"))), 2)
+        curves = kerf.score(cube(), "curves", curves=[LINE + [0, 1, 0]], axis="z", jagged=0)
+        self.assertGreater(len(curves.sheet), 0)
+
+    def test_volumes(self):
+        kerf.write_level_set(self.path("cube.vdb"), cube(), 0.02)
+        s = kerf.load(self.path("cube.vdb"))
+        self.assertIsInstance(s, kerf.Solid)
+        self.assertAlmostEqual(s.volume, 1, delta=0.02)
+        with self.assertRaises(kerf.InputError):
+            kerf.read_volume(self.path("cube.vdb"), grid="none")
+
+    def test_refusals(self):
+        with self.assertRaises(FileNotFoundError):
+            kerf.load(self.path("none.ply"))
+        with self.assertRaises(kerf.OutputError):
+            cube().save(self.path("none/cube.ply"))
+        with self.assertRaises(kerf.InputError):
+            cube().save(self.path("cube.xyz"))
+        with open(self.path("bad.ply"), "w") as file:
+            file.write("ply\nformat ascii 1.0\nelement vertex 3\n")
+        with self.assertRaises(kerf.InputError):
+            kerf.load(self.path("bad.ply"))
+        with self.assertRaises(TypeError):
+            kerf.load(5)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -95,15 +95,15 @@ class _Sentences:
 
 def _words(stats):
     """What a repair has done, in a sentence."""
-    counts = {
-        "vertices welded": stats.welded_vertices,
-        "triangles dropped": stats.dropped_triangles,
-        "triangles flipped": stats.flipped_triangles,
-        "holes filled": stats.filled_holes,
-        "triangles added": stats.added_triangles,
-        "shells dropped": stats.dropped_shells,
-    }
-    return ", ".join(f"{count} {what}" for what, count in counts.items() if count) or "nothing to repair"
+    counts = [
+        (stats.welded_vertices, "vertex welded", "vertices welded"),
+        (stats.dropped_triangles, "triangle dropped", "triangles dropped"),
+        (stats.flipped_triangles, "triangle flipped", "triangles flipped"),
+        (stats.filled_holes, "hole filled", "holes filled"),
+        (stats.added_triangles, "triangle added", "triangles added"),
+        (stats.dropped_shells, "shell dropped", "shells dropped"),
+    ]
+    return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts if count) or "nothing to repair"
 
 
 def _span(progress, begin, end):

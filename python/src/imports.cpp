@@ -1,6 +1,9 @@
 // Meshes of trimesh and Open3D, read by the names of their attributes: neither package is imported.
 #include <pybind11/stl.h>
 
+#include <array>
+#include <map>
+
 #include "bind.h"
 #include "kerf/error.h"
 #include "mesh.h"
@@ -37,6 +40,23 @@ MeshArguments empty_arguments() {
   return out;
 }
 
+// Vertices at one position become one, as when a file is read: both packages split vertices at
+// seams of textures. Attributes belong to corners and stay.
+geo::TriangleMesh without_seams(geo::TriangleMesh mesh) {
+  std::map<std::array<double, 3>, std::uint32_t> first;
+  std::vector<std::uint32_t> merged;
+  std::vector<geo::Vec3> vertices;
+  for (const auto& p : mesh.vertices) {
+    const auto [at, fresh] = first.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(vertices.size()));
+    if (fresh) vertices.push_back(p);
+    merged.push_back(at->second);
+  }
+  for (auto& triangle : mesh.triangles)
+    for (auto& corner : triangle) corner = merged[corner];
+  mesh.vertices = std::move(vertices);
+  return mesh;
+}
+
 // (m, k) values of faces as (m, 3, k) values of corners.
 py::object per_corner(const py::object& values) {
   const auto numpy = py::module_::import("numpy");
@@ -61,7 +81,7 @@ std::shared_ptr<Solid> from_trimesh(const py::object& mesh) {
       arguments.colors = arguments.colors / py::float_(255.0);
     if (by_face) arguments.colors = per_corner(arguments.colors);
   }
-  return std::make_shared<Solid>(mesh_from(arguments));
+  return std::make_shared<Solid>(without_seams(mesh_from(arguments)));
 }
 
 // Open3D has one mesh class with attributes, and one with dictionaries of tensors.
@@ -92,7 +112,7 @@ std::shared_ptr<Solid> from_open3d(const py::object& mesh) {
   }
   if (arguments.vertices.is_none() || arguments.faces.is_none())
     throw geo::InputError("from_open3d: the object has no vertices or triangles; give an Open3D TriangleMesh");
-  return std::make_shared<Solid>(mesh_from(arguments));
+  return std::make_shared<Solid>(without_seams(mesh_from(arguments)));
 }
 
 }  // namespace
@@ -106,7 +126,8 @@ void bind_imports(py::module_& module) {
       .def_static(
           "from_open3d", &from_open3d, py::arg("mesh"),
           "The model of an Open3D TriangleMesh, of either of its classes, with texture coordinates, colours, normals\n"
-          "and material ids as groups. Raises InputError where it is no valid solid.");
+          "and material ids as groups. Vertices at one position become one. Raises InputError where it is no valid\n"
+          "solid.");
 }
 
 }  // namespace kerf_python

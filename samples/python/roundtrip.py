@@ -39,7 +39,7 @@ class TriangleMesh:
 
 
 def to_trimesh(mesh: kerf.Mesh) -> Any:
-    """Corners become vertices of their own: at a seam, a vertex has several texture coordinates."""
+    """Corners become vertices of their own: at a seam, a vertex has several texture coordinates. Kerf merges them again."""
     assert mesh.uv is not None
     vertices, uv = mesh.vertices[mesh.faces].reshape(-1, 3), mesh.uv.reshape(-1, 2)
     faces = np.arange(len(vertices)).reshape(-1, 3)
@@ -47,11 +47,6 @@ def to_trimesh(mesh: kerf.Mesh) -> Any:
         trimesh = importlib.import_module("trimesh")
         return trimesh.Trimesh(vertices, faces, visual=trimesh.visual.TextureVisuals(uv=uv), process=False)
     return Trimesh(vertices, faces, Visual(uv))
-
-
-def from_trimesh(mesh: Any) -> kerf.Solid:
-    """The model of a mesh whose vertices are split at seams. kerf.Solid.from_trimesh() is for meshes without seams."""
-    return kerf.Solid.repaired(kerf.Mesh(mesh.vertices, mesh.faces, uv=mesh.visual.uv))
 
 
 def to_open3d(mesh: kerf.Mesh) -> Any:
@@ -81,7 +76,7 @@ model = kerf.Solid(sphere.vertices, sphere.faces, uv=np.stack([around, z / 2 + 0
 
 pieces = model.crack(kerf.score(model, "planes", pieces=4, jagged=0, seed=3)).pieces()
 for mesh in [model, *pieces]:
-    for again in [from_trimesh(to_trimesh(mesh)), kerf.Solid.from_open3d(to_open3d(mesh))]:
+    for again in [kerf.Solid.from_trimesh(to_trimesh(mesh)), kerf.Solid.from_open3d(to_open3d(mesh))]:
         assert np.array_equal(described(again), described(mesh)), "a corner or its texture coordinates changed"
         assert np.isclose(again.volume, mesh.volume)
 

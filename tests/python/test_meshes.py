@@ -105,6 +105,14 @@ class Meshes(unittest.TestCase):
         arguments = s.to_trimesh_kwargs()
         self.assertIs(arguments["process"], False)
         np.testing.assert_array_equal(arguments["faces"], CUBE_FACES)
+        split = types.SimpleNamespace(vertices=CUBE[CUBE_FACES].reshape(-1, 3), faces=np.arange(36).reshape(12, 3))
+        uv = np.random.default_rng(1).random((36, 2))
+        split.visual = types.SimpleNamespace(uv=uv)
+        split.triangles, split.triangle_uvs = split.faces, uv
+        for seamless in (kerf.Solid.from_trimesh(split), kerf.Solid.from_open3d(split)):
+            self.assertEqual(seamless.vertices.shape, (8, 3))
+            np.testing.assert_array_equal(seamless.vertices[seamless.faces], CUBE[CUBE_FACES])
+            np.testing.assert_array_equal(seamless.uv, uv.reshape(12, 3, 2))
         for call in (kerf.Solid.from_trimesh, kerf.Solid.from_open3d):
             for bad in (None, 3, types.SimpleNamespace(vertices=CUBE), types.SimpleNamespace(vertices=1, faces=2)):
                 with self.assertRaises(kerf.InputError):

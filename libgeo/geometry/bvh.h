@@ -23,8 +23,6 @@ class TriangleBvh {
   std::size_t size() const { return corners_.size(); }
   /// Whether there are no triangles.
   bool empty() const { return corners_.empty(); }
-  /// The corners of a triangle.
-  const std::array<Vec3, 3>& corners(std::uint32_t triangle) const { return corners_[triangle]; }
   /// The bounding box of all triangles.
   const Box3& box() const { return box_; }
 
@@ -45,8 +43,7 @@ class TriangleBvh {
     double distance = 0;           ///< of that point, model units
   };
   /// The closest triangle within distance `cutoff` of p; of several, the one with the lowest index.
-  /// Returns the first triangle found within distance `enough`, if there is one.
-  Closest closest(const Vec3& p, double cutoff = std::numeric_limits<double>::infinity(), double enough = -1) const;
+  Closest closest(const Vec3& p, double cutoff = std::numeric_limits<double>::infinity()) const;
 
   /// Whether p is strictly inside the closed oriented surface that the triangles form: the parity
   /// of a ray's crossings, counted exactly. A ray that touches an edge or vertex is replaced by

@@ -6,13 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <tuple>
+#include <unordered_map>
 
-#include "base/union_find.h"
-#include "crack/index_map.h"
 #include "crack/noise.h"
-#include "geometry/aabb_tree.h"
-#include "geometry/distance.h"
+#include "geometry/triangle_index.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
@@ -25,88 +22,18 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t t) {
   return {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
 }
 
-// A ball around a triangle, and how much larger it is with a bound of the rounding of distances.
-struct Reach {
-  Vec3 middle;
-  double radius, loose;
-};
-
-std::vector<Reach> reaches(const TriangleMesh& walls, const TriangleBvh& skin, double margin) {
-  const double rounding =
-      0x1p-40 * (skin.box().diagonal() + skin.box().lo.cwiseAbs().cwiseMax(skin.box().hi.cwiseAbs()).maxCoeff());
-  std::vector<Reach> all(walls.triangles.size());
-  for (std::size_t t = 0; t < all.size(); ++t) {
-    const auto c = corners(walls, t);
-    const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
-    double radius = margin;
-    for (const Vec3& p : c) radius = std::max(radius, margin + (p - middle).norm());
-    all[t] = {middle, radius, (1 + 0x1p-40) * radius + rounding};
-  }
-  return all;
-}
-
-// The triangles by cells of a grid; each inner vector of indices has one cell.
-std::vector<std::vector<std::uint32_t>> by_cell(const std::vector<Reach>& reach, const Box3& box, double cell) {
-  std::vector<std::vector<std::uint32_t>> cells;
-  crack::IndexMap<std::uint64_t, crack::SpreadHash> index;
-  for (std::uint32_t t = 0; t < reach.size(); ++t) {
-    std::uint64_t at = 0;
-    for (int axis = 0; axis < 3; ++axis)  // far cells share a name: this costs time alone
-      at = at << 21 | static_cast<std::uint64_t>(
-                          std::clamp((reach[t].middle[axis] - box.lo[axis]) / cell + 0x1p19, 0.0, 0x1p21 - 1));
-    std::uint32_t& entry = index[at];
-    if (entry == ~0u) entry = static_cast<std::uint32_t>(cells.size()), cells.emplace_back();
-    cells[entry].push_back(t);
-  }
-  return cells;
-}
-
-// Whether each triangle is in the material or at most `margin` outside.
-std::vector<std::uint8_t> near_or_inside(const TriangleMesh& walls, const TriangleBvh& skin, double margin) {
-  const std::size_t count = walls.triangles.size();
-  const std::vector<Reach> reach = reaches(walls, skin, margin);
-  double largest = 0;
-  for (const Reach& r : reach) largest = std::max(largest, r.radius - margin);
-  // The factor affects speed alone: larger cells need fewer queries, each decides fewer triangles.
-  const auto cells = by_cell(reach, skin.box(), std::max(3 * largest, 1e-6 * skin.box().diagonal()));
-  std::vector<std::uint8_t> keep(count), clear(count);  // clear: certainly without a point of the skin
-  parallel_for(cells.size(), 32, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      // The skin nearest to one triangle of the cell decides most of the others.
-      const Vec3& from = reach[cells[i].front()].middle;
-      double cutoff = 0;
-      for (const auto t : cells[i]) cutoff = std::max(cutoff, (reach[t].middle - from).norm() + reach[t].loose);
-      const auto nearest = skin.closest(from, cutoff);
-      for (const auto t : cells[i]) {
-        const auto& [middle, radius, loose] = reach[t];
-        clear[t] = nearest.triangle == ~0u || (middle - from).norm() + loose < nearest.distance;
-        if (clear[t]) continue;
-        const auto& s = skin.corners(nearest.triangle);
-        keep[t] = (closest_point_on_triangle(middle, s[0], s[1], s[2]) - middle).squaredNorm() <= radius * radius;
-        if (keep[t]) continue;
-        const auto found = skin.closest(middle, loose, radius);
-        clear[t] = found.triangle == ~0u;
-        keep[t] = !clear[t] && (found.distance <= radius || skin.inside(middle));
-      }
-    }
-  });
-  // Clear triangles that are connected are all inside, or all outside.
-  UnionFind joined(count);
-  std::vector<std::uint32_t> at(walls.vertices.size(), ~0u);
-  for (std::uint32_t t = 0; t < count; ++t)
-    for (const auto v : walls.triangles[t]) {
-      if (!clear[t]) break;
-      if (at[v] == ~0u) at[v] = t;
-      joined.unite(at[v], t);
-    }
-  for (std::uint32_t t = 0; t < count; ++t)
-    if (clear[t]) keep[t] = joined.find(t) == t ? skin.inside(reach[t].middle) : keep[joined.find(t)];
-  return keep;
-}
-
 // Drops the triangles farther outside the material than `margin`, and vertices without triangles.
 void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
-  const auto keep = near_or_inside(walls, skin, margin);
+  std::vector<char> keep(walls.triangles.size());
+  parallel_for(keep.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto c = corners(walls, t);
+      const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
+      double radius = margin;
+      for (const Vec3& p : c) radius = std::max(radius, margin + (p - middle).norm());
+      keep[t] = skin.closest(middle, radius).triangle != ~0u || skin.inside(middle);
+    }
+  });
   std::vector<std::uint32_t> index(walls.vertices.size(), ~0u);
   TriangleMesh kept;
   for (std::size_t t = 0; t < keep.size(); ++t) {
@@ -124,150 +51,107 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
 
 // Bisects edges, the longest first: each is then the longest of all its triangles, so that small
 // angles stay bounded.
-class Bisection {
- public:
-  Bisection(TriangleMesh& walls, double longest) : walls_(walls), longest_(longest) {
-    crack::IndexMap<std::uint64_t, crack::SpreadHash> index;
-    for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
-      const Triangle& v = walls.triangles[t];
-      edges_of_.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto a = std::min(v[k], v[(k + 1) % 3]), b = std::max(v[k], v[(k + 1) % 3]);
-        std::uint32_t& edge = index[std::uint64_t(a) << 32 | b];
-        if (edge == ~0u) edge = add_edge(a, b);
-        edges_of_[t][k] = edge;
-        add_use(edge, t);
-      }
-    }
-  }
-
-  void run() {
-    while (!queue_.empty()) {
-      const std::uint32_t edge = queue_.top().edge;
-      queue_.pop();
-      bisect(edge);
-    }
-  }
-
- private:
+void divide(TriangleMesh& walls, double longest) {
   struct Edge {
-    std::uint32_t a, b;                     // vertices, a < b
-    std::uint32_t first = ~0u, last = ~0u;  // its uses, in the order in which they were added
-  };
-  struct Use {
-    std::uint32_t triangle, next;
-  };
-  struct Entry {
     double length2;
-    std::uint32_t a, b, edge;
-    bool operator<(const Entry& o) const { return std::tie(length2, o.a, o.b) < std::tie(o.length2, a, b); }
+    std::uint32_t a, b;
+    bool operator<(const Edge& o) const { return std::tie(length2, o.a, o.b) < std::tie(o.length2, a, b); }
   };
-
-  std::uint32_t add_edge(std::uint32_t a, std::uint32_t b) {
-    const auto edge = static_cast<std::uint32_t>(edges_.size());
-    edges_.push_back({std::min(a, b), std::max(a, b)});
-    const double length2 = (walls_.vertices[a] - walls_.vertices[b]).squaredNorm();
-    if (length2 > longest_ * longest_) queue_.push({length2, std::min(a, b), std::max(a, b), edge});
-    return edge;
-  }
-  void add_use(std::uint32_t edge, std::uint32_t triangle) {
-    const auto use = static_cast<std::uint32_t>(uses_.size());
-    uses_.push_back({triangle, ~0u});
-    Edge& e = edges_[edge];
-    (e.first == ~0u ? e.first : uses_[e.last].next) = use;
-    e.last = use;
-  }
-
-  void bisect(std::uint32_t edge) {
-    const auto [a, b, first, last] = edges_[edge];
-    const auto middle = static_cast<std::uint32_t>(walls_.vertices.size());
-    walls_.vertices.push_back(0.5 * (walls_.vertices[a] + walls_.vertices[b]));
-    const std::uint32_t to_a = add_edge(a, middle), to_b = add_edge(middle, b);
-    across_.clear();
-    for (auto use = first; use != ~0u; use = uses_[use].next) {
-      const std::uint32_t t = uses_[use].triangle, other = static_cast<std::uint32_t>(walls_.triangles.size());
-      Triangle v = walls_.triangles[t];
-      std::size_t k = 0;
-      while (edges_of_[t][k] != edge) ++k;
-      const std::uint32_t apex = v[(k + 2) % 3];
-      // Two triangles with the same corners share the edge to their apex, too.
-      const auto known = std::find_if(across_.begin(), across_.end(), [&](const auto& e) { return e.first == apex; });
-      const std::uint32_t across = known == across_.end() ? add_edge(middle, apex) : known->second;
-      if (known == across_.end()) across_.push_back({apex, across});
-      const bool forward = v[k] == a;  // the triangle keeps a, the other one gets b
-      const std::size_t at_a = (k + (forward ? 2 : 1)) % 3, at_b = (k + (forward ? 1 : 2)) % 3;
-      auto edges = edges_of_[t];
-      for (auto u = edges_[edges[at_b]].first; u != ~0u; u = uses_[u].next)
-        if (uses_[u].triangle == t) uses_[u].triangle = other;
-      v[forward ? k : (k + 1) % 3] = middle;
-      walls_.triangles[t][forward ? (k + 1) % 3 : k] = middle;
-      walls_.triangles.push_back(v);
-      edges[at_a] = across, edges[k] = to_b;
-      edges_of_[t][at_b] = across, edges_of_[t][k] = to_a;
-      edges_of_.push_back(edges);
-      add_use(across, t), add_use(to_a, t), add_use(across, other), add_use(to_b, other);
+  const auto key = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
+  };
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> at;
+  std::priority_queue<Edge> edges;
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t t) {
+    auto& triangles = at[key(a, b)];
+    triangles.push_back(t);
+    const double length2 = (walls.vertices[a] - walls.vertices[b]).squaredNorm();
+    if (triangles.size() == 1 && length2 > longest * longest) edges.push({length2, std::min(a, b), std::max(a, b)});
+  };
+  for (std::uint32_t t = 0; t < walls.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) add(walls.triangles[t][k], walls.triangles[t][(k + 1) % 3], t);
+  while (!edges.empty()) {
+    const Edge e = edges.top();
+    edges.pop();
+    auto node = at.extract(key(e.a, e.b));
+    if (node.empty()) continue;
+    const auto middle = static_cast<std::uint32_t>(walls.vertices.size());
+    walls.vertices.push_back(0.5 * (walls.vertices[e.a] + walls.vertices[e.b]));
+    for (const auto t : node.mapped()) {
+      const auto other = static_cast<std::uint32_t>(walls.triangles.size());
+      Triangle half = walls.triangles[t];
+      std::uint32_t apex = 0;
+      for (const auto v : half)
+        if (v != e.a && v != e.b) apex = v;
+      std::replace(walls.triangles[t].begin(), walls.triangles[t].end(), e.b, middle);
+      std::replace(half.begin(), half.end(), e.a, middle);
+      walls.triangles.push_back(half);
+      auto& side = at[key(e.b, apex)];
+      std::replace(side.begin(), side.end(), t, other);
+      add(middle, apex, t), add(e.a, middle, t);
+      at[key(middle, apex)].push_back(other);
+      add(middle, e.b, other);
     }
   }
-
-  TriangleMesh& walls_;
-  const double longest_;
-  std::vector<Edge> edges_;
-  std::vector<Use> uses_;
-  std::vector<std::array<std::uint32_t, 3>> edges_of_;           // per triangle: from corner k to the next
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> across_;  // of the edge at hand: apex, new edge
-  std::priority_queue<Entry> queue_;
-};
+}
 
 // Finds triangles that cross each other, incrementally.
 class Crossings {
  public:
   explicit Crossings(const TriangleMesh& walls) : walls_(walls), at_(walls.vertices.size()) {
-    for (std::uint32_t t = 0; t < walls.triangles.size(); ++t)
+    index_.reserve(walls.triangles.size());
+    for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
+      insert(t);
+      changed_.push_back(t);
       for (const auto v : walls.triangles[t]) at_[v].push_back(t);
+    }
   }
 
   // The vertices, ascending, of crossing triangles: among all, or after update(), of pairs with a
   // moved vertex.
-  std::vector<std::uint32_t> vertices() {
-    std::vector<Box3> boxes;
-    boxes.reserve(walls_.triangles.size());
-    for (std::size_t t = 0; t < walls_.triangles.size(); ++t) {
-      const auto c = corners(walls_, t);
-      boxes.push_back(box_of(c[0], c[1], c[2]));
-    }
-    if (tree_.boxes().empty())
-      tree_ = AabbTree(std::move(boxes));
-    else
-      tree_.refit_or_rebuild(std::move(boxes), {});
+  std::vector<std::uint32_t> vertices() const {
+    std::vector<std::vector<std::uint32_t>> bad(changed_.size());
+    parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto t = changed_[i];
+        const auto c = corners(walls_, t);
+        near.clear();
+        index_.find_near_triangle(c[0], c[1], c[2], 0, near);
+        for (const auto other : near)
+          if (other != t && faces_cross(walls_.triangles[t], c, walls_.triangles[other], corners(walls_, other)))
+            for (const auto each : {t, other})
+              bad[i].insert(bad[i].end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
+      }
+    });
     std::vector<std::uint32_t> all;
-    for (const auto& [t, other] :
-         tree_.pairs(changed_.empty() ? nullptr : &changed_, [this](AabbTree::Pairs& pairs) { keep_crossing(pairs); }))
-      for (const auto each : {t, other})
-        all.insert(all.end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
+    for (const auto& some : bad) all.insert(all.end(), some.begin(), some.end());
+    return sorted(std::move(all));
   }
 
-  // Marks the triangles at moved vertices.
+  // Updates the triangles at moved vertices.
   void update(const std::vector<std::uint32_t>& vertices) {
-    changed_.assign(walls_.triangles.size(), 0);
-    for (const auto v : vertices)
-      for (const auto t : at_[v]) changed_[t] = 1;
+    changed_.clear();
+    for (const auto v : vertices) changed_.insert(changed_.end(), at_[v].begin(), at_[v].end());
+    changed_ = sorted(std::move(changed_));
+    for (const auto t : changed_) index_.erase(t), insert(t);
   }
 
  private:
-  void keep_crossing(AabbTree::Pairs& pairs) const {
-    std::erase_if(pairs, [this](const auto& pair) {
-      return !faces_cross(walls_.triangles[pair.first], corners(walls_, pair.first), walls_.triangles[pair.second],
-                          corners(walls_, pair.second));
-    });
+  static std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> indices) {
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    return indices;
+  }
+  void insert(std::uint32_t t) {
+    const auto c = corners(walls_, t);
+    index_.insert(t, box_of(c[0], c[1], c[2]));
   }
 
   const TriangleMesh& walls_;
   std::vector<std::vector<std::uint32_t>> at_;  // triangles at each vertex
-  std::vector<std::uint8_t> changed_;           // per triangle; empty: all
-  AabbTree tree_;
+  std::vector<std::uint32_t> changed_;
+  TriangleIndex index_;
 };
 
 }  // namespace
@@ -276,7 +160,7 @@ void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, 
   // Coarsely first: few triangles are divided that are dropped afterwards. The factors change the
   // cost and where triangles are bisected, not the bound on their edges.
   for (const double edge : {8 * longest, 2 * longest, longest}) {
-    Bisection(walls, edge).run();
+    divide(walls, edge);
     trim(walls, skin, margin);
   }
 }
@@ -293,11 +177,11 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
   parallel_for(flat.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double height = o.amplitude * size, frequency = o.frequency / size;
-      for (int octave = 0; octave < o.octaves; ++octave, height *= 0.6, frequency *= 2) {
-        const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3);
-        const auto noise = gradient_noises(frequency * (flat[i] - skin.box().lo), {seed, seed + 1, seed + 2});
-        for (int k = 0; k < 3; ++k) offset[i][k] += height * noise[std::size_t(k)];
-      }
+      for (int octave = 0; octave < o.octaves; ++octave, height *= 0.6, frequency *= 2)
+        for (int k = 0; k < 3; ++k)
+          offset[i][k] +=
+              height * gradient_noise(frequency * (flat[i] - skin.box().lo),
+                                      o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
       walls.vertices[i] = flat[i] + offset[i];
     }
   });

@@ -24,5 +24,18 @@ void bind_imports(py::module_& module);          ///< meshes of trimesh and Open
 void bind_surface_files(py::module_& module);    ///< files of surfaces
 void bind_front_files(py::module_& module);      ///< files of fronts
 void bind_shapes(py::module_& module);           ///< procedural models
+void bind_nodes(py::module_& module);            ///< NodeSet and sample
+void bind_graph(py::module_& module);            ///< VisibilityGraph
+void bind_body_changes(py::module_& module);     ///< fronts, changes and statistics of bodies
+void bind_body(py::module_& module);             ///< Body
+void bind_kerf_file(py::module_& module);        ///< KerfFile
+void bind_material(py::module_& module);         ///< Material, Materials and their laws
+void bind_state(py::module_& module);            ///< State and Environment
+void bind_solid_fields(py::module_& module);     ///< StepReport, and nodal fields of solids
+void bind_solid(py::module_& module);            ///< DeformingSolid
+void bind_scene(py::module_& module);            ///< Scene
+void bind_frame_stats(py::module_& module);      ///< statistics of frames
+void bind_simulation(py::module_& module);       ///< Simulation
+void bind_run_files(py::module_& module);        ///< files of runs
 
 }  // namespace kerf_python

@@ -25,4 +25,17 @@ PYBIND11_MODULE(_kerf, module) {
   bind_surface_files(module);
   bind_front_files(module);
   bind_shapes(module);
+  bind_nodes(module);
+  bind_graph(module);
+  bind_body_changes(module);
+  bind_body(module);
+  bind_kerf_file(module);
+  bind_material(module);
+  bind_state(module);
+  bind_solid_fields(module);
+  bind_solid(module);
+  bind_scene(module);
+  bind_frame_stats(module);
+  bind_simulation(module);
+  bind_run_files(module);
 }

@@ -6,4 +6,5 @@ PYBIND11_MODULE(_formats, module) {
   module.doc() = "Formats of files that need large libraries; the package kerf loads this.";
   pybind11::module_::import("kerf._kerf");  // the classes of arguments and results
   bind_volumes(module);
+  bind_vtkhdf(module);
 }

@@ -6,5 +6,6 @@
 namespace kerf_python {
 
 void bind_volumes(pybind11::module_& module);  ///< OpenVDB volumes
+void bind_vtkhdf(pybind11::module_& module);   ///< graphs of bodies as VTKHDF
 
 }  // namespace kerf_python

@@ -1,0 +1,241 @@
+"""Scenes and runs: against kerf-sim byte for byte, a knife that Python drives, checkpoints, bad input."""
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+import kerf
+from shapes import block
+
+SCENE = """
+[body]
+mesh = "block.ply"
+nodes = 250
+[material]
+young = 5e4
+damping = 2.0
+[ground]
+point = [0, 0, -0.02]
+stiffness = 4e3
+[time]
+frames = 6
+frame_rate = 24
+step = 0.021
+checkpoint_every = 3
+[[blade]]
+name = "knife"
+points = [[0, -0.8, 0], [0, 0, 0], [0, 0.8, 0.01]]
+divide = 8
+keys = [[0.0, 0.503, 0.5, 1.05, 0, 0, 1, 4], [0.5, 0.507, 0.5, -0.2, 0, 0, 1, 8]]
+[[grip]]
+box = [-0.1, -0.1, -0.1, 0.15, 1.1, 1.1]
+keys = [[0.0, 0, 0, 0, 0, 0, 1, 0]]
+"""
+
+
+def model():
+    return kerf.Solid(*block())
+
+
+def simulation(text=SCENE, **options):
+    return kerf.Simulation(text, models=model(), **options)
+
+
+class Scenes(unittest.TestCase):
+    def test_fields(self):
+        scene = kerf.Scene(SCENE, young=8e4, set={"blade.0.thickness": "0.1", "blade.0.back": [0, 0, 1]})
+        self.assertEqual(scene.material.young, 8e4)
+        self.assertEqual(scene.blades[0].thickness, 0.1)
+        self.assertEqual(scene.blades[0].name, "knife")
+        self.assertEqual(scene.blades[0].points.shape, (17, 3))
+        self.assertEqual(scene.bodies[0].nodes, 250)
+        self.assertEqual((scene.frames, scene.frame_rate, scene.ground), (6, 24, True))
+        np.testing.assert_allclose(scene.blades[0].keys[1], [0.5, 0.507, 0.5, -0.2, 0, 0, 1, 8])
+        self.assertEqual(kerf.Scene(SCENE, model="stvk").material.model, "stvk")
+        self.assertEqual(list(kerf.Scene(SCENE, gravity=np.array([0, -9, 0])).gravity), [0, -9, 0])
+        self.assertEqual(kerf.parse_motion("0 1 2 3 0 0 1 90", "rows").shape, (1, 8))
+
+    def test_refused(self):
+        with self.assertRaisesRegex(kerf.InputError, "did you mean 'young'"):
+            kerf.Scene(SCENE, yuong=3)
+        with self.assertRaisesRegex(kerf.InputError, "material.young"):
+            kerf.Scene(SCENE, young=-1)
+        with self.assertRaisesRegex(kerf.InputError, "thickness"):
+            kerf.Scene(SCENE, set={"blade.0.thicknes": 1})
+        for bad in ({"set": {"blade.7.thickness": 1}}, {"young": float("nan")}, {"young": object()}, {"gravity": 3}):
+            with self.assertRaises(kerf.InputError, msg=str(bad)):
+                kerf.Scene(SCENE, **bad)
+        for bad in (3, None, {"set": 3}):
+            with self.assertRaises(TypeError):
+                kerf.Scene(bad) if not isinstance(bad, dict) else kerf.Scene(SCENE, **bad)
+        with self.assertRaises(kerf.MissingInputError):
+            kerf.Scene("none.toml")
+        with self.assertRaises(kerf.InputError):
+            kerf.Scene("not\ntoml")
+
+
+class Runs(unittest.TestCase):
+    @unittest.skipUnless(shutil.which("kerf-sim", path=os.environ.get("KERF_TOOLS", "")), "needs kerf-sim in KERF_TOOLS")
+    def test_frames_of_kerf_sim(self):
+        """The same frames and checkpoint as kerf-sim, byte for byte, where Python gives the material."""
+        tool = shutil.which("kerf-sim", path=os.environ.get("KERF_TOOLS", ""))
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            simulation(SCENE).write_frame(folder / "block.ply")  # frame 0: the model itself
+            (folder / "scene.toml").write_text(SCENE)
+            subprocess.run([tool, folder / "scene.toml", "-o", folder / "run", "--set", "material.young=8e4"], check=True,
+                           capture_output=True)
+            run = kerf.Simulation(folder / "scene.toml", young=8e4)
+            for frame in range(7):
+                run.write_frame(folder / "frame.ply")
+                run.write_nodes(folder / "nodes.ply")
+                for made, path in (("frame.ply", run_path(folder / "run/frames", frame)),
+                                   ("nodes.ply", run_path(folder / "run/nodes", frame))):
+                    self.assertEqual((folder / made).read_bytes(), path.read_bytes(), f"frame {frame}")
+                if frame < 6:
+                    run.step()
+            run.save(folder / "checkpoint.kerf")
+            self.assertEqual((folder / "checkpoint.kerf").read_bytes(), (folder / "run/checkpoint.kerf").read_bytes())
+            again = kerf.Simulation.resume(folder / "run/checkpoint.kerf", folder / "scene.toml", young=8e4)
+            self.assertEqual(again.frame, 6)
+            with self.assertRaises(kerf.InputError):
+                kerf.Simulation.resume(folder / "run/checkpoint.kerf", folder / "scene.toml", young=9e4)
+            nodes, stress = kerf.read_frame_nodes(folder / "nodes.ply")
+            np.testing.assert_allclose(nodes.positions, run.positions, atol=1e-6)
+            np.testing.assert_allclose(stress, run.stress, rtol=1e-5, atol=1e-3)
+
+    def test_driven_knife_cuts(self):
+        run = simulation(set={"blade.0.keys": [[0, 0.503, 0.5, 1.05, 0, 0, 1, 4], [0.01, 0.503, 0.5, 1.05, 0, 0, 1, 4]]})
+        knife = run.blade("knife")
+        for z in np.linspace(0.9, -0.2, 5):
+            turn = np.eye(4)
+            turn[:3, 3] = [0.503, 0.5, z]
+            knife.move(turn)
+            run.step()
+            np.testing.assert_allclose(knife.pose[0], [0.503, 0.5, z], atol=1e-12)
+        self.assertGreater(run.total.split.edges_cut, 0)
+        self.assertEqual(run.body.graph.components()[0], 2)
+        self.assertTrue(run.body.check().good)
+        self.assertEqual(knife.points.shape, (17, 3))
+
+    def test_grip_and_snapshots(self):
+        run = simulation()
+        positions, surface, body = run.positions, run.surface(), run.body
+        self.assertIs(run.positions, positions)
+        self.assertIs(run.surface(), surface)
+        before = positions.copy(), surface.vertices.copy()
+        run.grip(0).move((0.1, 0, 0))
+        run.step()
+        np.testing.assert_array_equal(positions, before[0])
+        np.testing.assert_array_equal(surface.vertices, before[1])
+        held = (run.body.nodes.positions[:, 0] < 0.15)
+        np.testing.assert_allclose(run.displacement[held], [[0.1, 0, 0]] * held.sum(), atol=1e-12)
+        self.assertEqual(run.stress.shape, (len(run.body),))
+        self.assertGreater(run.stress.max(), 0)
+        self.assertIsNot(run.body, body)
+
+    def test_momentum(self):
+        free = SCENE[:SCENE.index("[[blade]]")].replace("[ground]\npoint = [0, 0, -0.02]\nstiffness = 4e3\n", "")
+        run = simulation(free, velocity=[1, 2, 3], gravity=[0, 0, 0], damping=0)
+        first, mass = run.momentum(), run.solid().mass.sum()
+        np.testing.assert_allclose(first, mass * np.array([1, 2, 3]), rtol=1e-9)
+        run.run(2)
+        np.testing.assert_allclose(run.momentum(), first, rtol=1e-6)
+
+    def test_resume(self):
+        """A knife that Python moves, an interruption in the middle: the same frames, byte for byte."""
+        def drive(run, steps):
+            for z in steps:
+                run.blade(0).move(((0.503, 0.5, z), (1, 0, 0, 0.01)))
+                run.step()
+
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            whole = simulation()
+            drive(whole, (0.8, 0.6))
+            whole.save(folder / "half.kerf")
+            motions = whole.motions
+            drive(whole, (0.4, 0.2))
+            later = kerf.Simulation.resume(folder / "half.kerf", SCENE, models=model(), motions=motions)
+            self.assertEqual(later.frame, 2)
+            drive(later, (0.4, 0.2))
+            whole.save(folder / "a.kerf")
+            later.save(folder / "b.kerf")
+            self.assertEqual((folder / "a.kerf").read_bytes(), (folder / "b.kerf").read_bytes())
+
+    def test_run_and_stop(self):
+        run, frames, reports = simulation(), [], []
+        stats = run.run(2, progress=lambda *r: reports.append(r), each=lambda s, stats: frames.append((s.frame, s.time)))
+        self.assertEqual([frame for frame, time in frames], [1, 2])
+        self.assertEqual(stats.steps, 4)
+        self.assertEqual(reports[-1][1], reports[-1][2])
+        run.run(each=lambda s, stats: s.frame < 3)
+        self.assertEqual(run.frame, 3)
+        with self.assertRaises(kerf.Interrupted):
+            run.run(progress=lambda *r: False)
+        self.assertEqual(run.frame, 4)  # a stop leaves the run between two frames
+        with self.assertRaises(KeyError):
+            run.run(1, progress=lambda *r: {}["x"])
+
+        def use(phase, done, total):
+            with self.assertRaises(kerf.Error):
+                run.positions
+
+        run.run(1, progress=use)
+        run.step()
+        self.assertEqual(run.frame, 7)
+
+    def test_files(self):
+        run = simulation()
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            meshes = [run.surface()]
+            run.run(2, each=lambda s, stats: meshes.append(s.surface()))
+            kerf.write_usd(folder / "run.usda", meshes)
+            self.assertIn("timeSamples", (folder / "run.usda").read_text())
+            kerf.write_series(folder / "run.ply.series", ["a.ply", "b.ply"], 24)
+            self.assertIn("b.ply", (folder / "run.ply.series").read_text())
+            with self.assertRaises(kerf.InputError):
+                kerf.write_usd(folder / "run.usda", [])
+            with self.assertRaises(kerf.InputError):
+                kerf.write_usd(folder / "run.usda", meshes, up="X")
+            with self.assertRaises(kerf.InputError):
+                kerf.write_frame_nodes(folder / "n.ply", run.body.nodes, [1.0])
+
+    def test_refused(self):
+        run = simulation()
+        with self.assertRaisesRegex(kerf.InputError, "did you mean 'knife'"):
+            run.blade("knive")
+        with self.assertRaises(kerf.InputError):
+            run.blade(1)
+        with self.assertRaises(TypeError):
+            run.blade(None)
+        with self.assertRaises(kerf.InputError):
+            run.obstacle(0)
+        knife = run.blade(0)
+        scaled = 2 * np.eye(4)
+        scaled[3, 3] = 1
+        for bad in ([1, 2], [1, 2, np.nan], scaled, -np.eye(4), np.zeros((4, 4)), ((0, 0, 0), (0, 0, 0, 0)), "here", None):
+            with self.assertRaises(kerf.InputError, msg=str(bad)):
+                knife.move(bad)
+        with self.assertRaises(kerf.InputError):
+            kerf.Simulation(SCENE, models=[model(), model()])
+        with self.assertRaises(kerf.InputError):
+            kerf.Simulation(SCENE, models=kerf.Mesh(*block()[:1], block()[1][1:]))
+        with self.assertRaises(kerf.MissingInputError):
+            kerf.Simulation(SCENE)
+        with self.assertRaises((kerf.InputError, TypeError)):
+            run.run(-1)
+
+
+def run_path(folder, frame):
+    """The file of a frame in a folder of kerf-sim."""
+    return sorted(folder.iterdir())[frame]
+
+
+if __name__ == "__main__":
+    unittest.main()

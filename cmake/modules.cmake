@@ -34,6 +34,7 @@ function(kerf_module module)
     return()
   endif()
   add_library(geo_${module} OBJECT ${sources})
+  kerf_unity(geo_${module} ${sources})
   target_include_directories(geo_${module} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}> $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>)
   target_link_libraries(geo_${module} PRIVATE kerf_flags PUBLIC kerf_eigen ${ARGN})
   if(module STREQUAL "base" OR module STREQUAL "geometry")  # CGAL's options are those of geometry alone

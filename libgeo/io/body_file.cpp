@@ -15,13 +15,26 @@
 #include "io/json_integer.h"
 
 namespace geo {
+
+std::span<const double> coordinates(const std::vector<Vec3>& points) {
+  return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
+}
+
+std::vector<Vec3> read_points(const KerfFile& file, const std::string& section) {
+  const auto values = file.read<double>(section, 3);
+  std::vector<Vec3> result;
+  result.reserve(values.size() / 3);
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    result.push_back({values[i], values[i + 1], values[i + 2]});
+    if (!in_range(result.back()))
+      file.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
+  }
+  return result;
+}
+
 namespace {
 
 // ---- Writing: the arrays of each part of a body. They refer to the body and to members of Arrays.
-
-std::span<const double> flat(const std::vector<Vec3>& points) {
-  return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
-}
 
 struct Arrays {
   const Body& body;
@@ -47,7 +60,7 @@ struct Arrays {
 
 void add_surface(Arrays& a) {
   a.mesh = a.body.surface.two_sided(&a.rows);
-  a.add("surface/vertices", flat(a.mesh.vertices), 3);
+  a.add("surface/vertices", coordinates(a.mesh.vertices), 3);
   a.add("surface/triangles",
         std::span<const std::uint32_t>(a.mesh.triangles.empty() ? nullptr : a.mesh.triangles[0].data(),
                                        3 * a.mesh.triangles.size()),
@@ -58,7 +71,7 @@ void add_surface(Arrays& a) {
 }
 
 void add_nodes(Arrays& a) {
-  a.add("nodes/position", flat(a.body.nodes.position), 3);
+  a.add("nodes/position", coordinates(a.body.nodes.position), 3);
   a.add("nodes/radius", a.body.nodes.radius);
   a.add("nodes/spacing", a.body.nodes.spacing);
   a.add("nodes/volume", a.body.nodes.volume);
@@ -157,21 +170,9 @@ void add_all(Arrays& a) {
 
 // ---- Reading: each part is checked before the next one refers to it.
 
-std::vector<Vec3> points(const KerfFile& in, const std::string& section) {
-  const auto values = in.read<double>(section, 3);
-  std::vector<Vec3> result;
-  result.reserve(values.size() / 3);
-  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-    result.push_back({values[i], values[i + 1], values[i + 2]});
-    if (!in_range(result.back()))
-      in.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
-  }
-  return result;
-}
-
 void read_surface(const KerfFile& in, Body& body) {
   TriangleMesh mesh;
-  mesh.vertices = points(in, "surface/vertices");
+  mesh.vertices = read_points(in, "surface/vertices");
   const auto triangles = in.read<std::uint32_t>("surface/triangles", 3);
   mesh.triangles.reserve(triangles.size() / 3);
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
@@ -191,7 +192,7 @@ void read_surface(const KerfFile& in, Body& body) {
 
 void read_nodes(const KerfFile& in, Body& body) {
   NodeSet& nodes = body.nodes;
-  nodes.position = points(in, "nodes/position");
+  nodes.position = read_points(in, "nodes/position");
   nodes.radius = in.read<double>("nodes/radius");
   nodes.spacing = in.read<double>("nodes/spacing");
   nodes.volume = in.read<double>("nodes/volume");
@@ -265,7 +266,7 @@ std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::u
   std::vector<Guide> guides;
   if (in.sections().count("guides/position") == 0) return guides;
   const auto radius = in.read<double>("guides/radius");
-  for (const Vec3& p : points(in, "guides/position"))
+  for (const Vec3& p : read_points(in, "guides/position"))
     guides.push_back({p, guides.size() < radius.size() ? radius[guides.size()] : -1});
   if (guides.size() != radius.size() || guides.size() >= VisibilityGraph::first_guide - 1)
     in.fail("the sections of guides have different lengths");

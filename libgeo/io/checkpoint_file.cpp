@@ -11,21 +11,6 @@
 namespace geo {
 namespace {
 
-std::span<const double> flat(const std::vector<Vec3>& points) {
-  return {points.empty() ? nullptr : points[0].data(), 3 * points.size()};
-}
-
-std::vector<Vec3> points(const KerfFile& file, const std::string& section) {
-  const auto values = file.read<double>(section, 3);
-  std::vector<Vec3> result;
-  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-    result.push_back({values[i], values[i + 1], values[i + 2]});
-    if (!in_range(result.back()))
-      file.fail("section '" + section + "' holds a value that is not a finite number of sensible size");
-  }
-  return result;
-}
-
 // Calls each(name, count) for the counts of a run.
 template <class Work, class Each>
 void counts(Work& w, const Each& each) {
@@ -113,21 +98,21 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   }
   counts(state.total, [&](const char* name, std::size_t n) { about["counts"][name] = n; });
   const std::string text = about.dump();
-  std::vector<KerfArray> more{kerf_array("run/displacement", flat(state.motion.displacement), 3),
-                              kerf_array("run/velocity", flat(state.motion.velocity), 3),
+  std::vector<KerfArray> more{kerf_array("run/displacement", coordinates(state.motion.displacement), 3),
+                              kerf_array("run/velocity", coordinates(state.motion.velocity), 3),
                               kerf_array("run/part", std::span(state.body_index)),
-                              kerf_array("run/surface", flat(state.surface), 3),
-                              kerf_array("run/front_points", flat(places), 3),
+                              kerf_array("run/surface", coordinates(state.surface), 3),
+                              kerf_array("run/front_points", coordinates(places), 3),
                               kerf_array("run/front_at", std::span<const double>(at)),
-                              kerf_array("run/front_normals", flat(normals), 3),
-                              kerf_array("run/front_owed", flat(owed), 3),
+                              kerf_array("run/front_normals", coordinates(normals), 3),
+                              kerf_array("run/front_owed", coordinates(owed), 3),
                               kerf_array("run/time", std::span(&state.time, 1))};
   if (!state.motion.acceleration.empty())
-    more.push_back(kerf_array("run/acceleration", flat(state.motion.acceleration), 3));
+    more.push_back(kerf_array("run/acceleration", coordinates(state.motion.acceleration), 3));
   std::vector<Vec3> plastic;  // columns
   for (const Mat3& m : state.motion.plastic)
     for (int c = 0; c < 3; ++c) plastic.push_back(m.col(c));
-  if (!plastic.empty()) more.push_back(kerf_array("run/plastic", flat(plastic), 3));
+  if (!plastic.empty()) more.push_back(kerf_array("run/plastic", coordinates(plastic), 3));
   more.push_back(
       {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
   write_body_with(out, body, more);
@@ -137,17 +122,17 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   if (file.sections().count("run/about") == 0) file.fail("is no checkpoint of a run");
   Checkpoint c{read_body(file), {}, 0};
   RunState& state = c.state;
-  state.motion.displacement = points(file, "run/displacement");
-  state.motion.velocity = points(file, "run/velocity");
-  if (file.sections().count("run/acceleration") != 0) state.motion.acceleration = points(file, "run/acceleration");
+  state.motion.displacement = read_points(file, "run/displacement");
+  state.motion.velocity = read_points(file, "run/velocity");
+  if (file.sections().count("run/acceleration") != 0) state.motion.acceleration = read_points(file, "run/acceleration");
   if (file.sections().count("run/plastic") != 0) {
-    const auto plastic = points(file, "run/plastic");
+    const auto plastic = read_points(file, "run/plastic");
     if (plastic.size() % 3 != 0) file.fail("the plastic strains of the run are incomplete");
     state.motion.plastic.resize(plastic.size() / 3);
     for (std::size_t i = 0; i < plastic.size(); ++i)
       state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
   }
-  state.surface = points(file, "run/surface");
+  state.surface = read_points(file, "run/surface");
   state.body_index = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");
   const std::size_t n = c.body.nodes.size();
@@ -155,8 +140,8 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       state.motion.velocity.size() != n || state.body_index.size() != n)
     file.fail("the sections of the run have different lengths");
   state.time = time[0];
-  Supply<Vec3> places(points(file, "run/front_points"), file), normals(points(file, "run/front_normals"), file),
-      owed(points(file, "run/front_owed"), file);
+  Supply<Vec3> places(read_points(file, "run/front_points"), file),
+      normals(read_points(file, "run/front_normals"), file), owed(read_points(file, "run/front_owed"), file);
   Supply<double> at(file.read<double>("run/front_at"), file);
   const auto about = nlohmann::json::parse(file.text("run/about"), nullptr, false);
   try {

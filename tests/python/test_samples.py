@@ -12,6 +12,8 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "samples" / "python"
 # What each writes; the asserts of a sample are part of it.
 WRITTEN = {
     "fracture": ["pumpkin.glb", *(f"piece_{i:02}.ply" for i in range(30))],
+    "knife": ["knife.ply"],
+    "peridynamics": [],
     "roundtrip": [],
     "seeds": ["seeds.png"],
 }
@@ -43,6 +45,22 @@ class Samples(unittest.TestCase):
             model = kerf.shapes.pumpkin(16)
             self.assertAlmostEqual(sum(piece.volume for piece in pieces) / model.volume, 1, places=6)
             self.assertEqual((work / "pumpkin.glb").read_bytes()[:4], b"glTF")
+
+    def test_knife(self):
+        with tempfile.TemporaryDirectory() as work:
+            work = pathlib.Path(work)
+            said = self.run_sample("knife", work).splitlines()
+            self.assertIn("1 pieces", said[0])
+            self.assertIn("2 pieces", said[-1])
+            halves = kerf.load(work / "knife.ply")
+            self.assertTrue(halves.two_sided)
+            self.assertGreater((halves.patch == 1).sum(), 0)
+            self.assertEqual((halves.patch == 1).sum(), (halves.patch == -1).sum())
+
+    def test_peridynamics(self):
+        with tempfile.TemporaryDirectory() as work:
+            said = self.run_sample("peridynamics", pathlib.Path(work))
+            self.assertIn("dissipated per area of crack", said)
 
     def test_roundtrip(self):
         with tempfile.TemporaryDirectory() as work:

@@ -36,8 +36,8 @@ TEST_CASE("arrays of one and more dimensions are nested lists") {
                                                    shaped("deep", values, {1, 3, 2}), shaped("thin", values, {6, 1})}));
   CHECK(json["flat"] == nlohmann::json(values));
   CHECK(json["thin"] == nlohmann::json(values));
-  CHECK(json["rows"].dump() == "[[0.1,2.0],[3.0,4.0],[5.0,1e+300]]");
-  CHECK(json["deep"].dump() == "[[[0.1,2.0],[3.0,4.0],[5.0,1e+300]]]");
+  CHECK(json["rows"].dump() == "[[0.1,2],[3,4],[5,1e+300]]");
+  CHECK(json["deep"].dump() == "[[[0.1,2],[3,4],[5,1e+300]]]");
 }
 
 TEST_CASE("numbers that JSON lacks are null") {

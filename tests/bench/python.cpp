@@ -95,8 +95,9 @@ Result fracture(const Arrays& arrays, double& seconds) {
   options.pattern.seed = options.jagged.seed = 7;
   options.pieces = pieces;
   options.jagged.amplitude = 0.02;
-  const geo::Score score = geo::make_score(geo::Complex::from_skin(model), options);
-  geo::Complex complex = geo::Complex::from_skin(model);
+  const geo::Complex skin = geo::Complex::from_skin(model);
+  const geo::Score score = geo::make_score(skin, options);
+  geo::Complex complex = skin;
   geo::insert_sheet(complex, score.sheet, 1);
   const geo::Pieces found = geo::find_pieces(complex);
   const auto chunks = geo::make_chunks(complex, found, model, 0.25 * complex.extent().diagonal());

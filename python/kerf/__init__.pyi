@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kerf import shapes as shapes
+from kerf._pictures import picture as picture
 
 __version__: str
 

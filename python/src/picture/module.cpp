@@ -1,4 +1,4 @@
-// The extension kerf._picture: kerf/pictures.py checks the arguments and calls it.
+// The extension kerf._picture: kerf/_pictures.py checks the arguments and calls it.
 #include <pybind11/stl.h>
 
 #include <sstream>
@@ -80,6 +80,6 @@ PYBIND11_MODULE(_picture, module) {
   py::module_::import("kerf._kerf");  // its classes are the arguments
   module.def("picture", &kerf_python::picture, py::arg("surfaces"), py::arg("obstacles"), py::arg("nodes"),
              py::arg("look"), py::arg("view"), py::arg("progress"),
-             "Draws meshes and nodes; see kerf/pictures.py. Returns (h, w, 3) uint8.");
+             "Draws meshes and nodes; see kerf/_pictures.py. Returns (h, w, 3) uint8.");
   module.def("png", &kerf_python::png, py::arg("pixels"), "A PNG of (h, w, 3) bytes, sRGB.");
 }

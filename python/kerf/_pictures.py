@@ -1,14 +1,7 @@
 """Pictures of meshes, cracks, pieces, nodes, bodies and simulations, by the renderer of kerf-view."""
-from __future__ import annotations
+import itertools
 
 from kerf import _kerf
-
-TYPE_CHECKING = False  # typing takes longer to import than all else here
-if TYPE_CHECKING:
-    from typing import Any, Callable, Iterable, Sequence
-
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["picture"]
 
@@ -16,21 +9,17 @@ __all__ = ["picture"]
 class _Content:
     """What a picture shows. `values`: per vertex of all surfaces. `spacing`, `field` and `edges`: of the nodes."""
 
-    def __init__(self) -> None:
-        self.surfaces: list[Any] = []
-        self.obstacles: list[Any] = []
-        self.positions: Any = None
-        self.spacing: Any = None
-        self.field: Any = None
-        self.edges: Any = None
+    def __init__(self):
+        self.surfaces, self.obstacles = [], []
+        self.positions = self.spacing = self.field = self.graph = None
         self.color = "patch"
 
 
-def _is(x: object, name: str) -> bool:
+def _is(x, name):
     return isinstance(x, getattr(_kerf, name, ()))
 
 
-def _content_of(x: Any) -> _Content:
+def _content_of(x):
     content = _Content()
     if _is(x, "Mesh"):
         content.surfaces = [x]
@@ -43,11 +32,11 @@ def _content_of(x: Any) -> _Content:
     elif _is(x, "Body"):
         content.surfaces = [x.surface]
         content.positions, content.spacing = x.nodes.positions, x.nodes.spacing
-        content.edges = x.graph.edges
+        content.graph = x.graph
     elif _is(x, "Simulation"):
-        content.surfaces = [x.surface()]
+        content.surfaces, content.obstacles = [x.surface()], [x.obstacle_surface()]
         content.positions, content.spacing, content.field = x.positions, x.body.nodes.spacing, x.stress
-        content.edges = x.body.graph.edges
+        content.graph = x.body.graph
     elif isinstance(x, (list, tuple)) and x and all(_is(part, "Mesh") for part in x):
         content.surfaces, content.color = list(x), "piece"
     else:
@@ -55,13 +44,13 @@ def _content_of(x: Any) -> _Content:
     return content
 
 
-def _refuse(name: str, rule: str) -> _kerf.InputError:
+def _refuse(name, rule):
     return _kerf.InputError(f"{name}: give {rule}")
 
 
-def _number(name: str, value: object, low: float, high: float) -> float:
+def _number(name, value, low, high):
     try:
-        number = float("nan") if isinstance(value, (str, bytes, bool)) else float(value)  # type: ignore[arg-type]
+        number = float("nan") if isinstance(value, (str, bytes, bool)) else float(value)
     except (TypeError, ValueError, OverflowError):
         number = float("nan")
     if not low <= number <= high:
@@ -69,9 +58,9 @@ def _number(name: str, value: object, low: float, high: float) -> float:
     return number
 
 
-def _numbers(name: str, values: object, counts: tuple[int, ...]) -> list[float]:
+def _numbers(name, values, counts):
     try:
-        given = [float(value) for value in values]  # type: ignore[attr-defined]
+        given = [float(value) for value in itertools.islice(values, 5)]
     except (TypeError, ValueError, OverflowError):
         given = []
     if len(given) not in counts or not all(abs(value) <= 1e60 for value in given):
@@ -79,13 +68,19 @@ def _numbers(name: str, values: object, counts: tuple[int, ...]) -> list[float]:
     return given
 
 
-def _choice(name: str, value: object, choices: Sequence[str]) -> str:
-    if value not in choices if isinstance(value, str) else True:
+def _choice(name, value, choices):
+    if not isinstance(value, str) or value not in choices:
         raise _refuse(name, "one of " + ", ".join(map(repr, choices)))
     return str(value)
 
 
-def _plane(cut_away: object) -> list[float] | None:
+def _flag(name, value):
+    if type(value).__name__ not in ("bool", "bool_"):  # the second is NumPy's
+        raise _refuse(name, "True or False")
+    return bool(value)
+
+
+def _plane(cut_away):
     if cut_away is None:
         return None
     plane = _numbers("cut_away", cut_away, (3, 4))
@@ -94,7 +89,7 @@ def _plane(cut_away: object) -> list[float] | None:
     return plane + [0.0] * (4 - len(plane))
 
 
-def _values_of_surface(x: Any, content: _Content, color: Any) -> Any:
+def _values_of_surface(x, color):
     """One number per vertex for an argument `color` that is no name."""
     if isinstance(color, str):
         if color != "stress" or not _is(x, "Simulation"):
@@ -103,7 +98,7 @@ def _values_of_surface(x: Any, content: _Content, color: Any) -> Any:
     return color
 
 
-def _on_surface(body: Any, per_node: Any) -> Any:
+def _on_surface(body, per_node):
     """For each vertex of the body's surface the value of the node that carries its master (section 6.5 of the paper)."""
     import numpy as np
 
@@ -116,37 +111,16 @@ def _on_surface(body: Any, per_node: Any) -> Any:
     return values
 
 
-def _size(size: object) -> tuple[int, int]:
+def _size(size):
     width, height = _numbers("size", size, (2,))
     if not (8 <= width <= 16384 and 8 <= height <= 16384 and width == int(width) and height == int(height)):
         raise _refuse("size", "width and height in pixels, 8 to 16384")
     return int(width), int(height)
 
 
-def picture(
-    x: Any,
-    *,
-    size: tuple[int, int] = (960, 720),
-    camera: tuple[float, float] = (30.0, 22.0),
-    zoom: float = 1.0,
-    up: str = "z",
-    color: str | ArrayLike | None = None,
-    color_range: tuple[float, float] | None = None,
-    skin: str = "#e0803a",
-    opacity: float = 1.0,
-    sheets: bool = False,
-    seams: bool = False,
-    wire: bool = False,
-    explode: float = 0.0,
-    cut_away: Iterable[float] | None = None,
-    hollow: bool = False,
-    nodes: bool = False,
-    edges: bool = False,
-    field: ArrayLike | None = None,
-    ground: bool = True,
-    samples: int = 3,
-    progress: Callable[..., object] | None = None,
-) -> NDArray[np.uint8]:
+def picture(x, *, size=(960, 720), camera=(30.0, 22.0), zoom=1.0, up="z", color=None, color_range=None, skin="#e0803a", opacity=1.0,
+            sheets=False, seams=False, wire=False, explode=0.0, cut_away=None, hollow=False, nodes=False, edges=False, field=None,
+            ground=True, samples=3, progress=None):
     """Draws a Mesh, a list of pieces, a Complex, a Score, a NodeSet, a Body or a Simulation: (height, width, 3) uint8, sRGB.
 
     size: width and height in pixels. camera: azimuth about the vertical axis and elevation, in degrees. zoom: 1 shows
@@ -170,25 +144,26 @@ def picture(
     content = _content_of(x)
     color = content.color if color is None else color
     named = isinstance(color, str) and color in ("patch", "piece", "plain")
-    drawn_nodes: dict[str, Any] = {}
+    drawn_nodes = {}
+    nodes, edges = _flag("nodes", nodes), _flag("edges", edges)
     if (nodes or edges or not content.surfaces) and content.positions is not None:
         drawn_nodes = {"positions": content.positions, "spacing": content.spacing, "values": content.field if field is None else field}
-        drawn_nodes["edges"] = [(int(i), int(j)) for i, j in content.edges()] if edges and content.edges is not None else None
+        drawn_nodes["edges"] = content.graph.edges().tolist() if edges and content.graph is not None else None
     if drawn_nodes and explode and content.surfaces:
-        raise _kerf.InputError("explode: nodes cannot be moved with the pieces; draw one of both")
+        raise _kerf.InputError("explode: nodes do not move with the pieces; draw nodes or explode")
     look = {
         "color": color if named else "plain",
-        "values": None if named else _values_of_surface(x, content, color),
+        "values": None if named else _values_of_surface(x, color),
         "range": None if color_range is None else _numbers("color_range", color_range, (2,)),
         "skin": skin if isinstance(skin, str) else _choice("skin", skin, ["#rrggbb"]),
         "opacity": _number("opacity", opacity, 0, 1),
-        "sheets": bool(sheets),
-        "seams": bool(seams),
-        "wire": bool(wire),
+        "sheets": _flag("sheets", sheets),
+        "seams": _flag("seams", seams),
+        "wire": _flag("wire", wire),
         "explode": _number("explode", explode, 0, 1e6),
         "cut_away": _plane(cut_away),
-        "hollow": bool(hollow),
-        "ground": bool(ground),
+        "hollow": _flag("hollow", hollow),
+        "ground": _flag("ground", ground),
     }
     view = {
         "size": _size(size),
@@ -202,10 +177,10 @@ def picture(
 
 # ---- Notebooks: classes get _repr_png_ and _repr_html_.
 
-_SMALL: dict[str, Any] = {"size": (480, 360), "samples": 2}
+_SMALL = {"size": (480, 360), "samples": 2}
 
 
-def _look_in_notebooks(x: Any) -> dict[str, Any]:
+def _look_in_notebooks(x):
     if _is(x, "Simulation"):
         return {**_SMALL, "color": "stress"}
     if _is(x, "Complex"):
@@ -213,14 +188,14 @@ def _look_in_notebooks(x: Any) -> dict[str, Any]:
     return _SMALL
 
 
-def _repr_png_(self: Any) -> bytes:
+def _repr_png_(self):
     """The object as PNG, for notebooks."""
     from kerf import _picture
 
     return bytes(_picture.png(picture(self, **_look_in_notebooks(self))))
 
 
-def _figures(x: Any) -> list[tuple[str, str]]:
+def _figures(x):
     if _is(x, "Mesh"):
         return [("vertices", f"{len(x.vertices)}"), ("faces", f"{len(x.faces)}"), ("volume", f"{x.volume:.6g}"), ("area", f"{x.area:.6g}")]
     if _is(x, "Complex"):
@@ -230,7 +205,7 @@ def _figures(x: Any) -> list[tuple[str, str]]:
     return [("frame", f"{x.frame}"), ("time", f"{x.time:.4g} s"), ("nodes", f"{len(x.positions)}"), ("largest stress", f"{max(x.stress, default=0):.4g} Pa")]
 
 
-def _repr_html_(self: Any) -> str:
+def _repr_html_(self):
     """The object's figures and picture, for notebooks."""
     import base64
     import html

@@ -2,6 +2,8 @@
 // kind, so that `except ValueError` and `except OSError` work.
 #include "kerf/error.h"
 
+#include <cstring>
+
 #include "bind.h"
 #include "busy.h"
 
@@ -21,21 +23,28 @@ PyObject* make_class(py::module_& module, const char* name, const char* doc, py:
   return made;
 }
 
+// Messages quote bytes of files, which may be no UTF-8.
+void raise(PyObject* type, const char* message) {
+  const auto text = py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(message, static_cast<py::ssize_t>(std::strlen(message)), "backslashreplace"));
+  if (text) PyErr_SetObject(type, text.ptr());
+}
+
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
   } catch (const geo::MissingInputError& e) {
-    PyErr_SetString(classes.missing, e.what());
+    raise(classes.missing, e.what());
   } catch (const geo::InputError& e) {
-    PyErr_SetString(classes.input, e.what());
+    raise(classes.input, e.what());
   } catch (const geo::GeometryError& e) {
-    PyErr_SetString(classes.geometry, e.what());
+    raise(classes.geometry, e.what());
   } catch (const geo::OutputError& e) {
-    PyErr_SetString(classes.output, e.what());
+    raise(classes.output, e.what());
   } catch (const geo::Interrupted& e) {
-    PyErr_SetString(classes.interrupted, e.what());
+    raise(classes.interrupted, e.what());
   } catch (const BusyError& e) {
-    PyErr_SetString(classes.error, e.what());
+    raise(classes.error, e.what());
   }
 }
 

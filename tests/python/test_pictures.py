@@ -46,6 +46,21 @@ class Pictures(unittest.TestCase):
         high = kerf.picture(solid, size=SIZE, samples=1, color=np.ones(8), color_range=(0, 1), ground=False)
         self.assertGreater(high[36, 48, 1], low[36, 48, 1] + 40)  # yellow over dark blue
 
+    def test_pieces(self):
+        solid = cube()
+        pieces = solid.crack(kerf.score(solid, "planes", pieces=2, axis="z", jagged=0)).pieces()
+        together = kerf.picture(pieces, size=SIZE, samples=1)
+        apart = kerf.picture(pieces, size=SIZE, samples=1, explode=0.5)
+        self.assertFalse(np.array_equal(together, apart))
+
+    def test_nodes(self):
+        solid = cube()
+        nodes = kerf.sample(solid, spacing=0.3)
+        picture = kerf.picture(nodes, size=SIZE, samples=1, ground=False)
+        self.assertFalse(np.array_equal(picture, kerf.picture(nodes, size=SIZE, samples=1, ground=False, field=nodes.positions[:, 0])))
+        with self.assertRaises(kerf.InputError):
+            kerf.picture(nodes, size=SIZE, field=[1.0, 2.0])
+
     def test_refusals(self):
         for options in (dict(size=(3, 3)), dict(size=(10, 20, 30)), dict(size="96x72"), dict(camera=(1,)), dict(camera=(float("nan"), 0)),
                         dict(zoom=0), dict(up="x"), dict(color="stress"), dict(color=[1.0]), dict(color=[np.nan] * 8), dict(skin="orange"),
@@ -95,6 +110,13 @@ class Notebooks(unittest.TestCase):
     def test_mesh(self):
         self.assertIn("<td>12</td>", self.shown(cube()))
         self.shown(kerf.Mesh([], []))
+
+    def test_complex(self):
+        solid = cube()
+        self.assertIn("cracks", self.shown(solid.crack(kerf.score(solid, "planes", pieces=2, axis="z", jagged=0))))
+
+    def test_body(self):
+        self.assertIn("nodes", self.shown(kerf.Body(cube(), spacing=0.3)))
 
 
 if __name__ == "__main__":

@@ -26,6 +26,27 @@ CALLS, SECONDS = 10000, 2.0  # a call that takes longer is stopped by its progre
 OTHER = (TypeError, MemoryError)
 
 
+SCENE = """
+gravity = [0, 0, -1]
+[body]
+mesh = "cube.ply"
+spacing = 0.3
+[material]
+young = 1e4
+[[blade]]
+name = "knife"
+points = [[-1, 0.5, 0], [2, 0.5, 0]]
+keys = [[0, 0, 0, 2, 0, 0, 1, 0], [1, 0, 0, -1, 0, 0, 1, 0]]
+[[grip]]
+box = [-1, -1, -1, 2, 2, 0.1]
+[[obstacle]]
+name = "floor"
+normal = [0, 0, 1]
+position = [0, 0, -1]
+[time]
+frames = 2
+frame_rate = 24
+"""
 LINE = np.array([[-1, 0.5, 0.4], [2, 0.5, 0.4]])
 POINTS = np.array([[0.5, 0.5, 0.5], [2, 2, 2], [0, 0, 0.5], [0.2, 0.3, 1.0]])
 # Values that fit parameters of these names; "@Class": an object of the class.
@@ -34,7 +55,10 @@ FITTING = {"what": ["@Score", "@Front", "@Mesh"], "sheet": ["@Score", "@Mesh"], 
            "line": [LINE, LINE - 0.5], "next_line": [LINE + [0, 0, 0.2]], "next": [LINE + [0, 0, 0.2]], "points": [POINTS], "steps": [np.array([LINE, LINE + 1])],
            "positions": [POINTS], "pattern": ["planes", "voronoi", "radial", "glass", "bricks", "wood"], "pieces": [1, 2, 5], "attempts": [1, 3],
            "spacing": [0.3, "30%"], "count": [20, 100], "region": [np.array([0, 1, 2]), None], "radius": [np.ones(4)], "volume": [np.ones(4)],
-           "frequency": [1, 4], "voxel": [0.1], "longest": [0.3], "set": [{"material.young": "1e4"}], "axis": ["x", [0, 0, 1]], "seed": [1, 2, 3]}
+           "frequency": [1, 4], "voxel": [0.1], "longest": [0.3], "set": [{"material.young": "1e4"}], "axis": ["x", [0, 0, 1]], "seed": [1, 2, 3], "body": ["@Body"],
+           "state": ["@State"], "delta": ["@BodyDelta"], "material": ["@Material"], "materials": ["@Materials", "@Material"], "environment": ["@Environment"],
+           "graph": ["@VisibilityGraph"], "scene": ["@Scene", SCENE], "models": ["@Solid"], "frames": [1, 2], "dt": [1e-3], "pose": [[0, 0, 1], np.eye(4)],
+           "which": [0, "knife", "floor"], "node": [0, 3], "table": [[]], "u": ["@State"], "f": [np.eye(3)]}
 
 
 class Stopped(Exception):
@@ -83,14 +107,38 @@ class Case:
             return kerf.sample(self.object("Solid"), spacing=0.3)
         if name == "Body":
             return kerf.Body(self.object("Solid"), spacing=0.3)
-        if name == "Graph":
+        if name == "VisibilityGraph":
             return self.object("Body").graph
         if name == "Binding":
             return self.object("Body").binding
-        if name == "Materials":
-            return kerf.Materials()
+        if name == "BodyFront":
+            return self.object("Body").front([[-1, 0.5, -0.1], [2, 0.5, -0.1]])
+        if name == "BodyDelta":
+            return self.object("BodyFront").advance([[-1, 0.5, 0.4], [2, 0.5, 0.4]])
+        if name == "BodyReport":
+            return self.object("Body").check()
+        if name == "KerfFile":
+            path = os.path.join(self.folder, "body.kerf")
+            self.object("Body").save(path)
+            return kerf.KerfFile(path)
         if name == "Material":
-            return kerf.Material()
+            return kerf.Material(young=1e4)
+        if name == "Materials":
+            return kerf.Materials([self.object("Material")])
+        if name == "DeformingSolid":
+            return kerf.DeformingSolid(self.object("Body"), self.object("Material"))
+        if name == "State":
+            return self.object("DeformingSolid").rest()
+        if name == "Environment":
+            return kerf.Environment(gravity=[0, 0, -9.81])
+        if name == "Scene":
+            return kerf.Scene(SCENE)
+        if name == "Simulation":
+            return kerf.Simulation(self.object("Scene"), models=self.object("Solid"))
+        if name in ("BladeHandle", "GripHandle", "ObstacleHandle"):
+            return getattr(self.object("Simulation"), name[:-6].lower())(0)
+        if name in ("Blade", "Grip", "SceneObstacle", "SceneBody"):
+            return getattr(self.object("Scene"), {"Blade": "blades", "Grip": "grips", "SceneObstacle": "obstacles", "SceneBody": "bodies"}[name])[0]
         return None
 
     def progress(self, phase, done, total):

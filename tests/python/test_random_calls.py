@@ -312,10 +312,12 @@ def main():
             with open(shared, "r+b") as file:
                 RandomCalls.current = mmap.mmap(file.fileno(), 32)
         unittest.main()
-    with tempfile.NamedTemporaryFile() as shared:
+    with tempfile.NamedTemporaryFile() as shared, tempfile.TemporaryDirectory() as folder:
         shared.write(b" " * 32)
         shared.flush()
-        run = subprocess.run([sys.executable, __file__, *sys.argv[1:]], env={**os.environ, "KERF_CHILD": shared.name})
+        # Calls may write files of any name.
+        run = subprocess.run([sys.executable, os.path.abspath(__file__), *sys.argv[1:]], cwd=folder,
+                             env={**os.environ, "KERF_CHILD": shared.name})
         if run.returncode < 0 or run.returncode > 1:
             print(f"the process ended with {run.returncode} in case {open(shared.name).read().strip()}: KERF_CASE=… tells it")
         sys.exit(run.returncode != 0)

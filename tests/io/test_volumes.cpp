@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "geometry/bvh.h"
 #include "kerf/check.h"
@@ -20,8 +21,7 @@ namespace {
 /// A file in a folder of its own, removed at the end.
 struct Scratch {
   std::filesystem::path folder =
-      std::filesystem::temp_directory_path() /
-      ("kerf-volumes-" + std::to_string(std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName())));
+      std::filesystem::temp_directory_path() / ("kerf-volumes-" + std::to_string(std::random_device{}()));
   std::string file = (folder / "v.vdb").string();
   Scratch() { std::filesystem::create_directories(folder); }
   ~Scratch() { std::filesystem::remove_all(folder); }

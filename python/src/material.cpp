@@ -138,7 +138,9 @@ void bind_material(py::module_& module) {
       .def("__getitem__",
            [](const geo::Materials& self, std::int64_t i) {
              const auto count = static_cast<std::int64_t>(self.count());
-             if (i < -count || i >= count) throw py::index_error();
+             if (i < -count || i >= count)
+               throw py::index_error("index " + std::to_string(i) + " is out of range; there are " +
+                                     std::to_string(count) + " materials");
              return self[static_cast<std::size_t>(i < 0 ? i + count : i)];
            })
       .def(

@@ -22,8 +22,8 @@ import kerf
 import values
 
 CALLS, SECONDS = 10000, 2.0  # a call that takes longer is stopped by its progress function
-# Errors that are Python's own: memory that cannot be had, and file names that cannot be opened.
-OTHER = (TypeError, MemoryError)
+# Errors that are Python's own: wrong types, memory that cannot be had, and the end of a sequence.
+OTHER = (TypeError, MemoryError, IndexError)
 
 
 SCENE = """

@@ -24,6 +24,19 @@ inline std::vector<Vec3> force_of(Potential& potential, const std::vector<Vec3>&
   return force;
 }
 
+/// u + step · direction.
+inline std::vector<Vec3> moved(std::vector<Vec3> u, double step, const std::vector<Vec3>& direction) {
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += step * direction[i];
+  return u;
+}
+
+/// Σ a_i · b_i over nodes.
+inline double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
 /// A PotentialSum whose nodes all belong to one island.
 class AssembledPotential {
  public:

@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include "base/random.h"
 #include "cases.h"
 #include "contact/detection/contact_candidates.h"
-#include "contact/detection/find_crossings.h"
+#include "contact/two_sheets.h"
 
 using namespace geo;
 
@@ -21,23 +20,15 @@ struct Sheets {
 
   // Two uneven sheets of n × n squares above each other, which approach by different amounts.
   Sheets(Random& random, std::uint32_t n, double distance, double approach) {
-    for (int sheet = 0; sheet < 2; ++sheet) {
-      const auto base = static_cast<std::uint32_t>(from.size());
-      const auto at = [&](std::uint32_t i, std::uint32_t j) { return base + i * (n + 1) + j; };
-      for (std::uint32_t i = 0; i <= n; ++i)
-        for (std::uint32_t j = 0; j <= n; ++j) {
-          from.push_back(
-              {i + 0.3 * random.uniform(), j + 0.3 * random.uniform(), sheet * distance + 0.02 * random.uniform()});
-          to.push_back(from.back() - sheet * Vec3(0, 0, approach * random.uniform()));
-        }
-      for (std::uint32_t i = 0; i < n; ++i)
-        for (std::uint32_t j = 0; j < n; ++j) {
-          triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-          triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-        }
-    }
-    itself.resize(from.size());
-    std::iota(itself.begin(), itself.end(), 0u);
+    triangles = triangles_of_two_sheets(n);
+    from = place_two_sheets(n, [&](std::uint32_t sheet, std::uint32_t i, std::uint32_t j) {
+      const double x = i + 0.3 * random.uniform(), y = j + 0.3 * random.uniform();
+      return Vec3(x, y, sheet * distance + 0.02 * random.uniform());
+    });
+    to = place_two_sheets(n, [&](std::uint32_t sheet, std::uint32_t i, std::uint32_t j) {
+      return Vec3(from[(sheet * (n + 1) + i) * (n + 1) + j] - sheet * Vec3(0, 0, approach * random.uniform()));
+    });
+    itself = all_apart(from.size());
   }
 };
 

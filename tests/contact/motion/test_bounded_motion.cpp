@@ -5,10 +5,10 @@
 #include "base/random.h"
 #include "cases.h"
 #include "contact/detection/contact_candidates.h"
-#include "contact/detection/find_crossings.h"
 #include "contact/motion/bounded_motion.h"
 #include "contact/motion/straight_motion.h"
 #include "contact/response/contact_constraints.h"
+#include "contact/two_sheets.h"
 #include "geometry/predicates.h"
 #include "kerf/mesh.h"
 
@@ -30,36 +30,27 @@ struct Soup {
     return move_without_crossing({triangles, representative, from, to, 1e-4, 2e-3}, false, report);
   }
   std::size_t crossings(const std::vector<Vec3>& at) const {
-    const std::vector<std::uint8_t> all(triangles.size(), 1);  // pair by pair
-    return find_crossings(triangles, at, representative, false, &all).size();
+    return crossings_pair_by_pair(triangles, at, representative);
   }
 };
 
 // Two uneven sheets with different meshes, a little apart. They are pressed into each other and
 // slide.
 struct Sheets : Soup {
-  static constexpr int n = 12;
+  static constexpr std::uint32_t n = 12;
   static constexpr double edge = 1.0 / n;
   double depth, slide;
   explicit Sheets(Random& random) {
     const double waves = 0.1 * random.uniform();
     depth = 0.2 * edge * random.uniform(), slide = 0.3 * edge * random.uniform();
     const auto height = [&](double x, double y) { return waves * edge * std::sin(5 * x) * std::cos(4 * y); };
-    for (const int side : {0, 1}) {
-      const auto base = static_cast<std::uint32_t>(from.size());
-      for (int i = 0; i <= n; ++i)
-        for (int j = 0; j <= n; ++j) {
-          const auto off = [&](int k) { return k == 0 || k == n ? 0.0 : 0.2 * edge * (random.uniform() - 0.5); };
-          const double x = i * edge + off(i), y = j * edge + off(j);
-          representative.push_back(static_cast<std::uint32_t>(from.size()));
-          from.push_back({x, y, height(x, y) + side * (0.06 * edge)});
-        }
-      const auto v = [&](int i, int j) { return base + static_cast<std::uint32_t>(i * (n + 1) + j); };
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-          triangles.push_back({v(i, j), v(i + 1, j), v(i + 1, j + 1)}),
-              triangles.push_back({v(i, j), v(i + 1, j + 1), v(i, j + 1)});
-    }
+    const auto off = [&](std::uint32_t k) { return k == 0 || k == n ? 0.0 : 0.2 * edge * (random.uniform() - 0.5); };
+    triangles = triangles_of_two_sheets(n);
+    from = place_two_sheets(n, [&](std::uint32_t side, std::uint32_t i, std::uint32_t j) {
+      const double x = i * edge + off(i), y = j * edge + off(j);
+      return Vec3(x, y, height(x, y) + side * (0.06 * edge));
+    });
+    representative = all_apart(from.size());
     to = from;
     for (std::size_t i = 0; i < to.size(); ++i)
       to[i] += i < half() ? Vec3(0, 0, 0.5 * (depth + 0.06 * edge)) : Vec3(slide, 0, -0.5 * (depth + 0.06 * edge));

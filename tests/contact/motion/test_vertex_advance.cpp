@@ -1,11 +1,10 @@
 #include "contact/motion/vertex_advance.h"
 
 #include <catch2/catch.hpp>
-#include <numeric>
 
 #include "base/random.h"
 #include "cases.h"
-#include "contact/detection/find_crossings.h"
+#include "contact/two_sheets.h"
 
 using namespace geo;
 
@@ -13,28 +12,13 @@ namespace {
 
 // Two flat sheets of n × n squares of edge 1, one a little above the other.
 struct TwoSheets {
-  static constexpr int n = 6;
-  std::vector<Triangle> triangles;
+  static constexpr std::uint32_t n = 6;
+  std::vector<Triangle> triangles = triangles_of_two_sheets(n);
   std::vector<Vec3> at;
-  explicit TwoSheets(double distance) {
-    for (const int side : {0, 1}) {
-      const auto first = static_cast<std::uint32_t>(at.size());
-      for (int i = 0; i <= n; ++i)
-        for (int j = 0; j <= n; ++j) at.push_back({double(i), double(j), side * distance});
-      const auto v = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (n + 1) + j); };
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-          triangles.push_back({v(i, j), v(i + 1, j), v(i + 1, j + 1)});
-          triangles.push_back({v(i, j), v(i + 1, j + 1), v(i, j + 1)});
-        }
-    }
-  }
-  std::size_t crossings() const {
-    std::vector<std::uint32_t> representative(at.size());
-    std::iota(representative.begin(), representative.end(), 0u);
-    const std::vector<std::uint8_t> all(triangles.size(), 1);
-    return find_crossings(triangles, at, representative, false, &all).size();
-  }
+  explicit TwoSheets(double distance)
+      : at(place_two_sheets(
+            n, [&](std::uint32_t side, std::uint32_t i, std::uint32_t j) { return Vec3(i, j, side * distance); })) {}
+  std::size_t crossings() const { return crossings_pair_by_pair(triangles, at, all_apart(at.size())); }
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Stitching: the edit of K that an arrangement stands for, against counts over all faces, and radial
-// orders around an edge that a new crack joins.
+// Stitching: the edit of K that an arrangement stands for, against counts over all faces, and
+// radial orders around an edge that a new crack joins.
 #include "crack/stitch.h"
 
 #include <algorithm>

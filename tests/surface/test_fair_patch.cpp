@@ -18,7 +18,8 @@ namespace {
 struct Hole {
   std::vector<Vec3> rim;
   std::vector<std::vector<Vec3>> beyond;
-  // `at(angle, reach)`: a point of the surface. The rim has reaches of 1 ± `jagged`, more is beyond.
+  // `at(angle, reach)`: a point of the surface. The rim has reaches of 1 ± `jagged`, more is
+  // beyond.
   template <class At>
   Hole(Random& random, double jagged, const At& at) {
     const std::uint32_t corners = 12 + random.below(20);

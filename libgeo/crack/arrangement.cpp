@@ -1,11 +1,11 @@
 // Two triangles in different planes share at most a segment. Its ends follow from signs of orient3d
 // alone (compare Guigue and Devillers 2003); coplanar triangles are clipped edge by edge. Pairs
-// come from the lists of near faces, and for the strip with itself from sweep and prune.
+// come from the lists of near faces, and for the strip with itself from a tree of boxes.
 #include "crack/arrangement.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "geometry/aabb_tree.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
 
@@ -57,17 +57,21 @@ void Arrangement::meet(CrackStats& stats) {
   meet_itself();
 }
 
+Arrangement::Corners Arrangement::corners_of(std::uint32_t s) const {
+  const auto& p = strip_.triangles[s].p;
+  return {{strip_.points[p[0]], strip_.points[p[1]], strip_.points[p[2]]}};
+}
+
 // Intersects strip triangle s with the faces of K near it. Faces that it meets become elements.
 void Arrangement::meet_faces(std::uint32_t s, CrackStats& stats) {
   const auto near = this->near(s);
   stats.faces_near += near.size();
-  const auto& t = strip_.triangles[s].p;
-  const Vec3 mine[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
+  const auto mine = corners_of(s);
   for (const FaceId f : near) {
     const auto c = complex_.corners(f);
     const Vec3 theirs[3] = {c[0], c[1], c[2]};
     Signs sign;
-    if (!signs_of(theirs, mine, sign)) continue;
+    if (!signs_of(theirs, mine.p, sign)) continue;
     std::uint32_t e = by_face_.find(f.value);
     const bool known = e != ~0u;
     if (!known) {
@@ -86,32 +90,41 @@ void Arrangement::meet_faces(std::uint32_t s, CrackStats& stats) {
   }
 }
 
-// Intersects the strip with itself (sweep and prune along x): a sweep may cross itself or fold
-// back.
+// Intersects the strip with itself: a sweep may cross itself or fold back. Pairs are in ascending
+// order along x, which decides the numbers of points.
 void Arrangement::meet_itself() {
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles)
     boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
-  const std::size_t before = divisions_.size();
-  std::vector<std::uint32_t> order(strip_size);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto i, auto j) {
-    return boxes[i].lo.x() != boxes[j].lo.x() ? boxes[i].lo.x() < boxes[j].lo.x() : i < j;
-  });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lo.x() <= boxes[order[i]].hi.x(); ++j) {
-      if (!boxes[order[i]].meets(boxes[order[j]])) continue;
-      const auto a = std::min(order[i], order[j]), b = std::max(order[i], order[j]);
-      const auto &s = strip_.triangles[a].p, &t = strip_.triangles[b].p;
-      const Vec3 mine[3] = {strip_.points[s[0]], strip_.points[s[1]], strip_.points[s[2]]};
-      const Vec3 theirs[3] = {strip_.points[t[0]], strip_.points[t[1]], strip_.points[t[2]]};
+  const AabbTree tree(std::move(boxes));
+  const auto keep_meeting = [&](AabbTree::Pairs& pairs) {
+    std::erase_if(pairs, [&](const auto& pair) {
+      const auto s = corners_of(pair.first), t = corners_of(pair.second);
       Signs sign;
-      if (share_corners_only(mine, theirs) || !signs_of(mine, theirs, sign)) continue;
-      meet_pair(a, b, sign);
-      const bool coplanar = !coplanar_pairs_.empty() && coplanar_pairs_.back() == std::pair{a, b};
-      meets_itself_ = meets_itself_ || coplanar;
-    }
-  meets_itself_ = meets_itself_ || divisions_.size() != before;
+      return share_corners_only(s.p, t.p) || !signs_of(s.p, t.p, sign);
+    });
+  };
+  const auto before = [&](std::uint32_t i, std::uint32_t j) {
+    const double x = tree.boxes()[i].lo.x(), y = tree.boxes()[j].lo.x();
+    return x != y ? x < y : i < j;
+  };
+  auto pairs = tree.pairs(nullptr, keep_meeting);
+  for (auto& [i, j] : pairs)
+    if (before(j, i)) std::swap(i, j);
+  std::sort(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) {
+    return x.first != y.first ? before(x.first, y.first) : before(x.second, y.second);
+  });
+  const std::size_t divisions = divisions_.size();
+  for (const auto& [i, j] : pairs) {
+    const auto a = std::min(i, j), b = std::max(i, j);
+    const auto s = corners_of(a), t = corners_of(b);
+    Signs sign;
+    signs_of(s.p, t.p, sign);
+    meet_pair(a, b, sign);
+    const bool coplanar = !coplanar_pairs_.empty() && coplanar_pairs_.back() == std::pair{a, b};
+    meets_itself_ = meets_itself_ || coplanar;
+  }
+  meets_itself_ = meets_itself_ || divisions_.size() != divisions;
 }
 
 // Whether p, which lies in the element's plane, lies in the element: 1 or 0. `on`: bits of the

@@ -84,10 +84,14 @@ class Arrangement {
       return SpreadHash()(k.edge ^ (k.other + 0x7f4a7c15ull) * 0xbf58476d1ce4e5b9ull);
     }
   };
+  struct Corners {
+    Vec3 p[3];
+  };
   using Signs = int[2][3];  // sides of the corners of each of two elements against the other's plane
 
   PointIndex point_of(VertexId v);
   static Key edge_edge(PointIndex a, PointIndex b, PointIndex c, PointIndex d);
+  Corners corners_of(std::uint32_t s) const;  // of a triangle of the strip
   void meet_faces(std::uint32_t s, CrackStats& stats);
   void meet_itself();
   void meet_pair(std::uint32_t a, std::uint32_t b, const Signs& sign);

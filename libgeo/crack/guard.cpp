@@ -1,6 +1,6 @@
 // Orientation, order and crossing are exact on the rounded coordinates, behind floating-point
 // filters; the clearance is measured in doubles. Pairs come from lists of near faces, the index of
-// K, and sweep and prune. Repair displaces rounded points of faulty faces and tests again.
+// K, and a tree of boxes. Repair displaces rounded points of faulty faces and tests again.
 #include "crack/guard.h"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "crack/exits.h"
 #include "crack/radial_order.h"
+#include "geometry/aabb_tree.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/check.h"
@@ -180,30 +181,33 @@ class Inspection {
     return {};
   }
 
-  // Two new faces that cross or are too near: sweep and prune along the longest axis.
+  // Two new faces that cross or are too near. Of several pairs, the first along the longest axis.
   Fault find_crossing_among_new() const {
     Box3 all;
-    for (const TestedFace& f : faces_) all.add(f.box);
+    std::vector<Box3> boxes;
+    boxes.reserve(count_);
+    for (const TestedFace& f : faces_) all.add(f.box), boxes.push_back(f.box);
     int axis = 0;
     if (count_ > 0) (all.hi - all.lo).maxCoeff(&axis);
-    std::vector<std::pair<double, std::uint32_t>> order;
-    order.reserve(count_);
-    for (std::uint32_t i = 0; i < count_; ++i) order.push_back({faces_[i].box.lo[axis], i});
-    std::sort(order.begin(), order.end());
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const TestedFace& a = faces_[order[i].second];
-      const double end = a.box.hi[axis];
-      for (std::uint32_t j = i + 1; j < count_ && order[j].first <= end; ++j) {
-        const TestedFace& b = faces_[order[j].second];
-        if (!a.box.meets(b.box) || !(a.tested || b.tested)) continue;
+    const auto before = [&](std::uint32_t i, std::uint32_t j) {
+      const double x = faces_[i].box.lo[axis], y = faces_[j].box.lo[axis];
+      return x != y ? x < y : i < j;
+    };
+    const auto keep_faults = [&](AabbTree::Pairs& pairs) {
+      std::erase_if(pairs, [&](auto& pair) {
+        if (before(pair.second, pair.first)) std::swap(pair.first, pair.second);
+        const TestedFace &a = faces_[pair.first], &b = faces_[pair.second];
         // Children of one triangle, all there and none turned over, cover it once, as before
         // rounding.
-        if (a.family != ~0u && a.family == b.family) continue;
-        if (const char* what = fault_between(a, b))
-          return {std::string(what) + " another new face", {order[i].second, order[j].second}};
-      }
-    }
-    return {};
+        return !(a.tested || b.tested) || (a.family != ~0u && a.family == b.family) || !fault_between(a, b);
+      });
+    };
+    const auto pairs = AabbTree(std::move(boxes)).pairs(nullptr, keep_faults);
+    if (pairs.empty()) return {};
+    const auto [i, j] = *std::min_element(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) {
+      return x.first != y.first ? before(x.first, y.first) : before(x.second, y.second);
+    });
+    return {std::string(fault_between(faces_[i], faces_[j])) + " another new face", {i, j}};
   }
 
  private:

@@ -130,7 +130,7 @@ void TriangleBvh::near(const Box3& box, std::vector<std::uint32_t>& triangles) c
   }
 }
 
-TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
+TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff, double enough) const {
   Closest best;
   if (nodes_.empty()) return best;
   double reach = cutoff * cutoff;
@@ -154,6 +154,7 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff) const {
       const double d = (c - p).squaredNorm();
       if (d < reach || (d == reach && (best.triangle == ~0u || order_[i] < best.triangle)))
         reach = d, best = {order_[i], c, std::sqrt(d)};
+      if (enough >= 0 && d <= enough * enough) return {order_[i], c, std::min(std::sqrt(d), enough)};
     }
   }
   return best;

@@ -43,7 +43,8 @@ class TriangleBvh {
     double distance = 0;           ///< of that point, model units
   };
   /// The closest triangle within distance `cutoff` of p; of several, the one with the lowest index.
-  Closest closest(const Vec3& p, double cutoff = std::numeric_limits<double>::infinity()) const;
+  /// Returns the first triangle found within distance `enough`, if there is one.
+  Closest closest(const Vec3& p, double cutoff = std::numeric_limits<double>::infinity(), double enough = -1) const;
 
   /// Whether p is strictly inside the closed oriented surface that the triangles form: the parity
   /// of a ray's crossings, counted exactly. A ray that touches an edge or vertex is replaced by

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <unordered_map>
+#include <tuple>
 
+#include "base/union_find.h"
+#include "crack/index_map.h"
 #include "crack/noise.h"
-#include "geometry/triangle_index.h"
+#include "geometry/aabb_tree.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
@@ -22,18 +24,41 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, std::size_t t) {
   return {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
 }
 
-// Drops the triangles farther outside the material than `margin`, and vertices without triangles.
-void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
-  std::vector<char> keep(walls.triangles.size());
-  parallel_for(keep.size(), 256, [&](std::size_t begin, std::size_t end) {
+// Whether each triangle is in the material or at most `margin` outside.
+std::vector<std::uint8_t> near_or_inside(const TriangleMesh& walls, const TriangleBvh& skin, double margin) {
+  const std::size_t count = walls.triangles.size();
+  const double rounding =
+      0x1p-40 * (skin.box().diagonal() + skin.box().lo.cwiseAbs().cwiseMax(skin.box().hi.cwiseAbs()).maxCoeff());
+  std::vector<std::uint8_t> keep(count), clear(count);  // clear: certainly without a point of the skin
+  std::vector<Vec3> middle(count);
+  parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto c = corners(walls, t);
-      const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
+      middle[t] = (c[0] + c[1] + c[2]) / 3;
       double radius = margin;
-      for (const Vec3& p : c) radius = std::max(radius, margin + (p - middle).norm());
-      keep[t] = skin.closest(middle, radius).triangle != ~0u || skin.inside(middle);
+      for (const Vec3& p : c) radius = std::max(radius, margin + (p - middle[t]).norm());
+      const auto found = skin.closest(middle[t], (1 + 0x1p-40) * radius + rounding, radius);
+      clear[t] = found.triangle == ~0u;
+      keep[t] = !clear[t] && (found.distance <= radius || skin.inside(middle[t]));
     }
   });
+  // Clear triangles that are connected are all inside, or all outside.
+  UnionFind joined(count);
+  std::vector<std::uint32_t> at(walls.vertices.size(), ~0u);
+  for (std::uint32_t t = 0; t < count; ++t)
+    for (const auto v : walls.triangles[t]) {
+      if (!clear[t]) break;
+      if (at[v] == ~0u) at[v] = t;
+      joined.unite(at[v], t);
+    }
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (clear[t]) keep[t] = joined.find(t) == t ? skin.inside(middle[t]) : keep[joined.find(t)];
+  return keep;
+}
+
+// Drops the triangles farther outside the material than `margin`, and vertices without triangles.
+void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
+  const auto keep = near_or_inside(walls, skin, margin);
   std::vector<std::uint32_t> index(walls.vertices.size(), ~0u);
   TriangleMesh kept;
   for (std::size_t t = 0; t < keep.size(); ++t) {
@@ -49,6 +74,44 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
   walls = std::move(kept);
 }
 
+// The triangles at each edge, in the order in which they were added.
+class EdgeTriangles {
+ public:
+  struct Use {
+    std::uint32_t triangle, next;  // next: index into uses, ~0u: none
+  };
+  std::vector<Use> uses;
+
+  // The edge's first use, ~0u for none.
+  std::uint32_t first(std::uint32_t a, std::uint32_t b) { return list(a, b).first; }
+  // Adds a triangle to an edge. True when it is the first one.
+  bool add(std::uint32_t a, std::uint32_t b, std::uint32_t triangle) {
+    const auto use = static_cast<std::uint32_t>(uses.size());
+    uses.push_back({triangle, ~0u});
+    List& at = list(a, b);
+    const bool is_first = at.first == ~0u;
+    (is_first ? at.first : uses[at.last].next) = use;
+    at.last = use;
+    return is_first;
+  }
+  void replace(std::uint32_t a, std::uint32_t b, std::uint32_t triangle, std::uint32_t by) {
+    for (auto u = first(a, b); u != ~0u; u = uses[u].next)
+      if (uses[u].triangle == triangle) uses[u].triangle = by;
+  }
+
+ private:
+  struct List {
+    std::uint32_t first = ~0u, last = ~0u;
+  };
+  List& list(std::uint32_t a, std::uint32_t b) {
+    std::uint32_t& index = indices_[std::uint64_t(std::min(a, b)) << 32 | std::max(a, b)];
+    if (index == ~0u) index = static_cast<std::uint32_t>(lists_.size()), lists_.emplace_back();
+    return lists_[index];
+  }
+  crack::IndexMap<std::uint64_t, crack::SpreadHash> indices_;  // into lists_, by edge
+  std::vector<List> lists_;
+};
+
 // Bisects edges, the longest first: each is then the longest of all its triangles, so that small
 // angles stay bounded.
 void divide(TriangleMesh& walls, double longest) {
@@ -57,28 +120,22 @@ void divide(TriangleMesh& walls, double longest) {
     std::uint32_t a, b;
     bool operator<(const Edge& o) const { return std::tie(length2, o.a, o.b) < std::tie(o.length2, a, b); }
   };
-  const auto key = [](std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
-  };
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> at;
+  EdgeTriangles at;
   std::priority_queue<Edge> edges;
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t t) {
-    auto& triangles = at[key(a, b)];
-    triangles.push_back(t);
+    if (!at.add(a, b, t)) return;
     const double length2 = (walls.vertices[a] - walls.vertices[b]).squaredNorm();
-    if (triangles.size() == 1 && length2 > longest * longest) edges.push({length2, std::min(a, b), std::max(a, b)});
+    if (length2 > longest * longest) edges.push({length2, std::min(a, b), std::max(a, b)});
   };
   for (std::uint32_t t = 0; t < walls.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) add(walls.triangles[t][k], walls.triangles[t][(k + 1) % 3], t);
   while (!edges.empty()) {
     const Edge e = edges.top();
     edges.pop();
-    auto node = at.extract(key(e.a, e.b));
-    if (node.empty()) continue;
     const auto middle = static_cast<std::uint32_t>(walls.vertices.size());
     walls.vertices.push_back(0.5 * (walls.vertices[e.a] + walls.vertices[e.b]));
-    for (const auto t : node.mapped()) {
-      const auto other = static_cast<std::uint32_t>(walls.triangles.size());
+    for (auto use = at.first(e.a, e.b); use != ~0u; use = at.uses[use].next) {
+      const std::uint32_t t = at.uses[use].triangle, other = static_cast<std::uint32_t>(walls.triangles.size());
       Triangle half = walls.triangles[t];
       std::uint32_t apex = 0;
       for (const auto v : half)
@@ -86,10 +143,9 @@ void divide(TriangleMesh& walls, double longest) {
       std::replace(walls.triangles[t].begin(), walls.triangles[t].end(), e.b, middle);
       std::replace(half.begin(), half.end(), e.a, middle);
       walls.triangles.push_back(half);
-      auto& side = at[key(e.b, apex)];
-      std::replace(side.begin(), side.end(), t, other);
+      at.replace(e.b, apex, t, other);
       add(middle, apex, t), add(e.a, middle, t);
-      at[key(middle, apex)].push_back(other);
+      at.add(middle, apex, other);
       add(middle, e.b, other);
     }
   }
@@ -99,59 +155,52 @@ void divide(TriangleMesh& walls, double longest) {
 class Crossings {
  public:
   explicit Crossings(const TriangleMesh& walls) : walls_(walls), at_(walls.vertices.size()) {
-    index_.reserve(walls.triangles.size());
-    for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
-      insert(t);
-      changed_.push_back(t);
+    for (std::uint32_t t = 0; t < walls.triangles.size(); ++t)
       for (const auto v : walls.triangles[t]) at_[v].push_back(t);
-    }
   }
 
   // The vertices, ascending, of crossing triangles: among all, or after update(), of pairs with a
   // moved vertex.
-  std::vector<std::uint32_t> vertices() const {
-    std::vector<std::vector<std::uint32_t>> bad(changed_.size());
-    parallel_for(bad.size(), 256, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint32_t> near;
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto t = changed_[i];
-        const auto c = corners(walls_, t);
-        near.clear();
-        index_.find_near_triangle(c[0], c[1], c[2], 0, near);
-        for (const auto other : near)
-          if (other != t && faces_cross(walls_.triangles[t], c, walls_.triangles[other], corners(walls_, other)))
-            for (const auto each : {t, other})
-              bad[i].insert(bad[i].end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
-      }
-    });
+  std::vector<std::uint32_t> vertices() {
+    std::vector<Box3> boxes;
+    boxes.reserve(walls_.triangles.size());
+    for (std::size_t t = 0; t < walls_.triangles.size(); ++t) {
+      const auto c = corners(walls_, t);
+      boxes.push_back(box_of(c[0], c[1], c[2]));
+    }
+    if (tree_.boxes().empty())
+      tree_ = AabbTree(std::move(boxes));
+    else
+      tree_.refit_or_rebuild(std::move(boxes), {});
     std::vector<std::uint32_t> all;
-    for (const auto& some : bad) all.insert(all.end(), some.begin(), some.end());
-    return sorted(std::move(all));
+    for (const auto& [t, other] :
+         tree_.pairs(changed_.empty() ? nullptr : &changed_, [this](AabbTree::Pairs& pairs) { keep_crossing(pairs); }))
+      for (const auto each : {t, other})
+        all.insert(all.end(), walls_.triangles[each].begin(), walls_.triangles[each].end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
   }
 
-  // Updates the triangles at moved vertices.
+  // Marks the triangles at moved vertices.
   void update(const std::vector<std::uint32_t>& vertices) {
-    changed_.clear();
-    for (const auto v : vertices) changed_.insert(changed_.end(), at_[v].begin(), at_[v].end());
-    changed_ = sorted(std::move(changed_));
-    for (const auto t : changed_) index_.erase(t), insert(t);
+    changed_.assign(walls_.triangles.size(), 0);
+    for (const auto v : vertices)
+      for (const auto t : at_[v]) changed_[t] = 1;
   }
 
  private:
-  static std::vector<std::uint32_t> sorted(std::vector<std::uint32_t> indices) {
-    std::sort(indices.begin(), indices.end());
-    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-    return indices;
-  }
-  void insert(std::uint32_t t) {
-    const auto c = corners(walls_, t);
-    index_.insert(t, box_of(c[0], c[1], c[2]));
+  void keep_crossing(AabbTree::Pairs& pairs) const {
+    std::erase_if(pairs, [this](const auto& pair) {
+      return !faces_cross(walls_.triangles[pair.first], corners(walls_, pair.first), walls_.triangles[pair.second],
+                          corners(walls_, pair.second));
+    });
   }
 
   const TriangleMesh& walls_;
   std::vector<std::vector<std::uint32_t>> at_;  // triangles at each vertex
-  std::vector<std::uint32_t> changed_;
-  TriangleIndex index_;
+  std::vector<std::uint8_t> changed_;           // per triangle; empty: all
+  AabbTree tree_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 // 2002).
 #include <CGAL/box_intersection_d.h>
 
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "contact_peers.h"
 
 namespace bench {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "contact/detection/triangle_planes.h"
 
 namespace geo {

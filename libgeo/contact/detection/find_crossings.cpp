@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "contact/detection/disjointness_filter.h"
 #include "kerf/check.h"
 #include "kerf/contact.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "contact/motion/separating_planes.h"
 #include "contact/motion/straight_motion.h"
 

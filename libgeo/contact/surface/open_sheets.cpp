@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "contact/detection/find_crossings.h"
 
 namespace geo {

@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "kerf/parallel.h"
 #include "simd_targets.h"
 

@@ -2,7 +2,7 @@
 // (Kamel and Faloutsos 1993). Queries descend from the root once for each 256 neighbouring boxes.
 // Compiled for each instruction set (base/simd_targets.h).
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "contact/detection/aabb_tree.cpp"
+#define HWY_TARGET_INCLUDE "geometry/aabb_tree.cpp"
 #include "base/simd_targets.h"
 
 #include <hwy/foreach_target.h>
@@ -16,7 +16,7 @@
 #include <limits>
 #include <numeric>
 
-#include "contact/detection/aabb_tree.h"
+#include "geometry/aabb_tree.h"
 #include "kerf/parallel.h"
 
 HWY_BEFORE_NAMESPACE();

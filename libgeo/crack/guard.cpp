@@ -156,10 +156,10 @@ class Inspection {
       Box3 box;
       for (auto i = family.first; i < end; ++i)
         if (faces_[i].tested) box.add(faces_[i].box);
-      if (box.empty()) continue;
+      if (box.empty() || (family.near_known && family.near.empty())) continue;
       looked_up.clear();
-      if (family.near.empty()) complex_.faces_near(box, looked_up);
-      for (const FaceId f : family.near.empty() ? std::span<const FaceId>(looked_up) : family.near) {
+      if (!family.near_known) complex_.faces_near(box, looked_up);
+      for (const FaceId f : family.near_known ? family.near : std::span<const FaceId>(looked_up)) {
         const Box3& kept_box = complex_.box(f);
         if (!kept_box.meets(box) || std::binary_search(removed.begin(), removed.end(), f)) continue;
         const double size = (kept_box.hi - kept_box.lo).maxCoeff();

@@ -24,7 +24,8 @@ inline const Vec3& point_after(const Complex& complex, const ComplexEdit& edit, 
 struct Family {
   std::array<Vec3, 3> plane;     ///< the triangle's corners
   std::uint32_t first, end;      ///< edit.new_faces[first..end)
-  std::span<const FaceId> near;  ///< faces of K that may be near; empty: they are looked up
+  std::span<const FaceId> near;  ///< faces of K that may be near, if they are known
+  bool near_known;               ///< else they are looked up
   bool whole;                    ///< they cover the triangle, or no child that is left out is turned over
 };
 

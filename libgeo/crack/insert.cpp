@@ -23,7 +23,7 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
   std::uint32_t count = 0, last = ~0u;
   for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
     if (const auto& element = arrangement.elements[e]; element.cut) {
-      families.push_back({complex.corners(element.face), count, count + element.end - element.first, {}, true});
+      families.push_back({complex.corners(element.face), count, count + element.end - element.first, {}, false, true});
       count = families.back().end;
     }
   const auto& points = arrangement.points();
@@ -32,7 +32,7 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
     const auto& c = element.corner;
     if (last != ref.element) {
       families.push_back(
-          {{points[c[0]], points[c[1]], points[c[2]]}, count, count, arrangement.near(ref.element), true});
+          {{points[c[0]], points[c[1]], points[c[2]]}, count, count, arrangement.near(ref.element), true, true});
       const auto [axis, turn] = projection_of(points, c);
       for (auto i = element.first; i < element.end && families.back().whole; ++i) {
         const auto& v = arrangement.children[i].v;

@@ -226,11 +226,11 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
   parallel_for(flat.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double height = o.amplitude * size, frequency = o.frequency / size;
-      for (int octave = 0; octave < o.octaves; ++octave, height *= 0.6, frequency *= 2)
-        for (int k = 0; k < 3; ++k)
-          offset[i][k] +=
-              height * gradient_noise(frequency * (flat[i] - skin.box().lo),
-                                      o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3 + k));
+      for (int octave = 0; octave < o.octaves; ++octave, height *= 0.6, frequency *= 2) {
+        const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3);
+        const auto noise = gradient_noises(frequency * (flat[i] - skin.box().lo), {seed, seed + 1, seed + 2});
+        for (int k = 0; k < 3; ++k) offset[i][k] += height * noise[std::size_t(k)];
+      }
       walls.vertices[i] = flat[i] + offset[i];
     }
   });

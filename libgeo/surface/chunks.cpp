@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <map>
 
+#include "kerf/parallel.h"
+#include "surface/piece_sides.h"
+
 namespace geo {
 namespace {
 
@@ -110,21 +113,26 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
                                std::span<const Vec3> moved) {
   const auto walls = walls_of(complex, pieces);
   const auto wall_at = walls_by_triangle(complex, pieces, walls);
-  std::vector<Chunk> chunks;
-  std::vector<SurfaceVertexId> vertex_of;
-  for (std::uint32_t p = 0; p < pieces.count; ++p) {
-    Chunk chunk{piece_mesh(complex, pieces, p, &vertex_of), pieces.volume[p], Vec3::Zero()};
-    TriangleMesh& mesh = chunk.mesh;
-    if (!original.triangles.empty()) transfer_attributes(original, mesh);
-    mesh.site.clear();
-    complete_attributes(mesh, wall_at[p], tile);
-    if (!moved.empty()) {
-      for (std::size_t v = 0; v < vertex_of.size(); ++v) mesh.vertices[v] = moved[vertex_of[v].index()];
-      chunk.volume = signed_volume(mesh);
+  const auto sides = sides_by_piece(pieces);
+  std::vector<Chunk> chunks(pieces.count);
+  // A share of pieces has one scratch memory.
+  parallel_for(chunks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> index(complex.surface_vertex_count(), ~0u);
+    std::vector<SurfaceVertexId> vertex_of;
+    for (std::size_t p = begin; p < end; ++p) {
+      Chunk& chunk = chunks[p];
+      chunk = {mesh_of_sides(complex, sides[p], index, vertex_of), pieces.volume[p], Vec3::Zero()};
+      TriangleMesh& mesh = chunk.mesh;
+      if (!original.triangles.empty()) transfer_attributes(original, mesh);
+      mesh.site.clear();
+      complete_attributes(mesh, wall_at[p], tile);
+      if (!moved.empty()) {
+        for (std::size_t v = 0; v < vertex_of.size(); ++v) mesh.vertices[v] = moved[vertex_of[v].index()];
+        chunk.volume = signed_volume(mesh);
+      }
+      chunk.centroid = centroid_of(mesh);
     }
-    chunk.centroid = centroid_of(mesh);
-    chunks.push_back(std::move(chunk));
-  }
+  });
   return chunks;
 }
 

@@ -12,6 +12,7 @@
 #include "base/union_find.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
+#include "surface/piece_sides.h"
 
 namespace geo {
 namespace {
@@ -176,32 +177,50 @@ Pieces find_pieces(const Complex& k) {
   return pieces;
 }
 
+std::vector<std::vector<Side>> sides_by_piece(const Pieces& pieces) {
+  std::vector<std::vector<Side>> sides(pieces.count);
+  for (std::size_t i = 0; i < pieces.of_side.size(); ++i)
+    if (const auto piece = pieces.of_side[i]; piece >= 0)
+      sides[static_cast<std::size_t>(piece)].push_back({FaceId(static_cast<std::uint32_t>(i / 2)), int(i % 2)});
+  return sides;
+}
+
+TriangleMesh mesh_of_sides(const Complex& k, std::span<const Side> sides, std::vector<std::uint32_t>& index,
+                           std::vector<SurfaceVertexId>& vertex_of) {
+  TriangleMesh mesh;
+  mesh.triangles.reserve(sides.size()), mesh.patch.reserve(sides.size()), mesh.source.reserve(sides.size());
+  vertex_of.clear();
+  for (const Side side : sides) {
+    const auto& face = k.face(side.face);
+    Triangle t;
+    for (int c = 0; c < 3; ++c) {
+      const SurfaceVertexId v = k.surface_vertex(side, c);
+      if (index[v.index()] == ~0u) {
+        index[v.index()] = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(k.point(k.site(v)));
+        mesh.site.push_back(k.site(v).value);
+        vertex_of.push_back(v);
+      }
+      t[c] = index[v.index()];
+    }
+    if (side.which == 1) std::swap(t[1], t[2]);
+    mesh.triangles.push_back(t);
+    mesh.patch.push_back(side.which == 0 ? face.crack : -face.crack);
+    mesh.source.push_back(face.source);
+  }
+  for (const SurfaceVertexId v : vertex_of) index[v.index()] = ~0u;
+  return mesh;
+}
+
 TriangleMesh piece_mesh(const Complex& k, const Pieces& pieces, std::uint32_t piece,
                         std::vector<SurfaceVertexId>* vertex_of) {
-  TriangleMesh mesh;
-  if (vertex_of) vertex_of->clear();
+  std::vector<Side> sides;
+  for (std::size_t i = 0; i < pieces.of_side.size(); ++i)
+    if (pieces.of_side[i] == static_cast<std::int32_t>(piece))
+      sides.push_back({FaceId(static_cast<std::uint32_t>(i / 2)), int(i % 2)});
   std::vector<std::uint32_t> index(k.surface_vertex_count(), ~0u);
-  for (std::uint32_t f = 0; f < k.face_count(); ++f)
-    for (int which = 0; which < 2; ++which) {
-      if (pieces.of_side[f * 2 + which] != static_cast<std::int32_t>(piece)) continue;
-      const auto& face = k.face(FaceId(f));
-      Triangle t;
-      for (int c = 0; c < 3; ++c) {
-        const SurfaceVertexId v = k.surface_vertex({FaceId(f), which}, c);
-        if (index[v.index()] == ~0u) {
-          index[v.index()] = static_cast<std::uint32_t>(mesh.vertices.size());
-          mesh.vertices.push_back(k.point(k.site(v)));
-          mesh.site.push_back(k.site(v).value);
-          if (vertex_of) vertex_of->push_back(v);
-        }
-        t[c] = index[v.index()];
-      }
-      if (which == 1) std::swap(t[1], t[2]);
-      mesh.triangles.push_back(t);
-      mesh.patch.push_back(which == 0 ? face.crack : -face.crack);
-      mesh.source.push_back(face.source);
-    }
-  return mesh;
+  std::vector<SurfaceVertexId> vertices;
+  return mesh_of_sides(k, sides, index, vertex_of ? *vertex_of : vertices);
 }
 
 }  // namespace geo

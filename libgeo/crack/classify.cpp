@@ -41,6 +41,7 @@ class Classifier {
         const auto& v = a.children[children_[i].child].v;
         strip_edges_.add(v[k], v[(k + 1) % 3], {i, children_[i].child, k});
       }
+    strip_edges_.sort();
     visited_.assign(children_.size(), false);
   }
 

@@ -1,8 +1,9 @@
-// Edge-uses are in linked lists by lower point. Radial order: the side of the plane of face `zero`
+// Edge-uses are sorted by lower point (counting sort). Radial order: the side of the plane of face `zero`
 // gives each face's sector, 0, (0, π), π or (π, 2π); within a sector, orient3d orders two faces.
 #include "crack/edge_table.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "geometry/predicates.h"
 
@@ -10,16 +11,23 @@ namespace geo::crack {
 
 void EdgeTable::add(PointIndex u, PointIndex v, const EdgeUse& use) {
   const PointIndex low = std::min(u, v);
-  entries_.push_back({std::max(u, v), head_[low], use});
-  head_[low] = static_cast<std::uint32_t>(entries_.size() - 1);
+  added_.push_back({low, std::max(u, v), use});
+  ++first_[low + 1];
+}
+
+void EdgeTable::sort() {
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  sorted_.resize(added_.size());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (const Entry& entry : added_) sorted_[next[entry.low]++] = entry;
+  added_ = {};
 }
 
 void EdgeTable::find(PointIndex u, PointIndex v, std::vector<EdgeUse>& out) const {
   out.clear();
   const PointIndex low = std::min(u, v), high = std::max(u, v);
-  for (auto e = head_[low]; e != ~0u; e = entries_[e].next)
-    if (entries_[e].high == high) out.push_back(entries_[e].use);
-  std::reverse(out.begin(), out.end());
+  for (auto e = first_[low]; e < first_[low + 1]; ++e)
+    if (sorted_[e].high == high) out.push_back(sorted_[e].use);
 }
 
 RadialFace radial_face(const Arrangement& a, const EdgeUse& use, PointIndex u) {
@@ -62,6 +70,7 @@ EdgeTable edges_of_complex(const Arrangement& a) {
       for (std::uint8_t k = 0; k < 3; ++k)
         if (child.edge[k] != edge_diagonal) edges.add(child.v[k], child.v[(k + 1) % 3], {e, c, k});
     }
+  edges.sort();
   return edges;
 }
 

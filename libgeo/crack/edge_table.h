@@ -20,22 +20,23 @@ struct EdgeUse {
 class EdgeTable {
  public:
   /// An empty table for edges between this many points.
-  explicit EdgeTable(std::size_t points) : head_(points, ~0u) {}
+  explicit EdgeTable(std::size_t points) : first_(points + 1, 0) {}
   /// Reserves memory.
-  void reserve(std::size_t uses) { entries_.reserve(uses); }
+  void reserve(std::size_t uses) { added_.reserve(uses); }
   /// Adds a use of edge uv.
   void add(PointIndex u, PointIndex v, const EdgeUse& use);
+  /// Sorts the uses by edge. Must be called once, after the last add() and before the first find().
+  void sort();
   /// Replaces `out` by the uses of edge uv, in the order in which they were added.
   void find(PointIndex u, PointIndex v, std::vector<EdgeUse>& out) const;
 
  private:
   struct Entry {
-    PointIndex high;
-    std::uint32_t next;
+    PointIndex low, high;
     EdgeUse use;
   };
-  std::vector<std::uint32_t> head_;  // by lower point: its last entry, ~0u: none
-  std::vector<Entry> entries_;
+  std::vector<Entry> added_, sorted_;  // sorted_: by lower point, as added
+  std::vector<std::uint32_t> first_;   // by lower point: its first entry in sorted_
 };
 
 /// The edges of all faces of K in the arrangement, after splitting.

@@ -76,6 +76,7 @@ class Stitcher {
       add_face(ref.child, crack, FaceId());
       for (std::uint8_t k = 0; k < 3; ++k) crack_edges_.add(v[k], v[(k + 1) % 3], {ref.element, ref.child, k});
     }
+    crack_edges_.sort();
   }
 
   // Radial orders around the edges of crack faces, each at the edge's first use.

@@ -23,6 +23,8 @@ class TriangleBvh {
   std::size_t size() const { return corners_.size(); }
   /// Whether there are no triangles.
   bool empty() const { return corners_.empty(); }
+  /// The corners of a triangle.
+  const std::array<Vec3, 3>& corners(std::uint32_t triangle) const { return corners_[triangle]; }
   /// The bounding box of all triangles.
   const Box3& box() const { return box_; }
 

@@ -4,6 +4,7 @@
 #include "score/voronoi.h"
 
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <Eigen/LU>
 
 #include "base/random.h"
+#include "crack/index_map.h"
 #include "kerf/error.h"
 #include "score/walls.h"
 
@@ -18,6 +20,13 @@ namespace geo {
 namespace {
 
 using Name = std::array<std::uint32_t, 4>;  // ascending sites, then box sides as count + side
+
+struct NameHash {
+  std::size_t operator()(const Name& name) const {
+    const crack::SpreadHash spread;
+    return spread(spread(std::uint64_t(name[0]) << 32 | name[1]) ^ (std::uint64_t(name[2]) << 32 | name[3]));
+  }
+};
 
 // The vertices of the diagram, by name: each name has one position.
 class Corners {
@@ -30,9 +39,9 @@ class Corners {
     return name;
   }
   const Vec3& at(const Name& name) {
-    const auto [entry, is_new] = positions_.try_emplace(name, Vec3::Zero());
-    if (is_new) entry->second = position(name);
-    return entry->second;
+    std::uint32_t& index = indices_[name];
+    if (index == ~0u) index = static_cast<std::uint32_t>(positions_.size()), positions_.push_back(position(name));
+    return positions_[index];
   }
   // Whether the corner is nearer to `site` than to its defining sites.
   bool beyond(const Name& name, std::uint32_t site) {
@@ -63,7 +72,8 @@ class Corners {
 
   std::span<const Vec3> sites_;
   const Box3& box_;
-  std::map<Name, Vec3> positions_;
+  crack::IndexMap<Name, NameHash> indices_;  // into positions_
+  std::deque<Vec3> positions_;               // references stay valid
 };
 
 // A side of a convex cell: its plane, and its corners in order. The cell itself names one of the

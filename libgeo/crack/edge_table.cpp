@@ -1,5 +1,6 @@
-// Edge-uses are sorted by lower point (counting sort). Radial order: the side of the plane of face `zero`
-// gives each face's sector, 0, (0, π), π or (π, 2π); within a sector, orient3d orders two faces.
+// Edge-uses are sorted by lower point (counting sort). Radial order: the side of the plane of face
+// `zero` gives each face's sector, 0, (0, π), π or (π, 2π); within a sector, orient3d orders two
+// faces.
 #include "crack/edge_table.h"
 
 #include <algorithm>

@@ -181,7 +181,7 @@ class Inspection {
     return {};
   }
 
-  // Two new faces that cross or are too near. Of several pairs, the first along the longest axis.
+  // Two new faces that cross or are too near. The first pair along the longest axis is reported.
   Fault find_crossing_among_new() const {
     Box3 all;
     std::vector<Box3> boxes;

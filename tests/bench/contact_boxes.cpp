@@ -2,8 +2,8 @@
 // 2002).
 #include <CGAL/box_intersection_d.h>
 
-#include "geometry/aabb_tree.h"
 #include "contact_peers.h"
+#include "geometry/aabb_tree.h"
 
 namespace bench {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/aabb_tree.h"
 #include "contact/detection/triangle_planes.h"
+#include "geometry/aabb_tree.h"
 
 namespace geo {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "geometry/aabb_tree.h"
 #include "contact/detection/disjointness_filter.h"
+#include "geometry/aabb_tree.h"
 #include "kerf/check.h"
 #include "kerf/contact.h"
 #include "kerf/parallel.h"

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "geometry/aabb_tree.h"
 #include "contact/motion/separating_planes.h"
 #include "contact/motion/straight_motion.h"
+#include "geometry/aabb_tree.h"
 
 namespace geo {
 

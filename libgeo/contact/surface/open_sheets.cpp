@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/aabb_tree.h"
 #include "contact/detection/find_crossings.h"
+#include "geometry/aabb_tree.h"
 
 namespace geo {
 namespace {

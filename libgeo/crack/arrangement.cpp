@@ -1,11 +1,11 @@
 // Two triangles in different planes share at most a segment. Its ends follow from signs of orient3d
 // alone (compare Guigue and Devillers 2003); coplanar triangles are clipped edge by edge. Pairs
-// come from the lists of near faces, and for the strip with itself from a tree of boxes.
+// come from the lists of near faces, and for the strip with itself from their boxes.
 #include "crack/arrangement.h"
 
 #include <algorithm>
 
-#include "geometry/aabb_tree.h"
+#include "geometry/box_pairs.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
 
@@ -96,7 +96,6 @@ void Arrangement::meet_itself() {
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles)
     boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
-  const AabbTree tree(std::move(boxes));
   const auto keep_meeting = [&](AabbTree::Pairs& pairs) {
     std::erase_if(pairs, [&](const auto& pair) {
       const auto s = corners_of(pair.first), t = corners_of(pair.second);
@@ -105,10 +104,10 @@ void Arrangement::meet_itself() {
     });
   };
   const auto before = [&](std::uint32_t i, std::uint32_t j) {
-    const double x = tree.boxes()[i].lo.x(), y = tree.boxes()[j].lo.x();
+    const double x = boxes[i].lo.x(), y = boxes[j].lo.x();
     return x != y ? x < y : i < j;
   };
-  auto pairs = tree.pairs(nullptr, keep_meeting);
+  auto pairs = meeting_pairs(boxes, keep_meeting);
   for (auto& [i, j] : pairs)
     if (before(j, i)) std::swap(i, j);
   std::sort(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) {

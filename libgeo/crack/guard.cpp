@@ -1,6 +1,6 @@
 // Orientation, order and crossing are exact on the rounded coordinates, behind floating-point
 // filters; the clearance is measured in doubles. Pairs come from lists of near faces, the index of
-// K, and a tree of boxes. Repair displaces rounded points of faulty faces and tests again.
+// K, and boxes that meet. Repair displaces rounded points of faulty faces and tests again.
 #include "crack/guard.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "crack/exits.h"
 #include "crack/radial_order.h"
-#include "geometry/aabb_tree.h"
+#include "geometry/box_pairs.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/check.h"
@@ -202,7 +202,7 @@ class Inspection {
         return !(a.tested || b.tested) || (a.family != ~0u && a.family == b.family) || !fault_between(a, b);
       });
     };
-    const auto pairs = AabbTree(std::move(boxes)).pairs(nullptr, keep_faults);
+    const auto pairs = meeting_pairs(boxes, keep_faults);
     if (pairs.empty()) return {};
     const auto [i, j] = *std::min_element(pairs.begin(), pairs.end(), [&](const auto& x, const auto& y) {
       return x.first != y.first ? before(x.first, y.first) : before(x.second, y.second);

@@ -7,8 +7,8 @@
 #include <map>
 #include <unordered_map>
 
+#include "geometry/box_pairs.h"
 #include "geometry/predicates.h"
-#include "geometry/triangle_index.h"
 #include "kerf/error.h"
 #include "surface/radial_edge.h"
 
@@ -64,6 +64,28 @@ std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
     report_problem(report, "triangle " + std::to_string(t) + " is degenerate (no area); remove or repair it");
   }
   return count;
+}
+
+// Pairs (i > j) of triangles that cross, ascending; without triangles that have a vertex twice.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_triangles(const TriangleMesh& mesh) {
+  const auto points = [&](std::uint32_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    return std::array<Vec3, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+  };
+  std::vector<Box3> boxes(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (a != b && b != c && c != a) boxes[t] = box_of(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+  }
+  auto pairs = meeting_pairs(boxes, [&](AabbTree::Pairs& some) {
+    std::erase_if(some, [&](auto& pair) {
+      std::swap(pair.first, pair.second);
+      return !faces_cross(mesh.triangles[pair.first], points(pair.first), mesh.triangles[pair.second],
+                          points(pair.second));
+    });
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace
@@ -136,29 +158,11 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   report.degenerate_faces = count_degenerate(mesh, report);
   check_edges(mesh, report);
   if (!crossings) return report;
-  TriangleIndex index;
-  std::size_t count = 0;
-  std::vector<std::uint32_t> near;
-  const auto points = [&](std::uint32_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return std::array<Vec3, 3>{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
-  };
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    if (a == b || b == c || c == a) continue;  // degenerate, reported above
-    const auto p = points(t);
-    const Box3 box = box_of(p[0], p[1], p[2]);
-    near.clear();
-    index.find(box, near);
-    for (const auto other : near)
-      if (faces_cross(mesh.triangles[t], p, mesh.triangles[other], points(other))) {
-        if (count++ == 0)
-          report_problem(report,
-                         "triangles " + pair_name(other, t) + " intersect each other; repair the surface first");
-      }
-    index.insert(t, box);
-  }
-  report.self_intersections = count;
+  const auto pairs = crossing_triangles(mesh);
+  report.self_intersections = pairs.size();
+  if (!pairs.empty())
+    report_problem(report, "triangles " + pair_name(pairs[0].second, pairs[0].first) +
+                               " intersect each other; repair the surface first");
   return report;
 }
 
@@ -177,13 +181,26 @@ std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex
     const auto& v = complex.face(f).v;
     return std::array<std::uint32_t, 3>{v[0].value, v[1].value, v[2].value};
   };
+  const auto cross = [&](FaceId f, FaceId g) {
+    return faces_cross(rows(f), complex.corners(f), rows(g), complex.corners(g));
+  };
+  if (!only) {
+    std::vector<Box3> boxes;
+    for (const FaceId f : sorted) boxes.push_back(complex.box(f));
+    auto found = meeting_pairs(boxes, [&](AabbTree::Pairs& some) {
+      std::erase_if(some, [&](const auto& pair) { return !cross(sorted[pair.first], sorted[pair.second]); });
+    });
+    std::sort(found.begin(), found.end());
+    for (const auto& [i, j] : found) pairs.push_back({sorted[i], sorted[j]});
+    return pairs;
+  }
   std::vector<FaceId> near;
   for (const FaceId f : sorted) {
     near.clear();
     complex.faces_near(complex.box(f), near);
     for (const FaceId g : near) {
-      if (g == f || (g < f && (!only || std::binary_search(sorted.begin(), sorted.end(), g)))) continue;
-      if (faces_cross(rows(f), complex.corners(f), rows(g), complex.corners(g))) pairs.push_back({f, g});
+      if (g == f || (g < f && std::binary_search(sorted.begin(), sorted.end(), g))) continue;
+      if (cross(f, g)) pairs.push_back({f, g});
     }
   }
   return pairs;

@@ -182,6 +182,20 @@ Json hull_primitive(Glb& glb, const TriangleMesh& hull, const Vec3& origin) {
   return {{"attributes", {{"POSITION", at}}}, {"indices", glb.indices(index)}};
 }
 
+// The chunk with every array that a primitive reads. Throws InputError where it has no triangle.
+Chunk completed(Chunk chunk) {
+  TriangleMesh& mesh = chunk.mesh;
+  const std::size_t count = mesh.triangles.size();
+  if (count == 0) throw InputError("a piece without triangles does not fit into a .glb");
+  mesh.patch.resize(count, 0);
+  mesh.attributes.uv.resize(count, {Vec2::Zero(), Vec2::Zero(), Vec2::Zero()});
+  if (mesh.attributes.group.empty()) {
+    mesh.attributes.group.assign(count, 0);
+    mesh.attributes.group_names = {"skin"};
+  }
+  return chunk;
+}
+
 }  // namespace
 
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
@@ -217,7 +231,7 @@ void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::v
   };
   Json children = Json::array();
   for (std::size_t p = 0; p < chunks.size(); ++p) {
-    const Chunk& chunk = chunks[p];
+    const Chunk chunk = completed(chunks[p]);
     const Attributes& a = chunk.mesh.attributes;
     auto normals = smooth_normals(chunk.mesh);
     for (std::size_t t = 0; t < normals.size() && !a.normal.empty(); ++t)

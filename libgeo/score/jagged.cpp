@@ -272,22 +272,26 @@ class Crossings {
 
 }  // namespace
 
-void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, double margin) {
+void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, double margin,
+                  const std::function<void()>& pause) {
   // Coarsely first: few triangles are divided that are dropped afterwards. The factors change the
   // cost and where triangles are bisected, not the bound on their edges.
   for (const double edge : {8 * longest, 2 * longest, longest}) {
     Bisection(walls, edge).run();
+    if (pause) pause();
     trim(walls, skin, margin);
+    if (pause) pause();
   }
 }
 
-void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& o) {
+void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& o,
+                   const std::function<void()>& pause) {
   if (!(o.amplitude >= 0 && o.amplitude < 1) || !(o.frequency > 0 && o.frequency <= 1e4) || o.octaves < 1 ||
       o.octaves > 16 || !(o.edge >= 0))
     throw InputError(
         "the jaggedness's amplitude must be in [0, 1), its frequency positive and at most 10000, its octaves 1 to 16");
   const double size = skin.box().diagonal();
-  refine_walls(walls, skin, size * (o.edge > 0 ? o.edge : 1 / (8 * o.frequency)), 4 * o.amplitude * size);
+  refine_walls(walls, skin, size * (o.edge > 0 ? o.edge : 1 / (8 * o.frequency)), 4 * o.amplitude * size, pause);
   const std::vector<Vec3> flat = walls.vertices;
   std::vector<Vec3> offset(flat.size(), Vec3::Zero());
   parallel_for(flat.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -305,6 +309,7 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
   Crossings crossings(walls);
   for (bool changed = true; changed;) {
     changed = false;
+    if (pause) pause();
     std::vector<std::uint32_t> bad = crossings.vertices();
     std::erase_if(bad, [&](std::uint32_t v) { return offset[v].isZero(0); });
     for (const auto v : bad) {

@@ -5,6 +5,7 @@
 // a new seed starts the search again. A small surplus of pieces is joined.
 #include "kerf/score.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kerf/crack.h"
@@ -53,7 +54,7 @@ class Scoring {
     if (best_.pieces == 0 && nearest_.pieces > 0) finish(walls_of(nearest_));
     if (best_.pieces == 0) throw GeometryError("no such pattern can be inserted" + reason_);
     if (o_.depth < 1) {
-      if (!(o_.jagged.amplitude > 0)) refine_walls(best_.sheet, skin_, edge(), edge());
+      if (!(o_.jagged.amplitude > 0)) refine_walls(best_.sheet, skin_, edge(), edge(), [this] { pause(); });
       keep_shallow(best_.sheet, skin_, o_.depth);
     }
     return std::move(best_);
@@ -82,8 +83,8 @@ class Scoring {
   // Counts the pieces that a pattern makes, and finishes it where they are as many as wanted, or
   // few enough more to be joined. False when the pattern cannot be inserted.
   bool attempt(Try& t) {
-    report(progress_, "score", static_cast<std::size_t>(best_.attempts), static_cast<std::size_t>(o_.attempts));
     ++best_.attempts;
+    pause();
     try {
       TriangleMesh walls = walls_of(t);
       t.pieces = is_given() ? 1 : find_pieces(cut_by(walls)).count;
@@ -100,7 +101,7 @@ class Scoring {
   // Roughens walls, joins surplus pieces, and keeps the result if it is the best one. Returns the
   // number of pieces before joining.
   std::uint32_t finish(TriangleMesh walls) {
-    if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged);
+    if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged, [this] { pause(); });
     const Complex cut = cut_by(walls);
     const Pieces pieces = find_pieces(cut);
     std::uint32_t count = pieces.count;
@@ -115,7 +116,13 @@ class Scoring {
     return pieces.count;
   }
 
+  // Reports the attempts before this one; throws Interrupted where the caller stops the search.
+  void pause() const {
+    const auto done = static_cast<std::size_t>(std::max(best_.attempts - 1, 0));
+    report(progress_, "score", done, static_cast<std::size_t>(o_.attempts));
+  }
   Complex cut_by(const TriangleMesh& walls) const {
+    pause();
     Complex cut = model_;
     insert_sheet(cut, walls, cut.crack_count() + 1);
     return cut;

@@ -112,8 +112,8 @@ struct Components {
   std::uint32_t count = 0;
 };
 
-// Orients neighbours alike, each component in the path that flips fewer triangles.
-Components orient(TriangleMesh& mesh, std::size_t& flipped) {
+// Orients neighbours alike; a component turns the smaller part of its triangles.
+Components orient(TriangleMesh& mesh) {
   const std::size_t n = mesh.triangles.size();
   std::vector<std::array<std::uint32_t, 3>> beside(n, {~0u, ~0u, ~0u});
   std::vector<std::array<char, 3>> against(n, {0, 0, 0});
@@ -140,7 +140,7 @@ Components orient(TriangleMesh& mesh, std::size_t& flipped) {
       }
     const bool majority = 2 * flips > component.size();
     for (const auto t : component)
-      if (bool(reversed[t]) != majority) flip(mesh, t), ++flipped;
+      if (bool(reversed[t]) != majority) flip(mesh, t);
     ++components.count;
   }
   return components;
@@ -396,9 +396,25 @@ void arrange_shells(TriangleMesh& mesh, const Components& components, RepairStat
       if (hidden)
         kept[t] = 0;
       else if ((s.volume > 0) == inner)
-        flip(mesh, t), ++done.flipped_triangles;
+        flip(mesh, t);
   }
   keep(mesh, kept);
+}
+
+// Triangles that begin with their smallest vertex, orientation kept, sorted.
+std::vector<Triangle> turned_to_first(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+// How many triangles were there before with the opposite orientation alone.
+std::size_t count_flipped(const std::vector<Triangle>& before, const std::vector<Triangle>& after) {
+  const auto had = [&](const Triangle& t) { return std::binary_search(before.begin(), before.end(), t); };
+  const std::vector<Triangle> now = turned_to_first(after);
+  return static_cast<std::size_t>(std::count_if(now.begin(), now.end(), [&](const Triangle& t) {
+    return !had(t) && had({t[0], t[2], t[1]});
+  }));
 }
 
 void drop_loose_vertices(TriangleMesh& mesh) {
@@ -419,10 +435,12 @@ RepairStats repair(TriangleMesh& mesh, double weld_distance, bool smooth_fill) {
   RepairStats done;
   done.welded_vertices = weld_seams(mesh, weld_distance);
   done.dropped_triangles = drop_degenerate(mesh);
-  Components components = orient(mesh, done.flipped_triangles);
+  const std::vector<Triangle> before = turned_to_first(mesh.triangles);
+  Components components = orient(mesh);
   fill_holes(mesh, done, smooth_fill);
-  if (done.filled_holes > 0) components = orient(mesh, done.flipped_triangles);  // a patch may connect components
+  if (done.filled_holes > 0) components = orient(mesh);  // a patch may connect components
   arrange_shells(mesh, components, done);
+  done.flipped_triangles = count_flipped(before, mesh.triangles);
   drop_loose_vertices(mesh);
   return done;
 }

@@ -4,7 +4,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kerf import Progress
+from kerf import _Progress
 
 __all__ = ["picture"]
 
@@ -30,5 +30,5 @@ def picture(
     field: ArrayLike | None = None,
     ground: bool = True,
     samples: int = 3,
-    progress: Progress = None,
+    progress: _Progress = None,
 ) -> NDArray[np.uint8]: ...

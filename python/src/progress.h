@@ -24,7 +24,7 @@ class ProgressReport {
   ProgressReport(const ProgressReport&) = delete;
   ProgressReport& operator=(const ProgressReport&) = delete;
 
-  /// What the library calls; valid while this object lives.
+  /// The function that the library calls; valid while this object lives.
   geo::Progress function();
 
   /// Runs `work` without the GIL. After geo::Interrupted rethrows what Python raised: the error of

@@ -1,5 +1,5 @@
-// Files of surfaces: PLY, OBJ, STL and OFF in; PLY, OBJ and glTF out. What a file holds is decided
-// by its content.
+// Files of surfaces: PLY, OBJ, STL and OFF in; PLY, OBJ and glTF out. The content of a file decides
+// which class it becomes.
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -70,22 +70,14 @@ py::object any_surface(const Path& path) {
   return py::cast(std::make_shared<Solid>(std::move(file.mesh), true));
 }
 
-// A mesh as the only chunk: with all arrays that write_glb() expects.
+// A mesh as the only chunk.
 geo::Chunk chunk_of(const Mesh& given) {
   const auto* piece = dynamic_cast<const Piece*>(&given);
   const auto box = geo::bounding_box(given.mesh);
   if (box.empty()) throw geo::InputError("save: a mesh without triangles is no .glb");
   geo::Chunk chunk{given.mesh, piece ? piece->volume : geo::signed_volume(given.mesh),
                    piece ? piece->centroid : box.center()};
-  auto& mesh = chunk.mesh;
-  const auto count = mesh.triangles.size();
-  mesh.site.clear();
-  mesh.patch.resize(count, 0);
-  mesh.attributes.uv.resize(count, {geo::Vec2::Zero(), geo::Vec2::Zero(), geo::Vec2::Zero()});
-  if (mesh.attributes.group.empty()) {
-    mesh.attributes.group.assign(count, 0);
-    mesh.attributes.group_names = {"skin"};
-  }
+  chunk.mesh.site.clear();
   return chunk;
 }
 

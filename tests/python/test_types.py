@@ -1,4 +1,5 @@
-"""The samples fulfil mypy --strict with the types of the package, which a wrong program does not."""
+"""Samples fulfil mypy --strict with the types of the package, a wrong program does not; the types fit the module."""
+import os
 import pathlib
 import subprocess
 import sys
@@ -25,6 +26,11 @@ class Types(unittest.TestCase):
             done = self.mypy(str(path))
             self.assertIn("wrong.py:2: error", done.stdout)
             self.assertIn("wrong.py:3: error", done.stdout)
+
+    def test_types_are_those_of_the_module(self):
+        done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "kerf"], capture_output=True, text=True,
+                              env=dict(os.environ, MYPYPATH=os.environ["PYTHONPATH"]))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

@@ -68,6 +68,25 @@ TEST_CASE("Each pattern parts a ball into as many pieces as wanted", "[score]") 
       }
 }
 
+TEST_CASE("A search can be stopped at each of its reports", "[score]") {
+  const Complex block = Complex::from_skin(make_block({2, 1, 1}, 0.25));
+  ScoreOptions options;
+  options.jagged.amplitude = 0.02;
+  options.pieces = 6;
+  std::size_t reports = 0;
+  make_score(block, options, [&](std::string_view, std::size_t done, std::size_t total) {
+    CHECK(done < total);
+    return ++reports > 0;
+  });
+  CHECK(reports >= 8);  // the attempt, six stages of refinement, a round of displacement
+  for (std::size_t last = 1; last <= reports; ++last) {
+    std::size_t now = 0;
+    const auto stop = [&](std::string_view, std::size_t, std::size_t) { return ++now < last; };
+    CHECK_THROWS_AS(make_score(block, options, stop), Interrupted);
+    CHECK(now == last);
+  }
+}
+
 TEST_CASE("Cells are small near the impact", "[score]") {
   const Complex block = Complex::from_skin(make_block({2, 1, 1}, 0.25));
   ScoreOptions options;

@@ -209,6 +209,22 @@ TEST_CASE("shells are turned outwards, cavities inwards, and what is hidden in a
   }
 }
 
+TEST_CASE("triangles reported as turned are those whose orientation differs in the end") {
+  const auto [first, count] = seeds(100);
+  const TriangleMesh ball = make_sphere(3);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    TriangleMesh mesh = ball;
+    const double share = random.uniform();  // above a half, the component is turned the wrong way first
+    std::size_t turned = 0;
+    for (Triangle& t : mesh.triangles)
+      if (random.uniform() < share) std::swap(t[1], t[2]), ++turned;
+    CHECK(repair(mesh).flipped_triangles == turned);
+    CHECK(signed_volume(mesh) == Approx(signed_volume(ball)));
+  }
+}
+
 TEST_CASE("anything in gives an end") {
   const auto [first, count] = seeds(200);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {

@@ -69,7 +69,7 @@ bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through
 struct RepairStats {
   std::size_t welded_vertices = 0;    ///< vertices merged into others
   std::size_t dropped_triangles = 0;  ///< degenerate (a vertex twice) or duplicate
-  std::size_t flipped_triangles = 0;  ///< orientation reversed
+  std::size_t flipped_triangles = 0;  ///< orientation reversed in the result
   std::size_t filled_holes = 0;
   std::size_t added_triangles = 0;  ///< in holes
   std::size_t smooth_fills = 0;     ///< holes that are filled by fair patches

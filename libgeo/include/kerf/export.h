@@ -63,7 +63,8 @@ struct GlbOptions {
 /// triangles around it that differ by less than 45°, weighted by area. Colours are converted to
 /// linear ones, as glTF requires. Hulls have names UCX_, the piece, and hull_suffix(). The scene's
 /// `extras` hold what write_bonds() writes. Coordinates are in single precision, relative to each
-/// centroid.
+/// centroid. Triangles without patch are skin, corners without texture coordinates have (0, 0), a
+/// chunk without groups has one, "skin". Throws InputError for a chunk without triangles.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                const ChunkLabels& labels, const GlbOptions& options = {});
 

@@ -99,16 +99,16 @@ def _values_of_surface(x, color):
 
 
 def _on_surface(body, per_node):
-    """For each vertex of the body's surface the value of the node that carries its master (section 6.5 of the paper)."""
+    """Each vertex of the body's surface: the mean over the nodes that carry it (section 6.5 of the paper), weighted by the kernel
+    (1 - (d / h)^2)^2, where d is the distance and h the node's support radius. Zero for an orphan."""
     import numpy as np
 
-    binding = body.binding
-    master = binding.master[binding.vertex]
-    node = binding.master_node[np.minimum(master, len(binding.master_node) - 1)]
-    carried = (master < len(binding.master_node)) & (node < len(per_node))  # an orphan has none
-    values = np.zeros(len(master))
-    values[carried] = np.asarray(per_node)[node[carried]]
-    return values
+    indptr, nodes, distances = body.carriers()
+    kernel = np.clip(1 - (distances / body.nodes.radius[nodes]) ** 2, 1e-6, 1) ** 2
+    vertex = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    weight = np.bincount(vertex, kernel, len(indptr) - 1)
+    total = np.bincount(vertex, kernel * np.asarray(per_node)[nodes], len(indptr) - 1)
+    return np.divide(total, weight, out=np.zeros_like(total), where=weight > 0)
 
 
 def _size(size):

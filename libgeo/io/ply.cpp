@@ -1,5 +1,6 @@
 // The header gives the layout. Binary elements whose rows have equal size are decoded column by
-// column, all others number by number. All numbers become doubles.
+// column, all others number by number. All numbers become doubles. Text after the last number of a
+// row is ignored.
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -56,27 +57,21 @@ double decode(const char* bytes, char type, bool swap) {
   }
 }
 
-// Reads `each` consecutive numbers at each of `places`, `apart` bytes from one to the next. False
-// where a number is not finite.
+// Reads `each` consecutive numbers at each of `places`, `apart` bytes from one to the next.
 template <class T>
-bool fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each,
+void fill(std::vector<double>& values, const char* first, std::size_t apart, std::size_t places, std::size_t each,
           bool swap) {
   values.resize(places * each);
   const auto read = [&](auto swapped) {
-    bool finite = true;
     double* to = values.data();
     for (std::size_t i = 0; i < places; ++i)
-      for (const char *from = first + i * apart, *end = from + each * sizeof(T); from != end; from += sizeof(T)) {
-        *to = decode<T>(from, swapped);
-        if constexpr (std::is_floating_point_v<T>) finite &= std::isfinite(*to);
-        ++to;
-      }
-    return finite;
+      for (const char *from = first + i * apart, *end = from + each * sizeof(T); from != end; from += sizeof(T))
+        *to++ = decode<T>(from, swapped);
   };
-  return swap ? read(std::true_type()) : read(std::false_type());
+  swap ? read(std::true_type()) : read(std::false_type());
 }
 
-bool fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
+void fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t places, std::size_t each, bool swap) {
   switch (p.type) {
     case 'c':
       return fill<std::int8_t>(p.values, first, apart, places, each, swap);
@@ -129,10 +124,7 @@ bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyEleme
         return false;
   for (std::size_t k = 0; k < each.size(); ++k) {
     PlyProperty& p = element.properties[k];
-    if (!fill(p, rest.data() + first[k], row, element.count, each[k], swap)) {
-      for (PlyProperty& other : element.properties) other.values.clear(), other.ends.clear();
-      return false;
-    }
+    fill(p, rest.data() + first[k], row, element.count, each[k], swap);
     if (p.count_type == 0) continue;
     p.ends.resize(element.count);
     for (std::size_t i = 0; i < element.count; ++i) p.ends[i] = static_cast<std::uint32_t>((i + 1) * each[k]);
@@ -218,7 +210,7 @@ class RowReader {
 
   void read(PlyElement& element) {
     if (ascii() || element.count == 0 || !read_even_rows(bytes_, format_ == PlyFormat::big_endian, at_, element))
-      for (std::size_t row = 0; row < element.count; ++row) read_row(element, row);
+      for (std::size_t row = 0; row < element.count; ++row) read_row(element);
   }
   // True where bytes or lines are left.
   bool more() { return ascii() ? lines_.next(words_) : at_ != bytes_.size(); }
@@ -228,35 +220,31 @@ class RowReader {
   [[noreturn]] void truncated(const PlyElement& element) const {
     throw InputError(name_ + ": ends within element '" + shown(element.name) + "'; the file is truncated");
   }
-  double next(char type, const PlyElement& element, std::size_t row) {
+  double next(char type, const PlyElement& element) {
     double value = 0;
     if (ascii()) {
       if (word_ >= words_.size()) lines_.fail("too few numbers for a row of '" + shown(element.name) + "'");
-      value = lines_.real(words_[word_++]);
+      value = lines_.any_real(words_[word_++]);
     } else {
       if (bytes_.size() - at_ < size_of(type)) truncated(element);
       value = decode(bytes_.data() + at_, type, format_ == PlyFormat::big_endian);
       at_ += size_of(type);
     }
-    if (!std::isfinite(value))
-      throw InputError(name_ + ": row " + std::to_string(row) + " of '" + shown(element.name) +
-                       "' holds a value that is not a finite number; repair the file");
     return value;
   }
-  void read_row(PlyElement& element, std::size_t row) {
+  void read_row(PlyElement& element) {
     word_ = 0;
     if (ascii() && !lines_.next(words_)) truncated(element);
     for (auto& p : element.properties) {
       if (p.count_type == 0) {
-        p.values.push_back(next(p.type, element, row));
+        p.values.push_back(next(p.type, element));
         continue;
       }
-      const double count = next(p.count_type, element, row);
+      const double count = next(p.count_type, element);
       if (!(count >= 0) || count > static_cast<double>(bytes_.size()) || count != std::floor(count)) truncated(element);
-      for (double i = 0; i < count; ++i) p.values.push_back(next(p.type, element, row));
+      for (double i = 0; i < count; ++i) p.values.push_back(next(p.type, element));
       p.ends.push_back(static_cast<std::uint32_t>(p.values.size()));
     }
-    if (ascii() && word_ != words_.size()) lines_.fail("too many numbers for a row of '" + shown(element.name) + "'");
   }
 
   std::string_view bytes_;

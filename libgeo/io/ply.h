@@ -29,8 +29,9 @@ struct Ply {
   const PlyElement* find(std::string_view element) const;
 };
 
-/// Reads ASCII or binary PLY of either byte order. Throws InputError, with `name` first, for
-/// malformed files, numbers that are not finite, counts larger than the file, and trailing bytes.
+/// Reads ASCII or binary PLY of either byte order. Values may be infinite or not a number: the
+/// caller refuses them in properties that it uses. Throws InputError, with `name` first, for
+/// malformed files, counts larger than the file, and trailing bytes.
 Ply parse_ply(std::string_view bytes, const std::string& name);
 
 }  // namespace geo

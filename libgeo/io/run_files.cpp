@@ -4,6 +4,7 @@
 #include "kerf/files.h"
 
 #include <array>
+#include <cmath>
 
 #include "io/ply.h"
 #include "kerf/error.h"
@@ -29,6 +30,8 @@ FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name) 
   const Ply ply = parse_ply(bytes, name);
   const PlyProperty* stress = ply.find("vertex")->find("stress");
   if (!stress || stress->count_type) throw InputError(name + ": has no field 'stress'; kerf-sim writes it");
+  for (const double s : stress->values)
+    if (!std::isfinite(s)) throw InputError(name + ": a stress is not a finite number; repair the file");
   frame.stress = stress->values;
   return frame;
 }

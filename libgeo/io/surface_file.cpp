@@ -3,6 +3,8 @@
 // is two-sided.
 #include "kerf/files.h"
 
+#include <algorithm>
+
 #include "io/line_reader.h"
 #include "io/surface_formats.h"
 #include "kerf/body_file.h"
@@ -24,8 +26,15 @@ bool looks_like_off(const std::string& bytes) {
   LineReader lines(std::string_view(bytes).substr(0, 4096), "");
   std::vector<std::string_view> words;
   // COFF and NOFF add colours and normals to the coordinates; other prefixes change the
-  // coordinates.
-  return lines.next(words) && (words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF");
+  // coordinates. The keyword is optional: counts of vertices, faces and edges may come first.
+  if (!lines.next(words)) return false;
+  const auto numbers = [&](std::string_view allowed) {
+    return words.size() == 3 && std::all_of(words.begin(), words.end(), [&](std::string_view word) {
+             return word.find_first_not_of(allowed) == std::string_view::npos;
+           });
+  };
+  if (numbers("0123456789")) return lines.next(words) && numbers("0123456789+-.eE");
+  return words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF";
 }
 
 // Name of a common format that is not read here, recognised by its first bytes; null for any other.
@@ -56,6 +65,8 @@ std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const 
 SurfaceFile read_surface(const std::string& path) { return parse_surface(read_all(path), path); }
 
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
+  // Text that begins with the byte order mark of UTF-8 is read without it.
+  if (bytes.rfind("\xef\xbb\xbf", 0) == 0) return parse_surface(bytes.substr(3), name);
   SurfaceFile file;
   if (bytes.rfind("ply", 0) == 0)
     file = parse_surface_ply(bytes, name);
@@ -73,7 +84,7 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
   for (std::size_t v = 0; v < file.mesh.vertices.size(); ++v)
     if (!in_range(file.mesh.vertices[v]))
       throw InputError(name + ": vertex " + std::to_string(v) +
-                       " has a coordinate of no sensible size; repair the file");
+                       " has a coordinate that is not a finite number of sensible size; repair the file");
   if (!file.mesh.two_sided()) weld_seams(file.mesh);
   if (file.mesh.triangles.empty()) throw InputError(name + ": has no triangles; give a closed triangle mesh");
   return file;

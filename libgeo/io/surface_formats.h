@@ -14,7 +14,7 @@ namespace geo {
 
 /// Reads PLY with patch, site, source, attributes and fronts.
 SurfaceFile parse_surface_ply(const std::string& bytes, const std::string& name);
-/// Reads Wavefront OBJ.
+/// Reads Wavefront OBJ. A face may name vertices, texture coordinates and normals of later lines.
 TriangleMesh parse_obj(const std::string& bytes, const std::string& name);
 /// Reads OFF, COFF and NOFF.
 TriangleMesh parse_off(const std::string& bytes, const std::string& name);

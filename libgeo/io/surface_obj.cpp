@@ -29,95 +29,150 @@ std::string rest_of(const std::vector<std::string_view>& words) {
   return text;
 }
 
-// Index from 0 of a face's index: that counts from 1, or backwards from the last entry so far.
-std::uint32_t row_at(const LineReader& lines, std::string_view word, std::size_t count, const char* what) {
-  const auto i = lines.integer(word);
-  const auto size = static_cast<long long>(count);
-  if (i > size || i < -size || i == 0)
-    lines.fail("a face names " + std::string(what) + " " + std::to_string(i) + ", but there are " +
-               std::to_string(count) + " so far");
-  return static_cast<std::uint32_t>(i > 0 ? i - 1 : size + i);
-}
+class ObjReader {
+ public:
+  ObjReader(const std::string& bytes, const std::string& name) : lines_(bytes, name, '#', '\\'), name_(name) {}
 
-// Indices of texture coordinate and normal at each corner of a triangle; ~0u: none.
-struct CornerRows {
-  std::array<std::uint32_t, 3> uv, normal;
+  TriangleMesh read() {
+    while (lines_.next(words_)) read_line();
+    for (const Face& face : faces_) add_triangles(face);
+    add_attributes();
+    return std::move(mesh_);
+  }
+
+ private:
+  // Rows of a corner's vertex, texture coordinate and normal; ~0u: none.
+  struct Corner {
+    std::uint32_t vertex, uv, normal;
+  };
+  // A face has the corners from the end of the face before it up to `end`.
+  struct Face {
+    std::size_t end, line;
+    std::int32_t material, part;
+  };
+
+  void read_line() {
+    if (words_[0] == "v") {
+      read_vertex();
+    } else if (words_[0] == "vt") {
+      if (words_.size() < 2) lines_.fail("a texture coordinate needs a number");
+      uv_.push_back({lines_.any_real(words_[1]), words_.size() > 2 ? lines_.any_real(words_[2]) : 0.0});
+    } else if (words_[0] == "vn") {
+      if (words_.size() < 4) lines_.fail("a normal needs three numbers");
+      normal_.push_back({lines_.any_real(words_[1]), lines_.any_real(words_[2]), lines_.any_real(words_[3])});
+    } else if (words_[0] == "usemtl") {
+      material_ = rest_of(words_), any_material_ = true;
+    } else if (words_[0] == "g" || words_[0] == "o") {
+      part_ = rest_of(words_), any_part_ = true;
+    } else if (words_[0] == "mtllib") {
+      mesh_.attributes.materials = rest_of(words_);
+    } else if (words_[0] == "f") {
+      read_face();
+    }
+  }
+
+  void read_vertex() {
+    if (words_.size() < 4) lines_.fail("a vertex needs three coordinates");
+    mesh_.vertices.push_back({lines_.real(words_[1]), lines_.real(words_[2]), lines_.real(words_[3])});
+    color_.push_back(Color::Ones());
+    if (words_.size() != 7) return;
+    colored_ = true;
+    for (int k = 0; k < 3; ++k) color_.back()[k] = lines_.any_real(words_[4 + static_cast<std::size_t>(k)]);
+    if (!color_.back().allFinite()) color_.back() = Color::Ones();
+  }
+
+  // Row from 0 of an index that counts from 1, or backwards from the last row so far.
+  std::uint32_t row_at(std::string_view word, std::size_t count, const char* what) const {
+    const auto i = lines_.integer(word);
+    const auto size = static_cast<long long>(count);
+    if (i < -size || i == 0 || i > 0xffffffffll)
+      lines_.fail("a face names " + std::string(what) + " " + std::to_string(i) + ", but there are " +
+                  std::to_string(count) + " so far");
+    return static_cast<std::uint32_t>(i > 0 ? i - 1 : size + i);
+  }
+
+  void read_face() {
+    if (words_.size() < 4) lines_.fail("a face has fewer than three vertices");
+    for (std::size_t k = 1; k < words_.size(); ++k) {
+      const std::string_view word = words_[k];
+      const auto first = std::min(word.find('/'), word.size()),
+                 second = std::min(word.find('/', first + 1), word.size());
+      const auto vt = first == word.size() ? std::string_view() : word.substr(first + 1, second - first - 1);
+      const auto vn = second == word.size() ? std::string_view() : word.substr(second + 1);
+      corners_.push_back({row_at(word.substr(0, first), mesh_.vertices.size(), "vertex"),
+                          vt.empty() ? ~0u : row_at(vt, uv_.size(), "texture coordinate"),
+                          vn.empty() ? ~0u : row_at(vn, normal_.size(), "normal")});
+      any_uv_ = any_uv_ || !vt.empty(), any_normal_ = any_normal_ || !vn.empty();
+    }
+    faces_.push_back({corners_.size(), lines_.number(), materials_.row(material_), parts_.row(part_)});
+  }
+
+  void require(const Face& face, std::uint32_t row, std::size_t count, const char* what) const {
+    if (row != ~0u && row >= count)
+      throw InputError(name_ + ":" + std::to_string(face.line) + ": a face names " + what + " " +
+                       std::to_string(row + 1ull) + ", but there are " + std::to_string(count));
+  }
+
+  // Faces are divided when all rows are known, as they may name those of later lines.
+  void add_triangles(const Face& face) {
+    polygon_.clear();
+    const std::size_t first = next_;
+    for (; next_ < face.end; ++next_) {
+      const Corner& corner = corners_[next_];
+      require(face, corner.vertex, mesh_.vertices.size(), "vertex");
+      require(face, corner.uv, uv_.size(), "texture coordinate");
+      require(face, corner.normal, normal_.size(), "normal");
+      polygon_.push_back(corner.vertex);
+    }
+    for (const auto& [p, q, r] : add_polygon(mesh_, polygon_, name_ + ":" + std::to_string(face.line) + ": ")) {
+      rows_.push_back({first + p, first + q, first + r});
+      material_of_.push_back(face.material), part_of_.push_back(face.part);
+    }
+  }
+
+  void add_attributes() {
+    Attributes& a = mesh_.attributes;
+    if (any_uv_) a.uv.resize(rows_.size());
+    if (any_normal_) a.normal.resize(rows_.size());
+    for (std::size_t t = 0; t < rows_.size(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const Corner& corner = corners_[rows_[t][k]];
+        const auto& [p, q, r] = mesh_.triangles[t];
+        const bool has_uv = corner.uv != ~0u && uv_[corner.uv].allFinite();
+        const bool has_normal = corner.normal != ~0u && normal_[corner.normal].allFinite();
+        if (any_uv_) a.uv[t][k] = has_uv ? uv_[corner.uv] : Vec2(Vec2::Zero());
+        if (any_normal_)
+          a.normal[t][k] = has_normal ? normal_[corner.normal]
+                                      : face_normal(mesh_.vertices[p], mesh_.vertices[q], mesh_.vertices[r]);
+      }
+    if (colored_) a.color = at_corners(mesh_, color_);
+    if (any_material_)
+      a.group = std::move(material_of_), a.group_names = std::move(materials_.all);
+    else if (any_part_)
+      a.group = std::move(part_of_), a.group_names = std::move(parts_.all);
+  }
+
+  LineReader lines_;
+  const std::string& name_;
+  std::vector<std::string_view> words_;
+  TriangleMesh mesh_;
+  std::vector<Vec2> uv_;
+  std::vector<Vec3> normal_;
+  std::vector<Color> color_;
+  bool colored_ = false, any_uv_ = false, any_normal_ = false, any_material_ = false, any_part_ = false;
+  Names materials_, parts_;
+  std::string material_, part_;  // of the faces that follow
+  std::vector<Corner> corners_;
+  std::vector<Face> faces_;
+  std::size_t next_ = 0;  // first corner of the next face to be divided
+  std::vector<std::uint32_t> polygon_;
+  std::vector<std::int32_t> material_of_, part_of_;  // per triangle
+  std::vector<std::array<std::size_t, 3>> rows_;     // per triangle: its corners
 };
 
 }  // namespace
 
-TriangleMesh parse_obj(const std::string& bytes, const std::string& name) {
-  LineReader lines(bytes, name);
-  std::vector<std::string_view> words;
-  TriangleMesh mesh;
-  std::vector<Vec2> uv;
-  std::vector<Vec3> normal;
-  std::vector<Color> color;
-  bool colored = false, any_uv = false, any_normal = false, any_material = false, any_part = false;
-  Names materials, parts;
-  std::string material, part;
-  std::vector<std::int32_t> material_of, part_of;
-  std::vector<CornerRows> rows;
-  std::vector<std::uint32_t> polygon, polygon_uv, polygon_normal;
-  while (lines.next(words)) {
-    if (words[0] == "v") {
-      if (words.size() < 4) lines.fail("a vertex needs three coordinates");
-      mesh.vertices.push_back({lines.real(words[1]), lines.real(words[2]), lines.real(words[3])});
-      color.push_back(Color::Ones());
-      if (words.size() != 7) continue;
-      colored = true;
-      for (int k = 0; k < 3; ++k) color.back()[k] = lines.real(words[4 + static_cast<std::size_t>(k)]);
-    } else if (words[0] == "vt") {
-      if (words.size() < 2) lines.fail("a texture coordinate needs a number");
-      uv.push_back({lines.real(words[1]), words.size() > 2 ? lines.real(words[2]) : 0.0});
-    } else if (words[0] == "vn") {
-      if (words.size() < 4) lines.fail("a normal needs three numbers");
-      normal.push_back({lines.real(words[1]), lines.real(words[2]), lines.real(words[3])});
-    } else if (words[0] == "usemtl") {
-      material = rest_of(words), any_material = true;
-    } else if (words[0] == "g" || words[0] == "o") {
-      part = rest_of(words), any_part = true;
-    } else if (words[0] == "mtllib") {
-      mesh.attributes.materials = rest_of(words);
-    } else if (words[0] == "f") {
-      polygon.clear(), polygon_uv.clear(), polygon_normal.clear();
-      for (std::size_t k = 1; k < words.size(); ++k) {
-        const auto first = std::min(words[k].find('/'), words[k].size()),
-                   second = std::min(words[k].find('/', first + 1), words[k].size());
-        const auto vt = first == words[k].size() ? std::string_view() : words[k].substr(first + 1, second - first - 1);
-        const auto vn = second == words[k].size() ? std::string_view() : words[k].substr(second + 1);
-        polygon.push_back(row_at(lines, words[k].substr(0, first), mesh.vertices.size(), "vertex"));
-        polygon_uv.push_back(vt.empty() ? ~0u : row_at(lines, vt, uv.size(), "texture coordinate"));
-        polygon_normal.push_back(vn.empty() ? ~0u : row_at(lines, vn, normal.size(), "normal"));
-        any_uv = any_uv || !vt.empty(), any_normal = any_normal || !vn.empty();
-      }
-      if (polygon.size() < 3) lines.fail("a face has fewer than three vertices");
-      for (const auto& [p, q, r] : add_polygon(mesh, polygon, name + ": ")) {
-        rows.push_back(
-            {{polygon_uv[p], polygon_uv[q], polygon_uv[r]}, {polygon_normal[p], polygon_normal[q], polygon_normal[r]}});
-        material_of.push_back(materials.row(material));
-        part_of.push_back(parts.row(part));
-      }
-    }
-  }
-  Attributes& a = mesh.attributes;
-  if (any_uv) a.uv.resize(rows.size());
-  if (any_normal) a.normal.resize(rows.size());
-  for (std::size_t t = 0; t < rows.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto vt = rows[t].uv[k], vn = rows[t].normal[k];
-      const auto& [p, q, r] = mesh.triangles[t];
-      if (any_uv) a.uv[t][k] = vt == ~0u ? Vec2(Vec2::Zero()) : uv[vt];
-      if (any_normal)
-        a.normal[t][k] = vn == ~0u ? face_normal(mesh.vertices[p], mesh.vertices[q], mesh.vertices[r]) : normal[vn];
-    }
-  if (colored) a.color = at_corners(mesh, color);
-  if (any_material)
-    a.group = std::move(material_of), a.group_names = std::move(materials.all);
-  else if (any_part)
-    a.group = std::move(part_of), a.group_names = std::move(parts.all);
-  return mesh;
-}
+TriangleMesh parse_obj(const std::string& bytes, const std::string& name) { return ObjReader(bytes, name).read(); }
 
 namespace {
 

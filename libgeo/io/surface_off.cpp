@@ -11,7 +11,7 @@ TriangleMesh parse_off(const std::string& bytes, const std::string& name) {
   std::vector<std::string_view> words;
   if (!lines.next(words)) lines.fail("is empty");
   const bool normals = words[0].find('N') != std::string_view::npos, colored = words[0][0] == 'C';
-  words.erase(words.begin());
+  if (words[0].find('F') != std::string_view::npos) words.erase(words.begin());  // the keyword is optional
   if (words.empty() && !lines.next(words)) lines.fail("ends before its counts");
   if (words.size() < 2) lines.fail("the counts of vertices and faces are missing");
   const auto nv = lines.integer(words[0]), nf = lines.integer(words[1]);

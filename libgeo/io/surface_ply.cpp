@@ -121,11 +121,11 @@ class Reader {
     }
   }
 
-  // Values of corners: from the face's list; without one, that of the face (`at_face`), on cracks
-  // `on_crack`, else that of the vertex.
-  template <class V, class OnCrack>
+  // Values of corners: from the face's list; without one, that of the face (`at_face`), else that
+  // of the vertex. `fallback` gives the value on cracks, and where a number is not finite.
+  template <class V, class Fallback>
   void fill(std::vector<std::array<V, 3>>& out, const char* list_name, const std::vector<V>& at_face,
-            const std::vector<V>& at_vertex, const OnCrack& on_crack) {
+            const std::vector<V>& at_vertex, const Fallback& fallback) {
     constexpr std::uint32_t size = V::SizeAtCompileTime;
     const auto* list = face_->find(list_name);
     if (list && !list->count_type) list = nullptr;
@@ -150,10 +150,12 @@ class Reader {
         else if (!at_face.empty())
           row[k] = at_face[face];
         else if (patch_ && patch_->values[face] != 0)
-          row[k] = on_crack(t);
+          row[k] = fallback(t);
         else
           row[k] = at_vertex[mesh().triangles[t][k]];
       }
+      for (int k = 0; k < 3; ++k)
+        if (!row[k].allFinite()) row[k] = fallback(t);
       out.push_back(row);
     }
   }
@@ -171,7 +173,9 @@ class Reader {
                  return face_normal(mesh().vertices[i], mesh().vertices[j], mesh().vertices[k]);
                });
     fill<Color>(a.color, "color", at_vertex.empty() ? colors_of(*face_) : std::vector<Color>(), at_vertex,
-                [](std::size_t) { return crack_color; });
+                [&](std::size_t t) {
+                  return patch_ && patch_->values[parts_[t].face] != 0 ? crack_color : Color(Color::Ones());
+                });
   }
 
   // Comments name groups in order; without them any integers are groups.

@@ -185,7 +185,7 @@ TEST_CASE("OBJ: indices out of range are refused with their line") {
   CHECK_THROWS_WITH(refused("f 1 2 9"), Catch::Contains("a face names vertex 9"));
   CHECK_THROWS_WITH(refused("f 1/x 2/1 3/1"), Catch::Contains("'x' is not an integer"));
   CHECK_THROWS_WITH(refused("f 1/1/1/1 2/1/1 3/1/1"), Catch::Contains("is not an integer"));
-  CHECK_THROWS_WITH(refused("vt nan"), Catch::Contains("finite"));
+  CHECK_THROWS_WITH(refused("v 0 nan 0"), Catch::Contains("finite"));
 }
 
 TEST_CASE("PLY: properties of vertices that other programs write") {

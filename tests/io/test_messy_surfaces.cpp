@@ -80,6 +80,66 @@ TEST_CASE("texture coordinates follow the triangles of a polygon that is not con
   CHECK(area(mesh) == Approx(3));
 }
 
+TEST_CASE("OBJ faces may name rows of later lines, and lines may be continued") {
+  const TriangleMesh mesh = parse_surface(
+                                "f 1/1/1 2/2/1 \\\n3/3/1\nv 0 0 0\nv 1 0 \\\r\n  0\nv 0 1 0\n"
+                                "vt 0 0\nvt .5 0\nvt 0 .25\nvn 0 0 1\nf -3/-3/-1 -2/-2/-1 -1/-1/-1 \\",
+                                "a.obj")
+                                .mesh;
+  REQUIRE(mesh.vertices.size() == 3);
+  REQUIRE(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}});
+  for (int t = 0; t < 2; ++t) {
+    CHECK(mesh.attributes.uv[t][1] == Vec2(.5, 0));
+    CHECK(mesh.attributes.uv[t][2] == Vec2(0, .25));
+    CHECK(mesh.attributes.normal[t][0] == Vec3(0, 0, 1));
+  }
+  CHECK_THROWS_WITH(parse_surface("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n", "a.obj"),
+                    "a.obj:5: a face names vertex 4, but there are 3");
+  CHECK_THROWS_WITH(parse_surface("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n", "a.obj"),
+                    "a.obj:4: a face names texture coordinate 1, but there are 0");
+  CHECK_THROWS_WITH(parse_surface("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 0 1 0\n", "a.obj"),
+                    Catch::StartsWith("a.obj:3: a face names vertex -3"));
+}
+
+TEST_CASE("numbers that are not finite are refused in coordinates alone") {
+  const std::string header = "property float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto ply = [&](const std::string& more, const std::string& rows) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\n" + header + more + faces + rows + "3 0 1 2\n";
+  };
+  const std::string heat = "property float heat\n",
+                    normal = "property float nx\nproperty float ny\nproperty float nz\n";
+  CHECK(parse_surface(ply(heat, "0 0 0 nan\n1 0 0 -inf\n0 1 0 1\n"), "a.ply").mesh.triangles.size() == 1);
+  const TriangleMesh mesh = parse_surface(ply(normal, "0 0 0 nan 0 0\n1 0 0 0 -1 0\n0 1 0 0 inf 0\n"), "a.ply").mesh;
+  CHECK(mesh.attributes.normal[0][0] == Vec3(0, 0, 1));  // the face's
+  CHECK(mesh.attributes.normal[0][1] == Vec3(0, -1, 0));
+  CHECK(mesh.attributes.normal[0][2] == Vec3(0, 0, 1));
+  CHECK_THROWS_WITH(parse_surface(ply("", "0 0 0\n1 nan 0\n0 1 0\n"), "a.ply"),
+                    Catch::StartsWith("a.ply: vertex 1 has a coordinate that is not a finite number"));
+  const TriangleMesh obj =
+      parse_surface("v 0 0 0 nan 1 1\nv 1 0 0 0 1 0\nv 0 1 0 1 1 1\nvt nan 0\nf 1/1 2/1 3/1\n", "a.obj").mesh;
+  CHECK(obj.attributes.color[0][0] == Color::Ones());
+  CHECK(obj.attributes.color[0][1] == Color(0, 1, 0, 1));
+  CHECK(obj.attributes.uv[0][2] == Vec2::Zero());
+}
+
+TEST_CASE("text is read with more numbers than named, other ends of lines, a byte order mark, and no keyword") {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 7\n1 0 0 8 9\n0 1 0\n3 0 1 2 5\n";
+  const std::string rows = "3 1 0\n0 0 0\n1 0 0\n\n 0 1 0\n\n3 0 1 2\n", obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto old = [](std::string text) {
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    return text;
+  };
+  for (const std::string& bytes : {ply, rows, "\n\n OFF\n" + rows, old("OFF\n" + rows), "\xef\xbb\xbfOFF\n" + rows, obj,
+                                   old(obj), "\xef\xbb\xbf" + obj}) {
+    const TriangleMesh mesh = parse_surface(bytes, "a").mesh;
+    CHECK(mesh.vertices == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
+  }
+}
+
 TEST_CASE("other formats are named, with a way to convert them") {
   for (const auto& [bytes, what] :
        {std::pair<std::string, std::string>{"glTF\2\0\0\0", "a glTF file"}, {"Kaydara FBX Binary  ", "an FBX file"}})

@@ -15,6 +15,7 @@ struct Command {
   std::vector<std::string> fronts, sheets;
   double max_move = 0, remesh = 0, jagged = 0, bumps = 8, decimate = 0;
   std::size_t from = 0, to = ~std::size_t(0);
+  bool repair = false;
 };
 
 void check(Command& w) {
@@ -45,7 +46,7 @@ class Cutting {
   Cutting(const Command& command, const tool::Tool& t)
       : w_(command),
         t_(t),
-        file_(tool::read_solid(w_.model)),
+        file_(tool::read_solid(w_.model, w_.repair)),
         complex_(tool::complex_of(file_, w_.model)),
         states_(file_.fronts) {
     options_.seed = t.seed;
@@ -248,6 +249,7 @@ int main(int argc, char** argv) {
            "At last, roughen the cracks: height of the bumps as a fraction of the model's diagonal");
   t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal");
   t.option("--decimate", w.decimate, "First, drop vertices whose surface stays within this fraction of the diagonal");
+  t.flag("--repair", w.repair, "Repair the model first, as kerf-repair does");
   t.option("--repro", w.repro, "Where to write model and front when a step fails");
   t.output("The cut surface (PLY with patch and site; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {

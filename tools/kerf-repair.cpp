@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include <kerf/check.h>
+#include <kerf/crack.h>
 #include <kerf/files.h>
 #include <kerf/mesh.h>
 #include "model.h"
@@ -34,12 +35,41 @@ std::string in_words(const geo::RepairStats& r) {
   return text.empty() ? "nothing to mend" : text;
 }
 
+std::string in_words(const geo::SolidRepairStats& done) {
+  if (!done.united) return in_words(done.repair);
+  return (done.repair.nothing() ? "" : in_words(done.repair) + ", ") +
+         "crossing triangles cut: " + tool::counted(done.united->cells, "enclosed region") + " united, " +
+         tool::counted(done.united->removed_faces, "face") + " inside left out";
+}
+
+// The mesh as a solid, with its triangles where they are sound.
+geo::TriangleMesh solid_of(const Command& w, geo::TriangleMesh mesh, double diagonal, geo::SolidRepairStats& done) {
+  if (w.voxel > 0) {
+    done.repair = geo::repair(mesh, w.weld * diagonal, w.smooth);
+    if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
+  }
+  try {
+    if (w.voxel > 0)
+      mesh = geo::wrapped(mesh, w.voxel * diagonal);
+    else
+      mesh = geo::repaired_solid(std::move(mesh), w.weld * diagonal, w.smooth, &done);
+    if (w.edge > 0) mesh = geo::refined(mesh, w.edge * diagonal);
+    geo::require_solid(mesh);
+  } catch (const std::runtime_error& e) {
+    const std::string what = e.what();
+    throw tool::Failure(w.model + ": " + what.substr(0, what.rfind("; ")) +
+                        (w.voxel > 0 ? "; try another --voxel" : "; wrap it in a new surface: --voxel 0.005"));
+  }
+  return mesh;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   tool::Tool t(
       "kerf-repair",
-      "Makes a solid of a surface: welds, turns triangles the same way, closes holes; or wraps it in a new surface.",
+      "Makes a solid of a surface: welds, turns triangles the same way, closes holes, unites parts that overlap; or "
+      "wraps it in a new surface.",
       "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair scan.ply "
       "--smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 "
       "-o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
@@ -62,31 +92,20 @@ int main(int argc, char** argv) {
     if (mesh.two_sided())
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     const double diagonal = geo::bounding_box(mesh).diagonal();
-    const geo::RepairStats done = geo::repair(mesh, w.weld * diagonal, w.smooth);
-    if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
-    try {
-      if (w.voxel > 0) mesh = geo::wrapped(mesh, w.voxel * diagonal);
-      if (w.edge > 0) mesh = geo::refined(mesh, w.edge * diagonal);
-      geo::require_solid(mesh);
-    } catch (const geo::InputError& e) {
-      const std::string what = e.what();
-      throw tool::Failure(
-          w.model + ": " + in_words(done) + ", but " + what.substr(0, what.rfind("; ")) +
-          (w.voxel > 0 ? "; try another --voxel"
-                       : std::string(done.filled_holes > 0 && !w.smooth ? "; try --smooth, or wrap" : "; wrap") +
-                             " it in a new surface: --voxel 0.005"));
-    }
+    geo::SolidRepairStats done;
+    mesh = solid_of(w, std::move(mesh), diagonal, done);
     geo::write_all(target, [&](std::ostream& out) {
       target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
     });
     if (t.json)
       (target == "-" ? std::cerr : std::cout)
-          << "{\"welded\":" << done.welded_vertices << ",\"dropped\":" << done.dropped_triangles
-          << ",\"turned\":" << done.flipped_triangles << ",\"holes\":" << done.filled_holes
-          << ",\"smooth\":" << done.smooth_fills << ",\"added\":" << done.added_triangles
-          << ",\"hidden\":" << done.dropped_shells << ",\"vertices\":" << mesh.vertices.size()
-          << ",\"faces\":" << mesh.triangles.size() << ",\"volume\":" << tool::number(geo::signed_volume(mesh))
-          << "}\n";
+          << "{\"welded\":" << done.repair.welded_vertices << ",\"dropped\":" << done.repair.dropped_triangles
+          << ",\"turned\":" << done.repair.flipped_triangles << ",\"holes\":" << done.repair.filled_holes
+          << ",\"smooth\":" << done.repair.smooth_fills << ",\"added\":" << done.repair.added_triangles
+          << ",\"hidden\":" << done.repair.dropped_shells << ",\"united\":" << (done.united ? done.united->cells : 0)
+          << ",\"inside\":" << (done.united ? done.united->removed_faces : 0)
+          << ",\"vertices\":" << mesh.vertices.size() << ",\"faces\":" << mesh.triangles.size()
+          << ",\"volume\":" << tool::number(geo::signed_volume(mesh)) << "}\n";
     else
       t.say("kerf-repair: " + w.model + ": " + in_words(done) +
             (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") +

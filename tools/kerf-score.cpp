@@ -16,6 +16,7 @@ struct Command {
   std::vector<std::string> curves, sheets;
   int pieces = 20, attempts = 60;
   double jagged = 0, bumps = 8, cluster = 0.15, grain = 5;
+  bool repair = false;
 };
 
 geo::Vec3 vector(const std::string& option, const std::string& text) {
@@ -97,11 +98,12 @@ int main(int argc, char** argv) {
   t.option("--grain", w.grain, "wood: how many times longer than thick cells are");
   t.option("--curves", w.curves, "Polylines to sweep: OBJ, or the steps of front files");
   t.option("--sheets", w.sheets, "Surfaces, open or closed, which may cross each other");
+  t.flag("--repair", w.repair, "Repair the model first, as kerf-repair does; give it to kerf-crack, too");
   t.output("The front file", {".front"});
   return t.run(argc, argv, [&] {
     const auto options = options_of(w, t.seed);
     const std::string target = t.target(false);
-    const auto file = tool::read_solid(w.model);
+    const auto file = tool::read_solid(w.model, w.repair);
     const geo::Complex complex = tool::complex_of(file, w.model);
     geo::Score score;
     try {

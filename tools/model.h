@@ -6,6 +6,7 @@
 
 #include <kerf/check.h>
 #include <kerf/complex.h>
+#include <kerf/crack.h>
 #include <kerf/error.h>
 #include <kerf/files.h>
 
@@ -32,6 +33,20 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
   return file;
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
+
+/// As read_solid(), where `repair` is false. Else a plain surface is repaired first, as kerf-repair
+/// does without options. Throws InputError where no solid comes of it.
+inline geo::SurfaceFile read_solid(const std::string& path, bool repair) {
+  if (!repair) return read_solid(path);
+  geo::SurfaceFile file = geo::read_surface(path);
+  if (file.mesh.two_sided()) return file;
+  try {
+    file.mesh = geo::repaired_solid(std::move(file.mesh));
+  } catch (const std::runtime_error& e) {
+    throw geo::InputError(path + ": cannot be repaired: " + e.what());
+  }
+  return file;
+}
 
 /// Removes the sites of an uncut surface: frames of a run have them from the first on. Throws
 /// InputError, with the file's name and `advice`, where the surface is cut.

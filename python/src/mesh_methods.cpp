@@ -46,10 +46,34 @@ geo::TriangleMesh refined(const Mesh& self, double longest) {
   return without_gil([&] { return geo::refined(self.mesh, longest); });
 }
 
+// As geo::repaired_solid(), with a remedy in the message.
+Shared united(const Mesh& self, double weld, bool smooth) {
+  plain(self, "repaired");
+  if (!(weld >= 0 && weld <= geo::largest_coordinate)) throw geo::InputError("repaired: weld must be 0 or more");
+  return without_gil([&] {
+    try {
+      return std::make_shared<Mesh>(geo::repaired_solid(self.mesh, weld, smooth));
+    } catch (const geo::GeometryError& e) {
+      throw geo::InputError(std::string("repaired: ") + e.what() +
+                            "; wrap it in a new surface: voxel=0.005 * diagonal");
+    }
+  });
+}
+
+Shared self_union(const Mesh& self) {
+  plain(self, "self_union");
+  return without_gil([&] { return std::make_shared<Mesh>(geo::self_union(self.mesh)); });
+}
+
 std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool smooth, double voxel, double longest) {
-  auto mesh = repaired(*mesh_argument(model, "mesh"), weld, smooth).first;
-  if (mesh->mesh.triangles.empty()) throw geo::InputError("repaired: no triangle of the mesh bounds anything");
-  if (voxel != 0) mesh = wrap(mesh, voxel).cast<Shared>();
+  Shared mesh;
+  if (voxel != 0) {
+    mesh = repaired(*mesh_argument(model, "mesh"), weld, smooth).first;
+    if (mesh->mesh.triangles.empty()) throw geo::InputError("repaired: no triangle of the mesh bounds anything");
+    mesh = wrap(mesh, voxel).cast<Shared>();
+  } else {
+    mesh = united(*mesh_argument(model, "mesh"), weld, smooth);
+  }
   if (longest != 0) mesh = std::make_shared<Mesh>(refined(*mesh, longest));
   try {
     return std::make_shared<Solid>(geo::TriangleMesh(mesh->mesh));
@@ -161,6 +185,12 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
            "outwards.\n"
            "Attributes stay with their triangles. Intersecting triangles remain: see check(). Raises InputError.")
       .def(
+          "self_union", &self_union,
+          "The boundary of the points where the generalized winding number exceeds a half (Jacobson, Kavan and\n"
+          "Sorkine-Hornung 2013): one solid of parts that overlap, touch, cross themselves or have walls inside. Open\n"
+          "parts enclose nothing: see repair(). Vertices of triangles that cross nothing stay bit for bit; attributes\n"
+          "are interpolated. Returns a Mesh. Raises InputError, and GeometryError where nothing is enclosed.")
+      .def(
           "refine", [](const Mesh& self, double longest) { return std::make_shared<Mesh>(refined(self, longest)); },
           py::arg("longest"),
           "A plain mesh with edges of at most `longest`, model units: longer ones are bisected. The shape stays to\n"
@@ -210,9 +240,10 @@ void bind_mesh_methods(py::module_& module) {
       .def_static(
           "repaired", &repaired_solid, py::arg("mesh"), py::arg("weld") = 0.0, py::arg("smooth") = false,
           py::arg("voxel") = 0.0, py::arg("longest") = 0.0,
-          "A valid model of a surface with faults: Mesh.repair(weld, smooth), then, unless they are 0, Mesh.wrap(\n"
-          "voxel) and Mesh.refine(longest); lengths in model units. Raises InputError where the result is still\n"
-          "none.");
+          "A valid model of a surface with faults: Mesh.repair(weld, smooth), then Mesh.wrap(voxel), or, where voxel "
+          "is\n"
+          "0 and triangles cross, Mesh.self_union(), and Mesh.refine(longest) unless that is 0. Lengths are in model\n"
+          "units. Raises InputError where the result is no valid model.");
 }
 
 }  // namespace kerf_python

@@ -182,7 +182,15 @@ repairs)
   { corners 0; printf 'usemtl wood\n'; printf "$box\n" | sed 's/^/f /'; } >box.obj
   { sed '$d' box.obj; corners 0.5; printf 'usemtl stone\n'; printf "$box\n" | awk '{ print "f", $1 + 8, $2 + 8, $3 + 8, $4 + 8 }'; } >two.obj
   expect 65 "open.*try kerf-repair" kerf-crack two.obj --jagged 0.1 -o x.ply
-  expect 1 "1 hole closed with 2 triangles, but .*intersect.*--voxel" kerf-repair two.obj -o x.ply
+  kerf-repair two.obj -o united.ply 2>said.txt || fail "kerf-repair of boxes that overlap: $(cat said.txt)"
+  grep -q '1 hole closed with 2 triangles, crossing triangles cut: 3 enclosed regions united' said.txt || fail "kerf-repair says: $(cat said.txt)"
+  kerf-info --check --json united.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 1 and r["volume"] == 1.875 and "group" in r["attributes"], r' || fail "the united solid"
+  quietly kerf-score -q two.obj --repair --pieces 4 -o two.front
+  quietly kerf-crack -q two.obj --repair --front two.front -o broken.ply
+  kerf-info --json broken.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 4 and abs(r["volume"] - 1.875) < 1e-12, r' || fail "a model that is repaired first"
+  printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n' >sheet.obj
+  expect 1 "encloses no volume; wrap it .*--voxel" kerf-repair sheet.obj -o x.ply
+  expect 65 "sheet.obj: cannot be repaired: the surface encloses no volume" kerf-crack sheet.obj --repair --jagged 0.1 -o x.ply
   kerf-repair two.obj --voxel 0.01 -o two.ply 2>said.txt || fail "kerf-repair --voxel: $(cat said.txt)"
   grep -q 'wrapped in [0-9]* triangles' said.txt || fail "kerf-repair says: $(cat said.txt)"
   kerf-info --check --json two.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 1 and abs(r["volume"] - 1.875) < 0.01 and "group" in r["attributes"], r' || fail "the wrapped solid"

@@ -72,6 +72,9 @@ class SelfContact {
   /// the surface has changed since the plan was made.
   void commit(EmbeddingPlan plan, const Body& body, const Solid& solid, const BodyDelta& delta);
 
+  /// Sets Coulomb's coefficient of the steps to come.
+  void set_friction(double friction) { options_.friction = friction; }
+
   /// World positions, per surface vertex; unspecified for dead ones.
   const std::vector<Vec3>& positions() const { return surface_.positions(); }
   /// Positions that Eq. 1 gives, per surface vertex, at displacements u of the nodes; valid until

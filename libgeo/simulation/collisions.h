@@ -34,6 +34,11 @@ class Collisions {
   /// std::logic_error if the step cut something and there is no plan.
   void commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid, const BodyDelta& delta);
 
+  /// Sets Coulomb's coefficient of the steps to come.
+  void set_friction(double friction) {
+    if (surface_) surface_->set_friction(friction);
+  }
+
   /// Whether the scene has self-contact; otherwise the surface is where Eq. 1 has it.
   bool on() const { return surface_.has_value(); }
   /// World positions of living surface vertices in ascending order; empty without self-contact.

@@ -22,9 +22,20 @@ GrippedNodes::GrippedNodes(const std::vector<Grip>& grips, const NodeSet& nodes)
     const Vec3& x = nodes.position[i];
     for (std::size_t g = 0; g < grips.size(); ++g) {
       if ((x.array() < grips[g].lo.array()).any() || (x.array() > grips[g].hi.array()).any()) continue;
-      held_.push_back({NodeId(i), g});
-      break;
+      inside_.push_back({NodeId(i), g});
     }
+  }
+}
+
+template <class Each>
+void GrippedNodes::each_held(const std::vector<Grip>& grips, double time, const Each& each) const {
+  NodeId last;
+  for (const auto& [i, g] : inside_) {
+    const Grip& grip = grips[g];
+    if (i == last || !grip.active(time)) continue;
+    last = i;
+    if (grip.release && !grip.motion.keys.empty() && time > grip.motion.keys.back().time) continue;
+    each(i, g);
   }
 }
 
@@ -32,23 +43,22 @@ void GrippedNodes::place(const std::vector<Grip>& grips, const NodeSet& nodes, d
                          std::vector<std::uint8_t>& fixed, State& motion) const {
   std::fill(fixed.begin(), fixed.end(), 0);
   const std::vector<Pose> poses = poses_at(grips, time);
-  for (const auto& [i, g] : held_) {
+  each_held(grips, time, [&](NodeId i, std::size_t g) {
     const Grip& grip = grips[g];
-    if (grip.release && !grip.motion.keys.empty() && time > grip.motion.keys.back().time) continue;
     fixed[i.index()] = 1;
     const Vec3 &x = nodes.position[i.index()], middle = grip.middle();
     if (!grip.motion.keys.empty()) motion.displacement[i.index()] = middle + poses[g] * Vec3(x - middle) - x;
-  }
+  });
 }
 
 void GrippedNodes::set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes,
-                                  const std::vector<std::uint8_t>& fixed, double time, double dt, State& motion) const {
-  const std::vector<Pose> from = poses_at(grips, time), to = poses_at(grips, time + dt);
-  for (const auto& [i, g] : held_) {
-    if (!fixed[i.index()] || grips[g].motion.keys.empty()) continue;
+                                  double begin, double end, State& motion) const {
+  const std::vector<Pose> from = poses_at(grips, begin), to = poses_at(grips, end);
+  each_held(grips, end, [&](NodeId i, std::size_t g) {
+    if (grips[g].motion.keys.empty()) return;
     const Vec3 arm = nodes.position[i.index()] - grips[g].middle();
-    motion.velocity[i.index()] = (to[g] * arm - from[g] * arm) / dt;
-  }
+    motion.velocity[i.index()] = (to[g] * arm - from[g] * arm) / (end - begin);
+  });
 }
 
 }  // namespace geo

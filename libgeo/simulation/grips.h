@@ -11,7 +11,8 @@
 
 namespace geo {
 
-/// The nodes in the boxes of a scene's grips. A node in several boxes is held by the first.
+/// The nodes in the boxes of a scene's grips. A node in several boxes is held by the first that
+/// exists at the time.
 class GrippedNodes {
  public:
   /// None.
@@ -24,12 +25,15 @@ class GrippedNodes {
   void place(const std::vector<Grip>& grips, const NodeSet& nodes, double time, std::vector<std::uint8_t>& fixed,
              State& motion) const;
 
-  /// Gives held nodes of moving grips the mean velocity of their grip from `time` to `time` + dt.
-  void set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes, const std::vector<std::uint8_t>& fixed,
-                      double time, double dt, State& motion) const;
+  /// Gives held nodes of moving grips the mean velocity of their grip from `begin` to `end`.
+  void set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes, double begin, double end,
+                      State& motion) const;
 
  private:
-  std::vector<std::pair<NodeId, std::size_t>> held_;  // ascending: node, grip
+  // Calls each(node, grip) for the nodes that are held at a time.
+  template <class Each>
+  void each_held(const std::vector<Grip>& grips, double time, const Each& each) const;
+  std::vector<std::pair<NodeId, std::size_t>> inside_;  // ascending: node, grip
 };
 
 }  // namespace geo

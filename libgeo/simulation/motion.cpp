@@ -17,6 +17,9 @@ Pose Motion::at(double time) const {
   if (keys.size() == 1) return {keys[0].position, rotation(keys[0], keys[0].angle)};
   const Key &a = keys[i], &b = keys[i + 1];
   const double t = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
+  // At a key, the pose is the key's to the bit, whatever the keys beside it are.
+  if (t == 0) return {a.position, rotation(a, a.angle)};
+  if (t == 1) return {b.position, rotation(b, b.angle)};
   const Vec3 position = a.position + t * (b.position - a.position);
   if (a.axis == b.axis) return {position, rotation(a, a.angle + t * (b.angle - a.angle))};
   return {position, rotation(a, a.angle).slerp(t, rotation(b, b.angle))};

@@ -23,7 +23,7 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided;
   fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
   contact += o.contact;
-  energy = o.energy, blade_force = o.blade_force;
+  energy = o.energy, blade_force = o.blade_force, pull_force = o.pull_force;
   obstacle_force = o.obstacle_force, obstacle_torque = o.obstacle_torque;
   return *this;
 }

@@ -20,7 +20,9 @@
 #include "simulation/fracture_step.h"
 #include "simulation/grips.h"
 #include "simulation/obstacles.h"
+#include "simulation/pulls.h"
 #include "simulation/scene_body.h"
+#include "simulation/scene_changes.h"
 
 namespace geo {
 namespace {
@@ -53,24 +55,36 @@ Motion towards(const Motion& present, double from, double to, const Pose& pose) 
   return {{key_at(from, present.at(from)), key_at(to, pose)}};
 }
 
+void append(Motion& motion, const Motion::Key& key) {
+  if (!motion.keys.empty() && !(motion.keys.back().time < key.time))
+    throw InputError("a motion has a key at this time, or later");
+  motion.keys.push_back(key);
+}
+
 }  // namespace
 
 // All that a run consists of, and the phases of a time step.
 struct Simulation::Impl {
+  // One time step. Its end is the begin of the next, to the bit: there, motions have their keys.
+  struct TimeStep {
+    double begin, end, dt;  // s
+  };
+
   Impl(const Scene& scene_in, Body body_in, RunState state_in);
   void restore(Body new_body, RunState new_state);
   void reset_contact();
   void reset_environment();
 
-  void step(double dt, FrameStats& stats);
-  void cut(double dt, FrameStats& stats);
+  void apply_changes(double time);
+  void step(const TimeStep& step, FrameStats& stats);
+  void cut(const TimeStep& step, FrameStats& stats);
   void cut_at(std::size_t blade, double time, FrameStats& stats);
   bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   std::int32_t unused_crack() const;
-  void add_wedges(double dt);
+  void add_wedges(double end);
   std::optional<ContactStep> begin_contact(double dt, FrameStats& stats);
-  void integrate(double dt, FrameStats& stats);
+  void integrate(const TimeStep& step, FrameStats& stats);
   void finish_contact(std::optional<ContactStep> contact, const std::vector<Vec3>& before, double dt,
                       FrameStats& stats);
   void fracture(double dt, FrameStats& stats);
@@ -78,12 +92,14 @@ struct Simulation::Impl {
   double time_of(int frame) const { return frame * (1 / scene.frame_rate); }
 
   Scene scene;
+  SceneChanges changes;
   RunState state;
   Body body;
   Solid solid;
   Environment environment;
   GrippedNodes gripped;
   BladePenalty wedge;
+  PullPotential pull;
   Obstacles obstacles;
   std::optional<Collisions> collisions;
   bool cut_since_build = false;  // of the solid
@@ -91,18 +107,30 @@ struct Simulation::Impl {
 
 Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
     : scene(scene_in),
+      changes(scene),
       state(checked(scene, body_in, std::move(state_in))),
       body(std::move(body_in)),
       solid(body, materials_of(scene, state.body_index)),
       obstacles(scene) {
   reset_contact();
+  apply_changes(state.time);
 }
 
 void Simulation::Impl::restore(Body new_body, RunState new_state) {
   state = checked(scene, new_body, std::move(new_state)), body = std::move(new_body);
   if (std::exchange(cut_since_build, false)) solid = Solid(body, materials_of(scene, state.body_index));
-  obstacles = Obstacles(scene), environment = {}, wedge = {};
+  obstacles = Obstacles(scene), environment = {}, wedge = {}, pull = {};
   reset_contact();
+  changes.revert(scene);
+  apply_changes(state.time);
+}
+
+// Applies the changes that are due; whether there were any.
+void Simulation::Impl::apply_changes(double time) {
+  if (!changes.apply(scene, time)) return;
+  solid.set_materials(materials_of(scene, state.body_index));
+  collisions->set_friction(scene.contact.friction);
+  reset_environment();
 }
 
 // From body, state and solid as they are.
@@ -144,6 +172,7 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
   stats.mechanics_seconds += watch.lap();
   if (collisions) collisions->commit(std::move(plan), body, solid, delta);
   obstacles.invalidate_weights();
+  pull.invalidate();
   stats.contact_seconds += watch.lap();
 }
 
@@ -166,7 +195,7 @@ bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& ne
 
 // Moves all blades through a time step in ⌈farthest / (limit · finest)⌉ cuts (§ 5.1): farthest is
 // the longest way of an edge point, finest the smallest node spacing.
-void Simulation::Impl::cut(double dt, FrameStats& stats) {
+void Simulation::Impl::cut(const TimeStep& step, FrameStats& stats) {
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
     if (!blade.active(state.time)) {
@@ -174,12 +203,13 @@ void Simulation::Impl::cut(double dt, FrameStats& stats) {
       continue;
     }
     if (state.fronts[b].empty()) cut_at(b, state.time, stats);
-    const std::vector<Vec3> from = blade.at(state.time), to = blade.at(state.time + dt);
+    const std::vector<Vec3> from = blade.at(step.begin), to = blade.at(step.end);
     double farthest = 0;
     for (std::size_t i = 0; i < from.size(); ++i) farthest = std::max(farthest, (to[i] - from[i]).norm());
     const double finest = *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
     const int cuts = static_cast<int>(std::clamp(std::ceil(farthest / (blade.limit * finest)), 1.0, most_cuts));
-    for (int k = 1; k <= cuts; ++k) cut_at(b, state.time + dt * k / cuts, stats);
+    for (int k = 1; k < cuts; ++k) cut_at(b, step.begin + step.dt * k / cuts, stats);
+    cut_at(b, step.end, stats);
   }
 }
 
@@ -226,14 +256,13 @@ std::int32_t Simulation::Impl::unused_crack() const {
 }
 
 // Adds the wedges of thick blades, where they are at the end of the step.
-void Simulation::Impl::add_wedges(double dt) {
+void Simulation::Impl::add_wedges(double end) {
   wedge = {};
   std::vector<double> mass;
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
     if (!(blade.thickness > 0) || !blade.active(state.time)) continue;
     for (std::size_t i = mass.size(); i < body.nodes.size(); ++i) mass.push_back(solid.mass(NodeId(i)));
-    const double end = state.time + dt;
     wedge.add(
         b, {blade.at(end), blade.closed, blade.motion.at(end).rotation * blade.back, blade.thickness, blade.stiffness},
         {body.nodes.position, state.motion.displacement, environment.clearance, mass});
@@ -255,16 +284,20 @@ std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats
   return contact;
 }
 
-void Simulation::Impl::integrate(double dt, FrameStats& stats) {
+void Simulation::Impl::integrate(const TimeStep& step, FrameStats& stats) {
   Stopwatch watch;
+  const double dt = step.dt, share = dt * scene.frame_rate;
   solid.update_points(body, state.motion);
   const StepReport report = scene.implicit ? solid.step_implicit(state.motion, dt, environment, scene.accuracy)
                                            : solid.step_explicit(state.motion, dt, environment);
-  gripped.set_velocities(scene.grips, body.nodes, environment.fixed, state.time, dt, state.motion);
+  gripped.set_velocities(scene.grips, body.nodes, step.begin, step.end, state.motion);
   stats.blade_force.resize(scene.blades.size(), Vec3::Zero());
   const auto reaction = wedge.reaction(state.motion.displacement, scene.blades.size());
-  for (std::size_t b = 0; b < reaction.size(); ++b) stats.blade_force[b] += dt * scene.frame_rate * reaction[b];
-  obstacles.add_reactions(state.motion, dt * scene.frame_rate, stats);
+  for (std::size_t b = 0; b < reaction.size(); ++b) stats.blade_force[b] += share * reaction[b];
+  stats.pull_force.resize(scene.pulls.size(), Vec3::Zero());
+  const auto held = pull.reaction(state.motion.displacement, scene.pulls.size());
+  for (std::size_t p = 0; p < held.size(); ++p) stats.pull_force[p] += share * held[p];
+  obstacles.add_reactions(state.motion, share, stats);
   stats.newton += static_cast<std::size_t>(report.newton), stats.cg += static_cast<std::size_t>(report.cg);
   ++stats.steps;
   stats.energy = report.energy;
@@ -293,18 +326,22 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
   stats.fracture_seconds += watch.lap() - (others() - splitting);
 }
 
-// One time step from state.time, phase by phase.
-void Simulation::Impl::step(double dt, FrameStats& stats) {
-  cut(dt, stats);
+// One time step, phase by phase.
+void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
+  state.time = step.begin;
+  apply_changes(step.begin);
+  cut(step, stats);
   const std::vector<Vec3> before = state.motion.displacement;
-  gripped.place(scene.grips, body.nodes, state.time + dt, environment.fixed, state.motion);
+  gripped.place(scene.grips, body.nodes, step.end, environment.fixed, state.motion);
   environment.contact.clear();
-  add_wedges(dt);
-  std::optional<ContactStep> contact = begin_contact(dt, stats);
-  integrate(dt, stats);
-  finish_contact(std::move(contact), before, dt, stats);
-  state.time += dt;
-  fracture(dt, stats);
+  add_wedges(step.end);
+  pull.begin_step(scene.pulls, body, solid, step.begin, step.end);
+  if (!pull.empty()) environment.contact.push_back(&pull);
+  std::optional<ContactStep> contact = begin_contact(step.dt, stats);
+  integrate(step, stats);
+  finish_contact(std::move(contact), before, step.dt, stats);
+  state.time = step.end;
+  fracture(step.dt, stats);
 }
 
 void Simulation::Impl::require_finite() const {
@@ -351,16 +388,55 @@ void Simulation::move_obstacle(std::size_t obstacle, const Pose& pose) {
   motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
 }
 
+std::size_t Simulation::add_blade(Blade blade) {
+  if (blade.points.size() < (blade.closed ? 3 : 2)) throw InputError("a blade has two points at least, three if closed");
+  impl_->scene.blades.push_back(std::move(blade));
+  impl_->state.fronts.emplace_back();
+  return impl_->scene.blades.size() - 1;
+}
+
+std::size_t Simulation::add_grip(Grip grip) {
+  grip.from = std::max(grip.from, impl_->time_of(state().frame));
+  impl_->scene.grips.push_back(std::move(grip));
+  impl_->reset_environment();
+  return impl_->scene.grips.size() - 1;
+}
+
+std::size_t Simulation::add_pull(Pull pull) {
+  if (pull.node && *pull.node >= body().nodes.size()) throw InputError("a pull holds a node that does not exist");
+  impl_->scene.pulls.push_back(std::move(pull));
+  return impl_->scene.pulls.size() - 1;
+}
+
+void Simulation::extend_blade(std::size_t blade, int frame, const Pose& pose) {
+  append(impl_->scene.blades.at(blade).motion, key_at(impl_->time_of(state().frame + frame), pose));
+}
+
+void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) {
+  append(impl_->scene.pulls.at(pull).motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
+}
+
+void Simulation::end_grip(std::size_t grip) {
+  impl_->scene.grips.at(grip).until = impl_->time_of(state().frame);
+}
+
+void Simulation::change(SceneChange change) {
+  change.time = impl_->time_of(state().frame);
+  if (const auto wrong = unfit(change); !wrong.empty()) throw InputError(wrong);
+  impl_->scene.changes.push_back(change);
+}
+
 // ⌈frame / dt⌉ equal steps; 1e-9 keeps rounding from adding one where dt divides the frame.
 FrameStats Simulation::advance_frame(const Progress& progress) {
   Impl& run = *impl_;
   FrameStats stats;
+  run.apply_changes(run.time_of(run.state.frame));
   const double frame_time = 1 / run.scene.frame_rate;
   const int steps = std::max(1, static_cast<int>(std::ceil(frame_time / run.scene.dt - 1e-9)));
+  const auto time = [&](int s) { return (run.state.frame + double(s) / steps) * frame_time; };
   for (int s = 0; s < steps; ++s) {
     report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));
-    run.state.time = (run.state.frame + double(s) / steps) * frame_time;
-    run.step(frame_time / steps, stats);
+    run.step({time(s), time(s + 1), frame_time / steps}, stats);
     run.require_finite();
   }
   ++run.state.frame;

@@ -6,8 +6,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kerf/contact.h"
@@ -96,8 +98,32 @@ struct Grip {
   Vec3 lo, hi;           ///< corners of the box, material coordinates
   Motion motion;         ///< of the box's centre, relative to its initial place; no keys: at rest
   bool release = false;  ///< nodes become free after the last key
+  double from = -std::numeric_limits<double>::infinity();  ///< s: the grip exists after this time
+  double until = std::numeric_limits<double>::infinity();  ///< s: and up to this time
+  /// Whether the grip exists at the end of a time step.
+  bool active(double time) const { return time > from && time <= until; }
   /// Centre of the box.
   Vec3 middle() const { return 0.5 * (lo + hi); }
+};
+
+/// A spring between a point of the material and a point that moves, as a hand holds a body. Without
+/// damping of its own.
+struct Pull {
+  Vec3 point = Vec3::Zero();          ///< where the spring holds the body, material coordinates
+  std::optional<std::uint32_t> node;  ///< one that sees the point: its neighbourhood is held; none: the nearest
+  Motion motion;                      ///< of the other end, world; the spring exists from the first to the last key
+  double stiffness = 100;             ///< force over stretch, N/m
+};
+
+/// Values of a scene that change at a time. Those that are not given stay.
+struct SceneChange {
+  double time = 0;                 ///< s: from the first time step on that begins then or later
+  std::optional<double> young;     ///< of the scene's material, Pa; bodies of their own material keep their ratio to it
+  std::optional<double> damping;   ///< of all materials, 1/s
+  std::optional<Vec3> gravity;     ///< model units per s²
+  std::optional<double> friction;  ///< of ground, obstacles and contact: Coulomb's coefficient
+  std::optional<double> accuracy;  ///< as Scene::accuracy
+  std::optional<double> dt;        ///< largest time step, s, from the next frame on
 };
 
 /// A rigid cutting edge, a polyline, with an optional wedge behind it.
@@ -121,6 +147,7 @@ struct Blade {
 struct SceneObstacle {
   std::string name;
   TriangleMesh mesh;            ///< in the obstacle's coordinates; empty: a plane through the origin
+  std::string file;             ///< path that the mesh was read from, as Scene::score_files; may be empty
   Vec3 normal = Vec3::UnitZ();  ///< of the plane, towards the bodies
   double scale = 1;             ///< of the mesh, applied before the pose
   Pose place;                   ///< at rest
@@ -139,7 +166,10 @@ struct Scene {
   int k = 26;                     ///< neighbours of a node (§ 6.2)
   Material material;              ///< of bodies without one of their own
   std::vector<Front> scores;      ///< cracks made before time 0, in material coordinates
+  std::vector<std::pair<std::string, int>> score_files;  ///< that `scores` were read from, and the body of each
   std::vector<Grip> grips;
+  std::vector<Pull> pulls;
+  std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides
   bool ground = false;  ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
   double ground_stiffness = 1e5;  ///< penalty: acceleration per depth, 1/s²

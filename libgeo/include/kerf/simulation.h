@@ -70,6 +70,7 @@ struct FrameStats {
   double mechanics_seconds = 0, contact_seconds = 0, write_seconds = 0;
   double energy = 0;                  ///< elastic, J, at the frame's end
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
+  std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean
   std::vector<Vec3> obstacle_torque;  ///< likewise: about the obstacle's origin, N m
   /// Adds counts and seconds; takes energy and forces of `o`.
@@ -155,6 +156,26 @@ class Simulation {
   /// See move_blade().
   void move_obstacle(std::size_t obstacle, const Pose& pose);
 
+  /// Adds a blade to the run, with an edge and motion as in a scene. The result is its index. A run
+  /// of a scene that has had the blade from the start gives the same frames, provided that its first
+  /// key is not earlier than the present time. Throws InputError for fewer than two points.
+  std::size_t add_blade(Blade blade);
+  /// Adds a grip; see add_blade(). It holds nothing before the present time.
+  std::size_t add_grip(Grip grip);
+  /// Adds a pull; see add_blade(). Throws InputError for a node that does not exist.
+  std::size_t add_pull(Pull pull);
+  /// Appends a key to the motion of a blade, at the time of a frame: 0 is the present one, 1 the
+  /// next. Unlike move_blade(), it keeps the keys before it. Throws std::out_of_range for an unknown
+  /// index, InputError where the blade has a key then or later.
+  void extend_blade(std::size_t blade, int frame, const Pose& pose);
+  /// The same for a pull, whose keys are positions.
+  void extend_pull(std::size_t pull, int frame, const Vec3& position);
+  /// Ends a grip at the present time. Throws std::out_of_range for an unknown index.
+  void end_grip(std::size_t grip);
+  /// Changes values from the present time on; change.time is set to it. The change is appended to
+  /// those of the scene. Throws InputError for values that a scene may not have.
+  void change(SceneChange change);
+
   /// The deformed two-sided surface with patch, site and source: by Eq. 1, or as far as contact
   /// lets it follow Eq. 1. With `model`, the surface that the run began with, it also carries the
   /// model's attributes except normals, which deformation changes.
@@ -165,7 +186,7 @@ class Simulation {
   const RunState& state() const;
   /// The mechanics of the nodes: energy, stress, fields.
   const Solid& solid() const;
-  /// The scene, with motions as set by move_blade(), move_grip() and move_obstacle().
+  /// The scene with all that was added, moved and changed, and with the values that hold now.
   const Scene& scene() const;
 
  private:

@@ -90,6 +90,10 @@ class Solid {
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);
 
+  /// Replaces the materials by others of the same table size, assignment to nodes, densities and
+  /// discretisation. Throws InputError for any other table.
+  void set_materials(const Materials& materials);
+
   /// Number of nodes.
   std::size_t size() const;
   /// Lumped mass of node i, kg.

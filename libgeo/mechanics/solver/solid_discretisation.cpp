@@ -36,8 +36,13 @@ void SolidDiscretisation::update_nodal_points(std::span<const NodeId> updated) {
   points.number_points(n);
   points.set_materials(materials);
   build_preconditioner_levels();
+  update_mode_penalty();
+}
+
+void SolidDiscretisation::update_mode_penalty() {
+  if (galerkin) return;
   std::vector<double> weight;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < size(); ++i)
     weight.push_back(materials.of(i).mode_penalty * materials.of(i).young * volume[i]);
   penalty.emplace(mls, std::move(weight));
 }

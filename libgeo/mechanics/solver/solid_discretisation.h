@@ -58,6 +58,8 @@ struct SolidDiscretisation {
                     std::span<const NodeId> donors, std::span<const NodeId> updated, State& state, bool parted = true);
   /// Makes every node a material point (mueller04), of the same blocks where nothing changed.
   void update_nodal_points(std::span<const NodeId> updated);
+  /// Sets the penalty on modes by the materials; does nothing where there is none.
+  void update_mode_penalty();
   /// Updates quadrature points, subdomains and aggregates after splits. `inverses` of unchanged
   /// subdomains stay valid; the plastic strain of `state` stays with its points. Precondition:
   /// galerkin->has_changes().

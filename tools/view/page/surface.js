@@ -6,31 +6,16 @@ function surfaceData(at) {
   if (surfaceCache.has(at)) return surfaceCache.get(at);
   const s = about.surfaces[at], position = arrays[s.position], corner = arrays[s.triangles], pieceOf = arrays[s.piece];
   const patch = new Int32Array(arrays[s.patch].buffer), triangles = corner.length / 3;
-  const flat = new Float32Array(corner.length), piece = new Uint32Array(triangles);
-  const a = new THREE.Vector3(), b = new THREE.Vector3(), c = new THREE.Vector3();
-  const degree = new Uint32Array(position.length / 3 + 1);
+  const piece = new Uint32Array(triangles), groups = new CornerGroups();
+  groups.reserve(position.length / 3, triangles);
   for (let t = 0; t < triangles; t++) {
-    a.fromArray(position, 3 * corner[3 * t]), b.fromArray(position, 3 * corner[3 * t + 1]), c.fromArray(position, 3 * corner[3 * t + 2]);
-    b.sub(a).cross(c.sub(a)).toArray(flat, 3 * t);
     piece[t] = pieceOf[corner[3 * t]];
-    for (let k = 0; k < 3; k++) degree[corner[3 * t + k] + 1]++;
+    groups.put(t, corner[3 * t], corner[3 * t + 1], corner[3 * t + 2], 0);
   }
-  for (let v = 1; v < degree.length; v++) degree[v] += degree[v - 1];
-  const at_vertex = new Uint32Array(corner.length), fill = degree.slice();
-  for (let i = 0; i < corner.length; i++) at_vertex[fill[corner[i]]++] = i / 3 | 0;
-  // Corner normals, smoothed over faces that meet at less than 40 degrees.
-  const normal = new Float32Array(3 * corner.length), size = new Float32Array(triangles);
-  for (let t = 0; t < triangles; t++) size[t] = Math.hypot(flat[3 * t], flat[3 * t + 1], flat[3 * t + 2]) || 1e-30;
-  for (let i = 0; i < corner.length; i++) {
-    const t = i / 3 | 0, x = flat[3 * t], y = flat[3 * t + 1], z = flat[3 * t + 2];
-    let nx = 0, ny = 0, nz = 0;
-    for (let e = degree[corner[i]]; e < degree[corner[i] + 1]; e++) {
-      const o = 3 * at_vertex[e], dot = x * flat[o] + y * flat[o + 1] + z * flat[o + 2];
-      if (dot > 0.766 * size[t] * size[at_vertex[e]]) nx += flat[o], ny += flat[o + 1], nz += flat[o + 2];
-    }
-    const length = Math.hypot(nx, ny, nz) || 1;
-    normal[3 * i] = nx / length, normal[3 * i + 1] = ny / length, normal[3 * i + 2] = nz / length;
-  }
+  groups.regroup(position);
+  const place = new Float32Array(3 * groups.groups), normals = new Float32Array(3 * groups.groups), normal = new Float32Array(3 * corner.length);
+  groups.place(position, place, normals);
+  for (let i = 0; i < corner.length; i++) normal.set(normals.subarray(3 * groups.group[i], 3 * groups.group[i] + 3), 3 * i);
   const lo = [], hi = [];
   for (let v = 0; v < pieceOf.length; v++)
     for (let k = 0; k < 3; k++) {

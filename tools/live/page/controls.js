@@ -1,0 +1,168 @@
+// Controls and keys: tools, orders to the program, sliders of the material, and how things are shown.
+const surface = new Surface(), world = new World(), inside = new Inside();
+
+function show(key) {
+  const control = $(key);
+  if (!control) return;
+  if (control.type === "checkbox") control.checked = state[key];
+  else control.value = String(state[key]);
+}
+function set(key, value) {
+  if (state[key] === value) return;
+  state[key] = value;
+  show(key);
+  if (key === "tool") showTool();
+  if (key === "depth") showDepth();
+  if (key === "stress" && value && state.skin === 1) set("skin", 0.2);
+  if ((key === "nodes" || key === "edges") && value && state.skin === 1) set("skin", 0.2);
+  if (["nodes", "edges", "stress"].includes(key) && !state.nodes && !state.edges && !state.stress && state.skin === 0.2) set("skin", 1);
+  if (key === "plotted") $("plots").hidden = !value;
+  changed();
+}
+const does = {
+  knife: "Drag across the body: the cut follows.", scalpel: "Drag along the surface: an edge cuts in.", grab: "Drag a place of the body.",
+  pin: "Click a place to hold it; click again to let go.", orbit: "Drag to turn, two fingers or the wheel to zoom.",
+};
+function showTool() {
+  for (const button of document.querySelectorAll("[data-tool]")) button.setAttribute("aria-pressed", String(button.dataset.tool === state.tool));
+  $("canvas").dataset.tool = state.tool;
+  $("hint").textContent = does[state.tool];
+}
+const showDepth = () => $("depth-value").textContent = state.depth >= 1 ? "through" : Math.round(100 * state.depth) + " %";
+
+// Sliders of the material: what the program has, shown unless a hand is on the slider.
+const values = { young: null, gravity: null, friction: null, damping: null };
+const touched = { young: 0, gravity: 0, friction: 0, damping: 0 };
+const logarithmic = { young: true };
+const units = { young: pascals, gravity: (g) => "× " + g.toFixed(2), friction: (f) => f.toFixed(2), damping: (d) => d.toPrecision(2) + " /s" };
+function rangeOf(name) {
+  return live.told?.options?.[name] ?? { young: [1e3, 1e7], gravity: [0, 2], friction: [0, 1], damping: [0, 10] }[name];
+}
+function toSlider(name, value) {
+  const [lo, hi] = rangeOf(name);
+  return logarithmic[name] ? Math.log(value / lo) / Math.log(hi / lo) : (value - lo) / (hi - lo);
+}
+function fromSlider(name, at) {
+  const [lo, hi] = rangeOf(name);
+  return logarithmic[name] ? lo * Math.exp(at * Math.log(hi / lo)) : lo + at * (hi - lo);
+}
+const length = (v) => Math.hypot(...v);
+function showValues(said) {
+  if (!said) return;
+  for (const name of Object.keys(values)) {
+    if (said[name] === undefined || performance.now() - touched[name] < 600) continue;
+    const g = length(live.told.gravity);
+    const value = name === "gravity" ? (g > 0 ? length(said.gravity) / g : 0) : said[name];
+    $(name).value = String(toSlider(name, value)), $(name + "-value").textContent = units[name](value);
+  }
+}
+function slide(name) {
+  const value = fromSlider(name, Number($(name).value));
+  touched[name] = performance.now();
+  $(name + "-value").textContent = units[name](value);
+  send({ set: { [name]: name === "gravity" ? live.told.gravity.map((x) => x * value) : value } });
+}
+
+const orders = {
+  undo: () => send({ undo: true }), reset: () => send({ reset: true }), pause: () => send({ pause: !live.stats.paused }), step: () => send({ step: true }),
+  help: () => $("help").showModal(), home: resetView, menu: toggleMenu, save: () => savePicture(),
+};
+function resetView() {
+  Object.assign(view, home), view.target.set(0, 0, 0);
+  fitEye();
+  redraw();
+}
+// On a narrow screen the eye is farther away, and the body above the tools.
+function fitEye() {
+  const narrow = Math.min(1, $("stage").clientWidth / Math.max(1, $("stage").clientHeight) / 0.78);
+  view.distance = home.distance * 1.22 / narrow;
+}
+function toggleMenu() {
+  const wide = document.body.classList.toggle("wide");
+  $("menu").setAttribute("aria-expanded", String(!wide));
+  resize();
+}
+function savePicture() {
+  draw();
+  const link = document.createElement("a");
+  link.href = $("canvas").toDataURL("image/png"), link.download = live.told.name.replace(/[^\w.-]+/g, "_") + ".png";
+  link.click();
+}
+
+const keys = {
+  k: () => set("tool", "knife"), l: () => set("tool", "scalpel"), g: () => set("tool", "grab"), p: () => set("tool", "pin"), o: () => set("tool", "orbit"),
+  u: orders.undo, r: orders.reset, " ": orders.pause, ".": orders.step, h: resetView, m: toggleMenu, "?": orders.help,
+  n: () => set("nodes", !state.nodes), e: () => set("edges", !state.edges), t: () => set("stress", !state.stress), w: () => set("wire", !state.wire),
+  c: () => set("walls", !state.walls), s: () => set("skin", state.skin === 1 ? 0.2 : state.skin > 0 ? 0 : 1), d: () => set("shadows", !state.shadows),
+  "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1 / 0.88), Escape: () => endStroke(),
+  "[": () => set("depth", Math.max(0.05, Number((state.depth - 0.05).toFixed(2)))), "]": () => set("depth", Math.min(1, Number((state.depth + 0.05).toFixed(2)))),
+};
+const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+function listenToKeys() {
+  document.addEventListener("keydown", (e) => {
+    if ($("help").open) return;
+    if ((e.ctrlKey || e.metaKey) && e.key === "z") return e.preventDefault(), orders.undo();
+    if (e.ctrlKey || e.metaKey || e.altKey) return;
+    const sliding = e.target.matches("input[type=range], select"), pressing = e.key === " " && e.target.matches("button, input[type=checkbox], a, summary");
+    if (pressing) return;
+    const arrow = arrows[e.key];
+    if (arrow && !sliding) {
+      if (e.shiftKey) pan(-24 * arrow[0], -24 * arrow[1]);
+      else turn(0.08 * arrow[0], 0.08 * arrow[1]);
+      e.preventDefault();
+    } else if (keys[e.key]) keys[e.key](), e.preventDefault();
+  });
+}
+function listenToControls() {
+  for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
+  for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
+  for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth"]) {
+    const control = $(key);
+    show(key);
+    control.addEventListener("input", () => set(key, control.type === "checkbox" ? control.checked : Number(control.value)));
+  }
+  for (const name of Object.keys(values)) $(name).addEventListener("input", () => slide(name));
+  $("wait").addEventListener("click", () => wire.open || connect());
+}
+
+// A view to begin with, behind the page's name: #tool=grab&azimuth=1&nodes=true
+function followAddress() {
+  for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
+    if (key in home) home[key] = view[key] = Number(value);
+    else if (key in state) state[key] = value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value;
+  }
+}
+
+// Once the first state is known.
+function dress() {
+  document.title = live.told.name + " – Kerf";
+  $("title").textContent = live.told.name;
+  const g = length(live.told.gravity);
+  $("gravity").disabled = g === 0;
+  showValues({ young: live.told.youngs?.[0] ?? live.told.youngs, friction: live.told.friction, gravity: live.told.gravity, damping: live.told.damping });
+  world.begin();
+  $("wait").hidden = true;
+}
+
+function begin() {
+  followAddress();
+  if (window.matchMedia("(max-width: 700px)").matches) document.body.classList.add("wide"), $("menu").setAttribute("aria-expanded", "false");
+  hand.ghost = new Ghost();
+  plots.force = new Plot("force-plot", "#b5432a", newtons), plots.rate = new Plot("rate-plot", "#2464b4", String);
+  layers.push(surface, world, inside, { update() {}, beforeDraw: () => hand.ghost.beforeDraw() }, { update() {}, beforeDraw: drawTrail }, { update() {}, beforeDraw: drawFigures });
+  listenToControls(), listenToKeys(), listenToPointer();
+  showTool(), showDepth();
+  $("plots").hidden = !state.plotted;
+  new ResizeObserver(fit).observe($("stage"));
+  fit(), resetView(), changed();
+  connection("Connecting …");
+  connect();
+}
+function fit() {
+  resize();
+  renderer.setPixelRatio(quality.pixels * Math.min(2, window.devicePixelRatio || 1));
+  const trail = $("trail"), ratio = window.devicePixelRatio || 1;
+  trail.width = Math.round(trail.clientWidth * ratio), trail.height = Math.round(trail.clientHeight * ratio);
+}
+begin();

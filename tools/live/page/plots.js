@@ -1,0 +1,89 @@
+// Small graphs over the last seconds: force on the blade, and frames a second.
+class Plot {
+  constructor(id, color, unit) {
+    this.canvas = $(id), this.color = color, this.unit = unit, this.values = new Float32Array(180), this.at = 0;
+  }
+  add(value) {
+    this.values[this.at++ % this.values.length] = value;
+  }
+  draw() {
+    const { canvas, values } = this, ratio = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
+    if (w === 0) return;
+    if (canvas.width !== Math.round(w * ratio)) canvas.width = Math.round(w * ratio), canvas.height = Math.round(h * ratio);
+    const paint = canvas.getContext("2d"), most = Math.max(...values, 1e-9), n = values.length;
+    paint.setTransform(ratio, 0, 0, ratio, 0, 0);
+    paint.clearRect(0, 0, w, h);
+    paint.beginPath(), paint.moveTo(0, h);
+    for (let i = 0; i < n; i++) paint.lineTo(i * w / (n - 1), h - 1 - (h - 4) * values[(this.at + i) % n] / most);
+    paint.lineTo(w, h), paint.closePath();
+    paint.fillStyle = this.color + "33", paint.fill();
+    paint.strokeStyle = this.color, paint.lineWidth = 1.4, paint.stroke();
+  }
+}
+const plots = { frames: [] };
+
+// A slow machine draws with less: without shadows, then with fewer pixels.
+const quality = {
+  shadows: true, pixels: 1, slow: 0,
+  watch(rate) {
+    const late = live.stats.fps > 20 && !live.stats.paused && rate < Math.min(20, 0.7 * live.stats.fps);
+    this.slow = late && performance.now() > 3000 ? this.slow + 1 : 0;
+    if (this.slow < 20) return;
+    this.slow = 0;
+    if (this.shadows && state.shadows) this.shadows = false, world.update();
+    else if (this.pixels > 0.5) this.pixels *= 0.8, fit();
+  },
+};
+
+// Frames that were drawn in the last second.
+function drawnRate() {
+  const now = performance.now();
+  while (plots.frames.length && now - plots.frames[0] > 1000) plots.frames.shift();
+  return plots.frames.length;
+}
+const newtons = (f) => (f >= 1000 ? (f / 1000).toPrecision(3) + " kN" : f >= 1 ? f.toPrecision(3) + " N" : f > 0 ? (1000 * f).toPrecision(2) + " mN" : "0 N");
+
+// Figures of the newest frame.
+function told(stats) {
+  live.stats = stats;
+  if (stats.ack_input !== undefined) inputTaken(stats.ack_input);
+  const force = (stats.blade_force ?? []).reduce((sum, f) => sum + f, 0);
+  plots.force.add(force);
+  plots.now = force;
+  if (stats.message) notice({ notice: stats.message });
+}
+let figuresAt = 0;
+function drawFigures() {
+  const now = performance.now(), stats = live.stats;
+  plots.frames.push(now);
+  if (now - figuresAt < 100) return;
+  figuresAt = now;
+  const rate = drawnRate();
+  plots.rate.add(rate);
+  quality.watch(rate);
+  $("force").textContent = newtons(plots.now ?? 0), $("rate").textContent = rate + " /s";
+  if (state.plotted) plots.force.draw(), plots.rate.draw();
+  $("time").textContent = live.time.toFixed(2) + " s", $("pieces").textContent = stats.pieces ?? "–";
+  $("lag").textContent = wire.latency ? Math.round(wire.latency) + " ms" : "–";
+  $("sizes").textContent = `${surface.corners.slots.toLocaleString("en")} triangles, ${(live.nodes ?? 0).toLocaleString("en")} nodes`;
+  $("undo").disabled = !(stats.undo > 0);
+  $("pause").setAttribute("aria-pressed", String(!!stats.paused));
+  $("pause").querySelector("span").textContent = stats.paused ? "Go on" : "Pause";
+  const slow = !stats.paused && stats.sim_rate !== undefined && stats.sim_rate < 0.95;
+  $("slow").hidden = !slow && !stats.paused;
+  $("slow").textContent = stats.paused ? "Paused" : slow ? `Slower than real time: × ${stats.sim_rate.toPrecision(2)}` : "";
+  showValues(stats.set);
+}
+
+// What the program says: shown for some seconds.
+let noticeTimer = 0;
+function notice({ error, notice: text }) {
+  const box = $("notice");
+  box.textContent = error ?? text, box.hidden = false, box.classList.toggle("wrong", error !== undefined);
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => box.hidden = true, 5000);
+}
+function connection(text) {
+  $("wait").textContent = text, $("wait").hidden = text === "" && live.told !== null;
+  document.body.classList.toggle("offline", text !== "");
+}

@@ -1,0 +1,62 @@
+// Mouse, touch and pen: one finger or the left button has the tool, two fingers or the right button have the eye.
+const pointers = new Map();
+const slop = 5;  // pixels that a pointer moves before a knife cuts: a click does not
+
+function listenToPointer() {
+  const canvas = $("canvas");
+  let pending = null, spread = 0;
+  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
+  canvas.addEventListener("pointerdown", (e) => {
+    canvas.setPointerCapture(e.pointerId);
+    pointers.set(e.pointerId, e);
+    spread = 0;
+    if (pointers.size > 1) return pending = null, endStroke();  // a second finger: the eye moves
+    const tool = e.button === 0 && !e.shiftKey && !e.altKey && !e.ctrlKey;
+    if (!tool || state.tool === "orbit") return;
+    if (state.tool === "grab") beginStroke(e.offsetX, e.offsetY, e.pointerId);
+    else pending = { x: e.offsetX, y: e.offsetY, id: e.pointerId };
+  });
+  canvas.addEventListener("pointermove", (e) => {
+    const before = pointers.get(e.pointerId);
+    if (!before) return;
+    const dx = e.clientX - before.clientX, dy = e.clientY - before.clientY;
+    if (hand.stroke) {
+      pointers.set(e.pointerId, e);
+      if (hand.stroke.pointer === e.pointerId) moveStroke(e.offsetX, e.offsetY);
+      return;
+    }
+    if (pending) {
+      if (Math.hypot(e.offsetX - pending.x, e.offsetY - pending.y) < slop) return;
+      const { x, y, id } = pending;
+      pending = null;
+      pointers.set(e.pointerId, e);
+      if (beginStroke(x, y, id)) return moveStroke(e.offsetX, e.offsetY);
+    }
+    pointers.set(e.pointerId, e);
+    moveEye(e, dx, dy);
+  });
+  // Two fingers turn, zoom and move at once; with the shift key or the middle button the eye moves sideways.
+  const moveEye = (e, dx, dy) => {
+    if (pointers.size === 2) {
+      const [a, b] = [...pointers.values()], now = Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
+      if (spread > 0) zoom(spread / Math.max(now, 1));
+      spread = now;
+      turn(0.003 * dx, 0.003 * dy);
+    } else if (e.shiftKey || e.buttons & 4) pan(dx, dy);
+    else turn(0.006 * dx, 0.006 * dy);
+  };
+  const up = (e) => {
+    pointers.delete(e.pointerId);
+    if (hand.stroke && hand.stroke.pointer === e.pointerId) {
+      if (e.type === "pointerup") moveStroke(e.offsetX, e.offsetY);
+      endStroke();
+    } else if (pending && e.type === "pointerup" && state.tool === "pin") pinAt(e.offsetX, e.offsetY);
+    pending = null;
+  };
+  canvas.addEventListener("pointerup", up);
+  canvas.addEventListener("pointercancel", up);
+  canvas.addEventListener("wheel", (e) => {
+    e.preventDefault();
+    if (!hand.stroke) zoom(Math.exp(0.0011 * Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 240)));
+  }, { passive: false });
+}

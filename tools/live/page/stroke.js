@@ -1,0 +1,187 @@
+// Tools of the hand: each turns a drag of the pointer into messages. Distances here are in shown coordinates, messages in world ones.
+let strokes = 0;
+const hand = { stroke: null, trail: [], ghost: null };
+
+// The ray from the eye through a place on the canvas.
+function rayAt(x, y) {
+  const canvas = $("canvas"), end = new THREE.Vector3(2 * x / canvas.clientWidth - 1, 1 - 2 * y / canvas.clientHeight, 0.5).unproject(camera);
+  return { origin: camera.position.clone(), ray: end.sub(camera.position).normalize() };
+}
+// The sphere around the body as it is now.
+function bodySphere() {
+  const lo = new THREE.Vector3(Infinity, Infinity, Infinity), hi = lo.clone().negate(), p = new THREE.Vector3();
+  for (let v = 0; v < live.vertices; v++) p.fromArray(live.position, 3 * v), lo.min(p), hi.max(p);
+  const middle = lo.clone().add(hi).multiplyScalar(0.5);
+  return { middle, radius: 1.04 * hi.distanceTo(middle) };
+}
+
+// The knife: an edge on the ray of the pointer. At full depth it goes through the whole body, else it begins at the skin.
+class Knife {
+  begin(x, y) {
+    this.sphere = bodySphere();
+    this.along = null;
+    this.through = state.depth >= 1;
+    const { middle, radius } = this.sphere, away = middle.distanceTo(camera.position);
+    this.margin = 0.05;
+    this.depth = this.through ? 2 * radius : state.depth * 2 * radius + this.margin;
+    this.fixed = Math.max(away - radius, 0.02);
+    return this.message(x, y);
+  }
+  message(x, y) {
+    const { origin, ray } = rayAt(x, y);
+    let from = this.fixed;
+    if (!this.through) {
+      const hit = surface.hit(origin, ray);
+      if (hit) this.along = hit.distance;
+      from = Math.max((hit ? hit.distance : this.along ?? this.sphere.middle.clone().sub(origin).dot(ray)) - this.margin, 0.02);
+    }
+    const near = ray.clone().multiplyScalar(from).add(origin), far = ray.clone().multiplyScalar(this.depth).add(near);
+    this.edge = [near, far];
+    return { eye: toWorld(origin), ray: ray.toArray(), depth: this.depth * about.unit, from: from * about.unit };
+  }
+}
+// The scalpel: an edge that follows the pointer on the surface, across it.
+class Scalpel {
+  begin(x, y) { return this.message(x, y); }
+  message(x, y) {
+    const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
+    if (!hit) return null;
+    const depth = Math.min(state.depth, 0.5) * 0.8;
+    this.edge = [hit.point.clone().addScaledVector(hit.normal, 0.04), hit.point.clone().addScaledVector(hit.normal, -depth)];
+    return { point: toWorld(hit.point), normal: hit.normal.toArray(), depth: depth * about.unit };
+  }
+}
+// A spring on what is under the pointer; its other end moves in the plane through that point that faces the eye.
+class Grab {
+  begin(x, y) {
+    const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
+    if (!hit) return null;
+    this.at = hit, this.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 2), hit.point);
+    return this.message(x, y);
+  }
+  message(x, y) {
+    const { origin, ray } = rayAt(x, y), run = this.plane.normal.dot(ray);
+    const along = -this.plane.distanceToPoint(origin) / run, to = ray.clone().multiplyScalar(along).add(origin);
+    this.edge = [this.held(), to];
+    return { face: this.at.slot, bary: this.at.bary, to: toWorld(to) };
+  }
+  // Where the held point of the surface is now.
+  held() {
+    const c = surface.corners, p = new THREE.Vector3(), sum = new THREE.Vector3();
+    if (!c.has(this.at.slot)) return this.last ?? this.at.point;
+    this.at.bary.forEach((w, k) => sum.addScaledVector(p.fromArray(live.position, 3 * c.vertex[3 * this.at.slot + k]), w));
+    return this.last = sum;
+  }
+}
+const handTools = { knife: Knife, scalpel: Scalpel, grab: Grab };
+
+function beginStroke(x, y, pointer) {
+  const make = handTools[state.tool];
+  if (!make || !wire.open || !live.told) return false;
+  const tool = new make(), message = tool.begin(x, y);
+  if (!message) return false;
+  hand.stroke = { id: ++strokes, kind: state.tool, tool, pointer, last: message, sentAt: performance.now() };
+  hand.trail = [[x, y, performance.now()]];
+  hand.ghost.begin(tool.edge, state.tool);
+  sendInput(state.tool, { id: strokes, phase: "begin", ...message });
+  redraw();
+  return true;
+}
+const apart = 6;  // milliseconds between messages: below the 240 a second that are taken
+function moveStroke(x, y) {
+  const s = hand.stroke, message = s.tool.message(x, y);
+  hand.trail.push([x, y, performance.now()]);
+  redraw();
+  if (!message) return;
+  s.last = message;
+  hand.ghost.add(s.tool.edge);
+  clearTimeout(s.later);
+  const wait = s.sentAt + apart - performance.now();
+  if (wait <= 0) passOn(s);
+  else s.later = setTimeout(() => hand.stroke === s && passOn(s), wait);
+}
+function passOn(s) {
+  s.sentAt = performance.now();
+  sendInput(s.kind, { id: s.id, phase: "move", ...s.last });
+}
+function endStroke() {
+  const s = hand.stroke;
+  if (!s) return;
+  hand.stroke = null;
+  clearTimeout(s.later);
+  sendInput(s.kind, { id: s.id, phase: "end", ...s.last });
+  hand.ghost.end();
+  redraw();
+}
+function pinAt(x, y) {
+  const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
+  if (!hit) return false;
+  // A click close to a pin takes it away.
+  const near = (live.stats.pins ?? []).some((p) => toShown(p).distanceTo(hit.point) < 0.08);
+  send({ pin: { face: hit.slot, bary: hit.bary, on: !near, radius: 0.1 * about.unit } });
+  return true;
+}
+
+// What the edge has swept, as a pale sheet that fades after the stroke; for the grab, a line from the held point.
+class Ghost {
+  constructor() {
+    const mesh = (object, order) => {
+      object.frustumCulled = false, object.renderOrder = order, object.visible = false;
+      scene.add(object);
+      return object;
+    };
+    this.sheet = mesh(new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: 0x4d8fe0, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false })), 8);
+    this.rim = mesh(new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1d4f96, transparent: true })), 8.1);
+    this.edges = [], this.fading = 0;
+  }
+  begin(edge, kind) {
+    this.kind = kind, this.edges = [edge], this.fading = 0;
+  }
+  add(edge) {
+    if (this.kind === "grab") this.edges = [edge];
+    else if (edge[0].distanceTo(this.edges[this.edges.length - 1][0]) > 1e-4) this.edges.push(edge);
+    if (this.edges.length > 400) this.edges.shift();
+  }
+  end() { this.fading = performance.now(); }
+  beforeDraw() {
+    const age = this.fading ? (performance.now() - this.fading) / 2500 : 0, gone = this.edges.length === 0 || age >= 1;
+    this.sheet.visible = !gone && this.kind !== "grab" && this.edges.length > 1, this.rim.visible = !gone && !(this.kind === "grab" && this.fading);
+    if (gone) return void (this.edges = []);
+    if (hand.stroke?.tool.held) this.edges = [[hand.stroke.tool.held(), this.edges[0][1]]];
+    const points = this.edges.flatMap(([a, b]) => [...a.toArray(), ...b.toArray()]), n = this.edges.length, faces = [], lines = [0, 1, 2 * n - 2, 2 * n - 1];
+    for (let i = 0; i + 1 < n; i++) faces.push(2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2), lines.push(2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 3);
+    const put = (mesh, index) => {
+      mesh.geometry.dispose();
+      mesh.geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(Float32Array.from(points), 3));
+      mesh.geometry.setIndex(index);
+    };
+    put(this.sheet, faces), put(this.rim, lines);
+    this.sheet.material.opacity = 0.3 * (1 - age), this.rim.material.opacity = 0.9 * (1 - age);
+    if (this.fading) redraw();
+  }
+}
+
+// The way of the pointer, drawn over the picture, thinner where it is older.
+function drawTrail() {
+  const canvas = $("trail"), paint = canvas.getContext("2d"), now = performance.now(), ratio = canvas.width / Math.max(1, canvas.clientWidth);
+  paint.setTransform(ratio, 0, 0, ratio, 0, 0);
+  paint.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
+  if (!hand.stroke) hand.trail = hand.trail.filter(([, , at]) => now - at < 500);
+  const cuts = (hand.stroke?.kind ?? state.tool) !== "grab", trail = hand.trail;
+  if (trail.length > 1 && cuts) {
+    paint.lineCap = paint.lineJoin = "round";
+    for (const [width, color] of [[5, "rgba(20, 50, 100, 0.28)"], [2, "rgba(255, 255, 255, 0.95)"]])
+      for (let i = 1; i < trail.length; i++) {
+        const age = hand.stroke ? 0 : (now - trail[i][2]) / 500;
+        paint.globalAlpha = Math.max(0, 1 - age), paint.strokeStyle = color, paint.lineWidth = width;
+        paint.beginPath(), paint.moveTo(trail[i - 1][0], trail[i - 1][1]), paint.lineTo(trail[i][0], trail[i][1]), paint.stroke();
+      }
+    paint.globalAlpha = 1;
+  }
+  if (hand.stroke && trail.length) {
+    const [x, y] = trail[trail.length - 1];
+    paint.lineWidth = 1.5, paint.strokeStyle = "rgba(20, 50, 100, 0.9)", paint.fillStyle = "rgba(255, 255, 255, 0.85)";
+    paint.beginPath(), paint.arc(x, y, cuts ? 5 : 8, 0, 2 * Math.PI), paint.fill(), paint.stroke();
+  }
+  if (!hand.stroke && trail.length) redraw();
+}

@@ -1,0 +1,149 @@
+// The surface that moves: skin and walls of cracks share the vertices of their corner groups, and the lips of cuts are drawn.
+const skinColor = 0xe0803a, wallColor = 0xf6d8a8;
+
+// Light goes into soft material: shaded sides keep a glow, edges towards the eye are brighter, what is near the ground is darker.
+function softMaterial(color, glow) {
+  const material = new THREE.MeshPhongMaterial({ color, specular: 0x1b1a19, shininess: 26, side: THREE.DoubleSide });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.glow = { value: new THREE.Color(glow) }, shader.uniforms.groundPlane = groundPlane;
+    shader.fragmentShader = "uniform vec3 glow; uniform vec4 groundPlane;\n" + shader.fragmentShader.replace("#include <envmap_fragment>", `
+      vec3 toEye = normalize(vViewPosition);
+      float grazing = pow(1.0 - abs(dot(normal, toEye)), 2.5);
+      outgoingLight += glow * (0.04 + 0.34 * grazing) * (0.35 + 0.65 * max(0.0, dot(normal, groundPlane.xyz) * 0.5 + 0.5));
+      float height = dot(-vViewPosition, groundPlane.xyz) + groundPlane.w;
+      outgoingLight *= mix(0.72, 1.0, smoothstep(0.0, 0.42, height + 0.25 * max(0.0, dot(normal, groundPlane.xyz))));
+      #include <envmap_fragment>`);
+  };
+  return material;
+}
+
+const dynamic = (length) => new THREE.BufferAttribute(new Float32Array(length), 3).setUsage(THREE.DynamicDrawUsage);
+
+class Surface {
+  constructor() {
+    this.corners = new CornerGroups();
+    this.changed = false, this.topology = false;
+    const mesh = (material, order) => {
+      const m = new THREE.Mesh(new THREE.BufferGeometry(), material);
+      m.frustumCulled = false, m.renderOrder = order, m.castShadow = m.receiveShadow = true;
+      scene.add(m);
+      return m;
+    };
+    this.skin = mesh(softMaterial(skinColor, 0xff9a58), 4);
+    this.walls = mesh(softMaterial(wallColor, 0xffe9c8), 3);
+    this.walls.material.side = THREE.FrontSide;  // closed sheets stand at one place; each is seen from its own side
+    this.walls.material.shadowSide = THREE.DoubleSide;
+    const lines = (color, opacity, order) => {
+      const l = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color, transparent: true, opacity }));
+      l.frustumCulled = false, l.renderOrder = order;
+      scene.add(l);
+      return l;
+    };
+    this.wire = lines(0x26323f, 0.4, 5), this.lips = lines(0x7a3212, 0.9, 6);
+    for (const m of [this.skin, this.walls]) m.material.polygonOffset = true, m.material.polygonOffsetFactor = m.material.polygonOffsetUnits = 1;
+  }
+  // A whole surface: the groups of corners wait for the positions of its frame.
+  begin(arrived) {
+    this.corners = new CornerGroups();
+    this.corners.reserve(arrived.vertices, arrived.faces);
+    for (let s = 0; s < arrived.faces; s++) this.put(s, arrived.corners.subarray(3 * s, 3 * s + 3), arrived.patch[s]);
+    this.topology = true;
+  }
+  change(delta) {
+    let slots = this.corners.slots;
+    for (let i = 0; i < delta.patch.length; i++) slots = Math.max(slots, delta.added[4 * i] + 1);
+    this.corners.reserve(delta.vertices, slots);
+    for (const slot of delta.removed) this.corners.remove(slot);
+    for (let i = 0; i < delta.patch.length; i++) this.put(delta.added[4 * i], delta.added.subarray(4 * i + 1, 4 * i + 4), delta.patch[i]);
+    this.topology = true;
+  }
+  put(slot, [a, b, c], patch) {
+    if (a === b || b === c || a === c) this.corners.remove(slot);
+    else this.corners.put(slot, a, b, c, patch === 0 ? 0 : 1);
+  }
+  beforeDraw() {
+    if (!this.changed) return;
+    this.changed = false;
+    if (!takeFrame()) return;
+    const { corners } = this;
+    if (this.topology) corners.regroup(live.position), this.fill(), this.topology = false;
+    corners.place(live.position, this.position.array, this.normal.array);
+    this.position.needsUpdate = this.normal.needsUpdate = true;
+    this.points.array.set(live.position.subarray(0, 3 * live.vertices));
+    this.points.needsUpdate = true;
+    for (const layer of layers) if (layer.moved) layer.moved();
+  }
+  // Buffers of the geometry, made anew where they are too small; others keep their size and say how much counts.
+  fill() {
+    const c = this.corners, room = (have, need) => !have || have.array.length < need;
+    if (room(this.position, 3 * c.groups)) {
+      const length = 3 * Math.ceil(1.3 * c.groups);
+      this.position = dynamic(length), this.normal = dynamic(length);
+    }
+    if (room(this.points, 3 * live.vertices)) this.points = dynamic(Math.ceil(1.3 * live.vertices) * 3);
+    const skin = [], walls = [], lips = [];
+    for (let s = 0; s < c.slots; s++) {
+      if (c.kind[s] === noKind) continue;
+      const to = c.kind[s] === 0 ? skin : walls;
+      to.push(c.group[3 * s], c.group[3 * s + 1], c.group[3 * s + 2]);
+      if (c.kind[s] !== 0) for (let k = 3 * s; k < 3 * s + 3; k++) if (this.isLip(k)) lips.push(c.vertex[k], c.vertex[cornerAfter(k)]);
+    }
+    this.bind(this.skin, skin, true), this.bind(this.walls, walls, true), this.bind(this.lips, lips, false);
+    this.wireStale = true;
+    this.fillWire();
+  }
+  bind(mesh, index, shaded) {
+    mesh.geometry.dispose();
+    mesh.geometry = new THREE.BufferGeometry().setAttribute("position", shaded ? this.position : this.points);
+    if (shaded) mesh.geometry.setAttribute("normal", this.normal);
+    mesh.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(index), 1));
+    mesh.empty = index.length === 0;
+  }
+  // The edge behind a corner of a wall has skin on its other side.
+  isLip(corner) {
+    const c = this.corners, a = c.vertex[corner], b = c.vertex[cornerAfter(corner)];
+    for (let at = c.first[a]; at >= 0; at = c.next[at])
+      if (c.kind[at / 3 | 0] === 0 && (c.vertex[cornerAfter(at)] === b || c.vertex[cornerBefore(at)] === b)) return true;
+    return false;
+  }
+  fillWire() {
+    if (!state.wire || !this.wireStale || !this.points) return;
+    const c = this.corners, edges = [];
+    for (let i = 0; i < 3 * c.slots; i++)
+      if (c.kind[i / 3 | 0] !== noKind && c.vertex[i] < c.vertex[cornerAfter(i)]) edges.push(c.vertex[i], c.vertex[cornerAfter(i)]);
+    this.bind(this.wire, edges, false);
+    this.wireStale = false;
+  }
+  update() {
+    const m = this.skin.material, through = state.skin < 1;
+    m.opacity = state.skin, m.depthWrite = !through;
+    if (m.transparent !== through) m.transparent = through, m.needsUpdate = true;
+    this.skin.visible = state.skin > 0;
+    this.walls.visible = state.walls && !this.walls.empty;
+    this.lips.visible = state.walls && state.skin > 0 && !this.lips.empty;
+    this.fillWire();
+    this.wire.visible = state.wire && !this.wire.empty;
+  }
+  // The first triangle that a ray meets, in shown coordinates: { slot, bary, distance, point, normal }; null: none.
+  hit(origin, ray) {
+    const c = this.corners, p = live.position, a = new THREE.Vector3(), e = new THREE.Vector3(), f = new THREE.Vector3(), q = new THREE.Vector3(), s = new THREE.Vector3();
+    let best = null, least = Infinity;
+    for (let slot = 0; slot < c.slots; slot++) {
+      if (c.kind[slot] === noKind) continue;
+      a.fromArray(p, 3 * c.vertex[3 * slot]);
+      e.fromArray(p, 3 * c.vertex[3 * slot + 1]).sub(a), f.fromArray(p, 3 * c.vertex[3 * slot + 2]).sub(a);
+      q.crossVectors(ray, f);
+      const det = e.dot(q);
+      if (det < 1e-14) continue;  // seen from behind
+      s.subVectors(origin, a);
+      const u = s.dot(q) / det;
+      if (u < 0 || u > 1) continue;
+      s.cross(e);
+      const v = ray.dot(s) / det, t = f.dot(s) / det;
+      if (v < 0 || u + v > 1 || t <= 0 || t >= least) continue;
+      least = t, best = { slot, bary: [1 - u - v, u, v], distance: t, normal: new THREE.Vector3().crossVectors(e, f).normalize() };
+    }
+    if (best) best.point = ray.clone().multiplyScalar(least).add(origin);
+    return best;
+  }
+}

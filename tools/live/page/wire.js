@@ -1,0 +1,116 @@
+// The connection to kerf-live: binary messages are read into what the layers draw; text messages are what the hand does.
+const wire = { socket: null, open: false, wait: 500, sequence: -1, held: null, input: 0, sent: new Map(), latency: 0, bytes: 0, messages: 0 };
+
+// Little-endian fields, one after the other.
+class Reader {
+  constructor(buffer) { this.buffer = buffer, this.view = new DataView(buffer), this.at = 0; }
+  u8() { return this.view.getUint8(this.at++); }
+  u16() { return this.view.getUint16((this.at += 2) - 2, true); }
+  u32() { return this.view.getUint32((this.at += 4) - 4, true); }
+  f32() { return this.view.getFloat32((this.at += 4) - 4, true); }
+  f64() { return this.view.getFloat64((this.at += 8) - 8, true); }
+  floats(n) { return Array.from({ length: n }, () => this.f32()); }
+  // Views without a copy; a message is aligned to four bytes throughout.
+  array(kind, n) {
+    const values = new kind(this.buffer, this.at, n);
+    this.at += values.byteLength;
+    return values;
+  }
+  align() { this.at = (this.at + 3) & ~3; }
+  json(n) {
+    const text = new TextDecoder().decode(new Uint8Array(this.buffer, this.at, n));
+    this.at += n, this.align();
+    return JSON.parse(text);
+  }
+}
+
+function readFrame(r, flags) {
+  const frame = { revision: r.u32(), vertices: r.u32(), nodes: r.u32() };
+  frame.about = r.json(r.u32());
+  frame.lo = r.floats(3), frame.step = r.floats(3);
+  frame.position = r.array(Uint16Array, 3 * frame.vertices), r.align();
+  if (flags & 1) frame.node = r.array(Uint16Array, 3 * frame.nodes), r.align();
+  if (flags & 2) frame.stressMost = r.f32(), frame.stress = r.array(Uint16Array, frame.nodes), r.align();
+  return frame;
+}
+function readState(r) {
+  const state = { revision: r.u32(), vertices: r.u32(), faces: r.u32(), nodes: r.u32() };
+  state.about = r.json(r.u32());
+  state.corners = r.array(Uint32Array, 3 * state.faces);
+  state.patch = r.array(Uint8Array, state.faces), r.align();
+  return state;
+}
+function readDelta(r) {
+  const delta = { from: r.u32(), to: r.u32(), vertices: r.u32() }, removed = r.u32(), added = r.u32();
+  delta.removed = r.array(Uint32Array, removed);
+  delta.added = r.array(Uint32Array, 4 * added);
+  delta.patch = r.array(Uint8Array, added), r.align();
+  return delta;
+}
+
+function receive(buffer) {
+  const r = new Reader(buffer), kind = r.u8(), flags = r.u8(), version = r.u16(), sequence = r.u32(), time = r.f64();
+  if (version !== 1) throw new Error("this page is of another version than the program: load it again");
+  wire.bytes += buffer.byteLength, wire.messages++;
+  if (kind === 5) notice(r.json(buffer.byteLength - 16));
+  if (kind === 4) graphArrived(r.array(Uint32Array, 2 * r.u32()));
+  if (kind === 1) stateArrived(readState(r));
+  if (kind === 2) deltaArrived(readDelta(r));
+  if (kind <= 3) frameArrived(readFrame(r, flags), time);
+  acknowledge(sequence);
+}
+// A page that nobody sees holds its acknowledgement back, and is sent nothing.
+function acknowledge(sequence) {
+  wire.sequence = sequence;
+  if (!document.hidden) send({ ack: sequence });
+}
+
+function send(message) {
+  if (wire.open) wire.socket.send(JSON.stringify(message));
+}
+// A message of the pointer, numbered: the frame that shows it tells how late that is.
+function sendInput(kind, message) {
+  const input = ++wire.input;
+  wire.sent.set(input, performance.now());
+  if (wire.sent.size > 500) wire.sent.delete(wire.sent.keys().next().value);
+  send({ [kind]: { ...message, input } });
+}
+function inputTaken(input) {
+  for (const [number, at] of wire.sent) {
+    if (number > input) break;
+    if (number === input) wire.latency = performance.now() - at;
+    wire.sent.delete(number);
+  }
+}
+
+function connect() {
+  const address = new URL("live", location.href);
+  address.protocol = address.protocol.replace("http", "ws"), address.hash = address.search = "";
+  const socket = new WebSocket(address);
+  socket.binaryType = "arraybuffer";
+  wire.socket = socket;
+  socket.onopen = () => {
+    wire.open = true, wire.wait = 500;
+    sendWants(true), connection("");
+  };
+  socket.onmessage = (e) => {
+    if (typeof e.data === "string") return notice(JSON.parse(e.data));
+    try {
+      receive(e.data);
+    } catch (problem) {
+      console.error(problem);
+      wire.broken = problem.message;
+      socket.close();
+    }
+  };
+  socket.onclose = () => {
+    wire.open = false, endStroke();
+    connection((wire.broken ?? "No connection") + " – trying again …");
+    wire.broken = undefined;
+    setTimeout(connect, wire.wait);
+    wire.wait = Math.min(wire.wait * 1.6, 5000);
+  };
+}
+document.addEventListener("visibilitychange", () => {
+  if (!document.hidden && wire.sequence >= 0) send({ ack: wire.sequence });
+});

@@ -23,6 +23,7 @@ endif()
 if(KERF_TOOLS)
   find_package(CLI11 REQUIRED)
   find_package(ZLIB REQUIRED)
+  find_path(KERF_BEAST boost/beast.hpp REQUIRED)  # headers only: libboost-dev
   pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp libwebpmux)
   find_file(KERF_THREE_JS three.min.js PATHS /usr/share/javascript/three REQUIRED)
 endif()
@@ -36,6 +37,10 @@ target_link_libraries(kerf_eigen INTERFACE Eigen3::Eigen)
 
 add_library(kerf_cgal INTERFACE)
 target_link_libraries(kerf_cgal INTERFACE CGAL::CGAL)
+
+add_library(kerf_beast INTERFACE)
+target_include_directories(kerf_beast SYSTEM INTERFACE ${KERF_BEAST})
+target_link_libraries(kerf_beast INTERFACE Threads::Threads)
 
 add_library(kerf_pcl INTERFACE)
 target_include_directories(kerf_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})

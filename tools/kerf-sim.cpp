@@ -1,4 +1,5 @@
 // kerf-sim: runs a scene, and writes its frames and checkpoints.
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -118,7 +119,7 @@ class RecordedRun {
       done.outcome.stats.write_seconds = waited + writing.lap();
       total_ += done.outcome.stats;
       writer_.add(std::move(done));
-      if (frame % setup_.scene.checkpoint_every == 0 || frame == last) {
+      if (has_checkpoint(frame) || frame == last) {
         write_checkpoint(
             [&](std::ostream& out) { geo::write_checkpoint(out, run_.body(), run_.state(), setup_.fingerprint); });
         if (frame < last) run_ = resume(setup_, folder_, std::move(run_));
@@ -130,6 +131,10 @@ class RecordedRun {
   }
 
  private:
+  bool has_checkpoint(int frame) const {
+    const auto& more = setup_.scene.checkpoints;
+    return frame % setup_.scene.checkpoint_every == 0 || std::binary_search(more.begin(), more.end(), frame);
+  }
   geo::FrameStats advance_frame(int frame, int last, const Forecast& forecast, const geo::Progress& progress) {
     const std::string phase =
         "frame " + std::to_string(frame) + " of " + std::to_string(last) + forecast.left(last - frame + 1);

@@ -3,12 +3,14 @@
 #include "kerf/files.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <sstream>
 
 #include "io/scene_keys.h"
 #include "kerf/check.h"
+#include "simulation/scene_changes.h"
 
 namespace geo {
 namespace {
@@ -17,9 +19,12 @@ namespace {
 struct Files {
   std::filesystem::path folder;
   std::string contents;
-  std::string read(const std::string& file) {
+  std::string path(const std::string& file) const {
     const std::filesystem::path path = file;
-    std::string bytes = read_all((path.is_relative() ? folder / path : path).string());
+    return (path.is_relative() ? folder / path : path).string();
+  }
+  std::string read(const std::string& file) {
+    std::string bytes = read_all(path(file));
     contents += std::to_string(fingerprint(bytes)) + ' ';
     return bytes;
   }
@@ -65,9 +70,15 @@ void read_strength(TomlTable& t, Strength& s) {
   t.get("grain", s.grain, 0, 1e12);
 }
 
-// Reads a rotation [ax, ay, az, degrees].
+// Reads a rotation [ax, ay, az, degrees], or a quaternion [w, x, y, z], which is taken to the bit.
 void read_rotation(TomlTable& t, Pose& place, const std::string& what) {
-  const auto* node = t.find("rotation");
+  const auto *node = t.find("rotation"), *exact = t.find("quaternion");
+  if (node && exact) t.fail(*exact, "give 'rotation' or 'quaternion', not both");
+  if (exact) {
+    const auto q = t.row(*exact, 4, "'" + t.path() + "quaternion'");
+    place.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    if (!(std::abs(place.rotation.norm() - 1) < 1e-9)) t.fail(*exact, "a quaternion of a rotation has the norm 1");
+  }
   if (!node) return;
   const auto v = t.row(*node, 4, "'" + what + "'");
   const Motion turn{{{0, Vec3::Zero(), {v[0], v[1], v[2]}, v[3]}}};
@@ -163,6 +174,7 @@ void read_obstacle(TomlTable& t, Scene& s, Files& files) {
     if (!(o.normal.norm() > 0)) t.fail(*normal, "'obstacle.normal' has no direction");
   } else {
     o.mesh = parse_surface(files.read(mesh), mesh).mesh;
+    o.file = files.path(mesh);
     try {
       if (o.mesh.two_sided()) throw InputError("is cut; an obstacle is whole");
       require_solid(o.mesh);
@@ -179,6 +191,38 @@ void read_obstacle(TomlTable& t, Scene& s, Files& files) {
   s.obstacles.push_back(std::move(o));
 }
 
+void read_pull(TomlTable& t, Scene& s, Files& files) {
+  Pull pull;
+  if (!t.find("point")) t.missing("point", "where it holds the body");
+  t.get("point", pull.point);
+  int node = -1;
+  t.get("node", node, 0, 2147483647);
+  if (node >= 0) pull.node = static_cast<std::uint32_t>(node);
+  t.get("stiffness", pull.stiffness, 0, 1e15);
+  pull.motion = read_motion(t, files);
+  if (pull.motion.keys.size() < 2) t.fail("a pull needs two 'keys' at least, or a 'motion' file of them");
+  s.pulls.push_back(std::move(pull));
+}
+
+// A number where there is one.
+void get(TomlTable& t, const char* key, std::optional<double>& value) {
+  if (!t.find(key)) return;
+  value = 0;
+  t.get(key, *value, -1e300, 1e300);
+}
+
+void read_change(TomlTable& t, Scene& s) {
+  SceneChange change;
+  if (!t.find("time")) t.missing("time", "when the values change");
+  t.get("time", change.time, 0, 1e9);
+  get(t, "young", change.young), get(t, "damping", change.damping), get(t, "friction", change.friction);
+  get(t, "accuracy", change.accuracy), get(t, "step", change.dt);
+  if (t.find("gravity")) t.get("gravity", change.gravity.emplace());
+  if (const auto wrong = unfit(change); !wrong.empty()) t.fail("a change: " + wrong);
+  if (!s.changes.empty() && change.time < s.changes.back().time) t.fail("changes must ascend in time");
+  s.changes.push_back(change);
+}
+
 void read_score(TomlTable& t, Scene& s, Files& files) {
   std::string file;
   int body = 0;
@@ -188,10 +232,24 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
   const SceneBody& of = s.bodies[static_cast<std::size_t>(body)];
   const std::filesystem::path path = file;
   const std::string name = path.filename().string();
+  s.score_files.push_back({files.path(file), body});
   for (Front& front : parse_fronts(files.read(file), name)) {
     for (auto& step : front.steps)
       for (Vec3& p : step) p = of.place * (of.scale * p);
     s.scores.push_back(std::move(front));
+  }
+}
+
+void read_checkpoints(TomlTable& t, Scene& s) {
+  const auto* node = t.find("checkpoints");
+  if (!node) return;
+  const auto* list = node->as_array();
+  if (!list) t.fail(*node, "'time.checkpoints' must be a list of frames");
+  for (const auto& e : *list) {
+    const auto frame = e.value_exact<std::int64_t>();
+    if (!frame || *frame < 1 || *frame > 1000000 || (!s.checkpoints.empty() && *frame <= s.checkpoints.back()))
+      t.fail(e, "'time.checkpoints' must be frames from 1 to 1000000, ascending");
+    s.checkpoints.push_back(static_cast<int>(*frame));
   }
 }
 
@@ -239,6 +297,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("step", s.dt, 1e-9, 1e6);
     t.get("accuracy", s.accuracy, 1e-9, 0.1);
     t.get("checkpoint_every", s.checkpoint_every, 1, 1000000);
+    read_checkpoints(t, s);
     std::string integrator = "implicit";
     t.get("integrator", integrator);
     if (integrator != "implicit" && integrator != "leapfrog")
@@ -256,9 +315,12 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     const auto v = t.row(*box, 6, "'grip.box'");
     Grip grip{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, read_motion(t, files), false};
     t.get("release", grip.release);
+    t.get("from", grip.from, -1e9, 1e9), t.get("until", grip.until, -1e9, 1e9);
     s.grips.push_back(std::move(grip));
   });
   top.list("blade", [&](TomlTable& t) { read_blade(t, s, files); });
+  top.list("pull", [&](TomlTable& t) { read_pull(t, s, files); });
+  top.list("change", [&](TomlTable& t) { read_change(t, s); });
   top.list("obstacle", [&](TomlTable& t) { read_obstacle(t, s, files); });
   top.list("score", [&](TomlTable& t) { read_score(t, s, files); });
 }

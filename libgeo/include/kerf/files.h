@@ -201,6 +201,11 @@ Scene read_scene(const std::string& path, const SceneOverrides& overrides = {});
 Scene parse_scene(const std::string& text, const std::string& name, const SceneOverrides& overrides = {},
                   const std::string& folder = "");
 
+/// Writes a scene as TOML that read_scene() reads to the same run, to the bit. Paths of models are
+/// relative to `folder`, that of the written file; absolute where it is empty. Throws InputError
+/// where the scene holds a mesh or a crack that was not read from a file.
+void write_scene(std::ostream& out, const Scene& scene, const std::string& folder = "");
+
 /// Reads keyframes from a table: time, position, axis and degrees on each line, with commas or
 /// blanks between the numbers. A first line of words is ignored, as is what follows #. Throws
 /// InputError with the line.

@@ -180,6 +180,7 @@ struct Scene {
   double accuracy = 1e-3;         ///< of displacements in an implicit step, in node spacings
   int frames = 24;                ///< length of the run
   int checkpoint_every = 8;       ///< frames between two checkpoints
+  std::vector<int> checkpoints;   ///< ascending: further frames with a checkpoint
   bool implicit = true;           ///< backward Euler; else leapfrog (symplectic Euler)
   std::uint64_t seed = 1;         ///< of sampling and of jitter
   std::vector<Blade> blades;

@@ -1,0 +1,247 @@
+// write_scene() of kerf/files.h. Every value is written, also those that are the default, so that a
+// later change of a default does not change a recording.
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
+
+#include "kerf/files.h"
+
+namespace geo {
+namespace {
+
+// Shortest text that is read back exactly, as a TOML float.
+std::string number(double x) {
+  if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
+  char text[40];
+  std::string s(text, std::to_chars(text, text + sizeof text, x).ptr);
+  if (s.find_first_of(".e") == s.npos) s += ".0";
+  return s;
+}
+
+std::string row(std::initializer_list<double> values) {
+  std::string text = "[";
+  for (const double x : values) text += (text.size() > 1 ? ", " : "") + number(x);
+  return text + "]";
+}
+
+std::string row(const Vec3& p) { return row({p.x(), p.y(), p.z()}); }
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      constexpr char digits[] = "0123456789abcdef";
+      out += std::string("\\u00") + digits[static_cast<unsigned char>(c) >> 4] + digits[c & 15];
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+class SceneWriter {
+ public:
+  SceneWriter(std::ostream& out, std::string folder) : out_(out), folder_(std::move(folder)) {}
+
+  void write(const Scene& s);
+
+ private:
+  void table(const char* name) { out_ << "\n" << name << "\n"; }
+  void key(const char* name, const std::string& text) { out_ << name << " = " << text << "\n"; }
+  void key(const char* name, double x) { key(name, number(x)); }
+  void key(const char* name, const Vec3& p) { key(name, row(p)); }
+  void whole(const char* name, std::uint64_t n) { key(name, std::to_string(n)); }
+  void flag(const char* name, bool on) { key(name, std::string(on ? "true" : "false")); }
+  void path(const char* name, const std::string& file) {
+    namespace fs = std::filesystem;
+    const fs::path absolute = fs::absolute(file).lexically_normal();
+    key(name, quoted((folder_.empty() ? absolute : absolute.lexically_relative(fs::absolute(folder_))).string()));
+  }
+  void rotation(const Eigen::Quaterniond& r) {
+    if (r.w() != 1) key("quaternion", row({r.w(), r.x(), r.y(), r.z()}));
+  }
+
+  void material(const Material& m, bool own);
+  void strength(const Strength& s);
+  void fracture(const FractureOptions& f);
+  void body(const SceneBody& b, const Scene& s, std::size_t index);
+  void keys(const Motion& motion);
+  void grip(const Grip& g);
+  void blade(const Blade& b);
+  void pull(const Pull& p);
+  void obstacle(const SceneObstacle& o);
+  void change(const SceneChange& c);
+  void time(const Scene& s);
+
+  std::ostream& out_;
+  std::string folder_;
+};
+
+void SceneWriter::material(const Material& m, bool own) {
+  key("model", std::string(m.model == ElasticModel::saint_venant_kirchhoff ? "\"stvk\"" : "\"neo-hookean\""));
+  key("young", m.young), key("poisson", m.poisson), key("density", m.density), key("volume_term", m.volume_term);
+  key("damping", m.damping);
+  if (!own)
+    key("discretisation", std::string(m.discretisation == Discretisation::galerkin ? "\"galerkin\"" : "\"mueller04\""));
+  key("viscosity", m.viscosity), key("mode_penalty", m.mode_penalty), key("yield", m.yield), key("creep", m.creep);
+  key("most_plastic", m.max_plastic);
+}
+
+void SceneWriter::strength(const Strength& s) {
+  key("strength", s.strength), key("toughness", s.toughness), key("variation", s.variation), key("grain", s.grain);
+}
+
+void SceneWriter::fracture(const FractureOptions& f) {
+  table("[fracture]");
+  strength(f);
+  key("speed", f.speed), key("branching", f.branching), key("apart", f.separation);
+  whole("cracks", static_cast<std::uint64_t>(f.max_cracks));
+  whole("cracks_per_step", static_cast<std::uint64_t>(f.cracks_per_step));
+  key("start", f.start);
+  std::string rows;
+  for (const auto& [lo, hi] : f.off)
+    rows += (rows.empty() ? "" : ", ") + row({lo.x(), lo.y(), lo.z(), hi.x(), hi.y(), hi.z()});
+  key("off", "[" + rows + "]");
+}
+
+void SceneWriter::body(const SceneBody& b, const Scene& s, std::size_t index) {
+  table("[[body]]");
+  key("name", quoted(b.name));
+  path("mesh", b.mesh);
+  if (b.sampling.spacing > 0)
+    key("spacing", b.sampling.spacing);
+  else if (b.sampling.count > 0)
+    whole("nodes", b.sampling.count);
+  else
+    key("spacing_percent", b.spacing_percent);
+  whole("levels", static_cast<std::uint64_t>(b.sampling.levels));
+  whole("across", static_cast<std::uint64_t>(b.sampling.across));
+  whole("k", static_cast<std::uint64_t>(s.k));
+  key("scale", b.scale), key("position", b.place.position);
+  rotation(b.place.rotation);
+  key("velocity", b.velocity), key("spin", b.spin);
+  if (b.material) {
+    table("[body.material]");
+    material(*b.material, true);
+  }
+  if (!s.fracture.per_body.empty()) {
+    table("[body.fracture]");
+    strength(s.fracture.per_body.at(index));
+  }
+}
+
+void SceneWriter::keys(const Motion& motion) {
+  out_ << "keys = [\n";
+  for (const Motion::Key& k : motion.keys)
+    out_ << "  "
+         << row({k.time, k.position.x(), k.position.y(), k.position.z(), k.axis.x(), k.axis.y(), k.axis.z(), k.angle})
+         << ",\n";
+  out_ << "]\n";
+}
+
+void SceneWriter::grip(const Grip& g) {
+  table("[[grip]]");
+  key("box", row({g.lo.x(), g.lo.y(), g.lo.z(), g.hi.x(), g.hi.y(), g.hi.z()}));
+  if (std::isfinite(g.from)) key("from", g.from);
+  if (std::isfinite(g.until)) key("until", g.until);
+  flag("release", g.release);
+  if (!g.motion.keys.empty()) keys(g.motion);
+}
+
+void SceneWriter::blade(const Blade& b) {
+  table("[[blade]]");
+  key("name", quoted(b.name));
+  flag("closed", b.closed);
+  out_ << "points = [\n";
+  for (const Vec3& p : b.points) out_ << "  " << row(p) << ",\n";
+  out_ << "]\n";
+  key("back", b.back), key("thickness", b.thickness), key("stiffness", b.stiffness), key("limit", b.limit);
+  keys(b.motion);
+}
+
+void SceneWriter::pull(const Pull& p) {
+  table("[[pull]]");
+  key("point", p.point);
+  if (p.node) whole("node", *p.node);
+  key("stiffness", p.stiffness);
+  keys(p.motion);
+}
+
+void SceneWriter::obstacle(const SceneObstacle& o) {
+  table("[[obstacle]]");
+  key("name", quoted(o.name));
+  if (o.mesh.triangles.empty())
+    key("normal", o.normal);
+  else if (o.file.empty())
+    throw InputError("obstacle '" + o.name + "' has a mesh that was not read from a file, which no scene can name");
+  else
+    path("mesh", o.file);
+  key("scale", o.scale), key("position", o.place.position);
+  rotation(o.place.rotation);
+  key("stiffness", o.stiffness), key("friction", o.friction);
+  if (!o.motion.keys.empty()) keys(o.motion);
+}
+
+void SceneWriter::change(const SceneChange& c) {
+  table("[[change]]");
+  key("time", c.time);
+  if (c.young) key("young", *c.young);
+  if (c.damping) key("damping", *c.damping);
+  if (c.gravity) key("gravity", *c.gravity);
+  if (c.friction) key("friction", *c.friction);
+  if (c.accuracy) key("accuracy", *c.accuracy);
+  if (c.dt) key("step", *c.dt);
+}
+
+void SceneWriter::time(const Scene& s) {
+  table("[time]");
+  whole("frames", static_cast<std::uint64_t>(s.frames));
+  key("frame_rate", s.frame_rate), key("step", s.dt), key("accuracy", s.accuracy);
+  whole("checkpoint_every", static_cast<std::uint64_t>(s.checkpoint_every));
+  std::string frames;
+  for (const int f : s.checkpoints) frames += (frames.empty() ? "" : ", ") + std::to_string(f);
+  key("checkpoints", "[" + frames + "]");
+  key("integrator", std::string(s.implicit ? "\"implicit\"" : "\"leapfrog\""));
+  whole("seed", s.seed);
+}
+
+void SceneWriter::write(const Scene& s) {
+  if (!s.scores.empty() && s.score_files.empty())
+    throw InputError("the scene has cracks that were not read from a file, which no scene can name");
+  key("gravity", s.gravity);
+  table("[material]");
+  material(s.material, false);
+  if (s.fracture.on) fracture(s.fracture);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) body(s.bodies[b], s, b);
+  if (s.ground) {
+    table("[ground]");
+    key("point", s.ground_point), key("normal", s.ground_normal), key("stiffness", s.ground_stiffness);
+    key("friction", s.friction);
+  }
+  table("[contact]");
+  flag("self", s.self_contact);
+  key("friction", s.contact.friction), key("gap", s.contact.gap);
+  flag("bodies", s.body_contact);
+  key("stiffness", s.contact_stiffness);
+  time(s);
+  for (const auto& [file, of] : s.score_files) {
+    table("[[score]]");
+    path("file", file);
+    whole("body", static_cast<std::uint64_t>(of));
+  }
+  for (const Grip& g : s.grips) grip(g);
+  for (const SceneObstacle& o : s.obstacles) obstacle(o);
+  for (const Blade& b : s.blades) blade(b);
+  for (const Pull& p : s.pulls) pull(p);
+  for (const SceneChange& c : s.changes) change(c);
+}
+
+}  // namespace
+
+void write_scene(std::ostream& out, const Scene& scene, const std::string& folder) {
+  SceneWriter(out, folder).write(scene);
+}
+
+}  // namespace geo

@@ -1,0 +1,202 @@
+// JSON by nlohmann's parser, which refuses what is no JSON without exceptions. Nesting is bounded
+// before, since the parser's values are destroyed recursively.
+#include "live/command.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace live {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double farthest = 1e9;  // coordinate, model units
+constexpr int deepest = 8;        // nesting
+
+void require_shallow(std::string_view text) {
+  int depth = 0;
+  for (const char c : text) {
+    depth += (c == '{' || c == '[') - (c == '}' || c == ']');
+    if (depth > deepest) throw BadMessage("the message is nested too deeply");
+  }
+}
+
+// A table of the message, whose keys are all to be asked for.
+class Table {
+ public:
+  Table(const Json& json, std::string name) : json_(json), name_(std::move(name)) {
+    if (!json.is_object()) throw BadMessage("'" + name_ + "' must be a table");
+  }
+  const Json* find(const char* key) {
+    const auto at = json_.find(key);
+    if (at == json_.end()) return nullptr;
+    ++known_;
+    return &*at;
+  }
+  const Json& at(const char* key) {
+    const Json* value = find(key);
+    if (!value) throw BadMessage("'" + name_ + "." + key + "' is missing");
+    return *value;
+  }
+  [[noreturn]] void fail(const char* key, const std::string& what) const {
+    throw BadMessage("'" + name_ + "." + key + "' must be " + what);
+  }
+  double number(const char* key, double least, double most) { return in_range(key, at(key), least, most); }
+  std::optional<double> optional_number(const char* key, double least, double most) {
+    const Json* value = find(key);
+    return value ? std::optional(in_range(key, *value, least, most)) : std::nullopt;
+  }
+  std::uint64_t count(const char* key, std::uint64_t most) {
+    const Json& value = at(key);
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+      fail(key, "a whole number up to " + std::to_string(most));
+    return value.get<std::uint64_t>();
+  }
+  bool flag(const char* key) { return as_flag(key, at(key)); }
+  std::optional<bool> optional_flag(const char* key) {
+    const Json* value = find(key);
+    return value ? std::optional(as_flag(key, *value)) : std::nullopt;
+  }
+  geo::Vec3 point(const char* key) { return as_point(key, at(key)); }
+  std::optional<geo::Vec3> optional_point(const char* key) {
+    const Json* value = find(key);
+    return value ? std::optional(as_point(key, *value)) : std::nullopt;
+  }
+  geo::Vec3 direction(const char* key) {
+    const geo::Vec3 v = point(key);
+    if (!(v.norm() > 1e-6) || !(v.norm() < 1e6)) fail(key, "a direction");
+    return v.normalized();
+  }
+  void done() const {
+    if (known_ == json_.size()) return;
+    throw BadMessage("'" + name_ + "' has a key that is not known");
+  }
+
+ private:
+  double in_range(const char* key, const Json& value, double least, double most) const {
+    if (!value.is_number()) fail(key, "a number");
+    const double x = value.get<double>();
+    if (!(x >= least && x <= most)) fail(key, "from " + std::to_string(least) + " to " + std::to_string(most));
+    return x;
+  }
+  bool as_flag(const char* key, const Json& value) const {
+    if (!value.is_boolean()) fail(key, "true or false");
+    return value.get<bool>();
+  }
+  geo::Vec3 as_point(const char* key, const Json& value) const {
+    if (!value.is_array() || value.size() != 3) fail(key, "three numbers");
+    geo::Vec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = in_range(key, value[static_cast<std::size_t>(i)], -farthest, farthest);
+    return v;
+  }
+
+  const Json& json_;
+  std::string name_;
+  std::size_t known_ = 0;
+};
+
+constexpr std::uint64_t largest_count = std::uint64_t(1) << 53;  // JavaScript's whole numbers
+
+Phase phase_of(Table& t) {
+  const Json& value = t.at("phase");
+  if (value == "begin") return Phase::begin;
+  if (value == "move") return Phase::move;
+  if (value == "end") return Phase::end;
+  t.fail("phase", "\"begin\", \"move\" or \"end\"");
+}
+
+Stroke knife_of(Table& t) {
+  Stroke s{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), t.point("eye"),
+           t.direction("ray"), t.number("depth", 1e-9, farthest)};
+  s.origin += t.number("from", 0, farthest) * s.direction;
+  return s;
+}
+
+// The edge begins as far above the surface as it reaches below it, at most a tenth of its depth.
+Stroke scalpel_of(Table& t) {
+  Stroke s{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), t.point("point"),
+           -t.direction("normal"), t.number("depth", 1e-9, farthest)};
+  const double above = 0.25 * s.depth;
+  s.origin -= above * s.direction, s.depth += above;
+  return s;
+}
+
+Spot spot_of(Table& t) {
+  Spot spot{static_cast<std::uint32_t>(t.count("face", 0xffffffffu)), t.point("bary")};
+  if (spot.bary.minCoeff() < -0.01 || std::abs(spot.bary.sum() - 1) > 0.01) t.fail("bary", "barycentric coordinates");
+  return spot;
+}
+
+Grab grab_of(Table& t) {
+  Grab g{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), {}, t.point("to")};
+  if (g.phase == Phase::begin)
+    g.spot = spot_of(t);
+  else
+    t.find("face"), t.find("bary");
+  return g;
+}
+
+Pin pin_of(Table& t) {
+  return {spot_of(t), t.flag("on"), t.optional_number("radius", 0, farthest).value_or(0)};
+}
+
+Set set_of(Table& t) {
+  return {t.optional_number("young", 1, 1e12), t.optional_number("friction", 0, 1),
+          t.optional_number("damping", 0, 1e3), t.optional_point("gravity")};
+}
+
+template <class Read>
+auto inner(const Json& value, const std::string& key, const Read& read) {
+  Table t(value, key);
+  auto command = read(t);
+  t.done();
+  return command;
+}
+
+// A key whose value is true and says nothing else.
+template <class Sign>
+Sign sign(const Json& value, const std::string& key) {
+  if (value != true) throw BadMessage("'" + key + "' must be true");
+  return {};
+}
+
+Command command_of(const std::string& key, const Json& value) {
+  if (key == "ack") {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 0xffffffffu)
+      throw BadMessage("'ack' must be the number of a message");
+    return Acknowledge{static_cast<std::uint32_t>(value.get<std::uint64_t>())};
+  }
+  if (key == "want")
+    return inner(value, key, [](Table& t) {
+      return Want{t.optional_flag("nodes"), t.optional_flag("stress"), t.optional_flag("graph").value_or(false)};
+    });
+  if (key == "knife") return inner(value, key, knife_of);
+  if (key == "scalpel") return inner(value, key, scalpel_of);
+  if (key == "grab") return inner(value, key, grab_of);
+  if (key == "pin") return inner(value, key, pin_of);
+  if (key == "set") return inner(value, key, set_of);
+  if (key == "undo") return sign<Undo>(value, key);
+  if (key == "reset") return sign<Reset>(value, key);
+  if (key == "step") return sign<Step>(value, key);
+  if (key == "pause") {
+    if (!value.is_boolean()) throw BadMessage("'pause' must be true or false");
+    return Pause{value.get<bool>()};
+  }
+  throw BadMessage("the message is of no known kind");
+}
+
+}  // namespace
+
+Command read_command(std::string_view text) {
+  if (text.size() > longest_message) throw BadMessage("the message is longer than 4096 bytes");
+  require_shallow(text);
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw BadMessage("the message is no JSON");
+  if (!json.is_object() || json.size() != 1) throw BadMessage("a message is a table with one key");
+  return command_of(json.begin().key(), json.begin().value());
+}
+
+}  // namespace live

@@ -1,0 +1,77 @@
+// What a page asks for: text messages of docs/live-protocol.md, read and checked.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <variant>
+
+#include <kerf/vec.h>
+
+namespace live {
+
+/// A message that is not of the protocol; says what is wrong.
+struct BadMessage : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The longest message, in bytes.
+constexpr std::size_t longest_message = 4096;
+
+enum class Phase { begin, move, end };
+
+/// Confirms that the message with this sequence number was shown.
+struct Acknowledge {
+  std::uint32_t sequence = 0;
+};
+/// What frames are to hold besides positions of the surface. `graph`: once.
+struct Want {
+  std::optional<bool> nodes, stress;
+  bool graph = false;
+};
+/// The pose of a hand's edge: from `origin` along `direction` (unit), `depth` long.
+struct Stroke {
+  std::uint64_t id = 0, input = 0;
+  Phase phase = Phase::begin;
+  geo::Vec3 origin = geo::Vec3::Zero(), direction = geo::Vec3::UnitZ();
+  double depth = 0;
+};
+/// A point of the surface: barycentric coordinates in the face of a slot.
+struct Spot {
+  std::uint32_t face = 0;
+  geo::Vec3 bary = geo::Vec3::Zero();
+};
+/// A spring from a point of the surface to the pointer.
+struct Grab {
+  std::uint64_t id = 0, input = 0;
+  Phase phase = Phase::begin;
+  Spot spot;  ///< read where the grab begins
+  geo::Vec3 to = geo::Vec3::Zero();
+};
+/// Holds, or frees, the material around a point of the surface.
+struct Pin {
+  Spot spot;
+  bool on = true;
+  double radius = 0;  ///< model units; 0: as the server finds fit
+};
+/// Values of the scene.
+struct Set {
+  std::optional<double> young, friction, damping;
+  std::optional<geo::Vec3> gravity;
+};
+struct Undo {};
+struct Reset {};
+struct Pause {
+  bool on = true;
+};
+struct Step {};
+
+using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Reset, Pause, Step>;
+
+/// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
+/// kind, has unknown or missing keys, or values out of range. Nothing else is thrown, and the time is
+/// linear in the length.
+Command read_command(std::string_view text);
+
+}  // namespace live

@@ -1,0 +1,49 @@
+// What pages ask for, on its way from the network thread to the simulation thread.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "live/command.h"
+#include "live/snapshot.h"
+
+namespace live {
+
+/// A page came, or went.
+struct Join {};
+struct Leave {};
+/// A file is wanted. `answer` may be called on any thread, once: with its bytes, or with a reason.
+struct Save {
+  std::string format;  ///< kerf, ply, glb or toml
+  std::function<void(std::string bytes, std::string error)> answer;
+};
+
+struct Request {
+  ClientId page = 0;
+  std::variant<Command, Join, Leave, Save> what;
+};
+
+/// A queue in which a pointer's move replaces the move before it.
+class Inbox {
+ public:
+  /// Appends a request. False where the queue is full; nothing is kept then, except of pages that
+  /// come or go.
+  bool put(Request request);
+  /// Takes all requests, in order.
+  std::vector<Request> take();
+  /// Waits until there is a request, at most until `time`.
+  void wait_until(std::chrono::steady_clock::time_point time);
+
+ private:
+  static constexpr std::size_t longest = 1024;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::vector<Request> requests_;
+};
+
+}  // namespace live

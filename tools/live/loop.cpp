@@ -1,0 +1,171 @@
+// Input is taken right before a frame is computed. Without a page, or paused, nothing is computed.
+#include "live/loop.h"
+
+#include <algorithm>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "live/pace.h"
+#include "live/save.h"
+#include "live/scene_text.h"
+
+namespace live {
+namespace {
+
+using Clock = Pacer::Clock;
+
+class Loop {
+ public:
+  Loop(Session& session, Inbox& inbox, Server& server, const LoopOptions& options)
+      : session_(session),
+        inbox_(inbox),
+        server_(server),
+        options_(options),
+        pacer_(1 / session.original().frame_rate, session.original().accuracy),
+        scene_(std::make_shared<std::string>(scene_text(session, options.name))) {}
+
+  void run() {
+    publish();
+    while (options_.keep_on() && !is_deserted()) {
+      const bool moves = !pages_.empty() && (!paused_ || steps_ > 0);
+      const auto soon = Clock::now() + std::chrono::milliseconds(100);
+      // Until a frame is due, requests wait for it: so the input is the latest.
+      if (moves)
+        while (Clock::now() < pacer_.due()) std::this_thread::sleep_until(std::min(pacer_.due(), soon));
+      else
+        inbox_.wait_until(soon);
+      bool changed = false;
+      for (Request& request : inbox_.take()) changed |= take(std::move(request));
+      if (!moves) {
+        pacer_.restart();
+        if (changed) publish();
+        continue;
+      }
+      compute();
+      publish();
+    }
+  }
+
+ private:
+  void compute() {
+    const auto begin = Clock::now();
+    if (const std::string reason = session_.advance(); !reason.empty()) say("went back: " + reason);
+    pacer_.add(begin, Clock::now());
+    steps_ = std::max(0, steps_ - 1);
+    if (const double accuracy = pacer_.accuracy(); accuracy != accuracy_) {
+      if (accuracy_ != 0 || accuracy != session_.original().accuracy) session_.set_accuracy(accuracy);
+      accuracy_ = accuracy;
+    }
+  }
+
+  bool is_deserted() const {
+    return options_.linger > 0 && came_ && pages_.empty() &&
+           Clock::now() - gone_ > std::chrono::duration<double>(options_.linger);
+  }
+
+  // Whether pages are to be shown a new state.
+  bool take(Request request) {
+    const ClientId page = request.page;
+    try {
+      return std::visit([&](auto& what) { return obey(page, what); }, request.what);
+    } catch (const BadMessage& e) {
+      server_.tell(page, "error", e.what());
+      return false;
+    }
+  }
+  bool obey(ClientId page, Join&) {
+    pages_.insert(page), came_ = true;
+    return true;
+  }
+  bool obey(ClientId page, Leave&) {
+    pages_.erase(page);
+    gone_ = Clock::now();
+    session_.leave(page);
+    return true;
+  }
+  bool obey(ClientId, Save& save) {
+    try {
+      save.answer(saved_file(session_, save.format, {}), {});
+    } catch (const std::exception& e) {
+      save.answer({}, e.what());
+    }
+    return false;
+  }
+  bool obey(ClientId page, Command& command) {
+    return std::visit([&](const auto& c) { return obey_command(page, c); }, command);
+  }
+  bool obey_command(ClientId, const Acknowledge&) { return false; }
+  bool obey_command(ClientId, const Want&) { return true; }
+  bool obey_command(ClientId page, const Stroke& c) { return session_.obey(page, c), false; }
+  bool obey_command(ClientId page, const Grab& c) { return session_.obey(page, c), false; }
+  bool obey_command(ClientId, const Pin& c) { return session_.obey(c), true; }
+  bool obey_command(ClientId, const Set& c) { return session_.obey(c), true; }
+  bool obey_command(ClientId, const Undo&) { return session_.undo(), restart(), true; }
+  bool obey_command(ClientId, const Reset&) { return session_.reset(), restart(), true; }
+  bool obey_command(ClientId, const Pause& c) { return paused_ = c.on, true; }
+  bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
+
+  // After going back, the accuracy is what the recording says.
+  void restart() { accuracy_ = 0, pacer_.restart(); }
+
+  void say(const std::string& sentence) { message_ = sentence, said_ = Clock::now(); }
+
+  void publish() {
+    auto s = std::make_shared<Snapshot>();
+    s->number = ++number_;
+    session_.show(*s);
+    const geo::Simulation& run = session_.run();
+    if (server_.wants_nodes()) {
+      s->nodes = run.body().nodes.position;
+      for (std::size_t i = 0; i < s->nodes.size(); ++i) s->nodes[i] += run.state().motion.displacement[i];
+    }
+    if (server_.wants_stress()) s->stress = geo::von_mises_stress(run.solid(), run.body().nodes, run.state().motion);
+    if (const auto asked = server_.graphs_wanted(); asked != graphs_) graphs_ = asked, graph_ = edges();
+    s->graph = graph_, s->graph_number = graphs_;
+    s->scene = scene_;
+    s->statistics = statistics_text(session_, pace());
+    server_.publish(std::move(s));
+  }
+  Pace pace() {
+    if (Clock::now() - said_ > std::chrono::seconds(4)) message_.clear();
+    if (message_.empty() && pacer_.slow()) {
+      const int percent = static_cast<int>(100 * pacer_.rate() + 0.5);
+      return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_,
+              "slower than real time: " + std::to_string(percent) + " %"};
+    }
+    return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_, message_};
+  }
+  double accuracy() const { return session_.run().scene().accuracy; }
+  std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> edges() const {
+    auto list = std::make_shared<std::vector<std::pair<std::uint32_t, std::uint32_t>>>();
+    const geo::Body& body = session_.run().body();
+    for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
+      for (const geo::NodeId j : body.graph.edges(geo::NodeId(i)))
+        if (j.value > i && j.value < body.nodes.size()) list->push_back({i, j.value});
+    return list;
+  }
+
+  Session& session_;
+  Inbox& inbox_;
+  Server& server_;
+  const LoopOptions& options_;
+  Pacer pacer_;
+  std::shared_ptr<const std::string> scene_;
+  std::set<ClientId> pages_;
+  bool came_ = false, paused_ = false;
+  int steps_ = 0;  // to be made while paused
+  double accuracy_ = 0;
+  Clock::time_point gone_ = Clock::now(), said_ = Clock::now();
+  std::string message_;
+  std::uint64_t number_ = 0, graphs_ = 0;
+  std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> graph_;
+};
+
+}  // namespace
+
+void run_loop(Session& session, Inbox& inbox, Server& server, const LoopOptions& options) {
+  Loop(session, inbox, server, options).run();
+}
+
+}  // namespace live

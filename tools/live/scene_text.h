@@ -1,0 +1,25 @@
+// What a page is told of a scene and of a frame, as JSON.
+#pragma once
+
+#include <string>
+
+#include "live/session.h"
+
+namespace live {
+
+/// How the run keeps up with real time.
+struct Pace {
+  double fps = 0;         ///< frames computed per second
+  double rate = 0;        ///< simulated seconds per second
+  double step = 0;        ///< seconds that a frame takes to compute, mean
+  double accuracy = 0;    ///< of the mechanics now, in node spacings
+  bool paused = false;
+  std::string message;    ///< of the last seconds; may be empty
+};
+
+/// The JSON of STATE.
+std::string scene_text(const Session& session, const std::string& name);
+/// The statistics of FRAME, without the last brace.
+std::string statistics_text(const Session& session, const Pace& pace);
+
+}  // namespace live

@@ -1,0 +1,397 @@
+// One connection is one request, or one page's WebSocket. All state but the slot of the latest
+// snapshot belongs to the network thread.
+#include "live/server.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include <kerf/error.h>
+#include "live/encode.h"
+
+namespace live {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+namespace net = boost::asio;
+using tcp = net::ip::tcp;
+using beast::error_code;
+using Socket = beast::tcp_stream;
+using HttpRequest = http::request<http::string_body>;
+using HttpResponse = http::response<http::string_body>;
+
+namespace {
+
+constexpr int most_connections = 64, most_messages = 240;  // at a time; per second and page
+constexpr std::size_t most_notices = 16;                   // that wait for a page
+constexpr auto request_time = std::chrono::seconds(10);
+
+// Whether two texts are equal, in a time that depends on their lengths only.
+bool same_secret(std::string_view a, std::string_view b) {
+  unsigned different = a.size() != b.size();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) different |= static_cast<unsigned char>(a[i] ^ b[i]);
+  return different == 0;
+}
+
+std::string host_text(const net::ip::address& address, int port) {
+  const std::string text = address.to_string();
+  return (address.is_v6() ? "[" + text + "]" : text) + ":" + std::to_string(port);
+}
+
+// A file name without characters that mean anything to a shell or a browser.
+std::string plain_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(),
+      [](unsigned char c) { return c > 126 || !(std::isalnum(c) || c == '-' || c == '_' || c == '.'); }, '_');
+  return name.empty() ? "body" : name.substr(0, 80);
+}
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(const ServerOptions& options_in, Inbox& inbox_in) : options(options_in), inbox(inbox_in) {}
+  void listen();
+  void accept();
+  void close();
+  bool right_host(std::string_view host, const tcp::socket& socket) const;
+  void deliver();
+
+  ServerOptions options;
+  Inbox& inbox;
+  int port = 0;
+  class Link;
+  class Visit;
+  std::map<ClientId, std::weak_ptr<Link>> links;
+  ClientId last_id = 0;
+  int connections = 0;
+  std::shared_ptr<const Snapshot> latest;
+  std::atomic<int> nodes_wanted{0}, stress_wanted{0};
+  std::atomic<std::uint64_t> graphs_wanted{0};
+  std::mutex slot_mutex;
+  std::shared_ptr<const Snapshot> slot;  // published, not yet delivered
+  // Last: handlers that are destroyed with it own links, which use the members above.
+  net::io_context io{1};
+  tcp::acceptor acceptor{io};
+  std::thread thread;
+};
+
+// The WebSocket of a page. It has at most one message that is not confirmed.
+class Server::Impl::Link : public std::enable_shared_from_this<Link> {
+ public:
+  Link(Impl& hub, Socket socket) : hub_(hub), id_(++hub.last_id), ws_(std::move(socket)) {}
+  ~Link() {
+    want_nodes(false), want_stress(false);
+    hub_.links.erase(id_);
+    if (joined_) hub_.inbox.put({id_, Leave{}});
+    --hub_.connections;
+  }
+
+  void start(const HttpRequest& request) {
+    ws_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    ws_.read_message_max(longest_message);
+    ws_.auto_fragment(false);
+    ws_.async_accept(request, [self = shared_from_this()](error_code error) {
+      if (error) return;
+      self->hub_.links[self->id_] = self;
+      self->joined_ = true;
+      self->hub_.inbox.put({self->id_, Join{}});
+      self->read();
+      self->pump();
+    });
+  }
+  void tell(std::string_view key, std::string_view sentence) {
+    if (notices_.size() >= most_notices) return;
+    notices_.push_back(encode_notice(key, sentence, 0));
+    pump();
+  }
+  // Writes what there is to write, if the page is ready for it.
+  void pump() {
+    if (writing_ || !joined_) return;
+    const auto& s = hub_.latest;
+    if (!notices_.empty()) {
+      message_ = std::move(notices_.front());
+      notices_.pop_front();
+    } else if (awaited_ || !s) {
+      return;
+    } else if (s->graph && s->graph_number > graph_sent_ && asked_graph_) {
+      graph_sent_ = s->graph_number, asked_graph_ = false;
+      awaited_ = ++sequence_;
+      message_ = encode_graph(*s, sequence_);
+    } else if (s->number != sent_) {
+      const auto taken = s->taken.find(id_);
+      const Content content{++sequence_, nodes_, stress_, taken == s->taken.end() ? 0 : taken->second};
+      message_ = known_ ? encode_frame(*s, *known_, content) : encode_state(*s, content);
+      known_ = s->topology, sent_ = s->number, awaited_ = sequence_;
+    } else {
+      return;
+    }
+    writing_ = true;
+    ws_.binary(true);
+    ws_.async_write(net::buffer(message_), [self = shared_from_this()](error_code error, std::size_t) {
+      self->writing_ = false;
+      if (!error) self->pump();
+    });
+  }
+  void close() {
+    joined_ = false;
+    error_code ignored;
+    beast::get_lowest_layer(ws_).socket().shutdown(tcp::socket::shutdown_both, ignored);
+  }
+
+ private:
+  void read() {
+    ws_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return self->finish();
+      self->take();
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+  // No more can be read: nothing more is written.
+  void finish() { joined_ ? leave() : void(); }
+  void leave() {
+    joined_ = false;
+    hub_.inbox.put({id_, Leave{}});
+    hub_.links.erase(id_);
+    error_code ignored;
+    beast::get_lowest_layer(ws_).socket().close(ignored);
+  }
+  void take() {
+    if (!within_rate()) return;
+    if (!ws_.got_text()) return tell("error", "a message is text, not bytes");
+    try {
+      const auto data = buffer_.data();
+      obey(read_command({static_cast<const char*>(data.data()), data.size()}));
+    } catch (const BadMessage& e) {
+      tell("error", e.what());
+    }
+  }
+  bool within_rate() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - second_ > std::chrono::seconds(1)) second_ = now, messages_ = 0;
+    if (++messages_ == most_messages + 1) tell("error", "more than 240 messages a second are left out");
+    return messages_ <= most_messages;
+  }
+  void obey(Command command) {
+    if (const auto* ack = std::get_if<Acknowledge>(&command)) {
+      if (awaited_ == ack->sequence) awaited_.reset();
+      return pump();
+    }
+    if (const auto* want = std::get_if<Want>(&command)) {
+      if (want->nodes) want_nodes(*want->nodes);
+      if (want->stress) want_stress(*want->stress);
+      if (want->graph) asked_graph_ = true, ++hub_.graphs_wanted;
+    }
+    if (!hub_.inbox.put({id_, std::move(command)})) tell("error", "the simulation is busy; the message is left out");
+  }
+  void want_nodes(bool on) { hub_.nodes_wanted += int(on) - int(std::exchange(nodes_, on)); }
+  void want_stress(bool on) { hub_.stress_wanted += int(on) - int(std::exchange(stress_, on)); }
+
+  Impl& hub_;
+  ClientId id_;
+  websocket::stream<Socket> ws_;
+  beast::flat_buffer buffer_;
+  std::deque<std::string> notices_;
+  std::string message_;
+  bool joined_ = false, writing_ = false, nodes_ = false, stress_ = false, asked_graph_ = false;
+  std::uint32_t sequence_ = 0;
+  std::optional<std::uint32_t> awaited_;  // number of the message that is not confirmed
+  std::shared_ptr<const Topology> known_;
+  std::uint64_t sent_ = 0, graph_sent_ = 0;
+  std::chrono::steady_clock::time_point second_;
+  int messages_ = 0;
+};
+
+// A connection up to the answer of its request.
+class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
+ public:
+  Visit(Impl& hub, tcp::socket socket) : hub_(hub), socket_(std::move(socket)) { ++hub_.connections; }
+  ~Visit() {
+    if (!upgraded_) --hub_.connections;
+  }
+  void start() {
+    parser_.header_limit(8192);
+    parser_.body_limit(1024);
+    socket_.expires_after(request_time);
+    http::async_read(socket_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (!error) self->answer();
+    });
+  }
+
+ private:
+  static std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+  void answer() {
+    const HttpRequest& request = parser_.get();
+    const std::string_view host = view(request[http::field::host]), target = view(request.target());
+    if (!hub_.right_host(host, socket_.socket())) return send(http::status::forbidden, "wrong host");
+    const auto slash = target.find('/', 1);
+    if (target.empty() || slash == target.npos || !same_secret(target.substr(1, slash - 1), hub_.options.token))
+      return send(http::status::not_found, "not here; use the address that kerf-live has printed");
+    const std::string_view rest = target.substr(slash);
+    if (request.method() != http::verb::get) return send(http::status::method_not_allowed, "GET only");
+    if (rest == "/live") return upgrade(host);
+    if (rest == "/") return send(http::status::ok, hub_.options.page, "text/html; charset=utf-8");
+    if (rest.starts_with("/save?as=")) return save(std::string(rest.substr(9)));
+    send(http::status::not_found, "not here");
+  }
+  void upgrade(std::string_view host) {
+    const HttpRequest& request = parser_.get();
+    if (!websocket::is_upgrade(request)) return send(http::status::upgrade_required, "a WebSocket is expected");
+    if (view(request[http::field::origin]) != "http://" + std::string(host))
+      return send(http::status::forbidden, "wrong origin");
+    upgraded_ = true;
+    socket_.expires_never();
+    error_code ignored;
+    socket_.socket().set_option(tcp::no_delay(true), ignored);
+    std::make_shared<Link>(hub_, std::move(socket_))->start(request);
+  }
+  void save(const std::string& format) {
+    if (format != "kerf" && format != "ply" && format != "glb" && format != "toml")
+      return send(http::status::not_found, "as=kerf, ply, glb or toml");
+    socket_.expires_never();
+    Save save{format, [self = shared_from_this(), format](std::string bytes, std::string error) {
+                net::post(self->hub_.io, [self, format, bytes = std::move(bytes), error = std::move(error)]() mutable {
+                  if (!error.empty()) return self->send(http::status::internal_server_error, error);
+                  self->file_ = plain_name(self->hub_.options.name) + "." + format;
+                  self->send(http::status::ok, std::move(bytes), "application/octet-stream");
+                });
+              }};
+    if (!hub_.inbox.put({0, std::move(save)})) send(http::status::service_unavailable, "the simulation is busy");
+  }
+  void send(http::status status, std::string body, const std::string& type = "text/plain; charset=utf-8") {
+    response_ = HttpResponse(status, 11);
+    response_.set(http::field::content_type, type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Content-Security-Policy",
+                  "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+                  "connect-src 'self' ws:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+    if (!file_.empty()) response_.set(http::field::content_disposition, "attachment; filename=\"" + file_ + "\"");
+    response_.keep_alive(false);
+    response_.body() = std::move(body);
+    if (type.starts_with("text/plain")) response_.body() += '\n';
+    response_.prepare_payload();
+    socket_.expires_after(request_time * 6);
+    http::async_write(socket_, response_, [self = shared_from_this()](error_code, std::size_t) {
+      error_code ignored;
+      self->socket_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    });
+  }
+
+  Impl& hub_;
+  Socket socket_;
+  beast::flat_buffer buffer_;
+  http::request_parser<http::string_body> parser_;
+  HttpResponse response_;
+  std::string file_;
+  bool upgraded_ = false;
+};
+
+void Server::Impl::listen() {
+  const std::string place = options.address + ":" + std::to_string(options.port);
+  error_code error;
+  const auto address = net::ip::make_address(options.address, error);
+  if (error) throw geo::InputError(options.address + ": is no address of an interface, such as 127.0.0.1");
+  const tcp::endpoint endpoint(address, static_cast<std::uint16_t>(options.port));
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
+  if (error) throw geo::InputError(place + ": cannot listen there: " + error.message() + "; give another --port");
+  port = acceptor.local_endpoint().port();
+  accept();
+}
+
+void Server::Impl::accept() {
+  acceptor.async_accept([this](error_code error, tcp::socket socket) {
+    if (!acceptor.is_open()) return;
+    if (!error && connections < most_connections) std::make_shared<Visit>(*this, std::move(socket))->start();
+    accept();
+  });
+}
+
+// A name that resolves here is no proof of where a page came from: only addresses, and localhost.
+bool Server::Impl::right_host(std::string_view host, const tcp::socket& socket) const {
+  error_code error;
+  const auto local = socket.local_endpoint(error);
+  if (error) return false;
+  return host == host_text(local.address(), port) ||
+         (local.address().is_loopback() && host == "localhost:" + std::to_string(port));
+}
+
+void Server::Impl::deliver() {
+  {
+    const std::lock_guard lock(slot_mutex);
+    latest = std::exchange(slot, nullptr);
+  }
+  std::vector<std::shared_ptr<Link>> all;
+  for (const auto& [id, link] : links)
+    if (auto alive = link.lock()) all.push_back(std::move(alive));
+  for (const auto& link : all) link->pump();
+}
+
+void Server::Impl::close() {
+  error_code ignored;
+  acceptor.close(ignored);
+  std::vector<std::shared_ptr<Link>> all;
+  for (const auto& [id, link] : links)
+    if (auto alive = link.lock()) all.push_back(std::move(alive));
+  for (const auto& link : all) link->close();
+  io.stop();
+}
+
+Server::Server(const ServerOptions& options, Inbox& inbox) : impl_(std::make_unique<Impl>(options, inbox)) {
+  impl_->listen();
+  impl_->thread = std::thread([io = &impl_->io] { io->run(); });
+}
+
+Server::~Server() {
+  net::post(impl_->io, [this] { impl_->close(); });
+  impl_->thread.join();
+}
+
+std::string Server::url() const {
+  const auto address = impl_->acceptor.local_endpoint().address();
+  const auto shown = address.is_unspecified() ? net::ip::make_address("127.0.0.1") : address;
+  return "http://" + host_text(shown, impl_->port) + "/" + impl_->options.token + "/";
+}
+
+void Server::publish(std::shared_ptr<const Snapshot> snapshot) {
+  bool waits;
+  {
+    const std::lock_guard lock(impl_->slot_mutex);
+    waits = impl_->slot != nullptr;
+    impl_->slot = std::move(snapshot);
+  }
+  if (!waits) net::post(impl_->io, [impl = impl_.get()] { impl->deliver(); });
+}
+
+void Server::tell(ClientId page, const std::string& key, const std::string& sentence) {
+  net::post(impl_->io, [impl = impl_.get(), page, key, sentence] {
+    const auto at = impl->links.find(page);
+    if (at == impl->links.end()) return;
+    if (const auto link = at->second.lock()) link->tell(key, sentence);
+  });
+}
+
+bool Server::wants_nodes() const { return impl_->nodes_wanted > 0; }
+bool Server::wants_stress() const { return impl_->stress_wanted > 0; }
+std::uint64_t Server::graphs_wanted() const { return impl_->graphs_wanted; }
+
+}  // namespace live

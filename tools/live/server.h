@@ -1,0 +1,47 @@
+// HTTP and WebSocket for pages, on a thread of its own. Boost.Beast stays in the source.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "live/inbox.h"
+#include "live/snapshot.h"
+
+namespace live {
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  ///< of the interface to listen at
+  int port = 0;                       ///< 0: a free one
+  std::string token;                  ///< first part of every path
+  std::string page;                   ///< HTML
+  std::string name = "body";          ///< of saved files
+};
+
+/// Serves until it is destroyed, which closes all connections.
+class Server {
+ public:
+  /// Listens, and starts the thread. Requests go to `inbox`, which must outlive the server. Throws
+  /// geo::InputError for an address or port that cannot be listened at.
+  Server(const ServerOptions& options, Inbox& inbox);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// The address of the page.
+  std::string url() const;
+  /// Shows a state to all pages, each as soon as it has confirmed what it got before.
+  void publish(std::shared_ptr<const Snapshot> snapshot);
+  /// Tells a page a sentence. `key`: "error" or "notice".
+  void tell(ClientId page, const std::string& key, const std::string& sentence);
+  /// Whether a page wants nodes, stress, and how often the graph was asked for.
+  bool wants_nodes() const;
+  bool wants_stress() const;
+  std::uint64_t graphs_wanted() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace live

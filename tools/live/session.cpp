@@ -1,0 +1,316 @@
+// A blade or spring gets a key at each frame: the pose that the pointer had last. A run that went
+// back goes on from the checkpoint of that frame, as it would be read from a file.
+#include "live/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <kerf/body_file.h>
+#include <kerf/error.h>
+#include <kerf/pieces.h>
+
+namespace live {
+namespace {
+
+constexpr std::size_t most_hands = 8;     // blades and springs at a time
+constexpr std::size_t most_saved = 16;    // strokes that can be undone
+constexpr int count_interval = 12;        // frames between two counts of pieces while a blade cuts
+constexpr double farthest_pull = 0.6;     // stretch of a spring, in diagonals of the body
+constexpr double finest_edge = 48;        // segments of an edge
+
+std::string checkpoint_bytes(const geo::Body& body, const geo::RunState& state) {
+  std::ostringstream out;
+  geo::write_checkpoint(out, body, state, 0);
+  return std::move(out).str();
+}
+
+geo::Simulation simulation_from(const geo::Scene& scene, const std::string& bytes) {
+  geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(bytes, "checkpoint")));
+  return {scene, std::move(c.body), std::move(c.state)};
+}
+
+// The pose of an edge along local z.
+geo::Pose pose_of(const Stroke& s) {
+  return {s.origin, Eigen::Quaterniond::FromTwoVectors(geo::Vec3::UnitZ(), s.direction)};
+}
+
+std::string start_of(const sim::Setup& setup, const geo::Progress& progress) {
+  const geo::RunStart fresh = geo::begin_run(setup.scene, setup.models, progress);
+  return checkpoint_bytes(fresh.body, fresh.state);
+}
+
+double finest_spacing(const geo::Body& body) {
+  return *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
+}
+
+}  // namespace
+
+void adapt_scene(geo::Scene& scene, double rate, bool blades) {
+  scene.frame_rate = rate;
+  scene.dt = std::min(scene.dt, 1 / rate);
+  scene.checkpoint_every = 1000000;
+  if (!blades) scene.blades.clear();
+}
+
+Session::Session(const sim::Setup& setup, const geo::Progress& progress)
+    : setup_(setup), start_(start_of(setup, progress)), run_(simulation_from(setup.scene, start_)) {
+  for (std::uint32_t i = 0; i < run_.solid().size(); ++i) mass_ += run_.solid().mass(geo::NodeId(i));
+  count_pieces();
+}
+
+void Session::count_pieces() {
+  pieces_ = geo::find_pieces(run_.body().surface).count;
+  counted_faces_ = run_.body().surface.face_count();
+  since_count_ = 0;
+}
+
+void Session::obey(ClientId page, const Stroke& stroke) {
+  taken_[page] = stroke.input;
+  const Hand hand{page, stroke.id};
+  if (stroke.phase == Phase::begin) {
+    if (blades_.contains(hand)) throw BadMessage("this stroke has begun already");
+    if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
+    if (stroke.depth > 100 * geo::bounding_box(setup_.models.all).diagonal()) throw BadMessage("the edge is too long");
+    save();
+    geo::Blade blade;
+    blade.name = "stroke" + std::to_string(run_.scene().blades.size() + 1);
+    const double n = std::clamp(std::ceil(stroke.depth / finest_spacing(run_.body())), 1.0, finest_edge);
+    for (int i = 0; i <= static_cast<int>(n); ++i) blade.points.push_back({0, 0, stroke.depth * i / n});
+    const std::size_t b = run_.add_blade(std::move(blade));
+    run_.extend_blade(b, 0, pose_of(stroke));
+    blades_[hand] = {b, pose_of(stroke), stroke.depth, false, run_.body().surface.face_count()};
+    return;
+  }
+  const auto held = blades_.find(hand);
+  if (held == blades_.end()) return;  // ended by undo or reset
+  held->second.pose = pose_of(stroke);
+  held->second.ends = stroke.phase == Phase::end;
+}
+
+geo::Vec3 Session::material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const {
+  const geo::Side side = slots_.side(spot.face);
+  if (!side.face.valid()) throw BadMessage("there is no such triangle now");
+  const geo::Complex& surface = run_.body().surface;
+  geo::Vec3 x = geo::Vec3::Zero();
+  int most = 0;
+  for (int k = 0; k < 3; ++k) {
+    // A side is seen from its own side: its corners 1 and 2 are exchanged.
+    const int corner = side.which == 1 && k > 0 ? 3 - k : k;
+    const auto v = surface.surface_vertex(side, corner);
+    x += spot.bary[k] * surface.point(surface.site(v));
+    if (k == 0 || spot.bary[k] > spot.bary[most]) most = k, nearest = v;
+  }
+  return x;
+}
+
+geo::Vec3 Session::world_point(const Spot& spot) const {
+  const geo::Triangle& t = slots_.topology()->triangle.at(spot.face);
+  return spot.bary[0] * positions_[t[0]] + spot.bary[1] * positions_[t[1]] + spot.bary[2] * positions_[t[2]];
+}
+
+// Stiff enough to lift all bodies by a stretch of a tenth of their size, and about as stiff as the
+// material in the neighbourhood that is held.
+double Session::pull_stiffness(std::uint32_t node) const {
+  const double size = geo::bounding_box(setup_.models.all).diagonal();
+  const geo::Material& material = run_.solid().materials().of(node);
+  return std::max(2 * material.young * run_.body().nodes.radius[node],
+                  10 * mass_ * run_.scene().gravity.norm() / size);
+}
+
+void Session::obey(ClientId page, const Grab& grab) {
+  taken_[page] = grab.input;
+  const Hand hand{page, grab.id};
+  if (grab.phase == Phase::begin) {
+    if (pulls_.contains(hand)) throw BadMessage("this grab has begun already");
+    if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
+    geo::SurfaceVertexId nearest;
+    const geo::Vec3 x = material_point(grab.spot, nearest);
+    const geo::Binding& binding = run_.body().binding;
+    const auto master = binding.master[nearest.index()];
+    if (!master.valid()) throw BadMessage("no node carries this point");
+    geo::Pull pull;
+    pull.point = x, pull.node = binding.master_node[master.index()].value;
+    pull.stiffness = pull_stiffness(*pull.node);
+    const std::size_t p = run_.add_pull(std::move(pull));
+    run_.extend_pull(p, 0, world_point(grab.spot));
+    pulls_[hand] = {p, grab.to};
+    return;
+  }
+  const auto held = pulls_.find(hand);
+  if (held == pulls_.end()) return;
+  held->second.to = grab.to, held->second.ends = grab.phase == Phase::end;
+}
+
+void Session::obey(const Pin& pin) {
+  geo::SurfaceVertexId nearest;
+  const geo::Vec3 x = material_point(pin.spot, nearest);
+  if (!pin.on) {
+    const auto held = std::find_if(pins_.begin(), pins_.end(), [&](const HeldPin& p) {
+      return (p.material - x).cwiseAbs().maxCoeff() <= std::max(p.radius, pin.radius);
+    });
+    if (held == pins_.end()) throw BadMessage("there is no pin here");
+    run_.end_grip(held->grip);
+    pins_.erase(held);
+    return;
+  }
+  const double coarsest = *std::max_element(run_.body().nodes.spacing.begin(), run_.body().nodes.spacing.end());
+  const double radius = pin.radius > 0 ? pin.radius : coarsest;
+  geo::Grip grip;
+  grip.lo = x - geo::Vec3::Constant(radius), grip.hi = x + geo::Vec3::Constant(radius);
+  pins_.push_back({run_.add_grip(std::move(grip)), x, world_point(pin.spot), radius});
+}
+
+void Session::obey(const Set& set) {
+  geo::SceneChange change;
+  change.young = set.young, change.damping = set.damping, change.gravity = set.gravity, change.friction = set.friction;
+  try {
+    run_.change(change);
+  } catch (const geo::InputError& e) {
+    throw BadMessage(e.what());
+  }
+}
+
+void Session::set_accuracy(double accuracy) {
+  geo::SceneChange change;
+  change.accuracy = accuracy;
+  run_.change(change);
+}
+
+void Session::leave(ClientId page) {
+  for (auto& [hand, held] : blades_)
+    if (hand.first == page) held.ends = true;
+  for (auto& [hand, held] : pulls_)
+    if (hand.first == page) held.ends = true;
+  taken_.erase(page);
+}
+
+void Session::save() {
+  const geo::Scene& scene = run_.scene();
+  if (saved_.size() >= most_saved) saved_.erase(saved_.begin());
+  saved_.push_back({run_.body(), run_.state(), scene.blades.size(), scene.grips.size(), scene.pulls.size(),
+                    scene.changes.size(), checkpoints_, pins_});
+}
+
+void Session::restore(Saved saved) {
+  const double time = saved.state.frame * (1 / setup_.scene.frame_rate);
+  geo::Scene scene = recording();
+  scene.blades.resize(saved.blades), scene.grips.resize(saved.grips), scene.pulls.resize(saved.pulls);
+  scene.changes.resize(saved.changes);
+  const auto later = [&](const geo::Motion::Key& key) { return key.time > time; };
+  for (std::size_t b = setup_.scene.blades.size(); b < scene.blades.size(); ++b)
+    std::erase_if(scene.blades[b].motion.keys, later);
+  for (std::size_t p = setup_.scene.pulls.size(); p < scene.pulls.size(); ++p)
+    std::erase_if(scene.pulls[p].motion.keys, later);
+  for (std::size_t g = setup_.scene.grips.size(); g < scene.grips.size(); ++g)
+    if (scene.grips[g].until > time) scene.grips[g].until = std::numeric_limits<double>::infinity();
+  checkpoints_ = std::move(saved.checkpoints);
+  if (saved.state.frame > 0 && (checkpoints_.empty() || checkpoints_.back() != saved.state.frame))
+    checkpoints_.push_back(saved.state.frame);
+  pins_ = std::move(saved.pins);
+  blades_.clear(), pulls_.clear();
+  run_ = simulation_from(scene, checkpoint_bytes(saved.body, saved.state));
+  slots_.clear();
+  stats_ = {}, has_cut_ = false;
+  count_pieces();
+}
+
+void Session::undo() {
+  if (saved_.empty()) throw BadMessage("there is no cut to undo");
+  Saved last = std::move(saved_.back());
+  saved_.pop_back();
+  restore(std::move(last));
+}
+
+void Session::reset() {
+  saved_.clear(), checkpoints_.clear(), pins_.clear(), blades_.clear(), pulls_.clear();
+  run_ = simulation_from(setup_.scene, start_);
+  slots_.clear();
+  stats_ = {}, has_cut_ = false;
+  count_pieces();
+}
+
+void Session::extend_hands() {
+  for (auto& [hand, held] : blades_) run_.extend_blade(held.blade, 1, held.pose);
+  const double most = farthest_pull * geo::bounding_box(setup_.models.all).diagonal();
+  for (auto& [hand, held] : pulls_) {
+    const geo::Vec3 before = run_.scene().pulls[held.pull].motion.keys.back().position, way = held.to - before;
+    // A jump of the pointer is made in several frames.
+    run_.extend_pull(held.pull, 1, way.norm() > most ? geo::Vec3(before + most / way.norm() * way) : held.to);
+  }
+}
+
+// Ends the hands that said so. A stroke that has cut nothing need not be undone.
+void Session::end_hands(bool all) {
+  for (auto at = blades_.begin(); at != blades_.end();) {
+    if (!all && !at->second.ends) {
+      ++at;
+      continue;
+    }
+    last_stroke_ = at->first.second;
+    if (at->second.faces == run_.body().surface.face_count() && !saved_.empty() &&
+        saved_.back().blades == at->second.blade)
+      saved_.pop_back();
+    at = blades_.erase(at);
+  }
+  std::erase_if(pulls_, [&](const auto& entry) { return all || entry.second.ends; });
+}
+
+std::string Session::advance() {
+  extend_hands();
+  try {
+    stats_ = run_.advance_frame();
+  } catch (const geo::GeometryError& e) {
+    const std::string reason = e.what();
+    if (saved_.empty())
+      reset();
+    else
+      undo();
+    return reason;
+  }
+  has_cut_ = faces_ != run_.body().surface.face_count();
+  faces_ = run_.body().surface.face_count();
+  end_hands(false);
+  if (faces_ != counted_faces_ && (!has_cut_ || ++since_count_ >= count_interval)) count_pieces();
+  return {};
+}
+
+geo::Scene Session::recording() const {
+  geo::Scene scene = setup_.scene;
+  const geo::Scene& now = run_.scene();
+  scene.blades = now.blades, scene.grips = now.grips, scene.pulls = now.pulls, scene.changes = now.changes;
+  scene.frames = std::max(1, run_.state().frame);
+  scene.checkpoints = checkpoints_;
+  return scene;
+}
+
+void Session::show(Snapshot& snapshot) {
+  slots_.update(run_.body().surface);
+  const std::vector<geo::Vec3> surface = run_.state().surface.empty() ? run_.surface().vertices : run_.state().surface;
+  const auto& slot = slots_.slot_of_living();
+  positions_.assign(slots_.topology()->vertices, surface.empty() ? geo::Vec3(geo::Vec3::Zero()) : surface[0]);
+  for (std::size_t i = 0; i < slot.size(); ++i) positions_[slot[i]] = surface[i];
+  snapshot.time = run_.state().time;
+  snapshot.topology = slots_.topology();
+  snapshot.positions = positions_;
+  snapshot.node_count = run_.body().nodes.size();
+  snapshot.taken = taken_;
+}
+
+std::vector<geo::Vec3> Session::pins() const {
+  std::vector<geo::Vec3> world;
+  for (const HeldPin& pin : pins_) world.push_back(pin.world);
+  return world;
+}
+
+std::vector<std::pair<std::vector<geo::Vec3>, double>> Session::edges() const {
+  std::vector<std::pair<std::vector<geo::Vec3>, double>> edges;
+  const geo::Scene& scene = run_.scene();
+  for (std::size_t b = 0; b < scene.blades.size(); ++b)
+    if (scene.blades[b].active(run_.state().time))
+      edges.push_back({scene.blades[b].at(run_.state().time),
+                       b < stats_.blade_force.size() ? stats_.blade_force[b].norm() : 0});
+  return edges;
+}
+
+}  // namespace live

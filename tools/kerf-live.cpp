@@ -62,8 +62,8 @@ void serve(const Command& command, const tool::Tool& t) {
   if (command.record.empty()) return;
   const std::string folder = fs::absolute(command.record).parent_path().string();
   geo::write_all(command.record, [&](std::ostream& out) { geo::write_scene(out, session.recording(), folder); });
-  t.say("kerf-live: " + tool::counted(static_cast<std::size_t>(session.run().state().frame), "frame") + ", recorded in " +
-        command.record);
+  t.say("kerf-live: " + tool::counted(static_cast<std::size_t>(session.run().state().frame), "frame") +
+        ", recorded in " + command.record);
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ void GrippedNodes::place(const std::vector<Grip>& grips, const NodeSet& nodes, d
   });
 }
 
-void GrippedNodes::set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes,
-                                  double begin, double end, State& motion) const {
+void GrippedNodes::set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes, double begin, double end,
+                                  State& motion) const {
   const std::vector<Pose> from = poses_at(grips, begin), to = poses_at(grips, end);
   each_held(grips, end, [&](NodeId i, std::size_t g) {
     if (grips[g].motion.keys.empty()) return;

@@ -26,7 +26,8 @@ std::vector<NodeWeight> point_weights(const Body& body, const Solid& solid, Node
   std::vector<std::pair<NodeId, double>> carriers{{node, 0}};
   for (const auto& neighbor : body.graph.neighbors(nodes, node)) carriers.push_back({neighbor.to, 0});
   double total = 0;
-  for (auto& [i, w] : carriers) total += w = kernel((nodes.position[i.index()] - x).norm() / nodes.radius[i.index()], 1.0);
+  for (auto& [i, w] : carriers)
+    total += w = kernel((nodes.position[i.index()] - x).norm() / nodes.radius[i.index()], 1.0);
   if (!(total > 0)) carriers.resize(1), carriers[0].second = total = 1;
   std::map<NodeId, double> sum;
   std::vector<std::pair<NodeId, Vec3>> gradient;
@@ -51,7 +52,8 @@ void PullPotential::begin_step(const std::vector<Pull>& pulls, const Body& body,
     const Pull& pull = pulls[p];
     if (!pull.motion.active(time) || !pull.motion.active(end)) continue;
     if (weights_[p].empty())
-      weights_[p] = point_weights(body, solid, pull.node ? NodeId(*pull.node) : nearest_node(body, pull.point), pull.point);
+      weights_[p] =
+          point_weights(body, solid, pull.node ? NodeId(*pull.node) : nearest_node(body, pull.point), pull.point);
     const Vec3 from = pull.motion.at(time).position, to = pull.motion.at(end).position;
     springs_.push_back({p, pull.point, from, to, to, pull.stiffness});
   }

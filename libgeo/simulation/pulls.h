@@ -52,6 +52,7 @@ class PullPotential : public Potential {
     std::size_t pull;
     Vec3 point, begin, end, now;  // of the material; the moving end's places
     double stiffness;
+    /// From the moving end to the point, at displacement d of the point.
     Vec3 stretch(const Vec3& d) const { return point + d - now; }
   };
   std::vector<Spring> springs_;

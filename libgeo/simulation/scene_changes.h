@@ -8,7 +8,7 @@
 
 namespace geo {
 
-/// What is wrong with a change: a value that a scene may not have. Empty where nothing is.
+/// The fault of a change: a value that a scene may not have. Empty where there is none.
 std::string unfit(const SceneChange& change);
 
 /// Applies the changes of a scene to its values, in their order.

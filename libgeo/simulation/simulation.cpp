@@ -389,7 +389,8 @@ void Simulation::move_obstacle(std::size_t obstacle, const Pose& pose) {
 }
 
 std::size_t Simulation::add_blade(Blade blade) {
-  if (blade.points.size() < (blade.closed ? 3 : 2)) throw InputError("a blade has two points at least, three if closed");
+  if (blade.points.size() < (blade.closed ? 3 : 2))
+    throw InputError("a blade has two points at least, three if closed");
   impl_->scene.blades.push_back(std::move(blade));
   impl_->state.fronts.emplace_back();
   return impl_->scene.blades.size() - 1;
@@ -416,9 +417,7 @@ void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) 
   append(impl_->scene.pulls.at(pull).motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
 }
 
-void Simulation::end_grip(std::size_t grip) {
-  impl_->scene.grips.at(grip).until = impl_->time_of(state().frame);
-}
+void Simulation::end_grip(std::size_t grip) { impl_->scene.grips.at(grip).until = impl_->time_of(state().frame); }
 
 void Simulation::change(SceneChange change) {
   change.time = impl_->time_of(state().frame);

@@ -24,10 +24,12 @@ std::string scene_of(const geo::TriangleMesh& mesh, const std::string& path, int
   low[axis] = box.lo[axis];
   const double gravity = falls * size;
   return "gravity = " + row(-gravity * normal) + "\n[body]\nmesh = " + tool::quoted(path) +
-         "\nnodes = " + std::to_string(nodes) + "\n[material]\nyoung = " +
-         tool::number(stiffness * density * gravity * size) + "\ndensity = " + tool::number(density) +
-         "\npoisson = 0.35\ndamping = 1.5\n[ground]\npoint = " + row(low) + "\nnormal = " + row(normal) +
-         "\nstiffness = 8e3\nfriction = 0.5\n[contact]\nself = true\nfriction = 0.1\n[time]\nstep = 0.0166\naccuracy = 0.01\n";
+         "\nnodes = " + std::to_string(nodes) +
+         "\n[material]\nyoung = " + tool::number(stiffness * density * gravity * size) +
+         "\ndensity = " + tool::number(density) + "\npoisson = 0.35\ndamping = 1.5\n[ground]\npoint = " + row(low) +
+         "\nnormal = " + row(normal) +
+         "\nstiffness = 8e3\nfriction = 0.5\n[contact]\nself = true\nfriction = 0.1\n[time]\nstep = 0.0166\naccuracy = "
+         "0.01\n";
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ void require_shallow(std::string_view text) {
   }
 }
 
-// A table of the message, whose keys are all to be asked for.
+// A table of the message. done() refuses it where it has a key that was not looked up.
 class Table {
  public:
   Table(const Json& json, std::string name) : json_(json), name_(std::move(name)) {
@@ -109,16 +109,16 @@ Phase phase_of(Table& t) {
 }
 
 Stroke knife_of(Table& t) {
-  Stroke s{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), t.point("eye"),
-           t.direction("ray"), t.number("depth", 1e-9, farthest)};
+  Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), t.point("eye"),
+           t.direction("ray"),           t.number("depth", 1e-9, farthest)};
   s.origin += t.number("from", 0, farthest) * s.direction;
   return s;
 }
 
 // The edge begins as far above the surface as it reaches below it, at most a tenth of its depth.
 Stroke scalpel_of(Table& t) {
-  Stroke s{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), t.point("point"),
-           -t.direction("normal"), t.number("depth", 1e-9, farthest)};
+  Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), t.point("point"),
+           -t.direction("normal"),       t.number("depth", 1e-9, farthest)};
   const double above = 0.25 * s.depth;
   s.origin -= above * s.direction, s.depth += above;
   return s;
@@ -139,9 +139,7 @@ Grab grab_of(Table& t) {
   return g;
 }
 
-Pin pin_of(Table& t) {
-  return {spot_of(t), t.flag("on"), t.optional_number("radius", 0, farthest).value_or(0)};
-}
+Pin pin_of(Table& t) { return {spot_of(t), t.flag("on"), t.optional_number("radius", 0, farthest).value_or(0)}; }
 
 Set set_of(Table& t) {
   return {t.optional_number("young", 1, 1e12), t.optional_number("friction", 0, 1),

@@ -1,4 +1,4 @@
-// What a page asks for: text messages of docs/live-protocol.md, read and checked.
+// Requests of a page: text messages of docs/live-protocol.md, read and checked.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ enum class Phase { begin, move, end };
 struct Acknowledge {
   std::uint32_t sequence = 0;
 };
-/// What frames are to hold besides positions of the surface. `graph`: once.
+/// Data that frames are to hold in addition to the surface. `graph`: once.
 struct Want {
   std::optional<bool> nodes, stress;
   bool graph = false;
@@ -70,8 +70,7 @@ struct Step {};
 using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Reset, Pause, Step>;
 
 /// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
-/// kind, has unknown or missing keys, or values out of range. Nothing else is thrown, and the time is
-/// linear in the length.
+/// kind, has unknown or missing keys, or values out of range. Throws nothing else.
 Command read_command(std::string_view text);
 
 }  // namespace live

@@ -55,8 +55,7 @@ struct Grid {
     for (std::size_t i = 0; i < points.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const double value = step[k] > 0 ? (points[i][k] - double(lo[k])) / double(step[k]) : 0;
-        values[3 * i + static_cast<std::size_t>(k)] =
-            static_cast<std::uint16_t>(std::clamp(value + 0.5, 0.0, 65535.0));
+        values[3 * i + static_cast<std::size_t>(k)] = static_cast<std::uint16_t>(std::clamp(value + 0.5, 0.0, 65535.0));
       }
     bytes.put_all(values);
     bytes.pad();
@@ -69,8 +68,7 @@ std::uint8_t flags_of(const Snapshot& s, const Content& c) {
 
 void put_frame(Bytes& bytes, const Snapshot& s, const Content& content) {
   const std::uint8_t flags = flags_of(s, content);
-  const std::string statistics =
-      Bytes::padded(s.statistics + ",\"ack_input\":" + std::to_string(content.taken) + "}");
+  const std::string statistics = Bytes::padded(s.statistics + ",\"ack_input\":" + std::to_string(content.taken) + "}");
   Grid grid;
   for (const geo::Vec3& p : s.positions) grid.box.add(p);
   if (flags & 1)
@@ -119,8 +117,7 @@ std::string encode_frame(const Snapshot& s, const Topology& known, const Content
   bytes.put_size(change.removed.size()), bytes.put_size(change.added.size());
   bytes.put_all(change.removed);
   std::vector<std::uint8_t> patch;
-  for (const auto slot : change.added)
-    bytes.put(slot), bytes.put(t.triangle[slot]), patch.push_back(t.patch[slot]);
+  for (const auto slot : change.added) bytes.put(slot), bytes.put(t.triangle[slot]), patch.push_back(t.patch[slot]);
   bytes.put_all(patch);
   bytes.pad();
   put_frame(bytes, s, content);

@@ -11,7 +11,7 @@ namespace live {
 
 enum class Kind : std::uint8_t { state = 1, delta = 2, frame = 3, graph = 4, notice = 5 };
 
-/// What a frame holds besides the surface, for one page.
+/// Contents of a frame in addition to the surface, for one page.
 struct Content {
   std::uint32_t sequence = 0;
   bool nodes = false, stress = false;

@@ -1,4 +1,4 @@
-// What pages ask for, on its way from the network thread to the simulation thread.
+// Requests of pages, on their way from the network thread to the simulation thread.
 #pragma once
 
 #include <chrono>

@@ -131,8 +131,8 @@ class Loop {
     if (Clock::now() - said_ > std::chrono::seconds(4)) message_.clear();
     if (message_.empty() && pacer_.slow()) {
       const int percent = static_cast<int>(100 * pacer_.rate() + 0.5);
-      return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_,
-              "slower than real time: " + std::to_string(percent) + " %"};
+      return {pacer_.fps(), pacer_.rate(), pacer_.step(),
+              accuracy(),   paused_,       "slower than real time: " + std::to_string(percent) + " %"};
     }
     return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_, message_};
   }

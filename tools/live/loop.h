@@ -11,9 +11,9 @@
 namespace live {
 
 struct LoopOptions {
-  std::string name;                 ///< of the scene
-  double linger = 30;               ///< s without a page before the loop ends; 0: never
-  std::function<bool()> keep_on;    ///< asked several times a second; false ends the loop
+  std::string name;               ///< of the scene
+  double linger = 30;             ///< s without a page before the loop ends; 0: never
+  std::function<bool()> keep_on;  ///< asked several times a second; false ends the loop
 };
 
 /// Runs until keep_on() is false, or no page is there for `linger` seconds after the last one went.

@@ -25,7 +25,7 @@ double Pacer::fps() const {
 }
 
 double Pacer::accuracy() {
-  constexpr int patience = 30;   // frames between two changes
+  constexpr int patience = 30;  // frames between two changes
   constexpr double factor = 1.4;
   if (since_change_ < patience) return accuracy_;
   const double load = step_ / period_;

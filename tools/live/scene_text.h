@@ -1,4 +1,4 @@
-// What a page is told of a scene and of a frame, as JSON.
+// A scene and the statistics of a frame, as JSON for pages.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@ namespace live {
 
 /// How the run keeps up with real time.
 struct Pace {
-  double fps = 0;         ///< frames computed per second
-  double rate = 0;        ///< simulated seconds per second
-  double step = 0;        ///< seconds that a frame takes to compute, mean
-  double accuracy = 0;    ///< of the mechanics now, in node spacings
+  double fps = 0;       ///< frames computed per second
+  double rate = 0;      ///< simulated seconds per second
+  double step = 0;      ///< seconds that a frame takes to compute, mean
+  double accuracy = 0;  ///< of the mechanics now, in node spacings
   bool paused = false;
-  std::string message;    ///< of the last seconds; may be empty
+  std::string message;  ///< of the last seconds; may be empty
 };
 
 /// The JSON of STATE.

@@ -34,7 +34,7 @@ class Server {
   void publish(std::shared_ptr<const Snapshot> snapshot);
   /// Tells a page a sentence. `key`: "error" or "notice".
   void tell(ClientId page, const std::string& key, const std::string& sentence);
-  /// Whether a page wants nodes, stress, and how often the graph was asked for.
+  /// Whether a page wants nodes or stress, and how many requests of the graph there were.
   bool wants_nodes() const;
   bool wants_stress() const;
   std::uint64_t graphs_wanted() const;

@@ -13,11 +13,11 @@
 namespace live {
 namespace {
 
-constexpr std::size_t most_hands = 8;     // blades and springs at a time
-constexpr std::size_t most_saved = 16;    // strokes that can be undone
-constexpr int count_interval = 12;        // frames between two counts of pieces while a blade cuts
-constexpr double farthest_pull = 0.6;     // stretch of a spring, in diagonals of the body
-constexpr double finest_edge = 48;        // segments of an edge
+constexpr std::size_t most_hands = 8;   // blades and springs at a time
+constexpr std::size_t most_saved = 16;  // strokes that can be undone
+constexpr int count_interval = 12;      // frames between two counts of pieces while a blade cuts
+constexpr double farthest_pull = 0.6;   // stretch of a spring, in diagonals of the body
+constexpr double finest_edge = 48;      // segments of an edge
 
 std::string checkpoint_bytes(const geo::Body& body, const geo::RunState& state) {
   std::ostringstream out;
@@ -114,8 +114,7 @@ geo::Vec3 Session::world_point(const Spot& spot) const {
 double Session::pull_stiffness(std::uint32_t node) const {
   const double size = geo::bounding_box(setup_.models.all).diagonal();
   const geo::Material& material = run_.solid().materials().of(node);
-  return std::max(2 * material.young * run_.body().nodes.radius[node],
-                  10 * mass_ * run_.scene().gravity.norm() / size);
+  return std::max(2 * material.young * run_.body().nodes.radius[node], 10 * mass_ * run_.scene().gravity.norm() / size);
 }
 
 void Session::obey(ClientId page, const Grab& grab) {
@@ -308,8 +307,8 @@ std::vector<std::pair<std::vector<geo::Vec3>, double>> Session::edges() const {
   const geo::Scene& scene = run_.scene();
   for (std::size_t b = 0; b < scene.blades.size(); ++b)
     if (scene.blades[b].active(run_.state().time))
-      edges.push_back({scene.blades[b].at(run_.state().time),
-                       b < stats_.blade_force.size() ? stats_.blade_force[b].norm() : 0});
+      edges.push_back(
+          {scene.blades[b].at(run_.state().time), b < stats_.blade_force.size() ? stats_.blade_force[b].norm() : 0});
   return edges;
 }
 

@@ -1,4 +1,4 @@
-// What the simulation thread hands to the network thread after a frame. Never changed afterwards.
+// The state of a run after a frame, from the simulation thread to the network thread. Never changed.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@ namespace live {
 using ClientId = std::uint64_t;  ///< of a page; never used again
 
 struct Snapshot {
-  std::uint64_t number = 0;                              ///< grows from snapshot to snapshot
-  double time = 0;                                       ///< of the simulation, s
+  std::uint64_t number = 0;  ///< grows from snapshot to snapshot
+  double time = 0;           ///< of the simulation, s
   std::shared_ptr<const Topology> topology;
-  std::vector<geo::Vec3> positions;                      ///< per vertex slot
-  std::vector<geo::Vec3> nodes;                          ///< empty unless a page wants them
-  std::vector<double> stress;                            ///< per node, Pa; empty unless a page wants it
+  std::vector<geo::Vec3> positions;  ///< per vertex slot
+  std::vector<geo::Vec3> nodes;      ///< empty unless a page wants them
+  std::vector<double> stress;        ///< per node, Pa; empty unless a page wants it
   std::size_t node_count = 0;
-  std::string statistics;                                ///< JSON, without the last brace
-  std::map<ClientId, std::uint64_t> taken;               ///< per page: number of the last input
-  std::shared_ptr<const std::string> scene;              ///< JSON of STATE
+  std::string statistics;                    ///< JSON, without the last brace
+  std::map<ClientId, std::uint64_t> taken;   ///< per page: number of the last input
+  std::shared_ptr<const std::string> scene;  ///< JSON of STATE
   /// Edges of the graph; null unless a page has asked.
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> graph;
-  std::uint64_t graph_number = 0;                        ///< of the graph, grows
+  std::uint64_t graph_number = 0;  ///< of the graph, grows
 };
 
 }  // namespace live

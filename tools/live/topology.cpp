@@ -80,8 +80,7 @@ bool Slots::update(const geo::Complex& complex) {
     const geo::Side side = this->side(slot);
     if (!side.face.valid()) continue;
     geo::Triangle& t = next->triangle[slot];
-    for (int k = 0; k < 3; ++k)
-      t[static_cast<std::size_t>(k)] = vertex_slot_[complex.surface_vertex(side, k).index()];
+    for (int k = 0; k < 3; ++k) t[static_cast<std::size_t>(k)] = vertex_slot_[complex.surface_vertex(side, k).index()];
     if (side.which == 1) std::swap(t[1], t[2]);
     next->patch[slot] = static_cast<std::uint8_t>(std::min(complex.face(side.face).crack, 255));
   }

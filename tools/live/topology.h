@@ -13,10 +13,10 @@ namespace live {
 
 /// The triangles at one time. An empty slot has three equal vertices.
 struct Topology {
-  std::uint32_t revision = 0;             ///< grows with every change
-  std::uint32_t vertices = 0;             ///< slots of vertices
-  std::vector<geo::Triangle> triangle;    ///< per slot: vertex slots
-  std::vector<std::uint8_t> patch;        ///< per slot: 0 skin, else the crack, at most 255
+  std::uint32_t revision = 0;           ///< grows with every change
+  std::uint32_t vertices = 0;           ///< slots of vertices
+  std::vector<geo::Triangle> triangle;  ///< per slot: vertex slots
+  std::vector<std::uint8_t> patch;      ///< per slot: 0 skin, else the crack, at most 255
 };
 
 /// Changes from one topology to a later one.

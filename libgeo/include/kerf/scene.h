@@ -147,13 +147,13 @@ struct Blade {
 struct SceneObstacle {
   std::string name;
   TriangleMesh mesh;            ///< in the obstacle's coordinates; empty: a plane through the origin
-  std::string file;             ///< path that the mesh was read from, as Scene::score_files; may be empty
   Vec3 normal = Vec3::UnitZ();  ///< of the plane, towards the bodies
   double scale = 1;             ///< of the mesh, applied before the pose
   Pose place;                   ///< at rest
   Motion motion;                ///< applied to the placed obstacle; no keys: at rest
   double stiffness = 1e5;       ///< penalty: acceleration per depth, 1/s²
   double friction = 0.5;        ///< Coulomb's coefficient
+  std::string file = {};        ///< path that the mesh was read from; empty: from none
 
   /// Pose of the scaled mesh at a time in seconds; constant before the first and after the last
   /// key.
@@ -162,15 +162,15 @@ struct SceneObstacle {
 
 /// All that decides what a run computes.
 struct Scene {
-  std::vector<SceneBody> bodies;  ///< at least one
-  int k = 26;                     ///< neighbours of a node (§ 6.2)
-  Material material;              ///< of bodies without one of their own
-  std::vector<Front> scores;      ///< cracks made before time 0, in material coordinates
+  std::vector<SceneBody> bodies;                         ///< at least one
+  int k = 26;                                            ///< neighbours of a node (§ 6.2)
+  Material material;                                     ///< of bodies without one of their own
+  std::vector<Front> scores;                             ///< cracks made before time 0, in material coordinates
   std::vector<std::pair<std::string, int>> score_files;  ///< that `scores` were read from, and the body of each
   std::vector<Grip> grips;
   std::vector<Pull> pulls;
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides
-  bool ground = false;  ///< whether there is a rigid ground plane
+  bool ground = false;               ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
   double ground_stiffness = 1e5;  ///< penalty: acceleration per depth, 1/s²
   double friction = 0.5;          ///< of the ground: Coulomb's with self_contact, else as in Environment

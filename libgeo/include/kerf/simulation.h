@@ -156,17 +156,17 @@ class Simulation {
   /// See move_blade().
   void move_obstacle(std::size_t obstacle, const Pose& pose);
 
-  /// Adds a blade to the run, with an edge and motion as in a scene. The result is its index. A run
-  /// of a scene that has had the blade from the start gives the same frames, provided that its first
-  /// key is not earlier than the present time. Throws InputError for fewer than two points.
+  /// Adds a blade, as in a scene, and returns its index. A run of a scene that has had the blade
+  /// from the start gives the same frames, to the bit, if its first key is not earlier than the
+  /// present time. Throws InputError for fewer than two points.
   std::size_t add_blade(Blade blade);
   /// Adds a grip; see add_blade(). It holds nothing before the present time.
   std::size_t add_grip(Grip grip);
   /// Adds a pull; see add_blade(). Throws InputError for a node that does not exist.
   std::size_t add_pull(Pull pull);
   /// Appends a key to the motion of a blade, at the time of a frame: 0 is the present one, 1 the
-  /// next. Unlike move_blade(), it keeps the keys before it. Throws std::out_of_range for an unknown
-  /// index, InputError where the blade has a key then or later.
+  /// next. Unlike move_blade(), it keeps the keys before it. Throws std::out_of_range for an
+  /// unknown index, InputError where the blade has a key then or later.
   void extend_blade(std::size_t blade, int frame, const Pose& pose);
   /// The same for a pull, whose keys are positions.
   void extend_pull(std::size_t pull, int frame, const Vec3& position);

@@ -86,7 +86,8 @@ void Solid::set_materials(const Materials& materials) {
   SolidDiscretisation& d = *discretisation_;
   bool same = materials.count() == d.materials.count() && materials.fits(size());
   for (std::size_t m = 0; same && m < materials.count(); ++m)
-    same = materials[m].density == d.materials[m].density && materials[m].discretisation == d.materials[m].discretisation;
+    same =
+        materials[m].density == d.materials[m].density && materials[m].discretisation == d.materials[m].discretisation;
   for (std::size_t i = 0; same && i < size(); ++i) same = materials.index(i) == d.materials.index(i);
   if (!same) throw InputError("a solid keeps its densities, its discretisation and the materials of its nodes");
   d.materials = materials;

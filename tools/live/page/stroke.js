@@ -10,7 +10,8 @@ function rayAt(x, y) {
 // The sphere around the body as it is now.
 function bodySphere() {
   const lo = new THREE.Vector3(Infinity, Infinity, Infinity), hi = lo.clone().negate(), p = new THREE.Vector3();
-  for (let v = 0; v < live.vertices; v++) p.fromArray(live.position, 3 * v), lo.min(p), hi.max(p);
+  for (let v = 0; v < live.vertices; v++)
+    if (surface.corners.first[v] >= 0) p.fromArray(live.position, 3 * v), lo.min(p), hi.max(p);
   const middle = lo.clone().add(hi).multiplyScalar(0.5);
   return { middle, radius: 1.04 * hi.distanceTo(middle) };
 }

@@ -68,7 +68,7 @@ class Browser:
 
     def open(self, path):
         self.loaded = False
-        self.send("Page.navigate", url="file://" + os.path.abspath(path))
+        self.send("Page.navigate", url=path if path.startswith("http") else "file://" + os.path.abspath(path))
         until = time.time() + 120
         while not self.loaded:
             self.message(until)

@@ -1,0 +1,126 @@
+"""check_live.py TOOLS_DIR SCENES_DIR MODELS_DIR CASE...: kerf-live's page in a browser, used by real pointer events.
+
+polyp: cut off by one stroke; two pieces, and their volumes add up. apple: cut by three strokes. jello: grabbed and shaken, then undone
+by a reset. Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
+"""
+import filecmp, glob, json, os, subprocess, sys, tempfile, time
+from client import Program
+from hand import Hand, along
+
+tools, scenes, models = map(os.path.abspath, sys.argv[1:4])
+failures = []
+
+
+def check(what, good):
+    if not good:
+        failures.append(what)
+        print("FAILED:", what, flush=True)
+
+
+def kerf(name, *arguments):
+    done = subprocess.run([os.path.join(tools, name), *map(str, arguments)], capture_output=True, text=True)
+    check(f"{name} {' '.join(map(str, arguments))}: {done.stderr}", done.returncode == 0)
+    return done.stdout
+
+
+def figures(path):
+    return json.loads(kerf("kerf-info", "--json", path))
+
+
+class Session:
+    """A scene in kerf-live, and a page that shows it."""
+
+    def __init__(self, name, *options):
+        self.name = name
+        self.program = Program(os.path.join(tools, "kerf-live"), os.path.join(scenes, name + ".toml"), "--no-blades", "--set", f"body.mesh={models}/{name}.ply",
+                               *options)
+        hand.errors.clear(), hand.requests.clear()
+        hand.visit(self.program.address + "#shadows=false")
+
+    # Pauses, saves, and compares with what kerf-sim makes of the recorded scene.
+    def done(self):
+        hand.key(" ")
+        hand.wait("live.stats.paused")
+        for kind in ("toml", "ply", "kerf"):
+            self.program.save(kind, f"{self.name}.{kind}")
+        time_shown = hand.run("live.time")
+        check(f"{self.name}: the console has {hand.errors}", not hand.errors)
+        others = [url for url in hand.requests if not url.startswith((self.program.address, self.program.address.replace("http", "ws"), "data:", "blob:"))]
+        check(f"{self.name}: it asks for {others}", not others)
+        code = self.program.stop()
+        check(f"{self.name}: exit code {code}: {''.join(self.program.said)}", code == 0)
+        kerf("kerf-sim", "-q", f"{self.name}.toml", "-o", self.name)
+        frames = sorted(glob.glob(f"{self.name}/frames/*.ply"))
+        last = frames[-1]
+        check(f"{self.name}: the replay's last frame is not the one shown", filecmp.cmp(last, f"{self.name}.ply", shallow=False))
+        kerf("kerf-info", "-q", "--check", f"{self.name}.kerf")
+        # Frames that are alike in all bytes are checked once.
+        kerf("kerf-info", "-q", "--check", *frames)
+        print(f"{self.name}: {len(frames)} frames to {time_shown:.2f} s, replayed and checked", flush=True)
+
+
+def volumes_add_up(name, pieces):
+    """The pieces in material coordinates have the volume of the model together."""
+    kerf("kerf-pieces", "-q", f"{name}.kerf", "-o", name + "-pieces")
+    parts = [figures(path)["volume"] for path in sorted(glob.glob(f"{name}-pieces/piece*.ply"))]
+    whole = figures(f"{models}/{name}.ply")["volume"]
+    check(f"{name}: {len(parts)} pieces, not {pieces}", len(parts) == pieces)
+    check(f"{name}: pieces of {parts} do not add up to {whole}", abs(sum(parts) - whole) < 1e-6 * whole)
+    check(f"{name}: a piece of {min(parts)} is nothing", min(parts) > 0.01 * whole)
+
+
+def polyp():
+    session = Session("polyp")
+    left, right = hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03])
+    hand.drag(along(left, right))
+    hand.wait("live.stats.pieces === 2")
+    # While the piece falls: another view, by the other button, the wheel and keys, and what the page shows of the inside.
+    hand.drag(along([300, 300], [360, 280], steps=4), seconds=0.1, button="right")
+    hand.mouse("mouseWheel", 300, 300, deltaX=0, deltaY=-120)
+    for key in "nte":
+        hand.key(key)
+    hand.wait("live.node && live.stress && live.pairs && live.pairs.length > 0")
+    check("polyp: nodes are not in the surface's box", hand.run("live.node.every((x) => Math.abs(x) < 3)"))
+    for key in "nte":
+        hand.key(key)
+    session.done()
+    volumes_add_up("polyp", 2)
+
+
+def apple():
+    session = Session("apple")
+    for stroke, (a, b) in enumerate([([1.2, -0.7, 1.0], [1.1, -0.7, -1.2]), ([-0.7, -1.2, 1.1], [-0.75, -1.1, -1.2]), ([-1.5, -0.5, 0.72], [1.5, -0.45, 0.66])]):
+        before = hand.stats()["pieces"]
+        hand.drag(along(hand.place(a), hand.place(b), steps=16), seconds=1.2)
+        hand.wait(f"live.stats.pieces > {before}")
+        hand.wait(f"live.stats.undo === {stroke + 1}")
+    hand.key("u")
+    hand.wait("live.stats.undo === 2")
+    session.done()
+
+
+def jello():
+    session = Session("jello")
+    hand.key("g")
+    top = hand.place([0.5, 0.5, 1.0])
+    box = "(() => { let lo = 9, hi = -9; for (let v = 0; v < live.vertices; v++) if (surface.corners.first[v] >= 0) lo = Math.min(lo, live.position[3 * v]), hi = Math.max(hi, live.position[3 * v]); return hi - lo; })()"
+    at_rest = hand.run(box)
+    hand.drag(along(top, [top[0] + 90, top[1] - 60], [top[0] - 90, top[1] - 40], [top[0] + 60, top[1] - 80], steps=10), seconds=1.6, release=False)
+    pulled = hand.run(box)
+    check(f"jello: {at_rest} wide at rest, {pulled} while it is pulled", pulled > 1.03 * at_rest)
+    hand.mouse("mouseReleased", top[0] + 60, top[1] - 80)
+    hand.wait("hand.stroke === null && live.stats.pieces === 1")
+    session.done()
+
+
+work = tempfile.TemporaryDirectory()
+os.chdir(work.name)
+hand = Hand(640, 560)
+try:
+    for case in sys.argv[4:]:
+        started = time.time()
+        globals()[case]()
+        print(f"{case}: {time.time() - started:.1f} s", flush=True)
+finally:
+    hand.close()
+sys.exit(bool(failures))

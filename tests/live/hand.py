@@ -1,0 +1,49 @@
+"""A hand at kerf-live's page: pointer events in a headless browser, aimed at places of the body."""
+import os, sys, time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "tools"))
+from browser import Browser
+
+
+class Hand(Browser):
+    def visit(self, address, width=640, height=560):
+        """Opens the page; the first frame is drawn when this returns."""
+        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.open(address)
+        self.wait("live.told !== null && live.position.length > 0 && plots.frames.length > 0")
+
+    def wait(self, condition, seconds=60):
+        """Until an expression of the page is true."""
+        self.run(f"""new Promise((done, failed) => {{ const end = performance.now() + {1000 * seconds};
+          const look = () => {condition} ? done(1) : performance.now() > end ? failed(new Error({condition!r} + " after {seconds} s; " + JSON.stringify(live.stats) + $("notice").textContent)) : setTimeout(look, 15); look(); }})""")
+
+    def stats(self):
+        return self.run("live.stats")
+
+    def place(self, point):
+        """Where a point of the world is on the screen."""
+        return self.run(f"""(() => {{ placeCamera(); const p = toShown({list(point)}).project(camera), c = $("canvas").getBoundingClientRect();
+          return [c.x + (p.x + 1) / 2 * c.width, c.y + (1 - p.y) / 2 * c.height]; }})()""")
+
+    def button(self, id):
+        x, y, w, h = self.run(f"""(() => {{ const r = document.querySelector({id!r}).getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }})()""")
+        self.click(x + w / 2, y + h / 2)
+
+    def tool(self, name):
+        self.button(f'[data-tool="{name}"]')
+
+    def drag(self, places, seconds=0.6, button="left", release=True):
+        """Presses at the first place, moves along the others with equal speed, and releases."""
+        self.mouse("mouseMoved", *places[0], button="none")
+        self.mouse("mousePressed", *places[0], button=button)
+        start = time.time()
+        for i, place in enumerate(places[1:], 1):
+            time.sleep(max(0, start + seconds * i / (len(places) - 1) - time.time()))
+            self.mouse("mouseMoved", *place, button=button)
+        if release:
+            self.mouse("mouseReleased", *places[-1], button=button)
+
+
+def along(*corners, steps=20):
+    """Places on a polyline, `steps` to each part."""
+    return [[a + (b - a) * i / steps for a, b in zip(p, q)] for p, q in zip(corners, corners[1:]) for i in range(steps)] + [list(corners[-1])]

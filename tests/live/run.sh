@@ -1,0 +1,16 @@
+#!/bin/sh
+# kerf-live's page in headless Chromium.
+#   tests/live/run.sh TOOLS_DIR SAMPLES_DIR polyp|apple|jello
+set -eu
+here=$(dirname "$(realpath "$0")")
+tools=$(realpath "$1")
+PATH=$tools:$(realpath "$2"):$PATH
+export PYTHONDONTWRITEBYTECODE=1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+case $3 in
+  polyp) kerf-model polyp --frequency 8 -o "$work/polyp.ply" ;;
+  apple) kerf-model apple -o "$work/apple.ply" ;;
+  jello) kerf-model block --edge 0.08 -o "$work/jello.ply" ;;
+esac
+python3 "$here/check_live.py" "$tools" "$here/../../samples/scenes" "$work" "$3"

@@ -16,6 +16,7 @@ function set(key, value) {
   if (key === "stress" && value && state.skin === 1) set("skin", 0.2);
   if ((key === "nodes" || key === "edges") && value && state.skin === 1) set("skin", 0.2);
   if (["nodes", "edges", "stress"].includes(key) && !state.nodes && !state.edges && !state.stress && state.skin === 0.2) set("skin", 1);
+  if (key === "look") surface.dress();
   if (key === "plotted") $("plots").hidden = !value;
   changed();
 }
@@ -117,10 +118,10 @@ function listenToKeys() {
 function listenToControls() {
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
-  for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth"]) {
+  for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "look"]) {
     const control = $(key);
     show(key);
-    control.addEventListener("input", () => set(key, control.type === "checkbox" ? control.checked : Number(control.value)));
+    control.addEventListener("input", () => set(key, control.type === "checkbox" ? control.checked : key === "look" ? control.value : Number(control.value)));
   }
   for (const name of Object.keys(values)) $(name).addEventListener("input", () => slide(name));
   $("wait").addEventListener("click", () => wire.open || connect());
@@ -150,8 +151,9 @@ function begin() {
   if (window.matchMedia("(max-width: 700px)").matches) document.body.classList.add("wide"), $("menu").setAttribute("aria-expanded", "false");
   hand.ghost = new Ghost();
   plots.force = new Plot("force-plot", "#b5432a", newtons), plots.rate = new Plot("rate-plot", "#2464b4", String);
-  layers.push(surface, world, inside, { update() {}, beforeDraw: () => hand.ghost.beforeDraw() }, { update() {}, beforeDraw: drawTrail }, { update() {}, beforeDraw: drawFigures });
+  layers.push(surface, world, inside, { update() {}, beforeDraw: () => hand.ghost.beforeDraw() }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
   listenToControls(), listenToKeys(), listenToPointer();
+  surface.dress();
   showTool(), showDepth();
   $("plots").hidden = !state.plotted;
   new ResizeObserver(fit).observe($("stage"));

@@ -78,10 +78,10 @@ const handTools = { knife: Knife, scalpel: Scalpel, grab: Grab };
 
 function beginStroke(x, y, pointer) {
   const make = handTools[state.tool];
-  if (!make || !wire.open || !live.told) return false;
+  if (!make || !wire.open || live.position.length === 0) return false;
   const tool = new make(), message = tool.begin(x, y);
   if (!message) return false;
-  hand.stroke = { id: ++strokes, kind: state.tool, tool, pointer, last: message, sentAt: performance.now() };
+  hand.stroke = { id: ++strokes, kind: state.tool, tool, sphere: tool.sphere ?? bodySphere(), pointer, last: message, sentAt: performance.now() };
   hand.trail = [[x, y, performance.now()]];
   hand.ghost.begin(tool.edge, state.tool);
   sendInput(state.tool, { id: strokes, phase: "begin", ...message });
@@ -131,8 +131,8 @@ class Ghost {
       scene.add(object);
       return object;
     };
-    this.sheet = mesh(new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: 0x4d8fe0, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false })), 8);
-    this.rim = mesh(new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1d4f96, transparent: true })), 8.1);
+    this.sheet = mesh(new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: 0x4d8fe0, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false, depthTest: false })), 8);
+    this.rim = mesh(new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1d4f96, transparent: true, depthTest: false })), 8.1);
     this.edges = [], this.fading = 0;
   }
   begin(edge, kind) {
@@ -159,6 +159,32 @@ class Ghost {
     put(this.sheet, faces), put(this.rim, lines);
     this.sheet.material.opacity = 0.3 * (1 - age), this.rim.material.opacity = 0.9 * (1 - age);
     if (this.fading) redraw();
+  }
+}
+
+// The knife's plane goes through the eye, which sees it as a line: a small picture shows it from the side while it is dragged.
+class SideView {
+  constructor() {
+    this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
+  }
+  afterDraw() {
+    const box = $("side"), on = hand.stroke !== null && hand.stroke.kind !== "grab" && quality.pixels === 1;
+    box.hidden = !on;
+    if (!on) return;
+    const { middle, radius } = hand.stroke.sphere, c = this.camera, canvas = $("canvas");
+    const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0), ahead = middle.clone().sub(camera.position).normalize();
+    c.aspect = box.clientWidth / box.clientHeight, c.updateProjectionMatrix();
+    c.up.copy(camera.up);
+    c.position.copy(middle).addScaledVector(right, 4.6 * radius).addScaledVector(ahead, -0.4 * radius).addScaledVector(camera.up, 0.9 * radius);
+    c.lookAt(middle);
+    const x = box.offsetLeft, y = canvas.clientHeight - box.offsetTop - box.offsetHeight;
+    renderer.setScissorTest(true);
+    renderer.setViewport(x, y, box.offsetWidth, box.offsetHeight), renderer.setScissor(x, y, box.offsetWidth, box.offsetHeight);
+    renderer.shadowMap.autoUpdate = false;
+    renderer.render(scene, c);
+    renderer.shadowMap.autoUpdate = true;
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, canvas.clientWidth, canvas.clientHeight);
   }
 }
 

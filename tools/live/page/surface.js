@@ -1,11 +1,18 @@
 // The surface that moves: skin and walls of cracks share the vertices of their corner groups, and the lips of cuts are drawn.
-const skinColor = 0xe0803a, wallColor = 0xf6d8a8;
+// Colours of skin, walls and lips, and of the light that comes through.
+const looks = {
+  clay: { skin: 0xe0803a, wall: 0xf6d8a8, lip: 0x7a3212, glow: 0xff9a58, inner: 0xffe9c8 },
+  tissue: { skin: 0xd98880, wall: 0xb23a3f, lip: 0x6e1420, glow: 0xff8f80, inner: 0xff6a60 },
+  apple: { skin: 0xb8342c, wall: 0xf6efd2, lip: 0x5e120e, glow: 0xff7a50, inner: 0xfff6d8 },
+  gelatine: { skin: 0x4fae5c, wall: 0xa5e08a, lip: 0x1d5a2c, glow: 0x9cff9a, inner: 0xd8ffc0 },
+};
 
 // Light goes into soft material: shaded sides keep a glow, edges towards the eye are brighter, what is near the ground is darker.
-function softMaterial(color, glow) {
-  const material = new THREE.MeshPhongMaterial({ color, specular: 0x1b1a19, shininess: 26, side: THREE.DoubleSide });
+function softMaterial() {
+  const material = new THREE.MeshPhongMaterial({ specular: 0x1b1a19, shininess: 26, side: THREE.DoubleSide });
+  material.userData.glow = new THREE.Color();
   material.onBeforeCompile = (shader) => {
-    shader.uniforms.glow = { value: new THREE.Color(glow) }, shader.uniforms.groundPlane = groundPlane;
+    shader.uniforms.glow = { value: material.userData.glow }, shader.uniforms.groundPlane = groundPlane;
     shader.fragmentShader = "uniform vec3 glow; uniform vec4 groundPlane;\n" + shader.fragmentShader.replace("#include <envmap_fragment>", `
       vec3 toEye = normalize(vViewPosition);
       float grazing = pow(1.0 - abs(dot(normal, toEye)), 2.5);
@@ -29,8 +36,8 @@ class Surface {
       scene.add(m);
       return m;
     };
-    this.skin = mesh(softMaterial(skinColor, 0xff9a58), 4);
-    this.walls = mesh(softMaterial(wallColor, 0xffe9c8), 3);
+    this.skin = mesh(softMaterial(), 4);
+    this.walls = mesh(softMaterial(), 3);
     this.walls.material.side = THREE.FrontSide;  // closed sheets stand at one place; each is seen from its own side
     this.walls.material.shadowSide = THREE.DoubleSide;
     const lines = (color, opacity, order) => {
@@ -41,6 +48,11 @@ class Surface {
     };
     this.wire = lines(0x26323f, 0.4, 5), this.lips = lines(0x7a3212, 0.9, 6);
     for (const m of [this.skin, this.walls]) m.material.polygonOffset = true, m.material.polygonOffsetFactor = m.material.polygonOffsetUnits = 1;
+  }
+  dress() {
+    const look = looks[state.look] ?? looks.clay;
+    this.skin.material.color.set(look.skin), this.walls.material.color.set(look.wall), this.lips.material.color.set(look.lip);
+    this.skin.material.userData.glow.set(look.glow), this.walls.material.userData.glow.set(look.inner);
   }
   // A whole surface: the groups of corners wait for the positions of its frame.
   begin(arrived) {

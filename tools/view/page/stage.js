@@ -32,6 +32,7 @@ function draw() {
   placeCamera();
   for (const layer of layers) if (layer.beforeDraw) layer.beforeDraw();
   renderer.render(scene, camera);
+  for (const layer of layers) if (layer.afterDraw) layer.afterDraw();
 }
 function redraw() {
   if (!drawing) drawing = true, requestAnimationFrame(() => drawing && draw());

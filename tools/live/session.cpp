@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <sstream>
 
 #include <kerf/body_file.h>
@@ -60,7 +62,11 @@ Session::Session(const sim::Setup& setup, const geo::Progress& progress)
 }
 
 void Session::count_pieces() {
-  pieces_ = geo::find_pieces(run_.body().surface).count;
+  constexpr double least_share = 1e-6;  // of the volume: smaller pieces are specks
+  const geo::Pieces pieces = geo::find_pieces(run_.body().surface);
+  const double least = least_share * std::accumulate(pieces.volume.begin(), pieces.volume.end(), 0.0);
+  pieces_ = static_cast<std::uint32_t>(
+      std::count_if(pieces.volume.begin(), pieces.volume.end(), [&](double v) { return v > least; }));
   counted_faces_ = run_.body().surface.face_count();
   since_count_ = 0;
 }
@@ -247,9 +253,8 @@ void Session::end_hands(bool all) {
       continue;
     }
     last_stroke_ = at->first.second;
-    if (at->second.faces == run_.body().surface.face_count() && !saved_.empty() &&
-        saved_.back().blades == at->second.blade)
-      saved_.pop_back();
+    if (at->second.faces == run_.body().surface.face_count())
+      std::erase_if(saved_, [&](const Saved& s) { return s.blades == at->second.blade; });
     at = blades_.erase(at);
   }
   std::erase_if(pulls_, [&](const auto& entry) { return all || entry.second.ends; });

@@ -59,7 +59,7 @@ class Session {
   std::uint64_t last_stroke() const { return last_stroke_; }
   /// Crack steps refused since the run began.
   std::size_t refused() const { return run_.state().total.refused; }
-  /// Number of pieces; counted now and then while a blade cuts.
+  /// Number of pieces without specks; counted now and then while a blade cuts.
   std::uint32_t pieces() const { return pieces_; }
   /// World positions of pins that hold.
   std::vector<geo::Vec3> pins() const;

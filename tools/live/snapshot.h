@@ -1,4 +1,4 @@
-// The state of a run after a frame, from the simulation thread to the network thread. Never changed.
+// The state of a run after a frame, for the network thread. It is never changed afterwards.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,266 @@
+// A run under hands: the page shows the run's surface, and the recording gives the same run.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <sstream>
+
+#include <kerf/body_file.h>
+#include <kerf/contact.h>
+#include <kerf/files.h>
+#include <kerf/mesh.h>
+#include <kerf/pieces.h>
+#include "cases.h"
+#include "live/encode.h"
+#include "live/scene_text.h"
+#include "live/session.h"
+#include "page_model.h"
+
+using namespace live;
+
+namespace {
+
+const geo::TriangleMesh& block() {
+  static const geo::TriangleMesh mesh = geo::make_block({1, 1, 1}, 0.2);
+  return mesh;
+}
+
+sim::Setup setup() {
+  sim::Setup s;
+  s.scene = geo::parse_scene(R"(
+gravity = [0, 0, -3]
+[body]
+mesh = "cube.ply"
+spacing = 0.25
+[material]
+young = 3e4
+damping = 2.0
+[ground]
+point = [0, 0, -0.01]
+[contact]
+self = true
+[time]
+accuracy = 0.01
+)",
+                             "s.toml");
+  s.models = geo::place_models(s.scene, {block()});
+  adapt_scene(s.scene, 60, true);
+  return s;
+}
+
+// The pose of an edge through the cube along y, at x.
+Stroke knife(std::uint64_t id, Phase phase, double x, double tilt = 0) {
+  return {id, 1, phase, {x, -0.5, 0.52}, geo::Vec3(0.02, 1, tilt).normalized(), 2.2};
+}
+
+void cut(Session& session, std::uint64_t id, double from, double to, double tilt = 0) {
+  session.obey(1, knife(id, Phase::begin, from, tilt));
+  for (int i = 1; i <= 12; ++i) {
+    session.obey(1, knife(id, i == 12 ? Phase::end : Phase::move, from + (to - from) * i / 12, tilt));
+    REQUIRE(session.advance().empty());
+  }
+  session.advance();
+}
+
+Snapshot shown(Session& session) {
+  static std::uint64_t number = 0;
+  Snapshot s;
+  s.number = ++number;
+  session.show(s);
+  s.scene = std::make_shared<std::string>(scene_text(session, "cube"));
+  s.statistics = statistics_text(session, {});
+  return s;
+}
+
+using Corners = std::array<std::array<double, 3>, 3>;
+
+// What the page draws is the run's surface, to the step of its numbers.
+void require_same(const PageModel& page, const geo::Simulation& run) {
+  const geo::TriangleMesh surface = run.surface();
+  std::vector<Corners> drawn, real;
+  const auto place = [&](std::vector<Corners>& list, const auto& point) {
+    Corners c;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) c[i][k] = point(i, k);
+    list.push_back(c);
+  };
+  for (const auto& t : page.triangles)
+    if (t[0] != t[1]) place(drawn, [&](std::size_t i, std::size_t k) { return page.positions[t[i]][k]; });
+  for (const auto& t : surface.triangles)
+    place(real, [&](std::size_t i, std::size_t k) { return surface.vertices[t[i]][static_cast<int>(k)]; });
+  REQUIRE(drawn.size() == real.size());
+  // Each real triangle is near a drawn one: compared through the sums of corners, sorted.
+  double far = 0;
+  std::vector<std::array<double, 3>> a, b;
+  for (const auto* list : {&drawn, &real})
+    for (const Corners& c : *list) {
+      std::array<double, 3> middle{};
+      for (std::size_t k = 0; k < 3; ++k) middle[k] = c[0][k] + c[1][k] + c[2][k];
+      (list == &drawn ? a : b).push_back(middle);
+    }
+  for (const auto& m : b) {
+    double best = 1e300;
+    for (const auto& n : a)
+      best = std::min(best, std::max({std::abs(m[0] - n[0]), std::abs(m[1] - n[1]), std::abs(m[2] - n[2])}));
+    far = std::max(far, best);
+  }
+  CHECK(far < 3 * double(*std::max_element(page.step.begin(), page.step.end())));
+}
+
+std::string surface_bytes(const geo::Simulation& run) {
+  std::ostringstream out;
+  geo::write_ply(out, run.surface());
+  return std::move(out).str();
+}
+
+// The recording as kerf-sim runs it: read from text, with its checkpoints.
+std::string replayed(const Session& session) {
+  std::ostringstream text;
+  geo::write_scene(text, session.recording(), "");
+  const geo::Scene scene = geo::parse_scene(text.str(), "recorded.toml");
+  const auto through = [&](const geo::Body& body, const geo::RunState& state) {
+    std::ostringstream out;
+    geo::write_checkpoint(out, body, state, 0);
+    return geo::read_checkpoint(geo::KerfFile(geo::Input(out.str(), "checkpoint")));
+  };
+  geo::RunStart start = geo::begin_run(scene, geo::place_models(scene, {block()}));
+  geo::Checkpoint c = through(start.body, start.state);
+  geo::Simulation run(scene, std::move(c.body), std::move(c.state));
+  for (int frame = 1; frame <= session.run().state().frame; ++frame) {
+    run.advance_frame();
+    if (!std::binary_search(scene.checkpoints.begin(), scene.checkpoints.end(), frame)) continue;
+    c = through(run.body(), run.state());
+    run.restore(std::move(c.body), std::move(c.state));
+  }
+  return surface_bytes(run);
+}
+
+}  // namespace
+
+TEST_CASE("a stroke cuts, and the page has the run's surface after each message") {
+  Session session(setup(), {});
+  PageModel page;
+  Snapshot s = shown(session);
+  page.take(encode_state(s, {1}));
+  CHECK(page.scene["name"] == "cube");
+  CHECK(page.scene["ground"]["normal"][2] == 1);
+  require_same(page, session.run());
+  auto known = s.topology;
+  session.obey(7, knife(1, Phase::begin, -0.2));
+  std::size_t deltas = 0;
+  for (int i = 1; i <= 14; ++i) {
+    session.obey(7, knife(1, i == 14 ? Phase::end : Phase::move, -0.2 + 1.4 * i / 14));
+    REQUIRE(session.advance().empty());
+    if (i % 3 == 1) continue;  // a page that misses frames
+    s = shown(session);
+    page.take(encode_frame(s, *known, {std::uint32_t(i + 1), false, false, 5}));
+    deltas += page.kind == 2;
+    known = s.topology;
+    CHECK(page.statistics["ack_input"] == 5);
+    require_same(page, session.run());
+  }
+  CHECK(deltas > 3);
+  session.advance(), session.advance();
+  CHECK(session.pieces() == 2);
+  CHECK(session.strokes() == 1);
+  CHECK(session.last_stroke() == 1);
+  CHECK(shown(session).taken.at(7) == 1);
+  CHECK(geo::count_crossings(session.run().surface()) == 0);
+}
+
+TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
+  Session session(setup(), {});
+  for (int i = 0; i < 3; ++i) session.advance();
+  const std::string whole = surface_bytes(session.run());
+  cut(session, 1, -0.2, 1.2);
+  CHECK(session.pieces() == 2);
+  session.undo();
+  CHECK(session.pieces() == 1);
+  CHECK(session.strokes() == 0);
+  CHECK(surface_bytes(session.run()) == whole);
+  CHECK_THROWS_AS(session.undo(), BadMessage);
+  shown(session);
+  session.obey(Pin{{0, {0.3, 0.3, 0.4}}, true, 0.3});
+  session.obey(Set{2e4, {}, 1.0, geo::Vec3(0.5, 0, -2)});
+  Grab grab{9, 3, Phase::begin, {5, {0.4, 0.3, 0.3}}, {0.5, 0.5, 1.5}};
+  session.obey(1, grab);
+  for (int i = 0; i < 6; ++i) {
+    grab.phase = i == 5 ? Phase::end : Phase::move, grab.to = {0.5, 0.5, 1.5 + 0.02 * i};
+    session.obey(1, grab);
+    session.advance();
+  }
+  CHECK(session.stats().pull_force.at(0).norm() > 0);
+  CHECK(session.pins().size() == 1);
+  cut(session, 2, -0.2, 1.2);
+  cut(session, 3, 1.2, -0.2, 0.1);
+  session.undo();
+  cut(session, 4, 1.2, 0.6, -0.2);
+  session.set_accuracy(0.02);
+  session.advance();
+  CHECK(session.recording().checkpoints.size() == 2);
+  CHECK(replayed(session) == surface_bytes(session.run()));
+  session.reset();
+  CHECK(session.run().state().frame == 0);
+  CHECK(session.pins().empty());
+  CHECK(session.recording().blades.empty());
+  cut(session, 5, -0.2, 1.2);
+  CHECK(replayed(session) == surface_bytes(session.run()));
+}
+
+TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that went are let go") {
+  Session session(setup(), {});
+  CHECK_THROWS_AS(session.obey(1, Grab{1, 1, Phase::begin, {1u << 30, {1, 0, 0}}, {0, 0, 0}}), BadMessage);
+  CHECK_THROWS_AS(session.obey(Pin{{1u << 30, {1, 0, 0}}, true, 0.1}), BadMessage);
+  shown(session);
+  CHECK_THROWS_AS(session.obey(Pin{{0, {1, 0, 0}}, false, 0.1}), BadMessage);
+  CHECK_THROWS_AS(session.obey(Set{-1.0, {}, {}, {}}), BadMessage);
+  session.obey(1, knife(1, Phase::begin, -0.5));
+  CHECK_THROWS_AS(session.obey(1, knife(1, Phase::begin, -0.5)), BadMessage);
+  Stroke endless = knife(2, Phase::begin, -0.5);
+  endless.depth = 1e8;
+  CHECK_THROWS_AS(session.obey(1, endless), BadMessage);
+  for (std::uint64_t id = 10; id < 17; ++id) session.obey(2, knife(id, Phase::begin, -0.5));
+  CHECK_THROWS_AS(session.obey(2, knife(30, Phase::begin, -0.5)), BadMessage);
+  session.advance();
+  CHECK(session.edges().size() == 8);
+  session.leave(1), session.leave(2);
+  session.advance(), session.advance(), session.advance();
+  CHECK(session.edges().empty());
+  CHECK(session.strokes() == 0);                // none has cut
+  session.obey(1, knife(1, Phase::move, 0.5));  // of a stroke that is over: nothing
+}
+
+TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
+  const Seeds run = seeds(2);
+  for (std::uint64_t seed = run.first; seed < run.first + static_cast<std::uint64_t>(run.count); ++seed) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const auto uniform = [&](double lo, double hi) { return lo + (hi - lo) * double(random() % 100000) / 100000; };
+    Session session(setup(), {});
+    PageModel page;
+    Snapshot s = shown(session);
+    page.take(encode_state(s, {1}));
+    auto known = s.topology;
+    for (int act = 0; act < 6; ++act) {
+      switch (random() % 5) {
+        case 0:
+          session.strokes() > 0 ? session.undo() : void();
+          break;
+        case 1:
+          session.obey(Set{uniform(1e4, 5e4), uniform(0, 1), {}, geo::Vec3(uniform(-1, 1), uniform(-1, 1), -3)});
+          break;
+        default:
+          cut(session, random() % 1000000, uniform(-0.3, 0.5), uniform(0.5, 1.3), uniform(-0.3, 0.3));
+          break;
+      }
+      session.advance();
+      s = shown(session);
+      page.take(encode_frame(s, *known, {2}));
+      known = s.topology;
+      require_same(page, session.run());
+      CHECK(geo::count_crossings(session.run().surface()) == 0);
+    }
+    CHECK(replayed(session) == surface_bytes(session.run()));
+  }
+}

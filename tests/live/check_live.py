@@ -32,15 +32,17 @@ class Session:
 
     def __init__(self, name, *options):
         self.name = name
-        self.program = Program(os.path.join(tools, "kerf-live"), os.path.join(scenes, name + ".toml"), "--no-blades", "--set", f"body.mesh={models}/{name}.ply",
+        self.program = Program(os.path.join(tools, "kerf-live"), os.path.join(scenes, name + ".toml"), "--no-blades", "--rate", "30", "--set", f"body.mesh={models}/{name}.ply",
                                *options)
         hand.errors.clear(), hand.requests.clear()
         hand.visit(self.program.address + "#shadows=false")
 
-    # Pauses, saves, and compares with what kerf-sim makes of the recorded scene.
-    def done(self):
+    def pause(self):
         hand.key(" ")
         hand.wait("live.stats.paused")
+
+    # Saves, and compares with what kerf-sim makes of the recorded scene.
+    def done(self):
         for kind in ("toml", "ply", "kerf"):
             self.program.save(kind, f"{self.name}.{kind}")
         time_shown = hand.run("live.time")
@@ -54,27 +56,29 @@ class Session:
         last = frames[-1]
         check(f"{self.name}: the replay's last frame is not the one shown", filecmp.cmp(last, f"{self.name}.ply", shallow=False))
         kerf("kerf-info", "-q", "--check", f"{self.name}.kerf")
-        # Frames that are alike in all bytes are checked once.
-        kerf("kerf-info", "-q", "--check", *frames)
+        with open(f"{self.name}/frames.jsonl") as lines:
+            crossed = [frame["frame"] for frame in map(json.loads, lines) if frame["crossings"] != 0]
+        check(f"{self.name}: triangles cross in frames {crossed}", not crossed)
         print(f"{self.name}: {len(frames)} frames to {time_shown:.2f} s, replayed and checked", flush=True)
 
 
 def volumes_add_up(name, pieces):
-    """The pieces in material coordinates have the volume of the model together."""
+    """The pieces in material coordinates have the volume of the model together; specks are no pieces."""
     kerf("kerf-pieces", "-q", f"{name}.kerf", "-o", name + "-pieces")
-    parts = [figures(path)["volume"] for path in sorted(glob.glob(f"{name}-pieces/piece*.ply"))]
+    parts = [figures(path)["volume"] for path in sorted(glob.glob(f"{name}-pieces/*.ply"))]
     whole = figures(f"{models}/{name}.ply")["volume"]
-    check(f"{name}: {len(parts)} pieces, not {pieces}", len(parts) == pieces)
+    large = [part for part in parts if part > 1e-3 * whole]
+    check(f"{name}: {len(large)} pieces, not {pieces}: {parts}", len(large) == pieces)
     check(f"{name}: pieces of {parts} do not add up to {whole}", abs(sum(parts) - whole) < 1e-6 * whole)
-    check(f"{name}: a piece of {min(parts)} is nothing", min(parts) > 0.01 * whole)
 
 
 def polyp():
-    session = Session("polyp")
+    session = Session("polyp", "--set", "gravity=[0,0,-4]")  # it stands upright
     left, right = hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03])
     hand.drag(along(left, right))
-    hand.wait("live.stats.pieces === 2")
-    # While the piece falls: another view, by the other button, the wheel and keys, and what the page shows of the inside.
+    hand.wait("live.stats.pieces >= 2")
+    session.pause()
+    # Another view, by the other button, the wheel and keys, and what the page shows of the inside.
     hand.drag(along([300, 300], [360, 280], steps=4), seconds=0.1, button="right")
     hand.mouse("mouseWheel", 300, 300, deltaX=0, deltaY=-120)
     for key in "nte":
@@ -96,6 +100,7 @@ def apple():
         hand.wait(f"live.stats.undo === {stroke + 1}")
     hand.key("u")
     hand.wait("live.stats.undo === 2")
+    session.pause()
     session.done()
 
 
@@ -110,6 +115,7 @@ def jello():
     check(f"jello: {at_rest} wide at rest, {pulled} while it is pulled", pulled > 1.03 * at_rest)
     hand.mouse("mouseReleased", top[0] + 60, top[1] - 80)
     hand.wait("hand.stroke === null && live.stats.pieces === 1")
+    session.pause()
     session.done()
 
 

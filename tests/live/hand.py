@@ -15,7 +15,7 @@ class Hand(Browser):
     def wait(self, condition, seconds=60):
         """Until an expression of the page is true."""
         self.run(f"""new Promise((done, failed) => {{ const end = performance.now() + {1000 * seconds};
-          const look = () => {condition} ? done(1) : performance.now() > end ? failed(new Error({condition!r} + " after {seconds} s; " + JSON.stringify(live.stats) + $("notice").textContent)) : setTimeout(look, 15); look(); }})""")
+          const look = () => {condition} ? done(1) : performance.now() > end ? failed(new Error("not after {seconds} s: " + JSON.stringify(live.stats) + $("notice").textContent)) : setTimeout(look, 15); look(); }})""")
 
     def stats(self):
         return self.run("live.stats")

@@ -50,7 +50,8 @@ function told(stats) {
   const force = (stats.blade_force ?? []).reduce((sum, f) => sum + f, 0);
   plots.force.add(force);
   plots.now = force;
-  if (stats.message) notice({ notice: stats.message });
+  if (stats.message && stats.message !== plots.message && !stats.message.startsWith("slower")) notice({ notice: stats.message });
+  plots.message = stats.message;
 }
 let figuresAt = 0;
 function drawFigures() {
@@ -71,7 +72,7 @@ function drawFigures() {
   $("pause").querySelector("span").textContent = stats.paused ? "Go on" : "Pause";
   const slow = !stats.paused && stats.sim_rate !== undefined && stats.sim_rate < 0.95;
   $("slow").hidden = !slow && !stats.paused;
-  $("slow").textContent = stats.paused ? "Paused" : slow ? `Slower than real time: × ${stats.sim_rate.toPrecision(2)}` : "";
+  $("slow").textContent = stats.paused ? "Paused" : slow ? `Slower than real time: ${Math.round(100 * stats.sim_rate)} %` : "";
   showValues(stats.set);
 }
 

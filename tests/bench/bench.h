@@ -56,6 +56,7 @@ int block(const Options& options);
 int graph(const Options& options);
 int concave(const Options& options);
 int contact(const Options& options);
+int live(const Options& options);
 int mechanics(const Options& options);
 int python(const Options& options);  ///< where the module is built
 int score(const Options& options);

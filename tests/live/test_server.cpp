@@ -8,16 +8,15 @@
 #include <thread>
 #include <vector>
 
-#include <boost/asio/connect.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include <kerf/error.h>
+#include "client.h"
 #include "live/server.h"
 #include "messages.h"
-#include "page_model.h"
 
 using namespace live;
 namespace beast = boost::beast;
@@ -38,18 +37,13 @@ struct Served {
   std::string host() const { return "127.0.0.1:" + std::to_string(port()); }
 };
 
-tcp::socket connected(net::io_context& io, int port) {
-  tcp::socket socket(io);
-  socket.connect({net::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(port)});
-  return socket;
-}
-
 // The status and body of a request.
 std::pair<int, std::string> answer(const Served& s, const std::string& target, const std::string& host,
                                    beast::http::verb verb = beast::http::verb::get, const std::string& upgrade = "",
                                    const std::string& origin = "") {
   net::io_context io;
-  tcp::socket socket = connected(io, s.port());
+  tcp::socket socket(io);
+  socket.connect({net::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(s.port())});
   beast::http::request<beast::http::empty_body> request(verb, target, 11);
   if (!host.empty()) request.set(beast::http::field::host, host);
   if (!upgrade.empty()) {
@@ -64,48 +58,6 @@ std::pair<int, std::string> answer(const Served& s, const std::string& target, c
   beast::http::read(socket, buffer, response);
   return {static_cast<int>(response.result_int()), response.body()};
 }
-
-class Client {
- public:
-  explicit Client(const Served& s) : ws_(connected(io_, s.port())) {
-    ws_.set_option(beast::websocket::stream_base::decorator(
-        [&](beast::websocket::request_type& r) { r.set(beast::http::field::origin, "http://" + s.host()); }));
-    ws_.handshake(s.host(), "/" + token + "/live");
-  }
-  /// The next message.
-  PageModel& next() {
-    beast::flat_buffer buffer;
-    ws_.read(buffer);
-    page.take(beast::buffers_to_string(buffer.data()));
-    return page;
-  }
-  bool has_message(int milliseconds) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
-    while (ws_.next_layer().available() == 0 && std::chrono::steady_clock::now() < end)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return ws_.next_layer().available() > 0;
-  }
-  void send(const std::string& text, bool binary = false) {
-    ws_.binary(binary);
-    ws_.write(net::buffer(text));
-  }
-  void acknowledge() { send("{\"ack\":" + std::to_string(page.sequence) + "}"); }
-  tcp::socket& socket() { return ws_.next_layer(); }
-  /// Cut off, without a word.
-  void kill() { ws_.next_layer().close(); }
-  bool is_closed() {
-    beast::flat_buffer buffer;
-    beast::error_code error;
-    while (!error) ws_.read(buffer, error);
-    return true;
-  }
-
-  PageModel page;
-
- private:
-  net::io_context io_;
-  beast::websocket::stream<tcp::socket> ws_;
-};
 
 std::shared_ptr<Snapshot> snapshot(std::uint64_t number, std::uint32_t revision = 1) {
   auto s = std::make_shared<Snapshot>();
@@ -166,7 +118,7 @@ TEST_CASE("only the printed address answers") {
 TEST_CASE("a page gets the whole state, then the newest of what follows, one message at a time") {
   Served s;
   s.server.publish(snapshot(1));
-  Client a(s);
+  Client a(s.server.url());
   CHECK(wait_for<Join>(s.inbox, 1)[0].page == 1);
   CHECK(a.next().kind == 1);
   CHECK(a.page.scene["name"] == "test");
@@ -185,7 +137,7 @@ TEST_CASE("a page gets the whole state, then the newest of what follows, one mes
   CHECK(a.next().kind == 2);
   CHECK(a.page.triangles[2] == std::array<std::uint32_t, 3>{0, 0, 0});
   // A second page, while the first one is silent.
-  Client b(s);
+  Client b(s.server.url());
   CHECK(b.next().kind == 1);
   CHECK(b.page.statistics["number"] == 51);
   CHECK(b.page.triangles.size() == 2);
@@ -206,7 +158,7 @@ TEST_CASE("nodes, stress and graph go to the page that wants them") {
     return x;
   };
   s.server.publish(full(1));
-  Client a(s);
+  Client a(s.server.url());
   CHECK(a.next().node_positions.empty());
   CHECK_FALSE(s.server.wants_nodes());
   a.send(R"({"want":{"nodes":true,"stress":true,"graph":true}})");
@@ -231,7 +183,7 @@ TEST_CASE("nodes, stress and graph go to the page that wants them") {
 TEST_CASE("hostile messages are refused with a reason, and the page goes on") {
   Served s;
   s.server.publish(snapshot(1));
-  Client a(s);
+  Client a(s.server.url());
   a.next();
   a.send("no JSON");
   CHECK(a.next().notice["error"] == "the message is no JSON");
@@ -259,7 +211,7 @@ TEST_CASE("hostile messages are refused with a reason, and the page goes on") {
   CHECK(std::holds_alternative<Step>(std::get<Command>(wait_for<Command>(s.inbox, 1)[0].what)));
   // A frame of 1 GB, announced but not sent; one of 5000 bytes; text that is none.
   for (int kind = 0; kind < 3; ++kind) {
-    Client b(s);
+    Client b(s.server.url());
     b.next();
     std::string frame = kind == 0 ? std::string("\x81\xff\0\0\0\0\x40\0\0\0", 10) : std::string("\x81\xfe\x13\x88", 4);
     if (kind == 2) frame = std::string("\x81\x82", 2);
@@ -270,7 +222,7 @@ TEST_CASE("hostile messages are refused with a reason, and the page goes on") {
     CHECK(b.is_closed());
   }
   s.server.publish(snapshot(2));
-  Client c(s);
+  Client c(s.server.url());
   CHECK(c.next().kind == 1);
   CHECK(c.page.statistics["number"] == 2);
 }
@@ -279,14 +231,14 @@ TEST_CASE("twenty pages come and go, some of them killed") {
   Served s;
   s.server.publish(snapshot(1));
   for (std::uint64_t i = 1; i <= 20; ++i) {
-    Client a(s);
+    Client a(s.server.url());
     s.server.publish(snapshot(i + 1, static_cast<std::uint32_t>(i)));
     CHECK(a.next().kind == 1);
     a.acknowledge();
     if (i % 3 == 0) a.kill();
   }
   wait_for<Leave>(s.inbox, 20);
-  Client last(s);
+  Client last(s.server.url());
   CHECK(last.next().statistics["number"] == 21);
 }
 

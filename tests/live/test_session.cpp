@@ -75,7 +75,7 @@ Snapshot shown(Session& session) {
 
 using Corners = std::array<std::array<double, 3>, 3>;
 
-// What the page draws is the run's surface, to the step of its numbers.
+// The page draws the surface of the run, to the step of its numbers.
 void require_same(const PageModel& page, const geo::Simulation& run) {
   const geo::TriangleMesh surface = run.surface();
   std::vector<Corners> drawn, real;

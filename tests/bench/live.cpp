@@ -39,8 +39,8 @@ sim::Setup scene(const std::string& name, double rate) {
   return s;
 }
 
-// Strokes back and forth across a box, each 0.6 s long, with pauses of 0.4 s; undone one by one, so
-// that the body stays what it is.
+// Strokes across a box, each 0.6 s long, with pauses of 0.4 s: level ones at several heights, the
+// first through the middle. A new beginning after three of them.
 class Strokes {
  public:
   explicit Strokes(const geo::Box3& box) : box_(box) {}
@@ -50,7 +50,7 @@ class Strokes {
     const double phase = std::fmod(time, 1.0) / 0.6;
     const auto k = static_cast<int>(time);
     const geo::Vec3 size = box_.hi - box_.lo;
-    const double way = std::clamp(phase, 0.0, 1.0) * 1.2 - 0.1, height = 0.35 + 0.3 * std::fmod(0.618 * k, 1.0);
+    const double way = std::clamp(phase, 0.0, 1.0) * 1.2 - 0.1, height = 0.51 + 0.1 * (k % 3);
     live::Stroke s;
     s.id = static_cast<std::uint64_t>(k);
     s.origin = box_.lo + geo::Vec3(way * size.x(), -0.3 * size.y(), height * size.z());
@@ -74,9 +74,8 @@ class Strokes {
   }
 
  private:
-  // Every fourth stroke is followed by a new beginning.
   std::string undone(std::uint64_t id) {
-    if (id == undone_ || id % 4 != 3) return {};
+    if (id == undone_ || id % 3 != 2) return {};
     undone_ = id;
     return "{\"reset\":true}";
   }
@@ -186,7 +185,7 @@ double cut_ratio(const sim::Setup& s, double seconds) {
     live::Stroke stroke = strokes.pose(frame / rate);
     if (stroke.phase != live::Phase::end && stroke.id != last) {
       stroke.phase = live::Phase::begin, last = stroke.id, holds = true;
-      if (stroke.id % 4 == 0) session.reset(), session.advance();
+      if (stroke.id % 3 == 0) session.reset(), session.advance();
       session.obey(1, stroke);
     } else if (holds) {
       holds = stroke.phase != live::Phase::end;

@@ -19,6 +19,7 @@ constexpr std::size_t most_hands = 8;   // blades and springs at a time
 constexpr std::size_t most_saved = 16;  // strokes that can be undone
 constexpr int count_interval = 12;      // frames between two counts of pieces while a blade cuts
 constexpr double farthest_pull = 0.6;   // stretch of a spring, in diagonals of the body
+constexpr double most_motion = 2;       // of an edge point in a frame, in the finest node spacing: one cut
 constexpr double finest_edge = 48;      // segments of an edge
 
 std::string checkpoint_bytes(const geo::Body& body, const geo::RunState& state) {
@@ -83,14 +84,15 @@ void Session::obey(ClientId page, const Stroke& stroke) {
     blade.name = "stroke" + std::to_string(run_.scene().blades.size() + 1);
     const double n = std::clamp(std::ceil(stroke.depth / finest_spacing(run_.body())), 1.0, finest_edge);
     for (int i = 0; i <= static_cast<int>(n); ++i) blade.points.push_back({0, 0, stroke.depth * i / n});
+    blade.limit = most_motion;
     const std::size_t b = run_.add_blade(std::move(blade));
     run_.extend_blade(b, 0, pose_of(stroke));
-    blades_[hand] = {b, pose_of(stroke), stroke.depth, false, run_.body().surface.face_count()};
+    blades_[hand] = {b, pose_of(stroke), pose_of(stroke), stroke.depth, false, run_.body().surface.face_count()};
     return;
   }
   const auto held = blades_.find(hand);
   if (held == blades_.end()) return;  // ended by undo or reset
-  held->second.pose = pose_of(stroke);
+  held->second.target = pose_of(stroke);
   held->second.ends = stroke.phase == Phase::end;
 }
 
@@ -235,8 +237,27 @@ void Session::reset() {
   count_pieces();
 }
 
+// Moves an edge towards the pointer, no farther than one cut: a frame has a bounded cost, and an edge
+// that a fast pointer has left behind catches up.
+void Session::chase(HeldBlade& held) const {
+  const auto end = [&](const geo::Pose& pose) { return pose * geo::Vec3(0, 0, held.length); };
+  const double way =
+      std::max((held.target.position - held.now.position).norm(), (end(held.target) - end(held.now)).norm());
+  const double most = most_motion * finest_spacing(run_.body());
+  if (way <= most) {
+    held.now = held.target;
+    return;
+  }
+  const double share = most / way;
+  held.now.position += share * (held.target.position - held.now.position);
+  held.now.rotation = held.now.rotation.slerp(share, held.target.rotation);
+}
+
 void Session::extend_hands() {
-  for (auto& [hand, held] : blades_) run_.extend_blade(held.blade, 1, held.pose);
+  for (auto& [hand, held] : blades_) {
+    chase(held);
+    run_.extend_blade(held.blade, 1, held.now);
+  }
   const double most = farthest_pull * geo::bounding_box(setup_.models.all).diagonal();
   for (auto& [hand, held] : pulls_) {
     const geo::Vec3 before = run_.scene().pulls[held.pull].motion.keys.back().position, way = held.to - before;
@@ -248,7 +269,11 @@ void Session::extend_hands() {
 // Ends the hands that said so. A stroke that has cut nothing need not be undone.
 void Session::end_hands(bool all) {
   for (auto at = blades_.begin(); at != blades_.end();) {
-    if (!all && !at->second.ends) {
+    // A stroke that has ended goes on until its edge is where it ended.
+    const HeldBlade& held = at->second;
+    const bool there =
+        held.now.position == held.target.position && held.now.rotation.coeffs() == held.target.rotation.coeffs();
+    if (!all && !(held.ends && there)) {
       ++at;
       continue;
     }

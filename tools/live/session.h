@@ -70,7 +70,7 @@ class Session {
   using Hand = std::pair<ClientId, std::uint64_t>;  // a page and the number of its stroke
   struct HeldBlade {
     std::size_t blade;
-    geo::Pose pose;  // at the end of the next frame
+    geo::Pose now, target;  // where the edge is, and where the pointer is
     double length;
     bool ends = false;
     std::uint32_t faces;  // of the complex, when the stroke began
@@ -97,6 +97,7 @@ class Session {
   void save();
   void restore(Saved saved);
   void extend_hands();
+  void chase(HeldBlade& held) const;
   void end_hands(bool all);
   void count_pieces();
   geo::Vec3 material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const;

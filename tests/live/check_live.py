@@ -1,7 +1,7 @@
 """check_live.py TOOLS_DIR SCENES_DIR MODELS_DIR CASE...: kerf-live's page in a browser, used by real pointer events.
 
-polyp: cut off by one stroke; two pieces, and their volumes add up. apple: cut by three strokes. jello: grabbed and shaken, then undone
-by a reset. Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
+polyp: cut off by one stroke; two pieces, and their volumes add up. apple: cut by three strokes. jello: grabbed and shaken.
+Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
 """
 import filecmp, glob, json, os, subprocess, sys, tempfile, time
 from client import Program
@@ -32,7 +32,7 @@ class Session:
 
     def __init__(self, name, *options):
         self.name = name
-        self.program = Program(os.path.join(tools, "kerf-live"), os.path.join(scenes, name + ".toml"), "--no-blades", "--rate", "30", "--set", f"body.mesh={models}/{name}.ply",
+        self.program = Program(os.path.join(tools, "kerf-live"), os.path.join(scenes, name + ".toml"), "--no-blades", "--set", f"body.mesh={models}/{name}.ply",
                                *options)
         hand.errors.clear(), hand.requests.clear()
         hand.visit(self.program.address + "#shadows=false")
@@ -40,6 +40,12 @@ class Session:
     def pause(self):
         hand.key(" ")
         hand.wait("live.stats.paused")
+
+    # At its begin, and paused: steps are made one by one, the same on any machine.
+    def begin(self):
+        self.pause()
+        hand.key("r")
+        hand.wait("live.time < 0.1 && live.stats.paused")
 
     # Saves, and compares with what kerf-sim makes of the recorded scene.
     def done(self):
@@ -73,14 +79,16 @@ def volumes_add_up(name, pieces):
 
 
 def polyp():
-    session = Session("polyp", "--set", "gravity=[0,0,-4]")  # it stands upright
-    left, right = hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03])
-    hand.drag(along(left, right))
-    hand.wait("live.stats.pieces >= 2")
-    session.pause()
+    session = Session("polyp")
+    session.begin()
+    hand.drag(along(hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03]), steps=12), each=hand.step)
+    said = {key: hand.stats()[key] for key in ("pieces", "undo", "refused")}
+    check(f"polyp: {said}", said["pieces"] == 2 and said["undo"] == 1)
     # Another view, by the other button, the wheel and keys, and what the page shows of the inside.
-    hand.drag(along([300, 300], [360, 280], steps=4), seconds=0.1, button="right")
+    before = hand.run("view.azimuth")
+    hand.drag([[300, 300], [360, 280]], button="right")
     hand.mouse("mouseWheel", 300, 300, deltaX=0, deltaY=-120)
+    check(f"polyp: the view does not turn from {before}: {hand.run('[view.azimuth, pointers.size, hand.stroke !== null]')}", hand.run("view.azimuth") != before)
     for key in "nte":
         hand.key(key)
     hand.wait("live.node && live.stress && live.pairs && live.pairs.length > 0")
@@ -93,26 +101,30 @@ def polyp():
 
 def apple():
     session = Session("apple")
-    for stroke, (a, b) in enumerate([([1.2, -0.7, 1.0], [1.1, -0.7, -1.2]), ([-0.7, -1.2, 1.1], [-0.75, -1.1, -1.2]), ([-1.5, -0.5, 0.72], [1.5, -0.45, 0.66])]):
+    session.begin()
+    (x, y), (_, top) = hand.place([0, 0, 0]), hand.place([0, 0, 1])
+    r = y - top
+    strokes = [((0.5, -1.5), (0.55, 1.5)), ((-0.6, -1.5), (-0.5, 1.5)), ((-1.6, -0.35), (1.6, -0.45))]
+    for number, (a, b) in enumerate(strokes, 1):
         before = hand.stats()["pieces"]
-        hand.drag(along(hand.place(a), hand.place(b), steps=16), seconds=1.2)
-        hand.wait(f"live.stats.pieces > {before}")
-        hand.wait(f"live.stats.undo === {stroke + 1}")
+        hand.drag(along((x + r * a[0], y + r * a[1]), (x + r * b[0], y + r * b[1]), steps=12), each=hand.step)
+        said = {key: hand.stats()[key] for key in ("pieces", "undo", "refused")}
+        check(f"apple: stroke {number}: {said}", said["pieces"] > before and said["undo"] == number)
     hand.key("u")
     hand.wait("live.stats.undo === 2")
-    session.pause()
     session.done()
 
 
 def jello():
     session = Session("jello")
     hand.key("g")
-    top = hand.place([0.5, 0.5, 1.0])
     box = "(() => { let lo = 9, hi = -9; for (let v = 0; v < live.vertices; v++) if (surface.corners.first[v] >= 0) lo = Math.min(lo, live.position[3 * v]), hi = Math.max(hi, live.position[3 * v]); return hi - lo; })()"
-    at_rest = hand.run(box)
-    hand.drag(along(top, [top[0] + 90, top[1] - 60], [top[0] - 90, top[1] - 40], [top[0] + 60, top[1] - 80], steps=10), seconds=1.6, release=False)
-    pulled = hand.run(box)
-    check(f"jello: {at_rest} wide at rest, {pulled} while it is pulled", pulled > 1.03 * at_rest)
+    at_rest, top, widest = hand.run(box), hand.place([0.5, 0.5, 1.0]), 0
+    # Without a pause: frames go on while the pointer shakes it.
+    for dx, dy in [(90, -60), (-90, -40), (60, -80)]:
+        hand.drag(along(top, [top[0] + dx, top[1] + dy], steps=4), release=False)
+        widest = max(widest, hand.run(box))
+    check(f"jello: {at_rest} wide at rest, {widest} while it is shaken", widest > 1.03 * at_rest)
     hand.mouse("mouseReleased", top[0] + 60, top[1] - 80)
     hand.wait("hand.stroke === null && live.stats.pieces === 1")
     session.pause()

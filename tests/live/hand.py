@@ -1,14 +1,14 @@
 """A hand at kerf-live's page: pointer events in a headless browser, aimed at places of the body."""
-import os, sys, time
+import os, sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "tools"))
 from browser import Browser
 
 
 class Hand(Browser):
-    def visit(self, address, width=640, height=560):
+    def visit(self, address, width=640, height=560, scale=0.5):
         """Opens the page; the first frame is drawn when this returns."""
-        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False)
         self.open(address)
         self.wait("live.told !== null && live.position.length > 0 && plots.frames.length > 0")
 
@@ -32,16 +32,22 @@ class Hand(Browser):
     def tool(self, name):
         self.button(f'[data-tool="{name}"]')
 
-    def drag(self, places, seconds=0.6, button="left", release=True):
-        """Presses at the first place, moves along the others with equal speed, and releases."""
+    def step(self):
+        """A single step of the run, which is paused."""
+        before = self.run("live.time")
+        self.key(".")
+        self.wait(f"live.time > {before}")
+
+    def drag(self, places, button="left", each=lambda: None, release=True):
+        """Presses at the first place, moves along the others, and releases; `each` is done after each of these."""
         self.mouse("mouseMoved", *places[0], button="none")
         self.mouse("mousePressed", *places[0], button=button)
-        start = time.time()
-        for i, place in enumerate(places[1:], 1):
-            time.sleep(max(0, start + seconds * i / (len(places) - 1) - time.time()))
+        for place in places[1:]:
             self.mouse("mouseMoved", *place, button=button)
+            each()
         if release:
             self.mouse("mouseReleased", *places[-1], button=button)
+            each()
 
 
 def along(*corners, steps=20):

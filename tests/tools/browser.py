@@ -89,7 +89,8 @@ class Browser:
         self.send("Input.dispatchKeyEvent", type="keyUp", **common)
 
     def mouse(self, kind, x, y, button="left", **more):
-        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=0 if kind in ("mouseReleased", "mouseWheel") else 1, clickCount=1, **more)
+        held = 0 if kind in ("mouseReleased", "mouseWheel") else {"none": 0, "left": 1, "right": 2}[button]
+        self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, buttons=held, clickCount=1, **more)
 
     def click(self, x, y):
         self.mouse("mousePressed", x, y), self.mouse("mouseReleased", x, y)

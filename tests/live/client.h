@@ -24,9 +24,8 @@ class Client {
                               static_cast<std::uint16_t>(std::stoi(host.substr(colon + 1)))});
     ws_.next_layer().set_option(boost::asio::ip::tcp::no_delay(true));
     ws_.read_message_max(1u << 30);
-    ws_.set_option(boost::beast::websocket::stream_base::decorator([&](boost::beast::websocket::request_type& r) {
-      r.set(boost::beast::http::field::origin, "http://" + host);
-    }));
+    ws_.set_option(boost::beast::websocket::stream_base::decorator(
+        [&](boost::beast::websocket::request_type& r) { r.set(boost::beast::http::field::origin, "http://" + host); }));
     ws_.handshake(host, url.substr(7 + host.size()) + "live");
   }
   /// The next message.

@@ -50,7 +50,7 @@ class Loop {
  private:
   void compute() {
     const auto begin = Clock::now();
-    if (const std::string reason = session_.advance(); !reason.empty()) say("went back: " + reason);
+    if (const std::string reason = session_.advance(paused_); !reason.empty()) say("went back: " + reason);
     if (const std::size_t refused = session_.stats().refused; refused > 0)
       say(std::to_string(refused) + (refused == 1 ? " crack step" : " crack steps") +
           " would have made surfaces cross; the cut goes on where it can");

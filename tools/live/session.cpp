@@ -237,14 +237,14 @@ void Session::reset() {
   count_pieces();
 }
 
-// Moves an edge towards the pointer, no farther than one cut: a frame has a bounded cost, and an edge
-// that a fast pointer has left behind catches up.
-void Session::chase(HeldBlade& held) const {
+// Moves an edge towards the pointer, no farther than one cut, so that a frame has a bounded cost.
+// An edge that a fast pointer has left behind catches up.
+void Session::chase(HeldBlade& held, bool whole) const {
   const auto end = [&](const geo::Pose& pose) { return pose * geo::Vec3(0, 0, held.length); };
   const double way =
       std::max((held.target.position - held.now.position).norm(), (end(held.target) - end(held.now)).norm());
   const double most = most_motion * finest_spacing(run_.body());
-  if (way <= most) {
+  if (whole || way <= most) {
     held.now = held.target;
     return;
   }
@@ -253,9 +253,9 @@ void Session::chase(HeldBlade& held) const {
   held.now.rotation = held.now.rotation.slerp(share, held.target.rotation);
 }
 
-void Session::extend_hands() {
+void Session::extend_hands(bool whole) {
   for (auto& [hand, held] : blades_) {
-    chase(held);
+    chase(held, whole);
     run_.extend_blade(held.blade, 1, held.now);
   }
   const double most = farthest_pull * geo::bounding_box(setup_.models.all).diagonal();
@@ -266,14 +266,16 @@ void Session::extend_hands() {
   }
 }
 
-// Ends the hands that said so. A stroke that has cut nothing need not be undone.
-void Session::end_hands(bool all) {
+// Ends the hands that said so; whether a stroke was among them. A stroke that has cut nothing need
+// not be undone.
+bool Session::end_hands() {
+  const std::size_t before = blades_.size();
   for (auto at = blades_.begin(); at != blades_.end();) {
     // A stroke that has ended goes on until its edge is where it ended.
     const HeldBlade& held = at->second;
     const bool there =
         held.now.position == held.target.position && held.now.rotation.coeffs() == held.target.rotation.coeffs();
-    if (!all && !(held.ends && there)) {
+    if (!held.ends || !there) {
       ++at;
       continue;
     }
@@ -282,11 +284,12 @@ void Session::end_hands(bool all) {
       std::erase_if(saved_, [&](const Saved& s) { return s.blades == at->second.blade; });
     at = blades_.erase(at);
   }
-  std::erase_if(pulls_, [&](const auto& entry) { return all || entry.second.ends; });
+  std::erase_if(pulls_, [&](const auto& entry) { return entry.second.ends; });
+  return blades_.size() != before;
 }
 
-std::string Session::advance() {
-  extend_hands();
+std::string Session::advance(bool whole) {
+  extend_hands(whole);
   try {
     stats_ = run_.advance_frame();
   } catch (const geo::GeometryError& e) {
@@ -299,8 +302,8 @@ std::string Session::advance() {
   }
   has_cut_ = faces_ != run_.body().surface.face_count();
   faces_ = run_.body().surface.face_count();
-  end_hands(false);
-  if (faces_ != counted_faces_ && (!has_cut_ || ++since_count_ >= count_interval)) count_pieces();
+  const bool ended = end_hands();
+  if (faces_ != counted_faces_ && (ended || !has_cut_ || ++since_count_ >= count_interval)) count_pieces();
   return {};
 }
 

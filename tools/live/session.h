@@ -40,7 +40,8 @@ class Session {
 
   /// Computes the next frame. Where it cannot be computed, the run goes back to before the last
   /// stroke, or begins anew; the result is then the reason, else empty.
-  std::string advance();
+  /// `whole`: edges move all the way to the pointer, however long the frame then takes.
+  std::string advance(bool whole = false);
 
   /// Statistics of the last frame.
   const geo::FrameStats& stats() const { return stats_; }
@@ -96,9 +97,9 @@ class Session {
 
   void save();
   void restore(Saved saved);
-  void extend_hands();
-  void chase(HeldBlade& held) const;
-  void end_hands(bool all);
+  void extend_hands(bool whole);
+  void chase(HeldBlade& held, bool whole) const;
+  bool end_hands();
   void count_pieces();
   geo::Vec3 material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const;
   geo::Vec3 world_point(const Spot& spot) const;

@@ -82,6 +82,7 @@ def polyp():
     session = Session("polyp")
     session.begin()
     hand.drag(along(hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03]), steps=12), each=hand.step)
+    hand.finish()
     said = {key: hand.stats()[key] for key in ("pieces", "undo", "refused")}
     check(f"polyp: {said}", said["pieces"] == 2 and said["undo"] == 1)
     # Another view, by the other button, the wheel and keys, and what the page shows of the inside.
@@ -108,6 +109,7 @@ def apple():
     for number, (a, b) in enumerate(strokes, 1):
         before = hand.stats()["pieces"]
         hand.drag(along((x + r * a[0], y + r * a[1]), (x + r * b[0], y + r * b[1]), steps=12), each=hand.step)
+        hand.finish()
         said = {key: hand.stats()[key] for key in ("pieces", "undo", "refused")}
         check(f"apple: stroke {number}: {said}", said["pieces"] > before and said["undo"] == number)
     hand.key("u")

@@ -38,6 +38,12 @@ class Hand(Browser):
         self.key(".")
         self.wait(f"live.time > {before}")
 
+    def finish(self):
+        """Steps until no edge is in the body: an edge that the pointer has left behind comes after it."""
+        self.step()
+        while self.stats()["edges"]:
+            self.step()
+
     def drag(self, places, button="left", each=lambda: None, release=True):
         """Presses at the first place, moves along the others, and releases; `each` is done after each of these."""
         self.mouse("mouseMoved", *places[0], button="none")

@@ -1,4 +1,4 @@
-// Small graphs over the last seconds: force on the blade, and frames a second.
+// Small graphs over the last seconds: force on blades and of pulls, and frames a second.
 class Plot {
   constructor(id, color, unit) {
     this.canvas = $(id), this.color = color, this.unit = unit, this.values = new Float32Array(180), this.at = 0;
@@ -47,7 +47,7 @@ const newtons = (f) => (f >= 1000 ? (f / 1000).toPrecision(3) + " kN" : f >= 1 ?
 function told(stats) {
   live.stats = stats;
   if (stats.ack_input !== undefined) inputTaken(stats.ack_input);
-  const force = (stats.blade_force ?? []).reduce((sum, f) => sum + f, 0);
+  const force = (stats.blade_force ?? []).reduce((sum, f) => sum + f, 0) + (stats.pull_force ?? 0);
   plots.force.add(force);
   plots.now = force;
   if (stats.message && stats.message !== plots.message && !stats.message.startsWith("slower")) notice({ notice: stats.message });

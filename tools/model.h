@@ -35,7 +35,7 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
 /// As read_solid(), where `repair` is false. Else a plain surface is repaired first, as kerf-repair
-/// does without options. Throws InputError where no solid comes of it.
+/// does without options. Throws InputError where the result is no solid.
 inline geo::SurfaceFile read_solid(const std::string& path, bool repair) {
   if (!repair) return read_solid(path);
   geo::SurfaceFile file = geo::read_surface(path);

@@ -83,7 +83,7 @@ struct Motion {
   double length;
 };
 
-// What decides how a vertex moves.
+// The measures of a vertex that decide how it moves.
 struct Fan {
   Vec3 outwards = Vec3::Zero();  // mean normal of its triangles, weighted by area
   double shortest = 1e300;       // length of its edges

@@ -7,6 +7,12 @@ target_compile_options(kerf_flags INTERFACE -ffp-contract=off)
 # gcc 12 warns of impossible overlaps inside std::string at -O3 (its bug 105329).
 target_compile_options(kerf_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 target_link_options(kerf_flags INTERFACE -Wl,--as-needed)
+# gcc 12 also warns of impossible lengths inside std::string (its bug 105651), and of types of anonymous namespaces where
+# sources are compiled as one. Targets that join many strings have these warnings off.
+function(kerf_quiet target)
+  target_compile_options(${target} PRIVATE
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-stringop-overread -Wno-subobject-linkage>)
+endfunction()
 if(KERF_WERROR)
   target_compile_options(kerf_flags INTERFACE -Werror)
 endif()
@@ -43,6 +49,9 @@ function(kerf_module module)
     kerf_precompile(geo_io <nlohmann/json.hpp>)
   else()
     kerf_precompiled_by(geo_${module} geo_base)
+  endif()
+  if(module STREQUAL "io" OR module STREQUAL "crack")
+    kerf_quiet(geo_${module})
   endif()
   set_property(TARGET geo_${module} PROPERTY POSITION_INDEPENDENT_CODE ON)
 endfunction()

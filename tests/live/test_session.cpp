@@ -149,12 +149,14 @@ TEST_CASE("a stroke cuts, and the page has the run's surface after each message"
   auto known = s.topology;
   session.obey(7, knife(1, Phase::begin, -0.2));
   std::size_t deltas = 0;
+  double force = 0;
   for (int i = 1; i <= 14; ++i) {
     session.obey(7, knife(1, i == 14 ? Phase::end : Phase::move, -0.2 + 1.4 * i / 14));
     REQUIRE(session.advance().empty());
     if (i % 3 == 1) continue;  // a page that misses frames
     s = shown(session);
     page.take(encode_frame(s, *known, {std::uint32_t(i + 1), false, false, 5}));
+    for (const auto& [edge, newtons] : session.edges()) force = std::max(force, newtons);
     deltas += page.kind == 2;
     known = s.topology;
     CHECK(page.statistics["ack_input"] == 5);
@@ -162,6 +164,7 @@ TEST_CASE("a stroke cuts, and the page has the run's surface after each message"
   }
   CHECK(deltas > 3);
   session.advance(), session.advance();
+  CHECK(force > 0);
   CHECK(session.pieces() == 2);
   CHECK(session.strokes() == 1);
   CHECK(session.last_stroke() == 1);
@@ -222,6 +225,10 @@ TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that 
   CHECK_THROWS_AS(session.obey(1, endless), BadMessage);
   for (std::uint64_t id = 10; id < 17; ++id) session.obey(2, knife(id, Phase::begin, -0.5));
   CHECK_THROWS_AS(session.obey(2, knife(30, Phase::begin, -0.5)), BadMessage);
+  session.advance();
+  CHECK(session.edges().empty());  // none has moved
+  session.obey(1, knife(1, Phase::move, -0.45));
+  for (std::uint64_t id = 10; id < 17; ++id) session.obey(2, knife(id, Phase::move, -0.45));
   session.advance();
   CHECK(session.edges().size() == 8);
   session.leave(1), session.leave(2);

@@ -15,12 +15,14 @@
 namespace live {
 namespace {
 
-constexpr std::size_t most_hands = 8;   // blades and springs at a time
-constexpr std::size_t most_saved = 16;  // strokes that can be undone
-constexpr int count_interval = 12;      // frames between two counts of pieces while a blade cuts
-constexpr double farthest_pull = 0.6;   // stretch of a spring, in diagonals of the body
-constexpr double most_motion = 2;       // of an edge point in a frame, in the finest node spacing: one cut
-constexpr double finest_edge = 48;      // segments of an edge
+constexpr std::size_t most_hands = 8;     // blades and springs at a time
+constexpr std::size_t most_saved = 16;    // strokes that can be undone
+constexpr int count_interval = 12;        // frames between two counts of pieces while a blade cuts
+constexpr double farthest_pull = 0.6;     // stretch of a spring, in diagonals of the body
+constexpr double most_motion = 2;         // of an edge point in a frame, in the finest node spacing: one cut
+constexpr double blade_width = 0.8;       // from edge to back, in the coarsest node spacing
+constexpr double blade_thickness = 0.15;  // at the back: parts the sheets, and feels their force
+constexpr double finest_edge = 48;        // segments of an edge
 
 std::string checkpoint_bytes(const geo::Body& body, const geo::RunState& state) {
   std::ostringstream out;
@@ -33,10 +35,15 @@ geo::Simulation simulation_from(const geo::Scene& scene, const std::string& byte
   return {scene, std::move(c.body), std::move(c.state)};
 }
 
-// The pose of an edge along local z.
-geo::Pose pose_of(const Stroke& s) {
-  return {s.origin, Eigen::Quaterniond::FromTwoVectors(geo::Vec3::UnitZ(), s.direction)};
+// The pose of an edge along local z, whose back is along local x.
+geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo::Vec3& back) {
+  geo::Mat3 axes;
+  axes << back, direction.cross(back), direction;
+  return {origin, Eigen::Quaterniond(axes).normalized()};
 }
+
+// The part of v across a unit direction.
+geo::Vec3 across(const geo::Vec3& v, const geo::Vec3& direction) { return v - v.dot(direction) * direction; }
 
 std::string start_of(const sim::Setup& setup, const geo::Progress& progress) {
   const geo::RunStart fresh = geo::begin_run(setup.scene, setup.models, progress);
@@ -79,20 +86,12 @@ void Session::obey(ClientId page, const Stroke& stroke) {
     if (blades_.contains(hand)) throw BadMessage("this stroke has begun already");
     if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
     if (stroke.depth > 100 * geo::bounding_box(setup_.models.all).diagonal()) throw BadMessage("the edge is too long");
-    save();
-    geo::Blade blade;
-    blade.name = "stroke" + std::to_string(run_.scene().blades.size() + 1);
-    const double n = std::clamp(std::ceil(stroke.depth / finest_spacing(run_.body())), 1.0, finest_edge);
-    for (int i = 0; i <= static_cast<int>(n); ++i) blade.points.push_back({0, 0, stroke.depth * i / n});
-    blade.limit = most_motion;
-    const std::size_t b = run_.add_blade(std::move(blade));
-    run_.extend_blade(b, 0, pose_of(stroke));
-    blades_[hand] = {b, pose_of(stroke), pose_of(stroke), stroke.depth, false, run_.body().surface.face_count()};
+    blades_[hand] = {Edge{stroke.origin, stroke.direction}, Edge{stroke.origin, stroke.direction}, stroke.depth};
     return;
   }
   const auto held = blades_.find(hand);
   if (held == blades_.end()) return;  // ended by undo or reset
-  held->second.target = pose_of(stroke);
+  held->second.target = {stroke.origin, stroke.direction};
   held->second.ends = stroke.phase == Phase::end;
 }
 
@@ -240,23 +239,60 @@ void Session::reset() {
 // Moves an edge towards the pointer, no farther than one cut, so that a frame has a bounded cost.
 // An edge that a fast pointer has left behind catches up.
 void Session::chase(HeldBlade& held, bool whole) const {
-  const auto end = [&](const geo::Pose& pose) { return pose * geo::Vec3(0, 0, held.length); };
+  Edge& now = held.now;
+  const Edge& to = held.target;
   const double way =
-      std::max((held.target.position - held.now.position).norm(), (end(held.target) - end(held.now)).norm());
+      std::max((to.origin - now.origin).norm(),
+               (to.origin + held.length * to.direction - now.origin - held.length * now.direction).norm());
   const double most = most_motion * finest_spacing(run_.body());
   if (whole || way <= most) {
-    held.now = held.target;
+    now = to;
     return;
   }
-  const double share = most / way;
-  held.now.position += share * (held.target.position - held.now.position);
-  held.now.rotation = held.now.rotation.slerp(share, held.target.rotation);
+  now.origin += most / way * (to.origin - now.origin);
+  const geo::Vec3 direction = now.direction + most / way * (to.direction - now.direction);
+  if (direction.norm() > 0.1) now.direction = direction.normalized();
+}
+
+// Turns the back of a blade against its motion, little by little: material is beside it.
+void Session::turn(HeldBlade& held, const Edge& before) const {
+  constexpr double least_motion = 0.02, share = 0.3;  // in node spacings; of the turn, in a frame
+  const geo::Vec3 motion =
+      across(held.now.origin - before.origin + 0.5 * held.length * (held.now.direction - before.direction),
+             held.now.direction);
+  if (motion.norm() > least_motion * finest_spacing(run_.body())) {
+    const geo::Vec3 wanted = -motion.normalized();
+    if (held.back == geo::Vec3::Zero())
+      held.back = wanted;
+    else if (wanted.dot(held.back) > -0.5)  // else the pointer goes back on its way
+      held.back += share * (wanted - held.back);
+  }
+  if (held.back != geo::Vec3::Zero()) held.back = across(held.back, held.now.direction).normalized();
+}
+
+void Session::add_blade(HeldBlade& held, const Edge& from) {
+  save();
+  const geo::NodeSet& nodes = run_.body().nodes;
+  const double coarsest = *std::max_element(nodes.spacing.begin(), nodes.spacing.end());
+  geo::Blade blade;
+  blade.name = "stroke" + std::to_string(run_.scene().blades.size() + 1);
+  const double n = std::clamp(std::ceil(held.length / finest_spacing(run_.body())), 1.0, finest_edge);
+  for (int i = 0; i <= static_cast<int>(n); ++i) blade.points.push_back({0, 0, held.length * i / n});
+  blade.limit = most_motion;
+  blade.back = {blade_width * coarsest, 0, 0}, blade.thickness = blade_thickness * coarsest;
+  held.blade = run_.add_blade(std::move(blade)), held.faces = run_.body().surface.face_count();
+  run_.extend_blade(*held.blade, 0,
+                    pose_of(from.origin, from.direction, across(held.back, from.direction).normalized()));
 }
 
 void Session::extend_hands(bool whole) {
   for (auto& [hand, held] : blades_) {
+    const Edge before = held.now;
     chase(held, whole);
-    run_.extend_blade(held.blade, 1, held.now);
+    turn(held, before);
+    if (held.back == geo::Vec3::Zero()) continue;
+    if (!held.blade) add_blade(held, before);
+    run_.extend_blade(*held.blade, 1, pose_of(held.now.origin, held.now.direction, held.back));
   }
   const double most = farthest_pull * geo::bounding_box(setup_.models.all).diagonal();
   for (auto& [hand, held] : pulls_) {
@@ -273,15 +309,14 @@ bool Session::end_hands() {
   for (auto at = blades_.begin(); at != blades_.end();) {
     // A stroke that has ended goes on until its edge is where it ended.
     const HeldBlade& held = at->second;
-    const bool there =
-        held.now.position == held.target.position && held.now.rotation.coeffs() == held.target.rotation.coeffs();
+    const bool there = held.now.origin == held.target.origin && held.now.direction == held.target.direction;
     if (!held.ends || !there) {
       ++at;
       continue;
     }
     last_stroke_ = at->first.second;
-    if (at->second.faces == run_.body().surface.face_count())
-      std::erase_if(saved_, [&](const Saved& s) { return s.blades == at->second.blade; });
+    if (held.blade && held.faces == run_.body().surface.face_count())
+      std::erase_if(saved_, [&](const Saved& s) { return s.blades == *held.blade; });
     at = blades_.erase(at);
   }
   std::erase_if(pulls_, [&](const auto& entry) { return entry.second.ends; });

@@ -69,12 +69,16 @@ class Session {
 
  private:
   using Hand = std::pair<ClientId, std::uint64_t>;  // a page and the number of its stroke
+  struct Edge {
+    geo::Vec3 origin, direction;  // unit
+  };
   struct HeldBlade {
-    std::size_t blade;
-    geo::Pose now, target;  // where the edge is, and where the pointer is
-    double length;
+    Edge now, target;  // where the edge is, and where the pointer is
+    double length = 0;
+    geo::Vec3 back = geo::Vec3::Zero();  // unit, from the edge against its motion; zero before it has moved
+    std::optional<std::size_t> blade;    // added to the run when it moves first
+    std::uint32_t faces = 0;             // of the complex, when the blade was added
     bool ends = false;
-    std::uint32_t faces;  // of the complex, when the stroke began
   };
   struct HeldPull {
     std::size_t pull;
@@ -99,6 +103,8 @@ class Session {
   void restore(Saved saved);
   void extend_hands(bool whole);
   void chase(HeldBlade& held, bool whole) const;
+  void turn(HeldBlade& held, const Edge& before) const;
+  void add_blade(HeldBlade& held, const Edge& from);
   bool end_hands();
   void count_pieces();
   geo::Vec3 material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const;

@@ -194,6 +194,7 @@ function drawTrail() {
   paint.setTransform(ratio, 0, 0, ratio, 0, 0);
   paint.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
   if (!hand.stroke) hand.trail = hand.trail.filter(([, , at]) => now - at < 500);
+  canvas.style.visibility = hand.trail.length ? "visible" : "hidden";
   const cuts = (hand.stroke?.kind ?? state.tool) !== "grab", trail = hand.trail;
   if (trail.length > 1 && cuts) {
     paint.lineCap = paint.lineJoin = "round";

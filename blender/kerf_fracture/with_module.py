@@ -55,6 +55,9 @@ class Module:
                 size = numpy.linalg.norm(numpy.ptp(numpy.array(mended.vertices), axis=0))
                 mended = mended.wrap(voxel * size)
                 words += f"; wrapped in {len(mended.faces)} triangles"
+            elif not mended.check().good:
+                mended = mended.self_union()
+                words += "; crossing triangles cut, parts united"
             self.kerf.Solid(mended)  # refuses what is still none
             if not progress("repair", 1.0):
                 raise Stopped()

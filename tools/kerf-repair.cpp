@@ -54,7 +54,7 @@ geo::TriangleMesh solid_of(const Command& w, geo::TriangleMesh mesh, double diag
     else
       mesh = geo::repaired_solid(std::move(mesh), w.weld * diagonal, w.smooth, &done);
     if (w.edge > 0) mesh = geo::refined(mesh, w.edge * diagonal);
-    geo::require_solid(mesh);
+    if (w.voxel > 0 || w.edge > 0) geo::require_solid(mesh);
   } catch (const std::runtime_error& e) {
     const std::string what = e.what();
     throw tool::Failure(w.model + ": " + what.substr(0, what.rfind("; ")) +

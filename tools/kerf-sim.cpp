@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include <kerf/body_file.h>
@@ -16,6 +15,7 @@
 #include <kerf/solid.h>
 #include "sim/frame_writer.h"
 #include "sim/setup.h"
+#include "sim/start.h"
 #include "sim/whole_run.h"
 #include "tool.h"
 
@@ -63,18 +63,6 @@ geo::Simulation resume(const sim::Setup& setup, const sim::RunFolder& folder, st
   } catch (const geo::InputError& e) {
     throw geo::InputError(folder.path.string() + ": " + e.what());
   }
-}
-
-// A new run, read back from its first checkpoint. `bytes` receives that checkpoint.
-geo::Simulation start(const sim::Setup& setup, std::string& bytes, const geo::Progress& progress) {
-  std::ostringstream out;
-  {
-    const geo::RunStart fresh = geo::begin_run(setup.scene, setup.models, progress);
-    geo::write_checkpoint(out, fresh.body, fresh.state, setup.fingerprint);
-  }
-  bytes = std::move(out).str();
-  geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(bytes, "checkpoint")));
-  return geo::Simulation(setup.scene, std::move(c.body), std::move(c.state));
 }
 
 // Positions and von Mises stress of the nodes, for the file of a frame.
@@ -191,7 +179,8 @@ std::unique_ptr<RecordedRun> open_run(const sim::Setup& setup, const sim::RunFol
   std::string checkpoint;
   std::optional<geo::Simulation> run;
   try {
-    run = start(setup, checkpoint, t.progress());
+    checkpoint = sim::first_checkpoint(setup, t.progress());
+    run = sim::run_from(setup.scene, checkpoint);
   } catch (...) {
     folder.unmake();
     throw;

@@ -18,15 +18,11 @@ namespace {
 
 // The box around a surface, half its diagonal away from it on each side: its faces cross nothing.
 TriangleMesh box_around(const Box3& box) {
-  const double margin = box.diagonal() / 2;
-  TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.push_back({(i & 1) ? box.hi.x() + margin : box.lo.x() - margin,
-                             (i & 2) ? box.hi.y() + margin : box.lo.y() - margin,
-                             (i & 4) ? box.hi.z() + margin : box.lo.z() - margin});
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
+  const Vec3 margin = Vec3::Constant(box.diagonal() / 2);
+  const Vec3 size = box.hi - box.lo + 2 * margin;
+  TriangleMesh around = make_block(size, size.maxCoeff());
+  for (Vec3& p : around.vertices) p += box.lo - margin;
+  return around;
 }
 
 // A point inside a cell: half way from the centroid of its largest triangle to the next one along
@@ -151,8 +147,12 @@ TriangleMesh repaired_solid(TriangleMesh mesh, double weld_distance, bool smooth
   SolidRepairStats done;
   done.repair = repair(mesh, weld_distance, smooth_fill);
   if (mesh.triangles.empty()) throw InputError("has no triangles that bound anything");
-  if (!check_surface(mesh, true).good()) mesh = self_union(mesh, {}, &done.united.emplace());
-  require_solid(mesh);
+  try {
+    require_solid(mesh);
+  } catch (const InputError&) {
+    mesh = self_union(mesh, {}, &done.united.emplace());
+    require_solid(mesh);
+  }
   if (stats) *stats = done;
   return mesh;
 }

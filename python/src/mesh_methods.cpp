@@ -76,7 +76,8 @@ std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool
   }
   if (longest != 0) mesh = std::make_shared<Mesh>(refined(*mesh, longest));
   try {
-    return std::make_shared<Solid>(geo::TriangleMesh(mesh->mesh));
+    const bool known = voxel == 0 && longest == 0;  // valid, by repaired_solid()
+    return std::make_shared<Solid>(std::move(mesh->mesh), known);
   } catch (const geo::InputError& e) {
     const std::string what = e.what();
     throw geo::InputError(what.substr(0, what.rfind("; ")) +

@@ -132,12 +132,10 @@ class Loop {
   }
   Pace pace() {
     if (Clock::now() - said_ > std::chrono::seconds(4)) message_.clear();
-    if (message_.empty() && pacer_.slow()) {
-      const int percent = static_cast<int>(100 * pacer_.rate() + 0.5);
-      return {pacer_.fps(), pacer_.rate(), pacer_.step(),
-              accuracy(),   paused_,       "slower than real time: " + std::to_string(percent) + " %"};
-    }
-    return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_, message_};
+    std::string message = message_;
+    if (message.empty() && pacer_.slow())
+      message = "slower than real time: " + std::to_string(static_cast<int>(100 * pacer_.rate() + 0.5)) + " %";
+    return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_, message};
   }
   double accuracy() const { return session_.run().scene().accuracy; }
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> edges() const {

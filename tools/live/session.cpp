@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <sstream>
 
-#include <kerf/body_file.h>
 #include <kerf/error.h>
 #include <kerf/pieces.h>
+#include "sim/start.h"
 
 namespace live {
 namespace {
@@ -24,17 +23,6 @@ constexpr double blade_width = 0.8;       // from edge to back, in the coarsest 
 constexpr double blade_thickness = 0.15;  // at the back: parts the sheets, and feels their force
 constexpr double finest_edge = 48;        // segments of an edge
 
-std::string checkpoint_bytes(const geo::Body& body, const geo::RunState& state) {
-  std::ostringstream out;
-  geo::write_checkpoint(out, body, state, 0);
-  return std::move(out).str();
-}
-
-geo::Simulation simulation_from(const geo::Scene& scene, const std::string& bytes) {
-  geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(bytes, "checkpoint")));
-  return {scene, std::move(c.body), std::move(c.state)};
-}
-
 // The pose of an edge along local z, whose back is along local x.
 geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo::Vec3& back) {
   geo::Mat3 axes;
@@ -45,13 +33,12 @@ geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo
 // The part of v across a unit direction.
 geo::Vec3 across(const geo::Vec3& v, const geo::Vec3& direction) { return v - v.dot(direction) * direction; }
 
-std::string start_of(const sim::Setup& setup, const geo::Progress& progress) {
-  const geo::RunStart fresh = geo::begin_run(setup.scene, setup.models, progress);
-  return checkpoint_bytes(fresh.body, fresh.state);
-}
-
 double finest_spacing(const geo::Body& body) {
   return *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
+}
+
+double coarsest_spacing(const geo::Body& body) {
+  return *std::max_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
 }
 
 }  // namespace
@@ -64,7 +51,7 @@ void adapt_scene(geo::Scene& scene, double rate, bool blades) {
 }
 
 Session::Session(const sim::Setup& setup, const geo::Progress& progress)
-    : setup_(setup), start_(start_of(setup, progress)), run_(simulation_from(setup.scene, start_)) {
+    : setup_(setup), start_(sim::first_checkpoint(setup, progress)), run_(sim::run_from(setup.scene, start_)) {
   for (std::uint32_t i = 0; i < run_.solid().size(); ++i) mass_ += run_.solid().mass(geo::NodeId(i));
   count_pieces();
 }
@@ -79,14 +66,19 @@ void Session::count_pieces() {
   since_count_ = 0;
 }
 
+void Session::require_free_hand() const {
+  if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
+}
+
 void Session::obey(ClientId page, const Stroke& stroke) {
   taken_[page] = stroke.input;
   const Hand hand{page, stroke.id};
   if (stroke.phase == Phase::begin) {
     if (blades_.contains(hand)) throw BadMessage("this stroke has begun already");
-    if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
+    require_free_hand();
     if (stroke.depth > 100 * geo::bounding_box(setup_.models.all).diagonal()) throw BadMessage("the edge is too long");
-    blades_[hand] = {Edge{stroke.origin, stroke.direction}, Edge{stroke.origin, stroke.direction}, stroke.depth};
+    HeldBlade& held = blades_[hand];
+    held.now = held.target = {stroke.origin, stroke.direction}, held.length = stroke.depth;
     return;
   }
   const auto held = blades_.find(hand);
@@ -129,7 +121,7 @@ void Session::obey(ClientId page, const Grab& grab) {
   const Hand hand{page, grab.id};
   if (grab.phase == Phase::begin) {
     if (pulls_.contains(hand)) throw BadMessage("this grab has begun already");
-    if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
+    require_free_hand();
     geo::SurfaceVertexId nearest;
     const geo::Vec3 x = material_point(grab.spot, nearest);
     const geo::Binding& binding = run_.body().binding;
@@ -160,8 +152,7 @@ void Session::obey(const Pin& pin) {
     pins_.erase(held);
     return;
   }
-  const double coarsest = *std::max_element(run_.body().nodes.spacing.begin(), run_.body().nodes.spacing.end());
-  const double radius = pin.radius > 0 ? pin.radius : coarsest;
+  const double radius = pin.radius > 0 ? pin.radius : coarsest_spacing(run_.body());
   geo::Grip grip;
   grip.lo = x - geo::Vec3::Constant(radius), grip.hi = x + geo::Vec3::Constant(radius);
   pins_.push_back({run_.add_grip(std::move(grip)), x, world_point(pin.spot), radius});
@@ -214,8 +205,12 @@ void Session::restore(Saved saved) {
   if (saved.state.frame > 0 && (checkpoints_.empty() || checkpoints_.back() != saved.state.frame))
     checkpoints_.push_back(saved.state.frame);
   pins_ = std::move(saved.pins);
+  go_on_from(scene, sim::checkpoint_bytes(saved.body, saved.state, setup_.fingerprint));
+}
+
+void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint) {
   blades_.clear(), pulls_.clear();
-  run_ = simulation_from(scene, checkpoint_bytes(saved.body, saved.state));
+  run_ = sim::run_from(scene, checkpoint);
   slots_.clear();
   stats_ = {}, has_cut_ = false;
   count_pieces();
@@ -229,11 +224,8 @@ void Session::undo() {
 }
 
 void Session::reset() {
-  saved_.clear(), checkpoints_.clear(), pins_.clear(), blades_.clear(), pulls_.clear();
-  run_ = simulation_from(setup_.scene, start_);
-  slots_.clear();
-  stats_ = {}, has_cut_ = false;
-  count_pieces();
+  saved_.clear(), checkpoints_.clear(), pins_.clear();
+  go_on_from(setup_.scene, start_);
 }
 
 // Moves an edge towards the pointer, no farther than one cut, so that a frame has a bounded cost.
@@ -272,8 +264,7 @@ void Session::turn(HeldBlade& held, const Edge& before) const {
 
 void Session::add_blade(HeldBlade& held, const Edge& from) {
   save();
-  const geo::NodeSet& nodes = run_.body().nodes;
-  const double coarsest = *std::max_element(nodes.spacing.begin(), nodes.spacing.end());
+  const double coarsest = coarsest_spacing(run_.body());
   geo::Blade blade;
   blade.name = "stroke" + std::to_string(run_.scene().blades.size() + 1);
   const double n = std::clamp(std::ceil(held.length / finest_spacing(run_.body())), 1.0, finest_edge);

@@ -101,6 +101,9 @@ class Session {
 
   void save();
   void restore(Saved saved);
+  // Continues as `scene` from a checkpoint, without hands.
+  void go_on_from(const geo::Scene& scene, const std::string& checkpoint);
+  void require_free_hand() const;
   void extend_hands(bool whole);
   void chase(HeldBlade& held, bool whole) const;
   void turn(HeldBlade& held, const Edge& before) const;

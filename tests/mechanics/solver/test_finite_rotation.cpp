@@ -59,6 +59,15 @@ struct Halves {
   }
 };
 
+// A step of the halves, and the rotation of its islands.
+struct Turning {
+  explicit Turning(Random& random) : halves(random) {}
+  const Halves halves;
+  const StepProblem problem = halves.problem();
+  const IncrementalPotential potential{problem};
+  const FiniteRotation rotation{potential};
+};
+
 }  // namespace
 
 TEST_CASE("islands that turn are predicted on arcs: rigid motions are exact, and others keep all distances",
@@ -67,10 +76,8 @@ TEST_CASE("islands that turn are predicted on arcs: rigid motions are exact, and
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const Halves halves(random);
-    const StepProblem problem = halves.problem();
-    const IncrementalPotential potential(problem);
-    const FiniteRotation rotation(potential);
+    const Turning turning(random);
+    const auto& [halves, problem, potential, rotation] = turning;
     REQUIRE(potential.islands().free_count() == 2);
     const std::size_t n = halves.solid.size();
     std::vector<char> rotates;
@@ -118,10 +125,8 @@ TEST_CASE("a direction gets the momenta that inertia and loads alone give, and a
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const Halves halves(random);
-    const StepProblem problem = halves.problem();
-    const IncrementalPotential potential(problem);
-    const FiniteRotation rotation(potential);
+    const Turning turning(random);
+    const auto& [halves, problem, potential, rotation] = turning;
     const ActiveIslands active(potential.islands(), halves.solid.discretisation().subdomains);
     const std::size_t n = halves.solid.size();
     std::vector<Vec3> u = halves.start.displacement, direction(n);
@@ -154,10 +159,8 @@ TEST_CASE("rotations are those of directions, zero where they are negligible, an
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const Halves halves(random);
-    const StepProblem problem = halves.problem();
-    const IncrementalPotential potential(problem);
-    const FiniteRotation rotation(potential);
+    const Turning turning(random);
+    const auto& [halves, problem, potential, rotation] = turning;
     const std::vector<Vec3>& u = halves.start.displacement;
     // The right half turns by an angle at first order; the left one by next to nothing.
     const Vec3 angle = random.uniform(0.1, 0.5) * random.direction(), off = random.direction();

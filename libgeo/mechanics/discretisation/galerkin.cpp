@@ -1,11 +1,15 @@
 // Incremental update: equal cells before and after a cut are matched in Morton order. A point of
 // such a cell keeps its shape gradients unless a changed support or face touches what they depend
-// on.
+// on: its supports, its lines of sight, and for a hidden node at distance s the ellipsoid of all
+// paths of a length below (support / s)^¼ s, which a line of sight round a front must have
+// (diffraction.h).
 #include "mechanics/discretisation/galerkin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "body/incremental_cache.h"
 #include "kerf/parallel.h"
@@ -20,9 +24,15 @@ constexpr std::size_t none = ~std::size_t(0);
 // Faces that were added or removed, and supports of nodes that were added, moved or resized.
 class Changes {
  public:
-  Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports)
-      : faces_(faces), supports_(supports) {
-    for (const auto& [a, b, c] : faces) bounds_.add(box_of(a, b, c));
+  Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports,
+          std::span<const std::uint32_t> nodes, std::size_t node_count)
+      : visibility_{TriangleBvh(faces), std::vector<std::uint8_t>(node_count, 0)}, supports_(supports) {
+    for (const auto i : nodes) visibility_.node[i] = 1;
+    for (const auto& [a, b, c] : faces) {
+      const Vec3 middle = (a + b + c) / 3;
+      balls_.push_back({middle, std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
+      bounds_.add(box_of(a, b, c));
+    }
     for (const auto& [x, r] : supports) bounds_.add(Box3{x, x}.grown(support_factors.back() * r));
   }
   /// False if the changes touch no point in the box whose influence radius is at most `radius`.
@@ -34,32 +44,56 @@ class Changes {
       if (points.grown(support_factors.back() * s.second).meets({s.first, s.first})) near.push_back(s);
     return near;
   }
-  /// True if faces, or `supports`, touch anything that decides the point's shape gradients: the
-  /// nodes that support it, the segments to them, the segment from its intended position. For a
-  /// point with hidden nodes, whose lines of sight bend round fronts, any changed face in its
-  /// neighbourhood counts.
+  /// For compute_supports().
+  const VisibilityChanges& visibility() const { return visibility_; }
+  /// True if faces, or `supports`, touch anything that decides a point's shape gradients: the nodes
+  /// that support it, the segments and bent paths to them, the segment from its intended position.
+  /// `nodes_near`: returns all nodes that may support the point, and others.
+  template <class NodesNear>
   bool affect(const Body& body, std::span<const std::pair<Vec3, double>> supports, const Vec3& intended,
-              const MaterialPoint& p) const {
+              const PointBlock& block, std::size_t point, const NodesNear& nodes_near) const {
+    const MaterialPoint& p = block.points[point];
     const double factor = support_factors[p.widenings];
     if (std::any_of(supports.begin(), supports.end(),
                     [&](const auto& s) { return (s.first - p.position).norm() < factor * s.second; }))
       return true;
-    std::vector<std::uint32_t> near;
-    faces_.near(Box3{p.position, p.position}.grown(p.influence_radius), near);
-    if (near.empty() || p.occluded) return !near.empty();
-    // The point sees all nodes that may support it, within its influence radius.
-    near.clear();
-    body.cache->grid.within(body.nodes.position, p.position,
-                            p.influence_radius * (1 + 4 * std::numeric_limits<double>::epsilon()), near);
+    std::vector<std::uint32_t> near, nodes;
+    visibility_.faces.near(Box3{p.position, p.position}.grown(p.influence_radius * (1 + 2 * bend_margin)), near);
+    if (near.empty()) return false;
     std::vector<Vec3> ends{intended};
-    for (const auto j : near) ends.push_back(body.nodes.position[j]);
+    for (const auto j : nodes_near())
+      if ((body.nodes.position[j] - p.position).norm() < factor * body.nodes.radius[j])
+        nodes.push_back(j), ends.push_back(body.nodes.position[j]);
     std::vector<std::uint8_t> touched(ends.size(), 0);
-    faces_.blocks(p.position, ends, touched.data());
-    return std::find(touched.begin(), touched.end(), 1) != touched.end();
+    visibility_.faces.blocks(p.position, ends, touched.data());
+    if (std::find(touched.begin(), touched.end(), 1) != touched.end()) return true;
+    if (!p.occluded) return false;
+    std::erase_if(nodes, [&](auto j) { return sees_straight(block, point, j); });
+    return std::any_of(nodes.begin(), nodes.end(), [&](auto j) {
+      return meet_bent_paths(p.position, body.nodes.position[j], factor * body.nodes.radius[j], near);
+    });
   }
 
  private:
-  TriangleBvh faces_;
+  // A path bends within support / 1024 of a front edge; twice that covers rounding.
+  static constexpr double bend_margin = 1.0 / 512;  // of a support
+
+  static bool sees_straight(const PointBlock& block, std::size_t point, std::uint32_t node) {
+    for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
+      if (block.nodes[block.entry_node[q]] == node) return !block.entry_bent[q];
+    return false;
+  }
+  // Whether one of the faces may touch a path from x to the node that is short enough.
+  bool meet_bent_paths(const Vec3& x, const Vec3& node, double support, std::span<const std::uint32_t> faces) const {
+    const double straight = (node - x).norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
+    return std::any_of(faces.begin(), faces.end(), [&](auto f) {
+      const auto& [middle, radius] = balls_[f];
+      return (middle - x).norm() + (middle - node).norm() < longest + 2 * (radius + bend_margin * support);
+    });
+  }
+
+  VisibilityChanges visibility_;
+  std::vector<std::pair<Vec3, double>> balls_;  // per face: a ball about it
   const std::vector<std::pair<Vec3, double>>& supports_;
   Box3 bounds_;
 };
@@ -85,6 +119,19 @@ std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::
     same.push_back(found ? static_cast<std::uint32_t>(o) : ~0u);
   }
   return same;
+}
+
+// All nodes that may support one of the points, and others; each is within its influence radius.
+std::vector<std::uint32_t> supporting_nodes(const Body& body, std::span<const PointBlock::Source> points) {
+  Box3 box;
+  double radius = 0;
+  for (const auto& [block, point, shape] : points)
+    if (block) box.add(block->points[point].position), radius = std::max(radius, block->points[point].influence_radius);
+  std::vector<std::uint32_t> nodes;
+  body.cache->grid.within(body.nodes.position, box.center(),
+                          (0.5 * (box.hi - box.lo).norm() + radius) * (1 + 8 * std::numeric_limits<double>::epsilon()),
+                          nodes);
+  return nodes;
 }
 
 // A block after splits: the source of each point among the old blocks, and the points to recompute.
@@ -126,10 +173,18 @@ struct BlockUpdate {
         sources[4 * c + i] = {&old.blocks[from], 4 * (old_cell[c] - first[from]) + i};
     }
     const auto supports = changes.supports(box);
-    for (std::uint32_t i = 0; i < sources.size(); ++i)
-      if (const auto& [block, point, shape] = sources[i];
-          !block || changes.affect(body, supports, cells[i / 4].point[i % 4], block->points[point]))
-        stale.push_back(i);
+    constexpr std::size_t points_per_query = 32;  // consecutive points are near each other
+    for (std::uint32_t begin = 0; begin < sources.size(); begin += points_per_query) {
+      const auto group = std::span(sources).subspan(begin, std::min(points_per_query, sources.size() - begin));
+      std::optional<std::vector<std::uint32_t>> nodes;
+      const auto nodes_near = [&]() -> const std::vector<std::uint32_t>& {
+        return nodes ? *nodes : nodes.emplace(supporting_nodes(body, group));
+      };
+      for (std::uint32_t k = 0; k < group.size(); ++k)
+        if (const auto& [block, point, shape] = group[k];
+            !block || changes.affect(body, supports, cells[(begin + k) / 4].point[k % 4], *block, point, nodes_near))
+          stale.push_back(begin + k);
+    }
     if (same_block != none && stale.empty()) return;
     points.resize(sources.size()), shapes.resize(stale.size());
     for (std::size_t i = 0; i < sources.size(); ++i)
@@ -191,13 +246,15 @@ void Galerkin::mark_changed(const Body& body, const BodyDelta& delta, std::span<
   for (const auto* list : {&delta.crack.new_faces, &delta.crack.removed_faces})
     for (const FaceId f : *list) faces_.push_back(body.surface.corners(f));
   for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i)
-    supports_.push_back({nodes.position[i], nodes.radius[i]});
+    supports_.push_back({nodes.position[i], nodes.radius[i]}), nodes_.push_back(static_cast<std::uint32_t>(i));
   for (std::size_t k = 0; k < delta.moved_nodes.size(); ++k) {
     const std::size_t i = delta.moved_nodes[k].index();
     supports_.push_back({old_position[k], nodes.radius[i]}), supports_.push_back({nodes.position[i], nodes.radius[i]});
+    nodes_.push_back(delta.moved_nodes[k].value);
   }
   for (const auto& [i, before] : delta.resized_nodes)
-    supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])});
+    supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])}),
+        nodes_.push_back(i.value);
 }
 
 PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points) {
@@ -214,7 +271,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points)
         for (std::uint32_t k = 0; k < 4; ++k) result.old_point.push_back(c == ~0u ? c : 4 * c + k);
     }
   }
-  const Changes changes(faces_, supports_);
+  const Changes changes(faces_, supports_, nodes_, body.nodes.size());
   std::vector<PointBlock> old(block_begin_.size() - 1);
   old.swap(points.blocks);
   std::vector<BlockUpdate> updates(points.blocks.size());
@@ -226,8 +283,11 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points)
   });
   std::vector<SupportTask> tasks;
   for (BlockUpdate& r : updates)
-    for (std::size_t s = 0; s < r.stale.size(); ++s) tasks.push_back({&r.points[r.stale[s]], &r.shapes[s]});
-  compute_supports(body, std::move(tasks));
+    for (std::size_t s = 0; s < r.stale.size(); ++s) {
+      const PointBlock::Source& source = r.sources[r.stale[s]];
+      tasks.push_back({&r.points[r.stale[s]], &r.shapes[s], source.block, source.point});
+    }
+  compute_supports(body, std::move(tasks), nullptr, &changes.visibility());
   parallel_for(updates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) points.blocks[b] = updates[b].make_block(cells_of(b), old);
   });
@@ -237,7 +297,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points)
   for (std::size_t o = 0; o < old.size(); ++o)
     if (result.new_block[o] == ~0u)
       for (const auto j : old[o].nodes) result.node_changed[j] = 1;
-  faces_.clear(), supports_.clear();
+  faces_.clear(), supports_.clear(), nodes_.clear();
   return result;
 }
 

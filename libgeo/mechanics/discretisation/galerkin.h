@@ -32,6 +32,7 @@ class Galerkin {
   std::vector<std::size_t> block_begin_;           // per block its first cell; one more at the end
   std::vector<std::array<Vec3, 3>> faces_;         // added or removed since the last rebuild
   std::vector<std::pair<Vec3, double>> supports_;  // balls of nodes that were added, moved or resized since
+  std::vector<std::uint32_t> nodes_;               // these nodes
 };
 
 }  // namespace geo

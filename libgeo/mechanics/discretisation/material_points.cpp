@@ -72,17 +72,21 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
     for (std::size_t k = 0; k < local_node.size(); ++k) local_node[k] = local(block->nodes[k]);
 
   entry_begin.reserve(points.size() + 1), entry_node.reserve(entries), entry_gradient.reserve(3 * entries);
+  entry_bent.reserve(entries);
   entry_begin.push_back(0);
   for (const Source& s : sources) {
     if (s.shape) {
       for (const auto j : s.shape->nodes) entry_node.push_back(local(j));
       for (const Vec3& g : s.shape->gradient) entry_gradient.insert(entry_gradient.end(), g.begin(), g.end());
+      entry_bent.insert(entry_bent.end(), s.shape->bent.begin(), s.shape->bent.end());
+      entry_bent.resize(entry_node.size(), 0);
     } else {
       const auto& local_node = local_nodes[s.block];
       const auto begin = s.block->entry_begin[s.point], end = s.block->entry_begin[s.point + 1];
       for (auto q = begin; q < end; ++q) entry_node.push_back(local_node[s.block->entry_node[q]]);
       entry_gradient.insert(entry_gradient.end(), s.block->entry_gradient.data() + 3 * begin,
                             s.block->entry_gradient.data() + 3 * end);
+      entry_bent.insert(entry_bent.end(), s.block->entry_bent.data() + begin, s.block->entry_bent.data() + end);
     }
     entry_begin.push_back(static_cast<std::uint32_t>(entry_node.size()));
   }
@@ -153,6 +157,7 @@ ShapeGradients PointBlock::shape_gradients(std::size_t point) const {
   for (std::size_t q = entry_begin[point]; q < entry_begin[point + 1]; ++q) {
     shape.nodes.push_back(nodes[entry_node[q]]);
     shape.gradient.push_back(Eigen::Map<const Vec3>(&entry_gradient[3 * q]));
+    shape.bent.push_back(entry_bent[q]);
   }
   return shape;
 }
@@ -188,8 +193,8 @@ bool operator==(const PointBlock& a, const PointBlock& b) {
            p.unscaled_volume == q.unscaled_volume;
   };
   return a.nodes == b.nodes && a.entry_begin == b.entry_begin && a.entry_node == b.entry_node &&
-         a.entry_gradient == b.entry_gradient && a.quad_begin == b.quad_begin && a.quad_node == b.quad_node &&
-         a.quad_gradient == b.quad_gradient && a.quantum == b.quantum &&
+         a.entry_gradient == b.entry_gradient && a.entry_bent == b.entry_bent && a.quad_begin == b.quad_begin &&
+         a.quad_node == b.quad_node && a.quad_gradient == b.quad_gradient && a.quantum == b.quantum &&
          std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
 }
 

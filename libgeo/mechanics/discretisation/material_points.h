@@ -43,6 +43,7 @@ struct PointBlock {
   std::vector<std::uint16_t> entry_node;     ///< per entry: index into `nodes`
   std::vector<double> entry_gradient;        ///< per entry: three numbers, the shape gradient
   std::vector<float> entry_gradient_single;  ///< the same in single precision
+  std::vector<std::uint8_t> entry_bent;      ///< per entry: 1 if the point sees the node round the front of a crack
   // The same quantised to 16 bits, for stiffness–vector products, with points in quads (four points
   // side by side). A quad's nodes are the union of its points' nodes, padded to an even number.
   // Nodes come in pairs of 24 integers: x of the first node's gradient for four points, x of the

@@ -1,5 +1,6 @@
 // Each point tries the support factors in turn until it sees enough nodes with a well-conditioned
-// moment matrix. Exact segment–triangle tests decide which nodes a point sees.
+// moment matrix. Exact segment–triangle tests decide which nodes a point sees. After a cut, they are
+// made only where a changed face touches the line of sight, or the node has changed.
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>
@@ -46,14 +47,16 @@ struct Batch {
     influence = box.grown(factor * largest);
   }
 
-  void compute(const Body& body, std::span<const double> factors, const Occluders& occluders) {
+  void compute(const Body& body, std::span<const double> factors, const Occluders& occluders,
+               const VisibilityChanges* changes) {
     for (const FrontEdge& e : occluders.fronts)
       if (const Vec3 middle = 0.5 * (e.a + e.b); influence.grown((e.b - e.a).norm()).meets({middle, middle}))
         fronts.push_back(e);
     Scratch scratch;
     for (const SupportTask& task : tasks)
-      if (std::none_of(factors.begin(), factors.end(),
-                       [&](double factor) { return compute(body, task, factor, occluders.faces, scratch); }))
+      if (std::none_of(factors.begin(), factors.end(), [&](double factor) {
+            return compute({body, task, factor, occluders.faces, changes}, scratch);
+          }))
         deficient.push_back(task);
   }
 
@@ -63,19 +66,71 @@ struct Batch {
     std::vector<Vec3> positions;
     std::vector<std::uint8_t> hidden;
     std::vector<SupportNode> seen;
+    std::vector<std::uint8_t> is_known, touched;
+    std::vector<std::uint32_t> unknown;
+    std::vector<Vec3> ends;
   };
+  // A point at one factor of the support radii.
+  struct Trial {
+    const Body& body;
+    const SupportTask& task;
+    double factor;
+    const TriangleBvh& faces;
+    const VisibilityChanges* changes;
+  };
+
+  // Marks the nodes that the point saw or did not see before, in `hidden` as it was then.
+  static void recall(const Trial& trial, Scratch& scratch) {
+    const auto& [body, task, factor, faces, changes] = trial;
+    const PointBlock& block = *task.before;
+    const MaterialPoint& before = block.points[task.point_before];
+    auto entry = block.entry_begin[task.point_before];
+    const auto end = block.entry_begin[task.point_before + 1];
+    for (std::size_t q = 0; q < scratch.nodes.size(); ++q) {
+      const auto j = scratch.nodes[q];
+      while (entry < end && block.nodes[block.entry_node[entry]] < j) ++entry;
+      const bool was_seen = entry < end && block.nodes[block.entry_node[entry]] == j;
+      const double support = support_factors[before.widenings] * body.nodes.radius[j];
+      scratch.is_known[q] =
+          !changes->node[j] && (was_seen || (scratch.positions[q] - before.position).norm() < support);
+      scratch.hidden[q] = !was_seen || block.entry_bent[entry];
+    }
+  }
+
+  // Sets `hidden` for each node.
+  static void find_hidden(const Trial& trial, Scratch& scratch) {
+    const auto& [body, task, factor, faces, changes] = trial;
+    const Vec3& x = task.point->position;
+    const std::size_t n = scratch.nodes.size();
+    scratch.hidden.assign(n, 0);
+    if (faces.empty()) return;
+    const auto is_recalled = [&](const MaterialPoint& before) {
+      return before.position == x && before.quality != MomentQuality::singular;  // a singular one keeps no nodes
+    };
+    if (!changes || !task.before || !is_recalled(task.before->points[task.point_before]))
+      return faces.blocks(x, scratch.positions, scratch.hidden.data());
+    scratch.is_known.assign(n, 0), scratch.touched.assign(n, 0), scratch.unknown.clear(), scratch.ends.clear();
+    recall(trial, scratch);
+    if (!changes->faces.empty()) changes->faces.blocks(x, scratch.positions, scratch.touched.data());
+    for (std::uint32_t q = 0; q < n; ++q)
+      if (!scratch.is_known[q] || scratch.touched[q])
+        scratch.unknown.push_back(q), scratch.ends.push_back(scratch.positions[q]);
+    scratch.touched.assign(scratch.ends.size(), 0);
+    faces.blocks(x, scratch.ends, scratch.touched.data());
+    for (std::size_t k = 0; k < scratch.unknown.size(); ++k) scratch.hidden[scratch.unknown[k]] = scratch.touched[k];
+  }
+
   // True if the point sees enough nodes.
-  bool compute(const Body& body, const SupportTask& task, double factor, const TriangleBvh& faces,
-               Scratch& scratch) const {
+  bool compute(const Trial& trial, Scratch& scratch) const {
+    const auto& [body, task, factor, faces, changes] = trial;
     MaterialPoint& point = *task.point;
     ShapeGradients& shape = *task.shape;
     const Vec3& x = point.position;
-    scratch.nodes.clear(), scratch.positions.clear(), scratch.seen.clear(), shape.nodes.clear();
+    scratch.nodes.clear(), scratch.positions.clear(), scratch.seen.clear(), shape.nodes.clear(), shape.bent.clear();
     for (const auto j : nodes)
       if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < factor * body.nodes.radius[j])
         scratch.nodes.push_back(j), scratch.positions.push_back(y);
-    scratch.hidden.assign(scratch.positions.size(), 0);
-    if (!faces.empty()) faces.blocks(x, scratch.positions, scratch.hidden.data());
+    find_hidden(trial, scratch);
     point.widenings = static_cast<std::uint8_t>(std::find(support_factors.begin(), support_factors.end(), factor) -
                                                 support_factors.begin());
     point.occluded = std::find(scratch.hidden.begin(), scratch.hidden.end(), 1) != scratch.hidden.end();
@@ -88,14 +143,15 @@ struct Batch {
           std::max(point.influence_radius, scratch.hidden[q] ? 0.5 * (straight + support) : straight);
       const auto node =
           scratch.hidden[q] ? diffracted_support(x, y, support, fronts, faces) : direct_support(x, y, support);
-      if (node) shape.nodes.push_back(scratch.nodes[q]), scratch.seen.push_back(*node);
+      if (!node) continue;
+      shape.nodes.push_back(scratch.nodes[q]), shape.bent.push_back(scratch.hidden[q]), scratch.seen.push_back(*node);
     }
     const double condition = shape_gradients(x, scratch.seen, shape.gradient);
     point.quality = condition <= ill_conditioned  ? MomentQuality::good
                     : condition <= without_strain ? MomentQuality::poor
                                                   : MomentQuality::singular;
     const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good;
-    if (point.quality == MomentQuality::singular) shape.nodes.clear(), shape.gradient.clear();
+    if (point.quality == MomentQuality::singular) shape.nodes.clear(), shape.gradient.clear(), shape.bent.clear();
     return enough;
   }
 };
@@ -167,7 +223,8 @@ Vec3 moved_off_faces(const Body& body, const Vec3& p) {
   return p;
 }
 
-void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders) {
+void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders,
+                      const VisibilityChanges* changes) {
   const double largest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   // Two passes: most points need no wider support, so the first pass queries small neighbourhoods.
   const std::span all(support_factors);
@@ -178,7 +235,8 @@ void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Oc
     });
     const Occluders near = occluders ? Occluders() : near_occluders(body.surface, batches);
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) batches[b].compute(body, factors, occluders ? *occluders : near);
+      for (std::size_t b = begin; b < end; ++b)
+        batches[b].compute(body, factors, occluders ? *occluders : near, changes);
     });
     std::vector<SupportTask> deficient;
     for (const Batch& batch : batches)

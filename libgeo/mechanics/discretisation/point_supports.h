@@ -32,15 +32,26 @@ Occluders all_occluders(const Complex& surface);
 /// is moved towards the nearest node by a small fraction of the distance.
 Vec3 moved_off_faces(const Body& body, const Vec3& p);
 
+/// Possible changes of visibility since a set of points was computed.
+struct VisibilityChanges {
+  TriangleBvh faces;               ///< added or removed since
+  std::vector<std::uint8_t> node;  ///< per node: 1 if it is new, has moved, or has another support radius
+};
+
 /// A point whose shape gradients are to be computed. In: its position, and as `influence_radius`
-/// the distance from its intended position.
+/// the distance from its intended position. `before`: the block where it was point number
+/// `point_before`, or null.
 struct SupportTask {
   MaterialPoint* point;
   ShapeGradients* shape;
+  const PointBlock* before = nullptr;
+  std::size_t point_before = 0;
 };
 /// Computes the shape gradients, and all members of the points except volumes. Consecutive tasks
 /// should be near each other. `occluders`: those of the whole surface; null: nearby ones are
-/// queried.
-void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders = nullptr);
+/// queried. `changes`: since the blocks `before` of the tasks; lines of sight that they do not
+/// touch are not tested again, with the same result. Null: all are tested.
+void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders = nullptr,
+                      const VisibilityChanges* changes = nullptr);
 
 }  // namespace geo

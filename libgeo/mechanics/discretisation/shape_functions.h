@@ -20,6 +20,7 @@ enum class MomentQuality : std::uint8_t { good, poor, singular };
 struct ShapeGradients {
   std::vector<std::uint32_t> nodes;  ///< ascending
   std::vector<Vec3> gradient;        ///< one per node, 1/model unit; they sum to zero
+  std::vector<std::uint8_t> bent;    ///< per node: 1 if the point sees it round the front of a crack; empty: none
 };
 
 /// A node whose support holds a point, as the point sees it: straight ahead or round the front of a

@@ -16,6 +16,7 @@ pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HDF5_SERIAL REQUIRED IMPORTED_TARGET hdf5-serial)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
+find_package(assimp 5.2 REQUIRED)
 if(KERF_TOOLS OR KERF_PYTHON)
   find_package(embree 3 REQUIRED)
   find_package(PNG REQUIRED)
@@ -37,6 +38,14 @@ target_link_libraries(kerf_eigen INTERFACE Eigen3::Eigen)
 
 add_library(kerf_cgal INTERFACE)
 target_link_libraries(kerf_cgal INTERFACE CGAL::CGAL)
+
+# Headers alone: the library is opened when a file needs it, under the name that belongs to these headers.
+add_library(kerf_assimp INTERFACE)
+get_target_property(KERF_ASSIMP_INCLUDE assimp::assimp INTERFACE_INCLUDE_DIRECTORIES)
+get_target_property(KERF_ASSIMP_CONFIGURATION assimp::assimp IMPORTED_CONFIGURATIONS)
+get_target_property(KERF_ASSIMP_NAME assimp::assimp IMPORTED_SONAME_${KERF_ASSIMP_CONFIGURATION})
+target_include_directories(kerf_assimp SYSTEM INTERFACE ${KERF_ASSIMP_INCLUDE})
+target_compile_definitions(kerf_assimp INTERFACE KERF_ASSIMP="${KERF_ASSIMP_NAME}")
 
 add_library(kerf_beast INTERFACE)
 target_include_directories(kerf_beast SYSTEM INTERFACE ${KERF_BEAST})

@@ -23,12 +23,12 @@ endfunction()
 option(KERF_UNITY "Compile several sources as one; for a first build" OFF)
 
 # kerf_unity(TARGET SOURCE...): for all sources but those that are compiled once per instruction set, and those that
-# need OpenVDB or HDF5: programs that do not call them must not load these.
+# need OpenVDB, HDF5 or assimp: programs that do not call them must not load these.
 function(kerf_unity target)
   if(KERF_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     foreach(source IN LISTS ARGN)
-      file(STRINGS ${source} alone REGEX "foreach_target.h|<openvdb/|<hdf5.h>" LIMIT_COUNT 1)
+      file(STRINGS ${source} alone REGEX "foreach_target.h|<openvdb/|<hdf5.h>|<assimp/" LIMIT_COUNT 1)
       if(alone)
         set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
       endif()

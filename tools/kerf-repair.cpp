@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
       "--smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 "
       "-o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
   Command w;
-  t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF); - reads standard input");
+  t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF, glTF, FBX); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
   t.flag("--smooth", w.smooth, "Close holes by patches that go on from the surface around them, as fine as their rims");
   t.option("--voxel", w.voxel,

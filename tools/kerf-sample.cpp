@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
   std::string model, spacing, pattern = "jitter", grid, iso, surface;
   int levels = 2, count = 0, across = 3;
   double jitter = 0.15, support = 1.8, adaptivity = 0;
-  t.argument("MODEL", model, "Closed surface (PLY, OBJ, STL, OFF) or OpenVDB volume; - reads standard input");
+  t.argument("MODEL", model,
+             "Closed surface (PLY, OBJ, STL, OFF, glTF, FBX) or OpenVDB volume; - reads standard input");
   t.option("--spacing", spacing, "Spacing at the surface, in model units or as P% of the diagonal (3%)");
   t.option("--levels", levels, "Resolution levels, each twice as coarse as the one before");
   t.option("-n,--count", count, "Wanted number of nodes instead of a spacing");

@@ -7,6 +7,7 @@
 
 #include "io/line_reader.h"
 #include "io/surface_formats.h"
+#include "io/surface_other.h"
 #include "kerf/body_file.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"
@@ -37,17 +38,6 @@ bool looks_like_off(const std::string& bytes) {
   return words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF";
 }
 
-// Name of a common format that is not read here, recognised by its first bytes; null for any other.
-const char* other_format(const std::string& bytes) {
-  static constexpr std::pair<const char*, const char*> formats[] = {
-      {"glTF", "a glTF"},       {"Kaydara FBX", "an FBX"}, {"; FBX", "an FBX"}, {"<?xml", "an XML (COLLADA?)"},
-      {"BLENDER", "a Blender"}, {"PXR-USDC", "a USD"},     {"#usda", "a USD"},  {"PK\3\4", "a zipped"},
-      {"{", "a JSON (glTF?)"}};
-  for (const auto& [beginning, what] : formats)
-    if (bytes.rfind(beginning, 0) == 0) return what;
-  return nullptr;
-}
-
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon,
@@ -70,15 +60,14 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
   SurfaceFile file;
   if (bytes.rfind("ply", 0) == 0)
     file = parse_surface_ply(bytes, name);
+  else if (looks_like_kerf(bytes))
+    throw InputError(name + ": is a body (.kerf); give the surface that it was made of, or that it was cut by");
+  else if (const OtherFormat other = other_format(bytes, name); !other.what.empty())
+    file.mesh = parse_other(bytes, name, other);
   else if (looks_like_off(bytes))
     file.mesh = parse_off(bytes, name);
   else if (looks_like_obj(bytes))
     file.mesh = parse_obj(bytes, name);
-  else if (looks_like_kerf(bytes))
-    throw InputError(name + ": is a body (.kerf); give the surface that it was made of, or that it was cut by");
-  else if (const char* other = other_format(bytes))
-    throw InputError(name + ": is " + other + " file; save it as PLY, OBJ, STL or OFF, or convert it: assimp export " +
-                     name + " model.obj");
   else
     file.mesh = parse_stl(bytes, name);
   for (std::size_t v = 0; v < file.mesh.vertices.size(); ++v)

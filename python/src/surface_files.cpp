@@ -1,5 +1,5 @@
-// Files of surfaces: PLY, OBJ, STL and OFF in; PLY, OBJ and glTF out. The content of a file decides
-// which class it becomes.
+// Files of surfaces: PLY, OBJ, STL, OFF, glTF, FBX and more in; PLY, OBJ and glTF out. The content
+// of a file decides which class it becomes.
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -162,7 +162,7 @@ std::string kind_name(const Path& path) {
 }
 
 constexpr const char* read_doc =
-    "Reads PLY, OBJ, STL or OFF, recognised by content. Polygons are triangulated; coincident vertices of seams are\n"
+    "Reads PLY, OBJ, STL, OFF, glTF, FBX and more. Polygons are triangulated; coincident vertices of seams are\n"
     "merged. ";
 
 }  // namespace

@@ -70,6 +70,7 @@ const std::map<std::string, Door> doors{
     {"toml++/", {{"io"}, true}},
     {"nlohmann/", {{"io"}, true}},
     {"hdf5.h", {{"io"}}},
+    {"assimp/", {{"io"}, true}},
     {"CLI/", {}},
     {"embree3/", {}},
     {"png.h", {}},

@@ -139,10 +139,3 @@ TEST_CASE("text is read with more numbers than named, other ends of lines, a byt
     CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
   }
 }
-
-TEST_CASE("other formats are named, with a way to convert them") {
-  for (const auto& [bytes, what] :
-       {std::pair<std::string, std::string>{"glTF\2\0\0\0", "a glTF file"}, {"Kaydara FBX Binary  ", "an FBX file"}})
-    CHECK_THROWS_WITH(parse_surface(bytes, "a.bin"),
-                      Catch::Contains(what) && Catch::Contains("assimp export a.bin model.obj"));
-}

@@ -99,7 +99,7 @@ class TemporaryOutput {
 /// program that ends at once.
 void discard_temporary_outputs();
 
-// ---- Surfaces: PLY, OBJ, STL and OFF.
+// ---- Surfaces: PLY, OBJ, STL and OFF; glTF, FBX and more through assimp.
 
 /// A surface, with the fronts that were cutting it when it was written. kerf-crack continues them.
 struct SurfaceFile {
@@ -108,10 +108,12 @@ struct SurfaceFile {
 };
 
 /// Reads a surface from a file, or from standard input where `path` is "-". The format is
-/// recognised by content; unknown content is read as STL. Polygons are triangulated as fans, by ear
-/// clipping where they are not convex. Coincident vertices of seams are merged unless the mesh has
-/// sites. Throws InputError, with the line or entry: malformed data, numbers that are not finite,
-/// indices out of range, sizes larger than the file, trailing bytes.
+/// recognised by content, some by the ending of the path; unknown content is read as STL. Polygons
+/// are triangulated as fans, by ear clipping where they are not convex. Vertices of seams at one
+/// place are merged unless the mesh has sites. Formats of other programs (docs/formats.md) are read
+/// by assimp in a child process. Files that they name must be in the folder of `path` or below.
+/// Throws InputError, with the line or entry: malformed data, numbers that are not finite, indices
+/// out of range, sizes larger than the file, trailing bytes.
 SurfaceFile read_surface(const std::string& path);
 /// The same from bytes in memory; `name` stands for the file in messages.
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name);

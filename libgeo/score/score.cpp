@@ -60,6 +60,9 @@ class Scoring {
     return std::move(best_);
   }
 
+  // The model cut along the sheet of the score, which run() returned.
+  Complex cut_along(const TriangleMesh& sheet) { return o_.depth < 1 ? cut_by(sheet) : std::move(best_cut_); }
+
  private:
   std::uint32_t wanted() const { return static_cast<std::uint32_t>(o_.pieces); }
   double edge() const { return skin_.box().diagonal() / (8 * o_.jagged.frequency); }
@@ -102,15 +105,17 @@ class Scoring {
   // number of pieces before joining.
   std::uint32_t finish(TriangleMesh walls) {
     if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged, [this] { pause(); });
-    const Complex cut = cut_by(walls);
+    Complex cut = cut_by(walls);
     const Pieces pieces = find_pieces(cut);
     std::uint32_t count = pieces.count;
     if (count > wanted() && !is_given()) {
       join_small_pieces(walls, cut, model_.crack_count() + 1, pieces, wanted());
-      count = find_pieces(cut_by(walls)).count;
+      cut = cut_by(walls);
+      count = find_pieces(cut).count;
     }
     if (distance_from_wanted(count) < distance_from_wanted(best_.pieces)) {
       best_.sheet = std::move(walls);
+      best_cut_ = std::move(cut);
       best_.pieces = count;
     }
     return pieces.count;
@@ -133,13 +138,14 @@ class Scoring {
   const Progress& progress_;
   const TriangleBvh skin_;
   Score best_;
+  Complex best_cut_;  // by the sheet of best_
   Try nearest_{};
   std::string reason_;
 };
 
 }  // namespace
 
-Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress) {
+Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress, Complex* cut) {
   if (options.pieces < 1 || options.pieces > 1000000)
     throw InputError("the number of pieces must be between 1 and 1000000");
   if (!(options.depth > 0 && options.depth <= 1)) throw InputError("the depth must be above 0 and at most 100 percent");
@@ -148,7 +154,10 @@ Score make_score(const Complex& model, const ScoreOptions& options, const Progre
   if (!(p.cluster > 0 && p.cluster <= 10))
     throw InputError("the cluster's size must be above 0 and at most 10 diagonals");
   if (!(p.grain >= 1 && p.grain <= 1000)) throw InputError("the grain must be between 1 and 1000");
-  return Scoring(model, options, progress).run();
+  Scoring scoring(model, options, progress);
+  Score score = scoring.run();
+  if (cut) *cut = scoring.cut_along(score.sheet);
+  return score;
 }
 
 }  // namespace geo

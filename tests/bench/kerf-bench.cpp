@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   t.argument(
       "WHAT", what,
       "crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its parts beside other "
-      "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; live: "
+      "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; dataset: "
+      "fractures for learning; live: "
       "kerf-live with a client that cuts; mechanics: "
       "time steps beside Bullet; python: the module beside C++; score: prescoring, one thread and all; validate: "
       "mechanics against formulas");
@@ -24,16 +25,17 @@ int main(int argc, char** argv) {
   t.option("--model", options.models, "Closed meshes to measure as well");
   return t.run(argc, argv, [&] {
     std::map<std::string, int (*)(const bench::Options&)> known{
-        {"crack", bench::crack},     {"block", bench::block},     {"graph", bench::graph},
-        {"concave", bench::concave}, {"contact", bench::contact}, {"mechanics", bench::mechanics},
-        {"live", bench::live},       {"score", bench::score},     {"validate", bench::validate}};
+        {"crack", bench::crack},      {"block", bench::block},     {"graph", bench::graph},
+        {"concave", bench::concave},  {"contact", bench::contact}, {"mechanics", bench::mechanics},
+        {"dataset", bench::dataset},  {"live", bench::live},       {"score", bench::score},
+        {"validate", bench::validate}};
 #ifdef KERF_PYTHON_SCRIPT
     known["python"] = bench::python;
 #endif
     if (!known.count(what))
       throw tool::UsageError(
           "nothing is known about '" + what +
-          "'; there are crack, block, graph, concave, contact, live, mechanics, score, validate and, with "
+          "'; there are crack, block, graph, concave, contact, dataset, live, mechanics, score, validate and, with "
           "KERF_PYTHON, python");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));

@@ -104,7 +104,7 @@ contract)
   kerf-model block --edge 0.25 -o block.ply
   kerf-model front --around block.ply --steps 2 -o ok.front
   kerf-sample block.ply --spacing 12% | kerf-graph --surface block.ply -o ok.kerf
-  for tool in kerf-sample kerf-graph kerf-score kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-live kerf-view kerf-repair; do
+  for tool in kerf-sample kerf-graph kerf-score kerf-crack kerf-update kerf-pieces kerf-info kerf-sim kerf-live kerf-view kerf-repair kerf-dataset; do
     $tool --help | grep -q Examples || fail "$tool --help has no examples"
     $tool --version | grep -q "$tool (kerf) [0-9]" || fail "$tool --version"
     expect 2 "no option --no-such-option; see $tool --help" $tool --no-such-option

@@ -68,8 +68,11 @@ struct Score {
 };
 
 /// Tries patterns, coarser, finer and of other seeds, until one divides the model into as many
-/// pieces as wanted; else returns the nearest one. Throws InputError for options out of range,
-/// Interrupted when `progress` stops it.
-Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress = {});
+/// pieces as wanted; else returns the nearest one. `cut`, where given, receives the model cut along
+/// the sheet, as insert_sheet() with the next crack number cuts it. Throws InputError for options
+/// out of range, GeometryError where no pattern can be inserted, Interrupted when `progress` stops
+/// it.
+Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress = {},
+                 Complex* cut = nullptr);
 
 }  // namespace geo

@@ -1,0 +1,107 @@
+#!/bin/bash
+# kerf-dataset: what it writes, checked with NumPy; threads, shards, kills and restarts give the same bytes; refusals.
+#   dataset.sh TOOLS_DIR SAMPLES_DIR
+set -u
+PATH=$1:$2:$PATH
+here=$(cd "$(dirname "$0")" && pwd)
+stage=$(mktemp -d)
+trap 'rm -rf "$stage"' EXIT
+cd "$stage"
+fail() { echo "FAILED: $1" >&2; exit 1; }
+expect() {  # expect CODE REGEX COMMAND...: this exit code, one line on standard error that matches
+  local code=$1 said=$2; shift 2
+  "$@" >/dev/null 2>said.txt </dev/null
+  [ $? = "$code" ] || fail "$*: not exit $code: $(cat said.txt)"
+  grep -q -- "$said" said.txt && [ "$(wc -l <said.txt)" = 1 ] || fail "$*: does not say '$said': $(cat said.txt)"
+}
+python() { PYTHONDONTWRITEBYTECODE=1 python3 "$@"; }
+
+kerf-model pumpkin --frequency 4 -o pumpkin.ply && kerf-model apple --frequency 4 -o apple.ply &&
+  kerf-model block --edge 0.25 -o block.ply || fail "models"
+volumes=$(for m in pumpkin apple block; do printf '"%s": %s,' $m "$(kerf-info --json $m.ply | grep -o '"volume":[-0-9.e]*' | cut -d: -f2)"; done)
+volumes="{${volumes%,}}"
+some="pumpkin.ply apple.ply block.ply --patterns voronoi,planes --seeds 6 --per-shard 2 --pieces 3:9 --jagged 0:0.02"
+
+# Archives: sound; the same from one thread, from parts, and after a kill at any moment.
+kerf-dataset $some --json -o whole >figures.json || fail "kerf-dataset"
+python -c 'import json; f = json.load(open("figures.json")); assert f["made"] == 36 and f["failed"] == 0 and f["complete"] and f["bytes"] > 1e5, f' || fail "--json: $(cat figures.json)"
+python "$here/check_dataset.py" whole "$volumes" || fail "the data set"
+{ sed -n '/^```python/,/^```/p' "$here/../../docs/datasets.md" | grep -v '^```'; cat <<'END'; } >loading.py
+import glob
+found = list(fractures(glob.glob("whole/*/pumpkin-planes-3.npz")[0]))
+assert [seed for seed, *_ in found] == [3, 4]
+for _, pieces, bonds, area in found:
+    assert len(bonds) == len(area) > 0 and bonds.max() < len(pieces)
+    for k in range(len(bonds)):
+        assert {p for p in range(len(pieces)) if (pieces[p][2] == k + 1).any()} == set(bonds[k])
+END
+python loading.py || fail "the code of docs/datasets.md"
+[ -e whole/unfinished ] && fail "whole/unfinished is left"
+kerf-dataset $some -j1 -o one && diff -r whole one || fail "threads change bytes"
+for part in 2/3 1/3 3/3; do kerf-dataset $some --shard $part -o parts || fail "--shard $part"; done
+diff -r whole parts || fail "parts change bytes"
+killed=0
+for pause in 0.05 0.1 0.2 0.3 0.4; do
+  kerf-dataset $some -j1 -o killed 2>/dev/null &
+  sleep $pause
+  kill -9 $! 2>/dev/null && killed=$((killed + 1))
+  wait $! 2>/dev/null
+done
+[ $killed -gt 0 ] || fail "nothing was killed"
+kerf-dataset $some --json -o killed >figures.json && diff -r whole killed || fail "a kill changes bytes"
+rm -r killed/*/pumpkin-planes-5.* killed/summary.json
+kerf-dataset $some --json -o killed >figures.json && diff -r whole killed || fail "a removed shard is made otherwise"
+python -c 'import json; f = json.load(open("figures.json")); assert f["made"] == 2 and f["found"] == 34, f' || fail "a shard more than the missing one was made"
+expect 65 "other models or options" kerf-dataset $some --bumps 5 -o whole
+diff -r whole one || fail "a refused call changes a data set"
+
+# The recorded command makes the same pieces.
+python - <<'END' || fail "the recorded command makes another fracture"
+import json, pathlib, subprocess, numpy as np
+record = next(pathlib.Path("whole").glob("*/apple-voronoi-3.json"))
+entry, z = json.loads(record.read_text())["fractures"][1], np.load(record.with_suffix(".npz"))
+subprocess.run(entry["command"], shell=True, check=True)
+subprocess.run("kerf-pieces broken.ply -o pieces", shell=True, check=True)
+made = [p["volume"] for p in json.load(open("pieces/pieces.json"))["pieces"]]
+assert np.allclose(made, z["piece_volume"][z["fracture_pieces"][1]:], rtol=1e-12), made
+END
+
+# Rotated pieces, single precision; folders of PLY files.
+kerf-dataset apple.ply block.ply --seeds 3 --pieces 4 --rotate --single -o posed && python "$here/check_dataset.py" posed "$volumes" || fail "--rotate --single"
+python -c 'import glob, numpy as np; z = np.load(glob.glob("posed/*/apple-*.npz")[0]); assert z["vertices"].dtype == np.float32 and abs(z["piece_rotation"][:, 0]).max() < 1 and np.allclose(np.linalg.norm(z["piece_rotation"], axis=1), 1)' || fail "rotations"
+kerf-dataset apple.ply block.ply --patterns voronoi,bricks --seeds 2 --pieces 4 --layout folders --split 50,0,50 -o folders && python "$here/check_dataset.py" folders "$volumes" || fail "--layout folders"
+[ "$(cat folders/data_split/shapes.{train,val,test}.txt | sort)" = "$(printf 'shapes/apple\nshapes/block')" ] || fail "data_split"
+kerf-info --check -q folders/shapes/apple/fractured_3/piece_0.ply || fail "a piece"
+cp -r folders again && rm again/shapes/block/labels_1.json again/summary.json
+kerf-dataset apple.ply block.ply --patterns voronoi,bricks --seeds 2 --pieces 4 --layout folders --split 50,0,50 -o again && diff -r folders again || fail "folders made anew differ"
+
+# What cannot be used is listed, and the others are made.
+kerf-info -q apple.ply && head -c 2000 apple.ply >torn.ply && printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >open.off
+printf '# three\nbad/torn\ttorn.ply\nopen.off\r\n\nfruit/apple\tapple.ply\n' >list.txt
+kerf-dataset list.txt --seeds 2 --pieces 3 --json -o mixed >figures.json 2>said.txt || fail "a list with models that cannot be used: $(cat said.txt)"
+grep -q '4 fractures failed, 2 models refused' said.txt || fail "of refused models: $(cat said.txt)"
+grep -qP '^open\tvoronoi\t1..2\tthe surface is open' mixed/failed.txt && grep -qP '^bad/torn\tvoronoi\t1..2\t' mixed/failed.txt || fail "failed.txt: $(cat mixed/failed.txt)"
+python "$here/check_dataset.py" mixed "{\"fruit/apple\": $(kerf-info --json apple.ply | grep -o '"volume":[-0-9.e]*' | cut -d: -f2)}" || fail "the mixed data set"
+expect 1 "no fracture could be made" kerf-dataset -q open.off --seeds 2 -o none
+kerf-dataset -q list.txt --seeds 2 --pieces 3 -o mixed 2>said.txt || fail "a complete data set: $(cat said.txt)"
+
+# Refusals before any work; nothing is left.
+for options in "--pieces 1" "--pieces 9:3" "--pieces 2.5" "--pieces x" "--jagged 1" "--jagged nan" "--jagged 0:0.1:2" "--seeds 0" "--patterns red" "--patterns voronoi,voronoi" "--patterns curves" "--split 80,10,11" "--split 1" "--shard 0/2" "--shard 3/2" "--shard -1/2" "--per-shard 0" "--attempts 0" "--bumps 0"; do
+  expect 2 "${options%% *}" kerf-dataset apple.ply $options -o x
+done
+expect 2 "give a folder" kerf-dataset apple.ply
+expect 2 "MODELS is required" kerf-dataset -o x
+expect 2 "writes a folder, not .glb" kerf-dataset apple.ply -o x.glb
+expect 66 "missing.ply: cannot" kerf-dataset missing.ply -o x
+expect 66 "none.txt: cannot" kerf-dataset none.txt -o x
+expect 65 "two models are called 'apple'" kerf-dataset apple.ply list.txt apple.ply -o x
+for name in ../up /root a//b a/../b fractured_1/a; do
+  printf '%s\tapple.ply\n' "$name" >evil.txt
+  expect 65 "evil.txt:1: the model's name" kerf-dataset evil.txt -o x
+done
+printf '\0\1\2' >evil.txt && expect 65 "evil.txt:1: is no text" kerf-dataset evil.txt -o x
+echo '#' >evil.txt && expect 65 "lists no model" kerf-dataset evil.txt -o x
+[ -e x ] && fail "a refusal leaves x"
+touch file && expect 73 "is not a folder" kerf-dataset apple.ply -o file
+mkdir full && touch full/other && expect 65 "is not empty, and no data set" kerf-dataset apple.ply -o full
+echo "kerf-dataset is as it should be"

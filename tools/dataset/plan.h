@@ -1,0 +1,31 @@
+// The shards of a data set in order, and their paths in its folder.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dataset/models.h"
+#include "dataset/recipe.h"
+
+namespace dataset {
+
+/// Fractures of one model by one pattern, with consecutive seeds: written at once.
+struct Shard {
+  std::size_t model = 0;  ///< row in the list of models
+  geo::Pattern pattern = geo::Pattern::voronoi;
+  std::uint64_t first_seed = 1;
+  int count = 0;
+  std::string data;    ///< path of the archive, or of the folder of PLY files
+  std::string record;  ///< path of the JSON file that ends the shard
+};
+
+/// All shards: by model, pattern and seed. Archives are SET/MODEL-PATTERN-SEED.npz; with
+/// Settings::folders each fracture is a shard, shapes/MODEL/fractured_NUMBER.
+std::vector<Shard> plan(const std::vector<ModelFile>& models, const Settings& settings);
+
+/// The part `index` (from 1) of `count` of the rows 0 … total: [begin, end). Parts differ by at
+/// most one row.
+std::pair<std::size_t, std::size_t> part_of(std::size_t total, std::size_t index, std::size_t count);
+
+}  // namespace dataset

@@ -1,0 +1,72 @@
+// Random numbers are those of SplitMix64 (Steele, Lea, Flood 2014), a generator for each purpose.
+#include "dataset/recipe.h"
+
+#include <cmath>
+
+#include <kerf/files.h>
+#include "tool.h"
+
+namespace dataset {
+namespace {
+
+class Generator {
+ public:
+  Generator(std::uint64_t seed, std::uint64_t purpose) : state_(seed * 0x9e3779b97f4a7c15ull ^ purpose << 32) {}
+
+  // Uniform in [0, 1).
+  double uniform() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+  }
+  double uniform(const Range& range) { return range.low + (range.high - range.low) * uniform(); }
+
+ private:
+  std::uint64_t state_;
+};
+
+constexpr std::uint64_t drawing = 1, turning = 2;  // purposes; pieces count up from the second
+
+}  // namespace
+
+Recipe recipe_of(const Settings& s, geo::Pattern pattern, std::uint64_t seed) {
+  Generator random(seed, drawing);
+  Recipe r{pattern, seed, 0, s.attempts, 0, s.bumps};
+  r.pieces = static_cast<int>(std::floor(random.uniform({s.pieces.low, s.pieces.high + 1})));
+  // Three digits after the first: the command that is recorded stays short.
+  const double jagged = random.uniform(s.jagged);
+  r.jagged = s.jagged.low == s.jagged.high ? jagged : std::round(jagged * 1e5) / 1e5;
+  return r;
+}
+
+geo::ScoreOptions score_options(const Recipe& r) {
+  geo::ScoreOptions o;
+  o.pattern.pattern = r.pattern;
+  o.pieces = r.pieces, o.attempts = r.attempts;
+  o.jagged.amplitude = r.jagged, o.jagged.frequency = r.bumps;
+  o.pattern.seed = o.jagged.seed = r.seed;
+  return o;
+}
+
+std::string command_of(const Recipe& r, const std::string& model) {
+  return "kerf-score " + model + " --pattern " + geo::pattern_names[static_cast<std::size_t>(r.pattern)] +
+         " --pieces " + std::to_string(r.pieces) + " --jagged " + tool::number(r.jagged) + " --bumps " +
+         tool::number(r.bumps) + " --attempts " + std::to_string(r.attempts) + " --seed " + std::to_string(r.seed) +
+         " | kerf-crack " + model + " --front - -o broken.ply";
+}
+
+std::array<double, 4> random_rotation(std::uint64_t seed, std::uint32_t piece) {
+  Generator random(seed, turning + piece);
+  constexpr double turn = 6.283185307179586;
+  const double u = random.uniform(), a = turn * random.uniform(), b = turn * random.uniform();
+  const double r = std::sqrt(1 - u), s = std::sqrt(u);
+  return {s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)};
+}
+
+std::size_t set_of(const Settings& settings, const std::string& model) {
+  const auto share = static_cast<int>(geo::fingerprint(model) % 100);
+  return share < settings.split[0] ? 0 : share < settings.split[0] + settings.split[1] ? 1 : 2;
+}
+
+}  // namespace dataset

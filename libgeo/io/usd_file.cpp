@@ -1,88 +1,26 @@
 // write_usda() of kerf/export.h. USD as text (.usda): a mesh with time samples for each value
 // that changes. Frames are read and printed on several threads, and written in order.
-#include "kerf/export.h"
-
-#include <charconv>
-#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <type_traits>
 
+#include "io/usd_text.h"
+#include "kerf/export.h"
 #include "kerf/parallel.h"
 
 namespace geo {
 namespace {
 
-// Shortest text that is read back exactly.
-void add(std::string& text, auto x) {
-  char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
-}
-
-void add_list(std::string& text, std::size_t count, const auto& item) {
-  text += '[';
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) text += ", ";
-    item(i);
-  }
-  text += ']';
-}
-
-template <class Row>
-void add_tuple(std::string& text, const Row& row) {
-  char chars[32 * Row::SizeAtCompileTime], *at = chars;
-  for (int k = 0; k < row.size(); ++k) {
-    *at++ = k > 0 ? ',' : '(';
-    if (k > 0) *at++ = ' ';
-    at = std::to_chars(at, std::end(chars), float(row[k])).ptr;
-  }
-  *at++ = ')';
-  text.append(chars, at);
-}
-
-std::string points_of(const TriangleMesh& m) {
-  constexpr std::size_t usual = 40;  // characters
-  std::string text;
-  text.reserve(usual * m.vertices.size());
-  add_list(text, m.vertices.size(), [&](std::size_t v) { add_tuple(text, m.vertices[v]); });
-  return text;
-}
-
-std::string counts_of(const TriangleMesh& m) {
-  std::string text;
-  add_list(text, m.triangles.size(), [&](std::size_t) { text += '3'; });
-  return text;
-}
-
-std::string corners_of_triangles(const TriangleMesh& m) {
-  std::string text;
-  add_list(text, 3 * m.triangles.size(), [&](std::size_t i) { add(text, m.triangles[i / 3][i % 3]); });
-  return text;
-}
-
-std::int32_t patch_of(const TriangleMesh& m, std::size_t t) { return m.patch.empty() ? 0 : m.patch[t]; }
-
-std::string patches_of(const TriangleMesh& m) {
-  std::string text;
-  add_list(text, m.triangles.size(), [&](std::size_t t) { add(text, patch_of(m, t)); });
-  return text;
-}
+using namespace usd;
 
 std::string subset_of(const TriangleMesh& m, bool crack) {
   std::vector<std::size_t> rows;
   for (std::size_t t = 0; t < m.triangles.size(); ++t)
     if ((patch_of(m, t) != 0) == crack) rows.push_back(t);
   std::string text;
-  add_list(text, rows.size(), [&](std::size_t i) { add(text, rows[i]); });
-  return text;
-}
-
-std::string uv_of(const TriangleMesh& m) {
-  std::string text;
-  const auto& uv = m.attributes.uv;
-  add_list(text, 3 * uv.size(), [&](std::size_t i) { add_tuple(text, uv[i / 3][i % 3]); });
+  add_list(text, rows.size(), [&](std::size_t i) { add_number(text, rows[i]); });
   return text;
 }
 

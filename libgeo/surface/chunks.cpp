@@ -2,11 +2,13 @@
 //
 // A bond sums its crack faces, weighted by area. Texture coordinates of inner faces project onto
 // the bond's mean plane; u is reversed on the far side, so that no side shows a mirrored texture.
-// Centroid of a piece: Σ V_t (p + q + r) / 4 / Σ V_t over tetrahedra from the middle of its box.
 #include "kerf/pieces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+
+#include <Eigen/LU>
 
 #include "kerf/parallel.h"
 #include "surface/piece_sides.h"
@@ -44,16 +46,41 @@ std::map<Pair, Wall> walls_of(const Complex& complex, const Pieces& pieces, std:
   return walls;
 }
 
-Vec3 centroid_of(const TriangleMesh& mesh) {
-  const Vec3 o = bounding_box(mesh).center();
-  Vec3 sum = Vec3::Zero();
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 p = mesh.vertices[a] - o, q = mesh.vertices[b] - o, r = mesh.vertices[c] - o;
-    const double v = p.dot(q.cross(r));
-    volume += v, sum += v * (p + q + r) / 4;
+// For each wall between two pieces the elastic section modulus of its projection to its mean plane.
+// A moment m (unit vector) stresses a point x of the section by n × m · J⁻¹ x, J = ∫ x xᵀ dA
+// (unsymmetric bending, Euler and Bernoulli). The greatest stress of all is max |J⁻¹ x|.
+std::map<Pair, double> sections_of(const Complex& complex, const Pieces& pieces, const std::map<Pair, Wall>& walls) {
+  struct Section {
+    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+    std::vector<Vec2> points;
+  };
+  std::map<Pair, Section> sections;
+  for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
+    if (!complex.alive(FaceId(f)) || complex.face(FaceId(f)).crack == 0) continue;
+    const Pair pair = std::minmax(static_cast<std::uint32_t>(pieces.of_side[f * 2]),
+                                  static_cast<std::uint32_t>(pieces.of_side[f * 2 + 1]));
+    if (pair.first == pair.second) continue;
+    const Wall& wall = walls.at(pair);
+    const Vec3 normal = wall.normal.norm() > 0 ? wall.normal.normalized() : Vec3(Vec3::UnitZ()),
+               center = wall.center / wall.area, u = normal.unitOrthogonal(), v = normal.cross(u);
+    const auto c = complex.corners(FaceId(f));
+    const double area = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+    Section& section = sections[pair];
+    Vec2 sum = Vec2::Zero();
+    for (const Vec3& p : c) {
+      const Vec2 x(u.dot(p - center), v.dot(p - center));
+      section.second += area / 12 * x * x.transpose();
+      section.points.push_back(x), sum += x;
+    }
+    section.second += area / 12 * sum * sum.transpose();
   }
-  return volume > 0 ? Vec3(o + sum / volume) : o;
+  std::map<Pair, double> result;
+  for (const auto& [pair, section] : sections) {
+    double most = 0;
+    for (const Vec2& x : section.points) most = std::max(most, (section.second.inverse() * x).norm());
+    result[pair] = most > 0 && std::isfinite(most) ? 1 / most : 0;
+  }
+  return result;
 }
 
 // The wall of a triangle of a piece, and whether the piece is on the wall's far side.
@@ -102,10 +129,13 @@ void complete_attributes(TriangleMesh& mesh, const std::vector<WallSide>& walls,
 }  // namespace
 
 std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved) {
+  const auto walls = walls_of(complex, pieces, moved);
+  const auto sections = sections_of(complex, pieces, moved.empty() ? walls : walls_of(complex, pieces));
   std::vector<Bond> bonds;
-  for (const auto& [pair, wall] : walls_of(complex, pieces, moved))
+  for (const auto& [pair, wall] : walls)
     if (pair.first != pair.second)
-      bonds.push_back({pair.first, pair.second, wall.area, wall.normal.normalized(), wall.center / wall.area});
+      bonds.push_back(
+          {pair.first, pair.second, wall.area, wall.normal.normalized(), wall.center / wall.area, sections.at(pair)});
   return bonds;
 }
 
@@ -130,7 +160,7 @@ std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, con
         for (std::size_t v = 0; v < vertex_of.size(); ++v) mesh.vertices[v] = moved[vertex_of[v].index()];
         chunk.volume = signed_volume(mesh);
       }
-      chunk.centroid = centroid_of(mesh);
+      chunk.centroid = mass_properties(mesh).centroid;
     }
   });
   return chunks;

@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
-#include <cstdio>
 
 #include "bind.h"
 #include "complex.h"
@@ -14,28 +13,19 @@
 namespace kerf_python {
 
 py::array bonds_array(std::vector<geo::Bond>&& bonds) {
-  static_assert(sizeof(geo::Bond) == 64, "two ids, an area, two vectors");
+  static_assert(sizeof(geo::Bond) == 72, "two ids, an area, two vectors, a section");
   py::list fields;
   fields.append(py::make_tuple("a", "u4"));
   fields.append(py::make_tuple("b", "u4"));
   fields.append(py::make_tuple("area", "f8"));
   fields.append(py::make_tuple("normal", "f8", py::make_tuple(3)));
   fields.append(py::make_tuple("centroid", "f8", py::make_tuple(3)));
+  fields.append(py::make_tuple("section", "f8"));
   auto* kept = new std::vector<geo::Bond>(std::move(bonds));
   py::capsule owner(kept, [](void* at) { delete static_cast<std::vector<geo::Bond>*>(at); });
   py::array out(py::dtype::from_args(fields), {static_cast<py::ssize_t>(kept->size())}, {}, kept->data(), owner);
   py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return out;
-}
-
-std::vector<std::string> piece_names(std::size_t count) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < count; ++i) {
-    char name[64];
-    std::snprintf(name, sizeof name, "piece_%03zu", i);
-    names.push_back(name);
-  }
-  return names;
 }
 
 namespace {
@@ -141,7 +131,8 @@ void add_to_complex(py::module_& module) {
           "bonds", [](Complex& self) { return bonds_of(self, py::none()); },
           "The crack faces that two pieces share, ordered by (a, b): a structured array with the\n"
           "fields a and b (pieces, a < b), area (model units squared), normal (mean, a unit vector\n"
-          "from a to b; zero where the faces close around one piece) and centroid (§ 7).")
+          "from a to b; zero where the faces close around one piece), centroid (§ 7) and section (elastic\n"
+          "section modulus for the worst axis, model units cubed).")
       .def("find_bonds", &bonds_of, py::arg_v("moved", py::none()),
            "As bonds. moved: (n, 3) deformed positions of the vertices of surface(); then normals and centroids are\n"
            "deformed ones, half way between the two sides, and areas still undeformed ones. Raises InputError.")

@@ -24,7 +24,4 @@ struct Piece : Mesh {
 /// Bonds as a structured array with the fields a, b, area, normal, centroid.
 py::array bonds_array(std::vector<geo::Bond>&& bonds);
 
-/// Labels for write_bonds() and write_glb(): piece_000, piece_001 and so on.
-std::vector<std::string> piece_names(std::size_t count);
-
 }  // namespace kerf_python

@@ -84,8 +84,7 @@ geo::Chunk chunk_of(const Mesh& given) {
 // One node, whose origin is the middle of the box; a piece's is its centroid.
 void write_glb(std::ostream& out, const Mesh& mesh) {
   const auto* piece = dynamic_cast<const Piece*>(&mesh);
-  geo::write_glb(out, {chunk_of(mesh)}, {},
-                 {"node", {piece ? piece_names(piece->index + 1).back() : std::string("mesh")}, 1});
+  geo::write_glb(out, {chunk_of(mesh)}, {}, {"node", {piece ? geo::piece_name(piece->index) : std::string("mesh")}, 1});
 }
 
 void save_mesh(const Mesh& self, const Path& path) {
@@ -112,7 +111,7 @@ Exported exported(const Complex& self, const geo::Pieces& found, double tile, do
   Exported out{geo::make_chunks(self.complex, found, self.model ? self.model->mesh : no_model,
                                 tile * self.complex.extent().diagonal()),
                geo::find_bonds(self.complex, found),
-               {"node", piece_names(found.count), strength}};
+               {"node", geo::piece_names(found.count), strength}};
   return out;
 }
 

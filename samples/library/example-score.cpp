@@ -31,8 +31,7 @@ int main() {
   const auto hulls = geo::convex_decomposition(chunks[0].mesh, 4, 32);
   std::printf("%u pieces; the largest in %zu convex hulls\n", pieces.count, hulls.size());
 
-  geo::ChunkLabels labels{"node", {}, 1};
-  for (std::uint32_t i = 0; i < pieces.count; ++i) labels.names.push_back("piece_" + std::to_string(i));
+  const geo::ChunkLabels labels{.kind = "node", .names = geo::piece_names(pieces.count)};
   std::ofstream out("pieces.glb", std::ios::binary);
   geo::write_glb(out, chunks, bonds, labels, {.hull_corners = 32});
   return pieces.count == score.pieces && !bonds.empty() && !hulls.empty() ? 0 : 1;

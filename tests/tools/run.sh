@@ -268,6 +268,33 @@ chunks)
     sed 's/"file":"\(piece_[0-9]*\)\.[a-z]*/"node":"\1/g' folder/pieces.json | cmp - bonds.json || fail "bonds differ"
     rm -r folder
   done
+  # Crumbs join, clusters are nodes, and USD is the same for any number of threads.
+  kerf-pieces broken.ply --least 0.05 --levels 3 --physics khr --json --bonds levels.json -o levels.glb >levels.txt
+  python3 "$here/check_levels.py" levels.glb levels.json levels.txt "$volume" 0.05 || fail "the hierarchy"
+  quietly kerf-pieces broken.ply --least 0.05 --levels 3 -o levels.usda
+  quietly kerf-pieces -j1 broken.ply --least 0.05 --levels 3 -o one.usda
+  cmp levels.usda one.usda || fail "threads change USD"
+  # A part without a bond stays, however small, and is reported.
+  kerf-model sphere --frequency 2 -o ball.ply
+  quietly kerf-pieces ball.ply --least 0.9 --levels 2 -o ball.usda
+  python3 - <<'PYTHON'
+rows = {"v": [], "f": []}
+for scale, shift in ((1, 0), (0.01, 5)):
+    base = len(rows["v"])
+    for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        rows["v"].append(f"{scale * x + shift} {scale * y} {scale * z}")
+    for a, b, c in ((1, 3, 2), (1, 2, 4), (2, 3, 4), (1, 4, 3)):
+        rows["f"].append(f"{a + base} {b + base} {c + base}")
+open("two.obj", "w").write("".join(f"{k} {row}\n" for k in "vf" for row in rows[k]))
+PYTHON
+  kerf-pieces two.obj --least 0.1 --json -o two.glb >two.txt 2>two.err
+  grep -q '"pieces":2,"bonds":0,"joined":0,"isolated":1' two.txt || fail "an isolated piece: $(cat two.txt)"
+  grep -q "without a bond" two.err || fail "an isolated piece is not reported"
+  for options in "--least 1" "--least -0.1" "--levels 0" "--physics bullet" "--names max" "--density 0"; do
+    expect 2 "${options%% *}" kerf-pieces broken.ply $options -o x.glb
+  done
+  expect 2 "belongs to a .glb" kerf-pieces broken.ply --physics omi -o x.usda
+  expect 2 "belongs to a .glb" kerf-pieces broken.ply --names godot -o x
   # The same of a body that follows the cut.
   kerf-sample pumpkin.ply --spacing 8% | kerf-graph --surface pumpkin.ply -o body.kerf && quietly kerf-update body.kerf --surface broken.ply -o body.kerf
   quietly kerf-pieces body.kerf --hulls --strength 2 --bonds body.json -o body.glb

@@ -21,7 +21,7 @@ void write_pieces(std::ostream& out, const Session& session) {
     if (surface.alive(geo::SurfaceVertexId(v))) moved[v] = living[next++];
   const geo::Pieces pieces = geo::find_pieces(surface);
   geo::ChunkLabels labels;
-  for (std::uint32_t p = 0; p < pieces.count; ++p) labels.names.push_back("piece_" + std::to_string(p));
+  labels.names = geo::piece_names(pieces.count);
   geo::GlbOptions options;
   options.z_up = sim::up_axis(session.original().gravity) != 'Y';
   geo::write_glb(out, geo::make_chunks(surface, pieces, {}, 1, moved), geo::find_bonds(surface, pieces, moved), labels,

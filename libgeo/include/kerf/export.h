@@ -10,6 +10,7 @@
 
 #include "kerf/body.h"
 #include "kerf/body_file.h"
+#include "kerf/hierarchy.h"
 #include "kerf/mesh.h"
 #include "kerf/pieces.h"
 
@@ -39,37 +40,76 @@ void write_json(std::ostream& out, const KerfFile& file);
 
 // ---- Pieces and bonds.
 
-/// Labels of pieces in written files.
+/// Names and physical constants of pieces in written files.
 struct ChunkLabels {
-  std::string kind = "file";       ///< key of the names: "file" or "node"
-  std::vector<std::string> names;  ///< per piece
-  double strength = 1;             ///< force per unit of area that a bond withstands
+  std::string kind = "file";         ///< key of the names: "file" or "node"
+  std::vector<std::string> names;    ///< per piece
+  double strength = 1;               ///< force per unit of area that a bond withstands
+  std::vector<ClusterLevel> levels;  ///< clusters of the pieces, see make_hierarchy(); may be empty
+  double density = 1000;             ///< mass per unit of volume, where rigid bodies are written
 };
 
+/// Name of a piece in written files: piece_000, piece_001 …
+std::string piece_name(std::size_t piece);
+/// The names of the first `count` pieces.
+std::vector<std::string> piece_names(std::size_t count);
+/// Name of a cluster in written files: cluster_1_000 is the first of those above the pieces.
+std::string cluster_name(std::size_t level, std::size_t cluster);
+
 /// Writes `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area",
-/// "normal", "centroid", "strength"}]}`.
+/// "normal", "centroid", "strength", "torque"}]}`. Torque: of bending, at which the stress at the
+/// edge of the wall is the strength. With clusters a piece has a "parent", and there are `"levels":
+/// [{"clusters": [{"name", "volume", "centroid", "parent"}], "bonds": […]}]`, fine to coarse.
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                  const ChunkLabels& labels);
+
+/// Extensions of glTF that describe rigid bodies: none; OMI_physics_body with OMI_physics_shape; or
+/// the review draft KHR_physics_rigid_bodies, which also has joints.
+enum class GlbPhysics { none, omi, khr };
+
+/// How the nodes of hulls are named: piece_000_hull; UCX_piece_000, a collision shape for Unreal; or
+/// piece_000_hull-convcolonly, one for Godot.
+enum class HullNames { plain, unreal, godot };
 
 struct GlbOptions {
   std::size_t hull_corners = 0;  ///< corners of the convex hulls below each piece's node; 0: no hulls
   std::size_t hull_parts = 1;    ///< hulls for each piece, see convex_decomposition()
   bool z_up = false;             ///< the model's z axis is vertical; in glTF y is
+  GlbPhysics physics = GlbPhysics::none;
+  HullNames names = HullNames::unreal;
 };
 
 /// Writes a .glb file (glTF 2.0, binary): a root node with a node for each piece, whose origin is
 /// the piece's centroid, and a material for each group; inner faces have the material of cracks.
-/// Normals are the mesh's. Without them, and on cracks, a corner's normal is the mean over
-/// triangles around it that differ by less than 45°, weighted by area. Colours are converted to
-/// linear ones, as glTF requires. Hulls have names UCX_, the piece, and hull_suffix(). The scene's
-/// `extras` hold what write_bonds() writes. Coordinates are in single precision, relative to each
-/// centroid. Triangles without patch are skin, corners without texture coordinates have (0, 0), a
-/// chunk without groups has one, "skin". Throws InputError for a chunk without triangles.
+/// Clusters are nodes between root and pieces. Normals are the mesh's. Without them, and on cracks,
+/// a corner's normal is the mean over triangles around it that differ by less than 45°, weighted by
+/// area. Colours are converted to linear ones, as glTF requires. Hulls have a name that ends with
+/// hull_suffix(). The scene's `extras` hold what write_bonds() writes. Coordinates are in single
+/// precision, relative to each centroid. Triangles without patch are skin, corners without texture
+/// coordinates have (0, 0), a chunk without groups has one, "skin". Throws InputError for a chunk
+/// without triangles.
+///
+/// With physics each piece is a dynamic body with exact mass and inertia, and its hulls are its
+/// collision shapes; model units are metres. Hulls with plain names then are no meshes of nodes, so
+/// they are not drawn.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                const ChunkLabels& labels, const GlbOptions& options = {});
 
 /// Suffix of the name of hull `part` of `parts`: "" for a single one, else _00, _01 …
 std::string hull_suffix(std::size_t part, std::size_t parts);
+
+struct UsdOptions {
+  bool z_up = false;           ///< the model's z axis is vertical, else y is
+  std::size_t hull_parts = 1;  ///< 1: readers take the convex hull of a piece as its shape; more: they decompose it
+};
+
+/// Writes pieces as USD text with the schema UsdPhysics: a mesh for each piece, which is a rigid
+/// body with exact mass and inertia; clusters above them; and a fixed joint for each bond, which
+/// breaks at its strength (breakForce) and torque (breakTorque). Model units are metres. Meshes
+/// have normals as in write_glb(), texture coordinates, patches, and a subset and a material for
+/// each group. Throws InputError for a chunk without triangles.
+void write_usd_pieces(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+                      const ChunkLabels& labels, const UsdOptions& options = {});
 
 // ---- All frames of a run.
 

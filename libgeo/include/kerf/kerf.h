@@ -11,6 +11,7 @@
 #include "kerf/export.h"
 #include "kerf/files.h"
 #include "kerf/graph.h"
+#include "kerf/hierarchy.h"
 #include "kerf/material.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"

@@ -37,11 +37,14 @@ struct Bond {
   double area = 0;               ///< model units²
   Vec3 normal = Vec3::Zero();    ///< mean, a unit vector from a to b; zero where the faces close around one piece
   Vec3 centroid = Vec3::Zero();  ///< of the shared area
+  /// Elastic section modulus for the worst axis in the mean plane, model units³: bending by the
+  /// moment M stresses the edge of the wall by at most M / section.
+  double section = 0;
 };
 
 /// The bonds of a cut body, ordered by (a, b). `moved`, where given, holds the deformed position of
 /// each vertex of S_A; then normals and centroids are deformed ones, half way between the two
-/// sides, and areas still undeformed ones.
+/// sides, and areas and sections still undeformed ones.
 std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {});
 
 /// A piece as a mesh for export.
@@ -60,7 +63,16 @@ struct Chunk {
 std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile,
                                std::span<const Vec3> moved = {});
 
-// ---- Collision shapes
+// ---- Mass and collision shapes
+
+/// Volume integrals of a closed mesh, for a density of 1.
+struct MassProperties {
+  double volume = 0;             ///< model units³; the mass
+  Vec3 centroid = Vec3::Zero();  ///< of the material; the middle of the box where the volume is not positive
+  Mat3 inertia = Mat3::Zero();   ///< tensor about the centroid, model units⁵
+};
+/// Integrals over the material, exact to rounding: sums over tetrahedra from the middle of the box.
+MassProperties mass_properties(const TriangleMesh& mesh);
 
 /// Approximate convex decomposition of a closed mesh: at most `max_hulls` convex hulls of at most
 /// `max_vertices` vertices each. Planes across principal axes divide the mesh greedily; each

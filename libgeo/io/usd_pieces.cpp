@@ -1,0 +1,242 @@
+// write_usd_pieces() of kerf/export.h. USD text with the schema of UsdPhysics: rigid bodies with
+// masses and convex hulls, and a fixed joint for each bond.
+//
+// Axes of joints and bodies are those of the stage, as nodes of pieces are translated only. So both
+// local rotations of a joint are the identity.
+#include <map>
+
+#include "io/piece_json.h"
+#include "io/usd_text.h"
+#include "kerf/error.h"
+#include "kerf/export.h"
+
+namespace geo {
+namespace {
+
+using namespace usd;
+
+// A letter or underscore, then letters, digits and underscores: what a prim may be called.
+std::string identifier(const std::string& name) {
+  std::string id;
+  for (const char c : name) {
+    const bool digit = c >= '0' && c <= '9', letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (digit && id.empty()) id = "_";
+    id += digit || letter ? c : '_';
+  }
+  return id.empty() ? "_" : id;
+}
+
+std::string usd_number(double x) {
+  std::string text;
+  add_number(text, float(x));
+  return text;
+}
+
+template <class Row>
+std::string usd_tuple(const Row& row) {
+  std::string text;
+  add_tuple(text, row);
+  return text;
+}
+
+// The text of a stage: prims with braces, each line indented by its depth.
+class UsdStage {
+ public:
+  explicit UsdStage(std::ostream& out) : out_(out) {}
+  void line(const std::string& text) { out_ << std::string(4 * depth_, ' ') << text << '\n'; }
+  /// Begins a prim with schemas that are applied to it.
+  void begin(const std::string& type, const std::string& name, const std::vector<std::string>& schemas = {}) {
+    std::string head = "def " + type + " \"" + name + "\"";
+    if (!schemas.empty()) {
+      head += " (prepend apiSchemas = ";
+      add_list(head, schemas.size(), [&](std::size_t i) { head += '"' + schemas[i] + '"'; });
+      head += ")";
+    }
+    line(head), line("{");
+    ++depth_;
+  }
+  void end() { --depth_, line("}"); }
+  void translate(const Vec3& by) {
+    std::string text = "double3 xformOp:translate = (";
+    for (int i = 0; i < 3; ++i) text += i > 0 ? ", " : "", add_number(text, by[i]);
+    line(text + ")");
+    line("uniform token[] xformOpOrder = [\"xformOp:translate\"]");
+  }
+
+ private:
+  std::ostream& out_;
+  std::size_t depth_ = 0;
+};
+
+// Unique names of materials, by group.
+class MaterialNames {
+ public:
+  const std::string& of(const std::string& group) {
+    const auto [entry, fresh] = names_.try_emplace(group);
+    if (!fresh) return entry->second;
+    std::string name = identifier(group);
+    while (!taken_.emplace(name, group).second) name += '_';
+    return entry->second = name;
+  }
+  const std::map<std::string, std::string>& all() const { return names_; }
+
+ private:
+  std::map<std::string, std::string> names_, taken_;
+};
+
+class UsdPieces {
+ public:
+  UsdPieces(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+            const ChunkLabels& labels, const UsdOptions& options)
+      : stage_(out),
+        chunks_(chunks),
+        bonds_(bonds),
+        labels_(labels),
+        options_(options),
+        centroids_(cluster_centroids(chunks, labels.levels)),
+        paths_(chunks.size()) {
+    out << "#usda 1.0\n(\n    defaultPrim = \"pieces\"\n    kilogramsPerUnit = 1\n    metersPerUnit = 1\n    upAxis = "
+           "\""
+        << (options.z_up ? 'Z' : 'Y') << "\"\n)\n\n";
+  }
+
+  void write() {
+    for (std::size_t k = 0; k < labels_.levels.size(); ++k) {
+      below_.emplace_back(labels_.levels[k].volume.size());
+      for (std::size_t i = 0; i < labels_.levels[k].of.size(); ++i) below_[k][labels_.levels[k].of[i]].push_back(i);
+    }
+    stage_.begin("Xform", "pieces");
+    const std::size_t top = labels_.levels.size();
+    const std::size_t count = top > 0 ? labels_.levels.back().volume.size() : chunks_.size();
+    for (std::size_t i = 0; i < count; ++i) member(top, i, "/pieces/", Vec3::Zero());
+    if (!bonds_.empty()) {
+      stage_.begin("Scope", "bonds");
+      for (const Bond& bond : bonds_) joint(bond);
+      stage_.end();
+    }
+    stage_.begin("Scope", "materials");
+    for (const auto& [group, name] : materials_.all()) material(name, group == crack_group);
+    stage_.end();
+    stage_.end();
+  }
+
+ private:
+  // A cluster of a level with all that is below it, or a piece (level 0).
+  void member(std::size_t level, std::size_t which, const std::string& path, const Vec3& origin) {
+    if (level == 0) return piece(which, path, origin);
+    const std::string name = cluster_name(level, which);
+    stage_.begin("Xform", name);
+    stage_.translate(centroids_[level - 1][which] - origin);
+    for (const auto i : below_[level - 1][which]) member(level - 1, i, path + name + "/", centroids_[level - 1][which]);
+    stage_.end();
+  }
+
+  void piece(std::size_t p, const std::string& path, const Vec3& origin) {
+    Chunk chunk = completed(chunks_[p]);
+    const RigidBody body = rigid_body(chunk, labels_.density);
+    const std::string name = identifier(labels_.names[p]);
+    paths_[p] = path + name;
+    stage_.begin("Mesh", name,
+                 {"PhysicsRigidBodyAPI", "PhysicsMassAPI", "PhysicsCollisionAPI", "PhysicsMeshCollisionAPI",
+                  "MaterialBindingAPI"});
+    stage_.translate(chunk.centroid - origin);
+    stage_.line("uniform token physics:approximation = \"" +
+                std::string(options_.hull_parts > 1 ? "convexDecomposition" : "convexHull") + "\"");
+    if (body.mass > 0) {
+      stage_.line("float physics:mass = " + usd_number(body.mass));
+      stage_.line("point3f physics:centerOfMass = (0, 0, 0)");
+      stage_.line("float3 physics:diagonalInertia = " + usd_tuple(body.inertia));
+      const auto& q = body.axes;
+      stage_.line("quatf physics:principalAxes = " + usd_tuple(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
+    }
+    for (Vec3& v : chunk.mesh.vertices) v -= chunk.centroid;
+    mesh(chunk.mesh, paths_[p]);
+    stage_.end();
+  }
+
+  void mesh(const TriangleMesh& m, const std::string& path) {
+    Box3 box;
+    for (const Vec3& v : m.vertices) box.add(v);
+    stage_.line("uniform token subdivisionScheme = \"none\"");
+    stage_.line("float3[] extent = [" + usd_tuple(box.lo) + ", " + usd_tuple(box.hi) + "]");
+    stage_.line("point3f[] points = " + points_of(m));
+    stage_.line("int[] faceVertexCounts = " + counts_of(m));
+    stage_.line("int[] faceVertexIndices = " + corners_of_triangles(m));
+    const auto normals = corner_normals(m);
+    std::string text;
+    add_list(text, 3 * normals.size(), [&](std::size_t i) { add_tuple(text, normals[i / 3][i % 3]); });
+    stage_.line("normal3f[] normals = " + text + " (interpolation = \"faceVarying\")");
+    stage_.line("texCoord2f[] primvars:st = " + uv_of(m) + " (interpolation = \"faceVarying\")");
+    stage_.line("int[] primvars:patch = " + patches_of(m) + " (interpolation = \"uniform\")");
+    if (!m.attributes.color.empty()) {
+      text.clear();
+      const auto& color = m.attributes.color;
+      add_list(text, 3 * color.size(),
+               [&](std::size_t i) { add_tuple(text, Vec3(color[i / 3][i % 3].template head<3>())); });
+      stage_.line("color3f[] primvars:displayColor = " + text + " (interpolation = \"faceVarying\")");
+    }
+    stage_.line("uniform token subsetFamily:materialBind:familyType = \"partition\"");
+    const Attributes& a = m.attributes;
+    for (std::size_t g = 0; g < a.group_names.size(); ++g) {
+      std::vector<std::size_t> rows;
+      for (std::size_t t = 0; t < a.group.size(); ++t)
+        if (a.group[t] == std::int32_t(g)) rows.push_back(t);
+      if (rows.empty()) continue;
+      const std::string& name = materials_.of(a.group_names[g]);
+      text.clear();
+      add_list(text, rows.size(), [&](std::size_t i) { add_number(text, rows[i]); });
+      stage_.begin("GeomSubset", name, {"MaterialBindingAPI"});
+      stage_.line("uniform token elementType = \"face\"");
+      stage_.line("uniform token familyName = \"materialBind\"");
+      stage_.line("int[] indices = " + text);
+      stage_.line("rel material:binding = </pieces/materials/" + name + ">");
+      stage_.end();
+    }
+  }
+
+  void joint(const Bond& bond) {
+    stage_.begin("PhysicsFixedJoint", identifier(labels_.names[bond.a] + "_" + labels_.names[bond.b]));
+    stage_.line("rel physics:body0 = <" + paths_[bond.a] + ">");
+    stage_.line("rel physics:body1 = <" + paths_[bond.b] + ">");
+    stage_.line("point3f physics:localPos0 = " + usd_tuple(Vec3(bond.centroid - chunks_[bond.a].centroid)));
+    stage_.line("point3f physics:localPos1 = " + usd_tuple(Vec3(bond.centroid - chunks_[bond.b].centroid)));
+    stage_.line("quatf physics:localRot0 = (1, 0, 0, 0)");
+    stage_.line("quatf physics:localRot1 = (1, 0, 0, 0)");
+    stage_.line("float physics:breakForce = " + usd_number(labels_.strength * bond.area));
+    stage_.line("float physics:breakTorque = " + usd_number(labels_.strength * bond.section));
+    // Bonds make loops, which an articulation must not have.
+    stage_.line("uniform bool physics:excludeFromArticulation = 1");
+    stage_.end();
+  }
+
+  void material(const std::string& name, bool crack) {
+    const std::string path = "</pieces/materials/" + name;
+    stage_.begin("Material", name);
+    stage_.line("token outputs:surface.connect = " + path + "/preview.outputs:surface>");
+    stage_.begin("Shader", "preview");
+    stage_.line("uniform token info:id = \"UsdPreviewSurface\"");
+    stage_.line(std::string("color3f inputs:diffuseColor = ") + (crack ? "(0.42, 0.36, 0.31)" : "(0.8, 0.8, 0.8)"));
+    stage_.line("float inputs:roughness = 0.9");
+    stage_.line("token outputs:surface");
+    stage_.end(), stage_.end();
+  }
+
+  UsdStage stage_;
+  const std::vector<Chunk>& chunks_;
+  const std::vector<Bond>& bonds_;
+  const ChunkLabels& labels_;
+  const UsdOptions& options_;
+  std::vector<std::vector<Vec3>> centroids_;                  // of clusters, by level
+  std::vector<std::vector<std::vector<std::size_t>>> below_;  // members of clusters, by level
+  std::vector<std::string> paths_;                            // of pieces
+  MaterialNames materials_;
+};
+
+}  // namespace
+
+void write_usd_pieces(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
+                      const ChunkLabels& labels, const UsdOptions& options) {
+  UsdPieces(out, chunks, bonds, labels, options).write();
+}
+
+}  // namespace geo

@@ -67,7 +67,7 @@ void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std:
 /// the review draft KHR_physics_rigid_bodies, which also has joints.
 enum class GlbPhysics { none, omi, khr };
 
-/// How the nodes of hulls are named: piece_000_hull; UCX_piece_000, a collision shape for Unreal; or
+/// Names of the nodes of hulls: piece_000_hull; UCX_piece_000, a collision shape for Unreal; or
 /// piece_000_hull-convcolonly, one for Godot.
 enum class HullNames { plain, unreal, godot };
 

@@ -36,6 +36,7 @@ const std::map<std::string, std::string> public_headers{
     {"export", "io"},
     {"files", "io"},
     {"graph", "graph"},
+    {"hierarchy", "surface"},
     {"indirect", "base"},
     {"kerf", "io"},
     {"material", "mechanics/material"},

@@ -1,8 +1,6 @@
 // Incremental update: equal cells before and after a cut are matched in Morton order. A point of
 // such a cell keeps its shape gradients unless a changed support or face touches what they depend
-// on: its supports, its lines of sight, and for a hidden node at distance s the ellipsoid of all
-// paths of a length below (support / s)^¼ s, which a line of sight round a front must have
-// (diffraction.h).
+// on: supports, lines of sight, and the paths round fronts that diffraction.h admits.
 #include "mechanics/discretisation/galerkin.h"
 
 #include <algorithm>
@@ -83,7 +81,8 @@ class Changes {
       if (block.nodes[block.entry_node[q]] == node) return !block.entry_bent[q];
     return false;
   }
-  // Whether one of the faces may touch a path from x to the node that is short enough.
+  // Whether one of the faces may touch a path from x to the node that is short enough: shorter than
+  // (support / s)^¼ s, with s the straight distance. Such paths fill an ellipsoid.
   bool meet_bent_paths(const Vec3& x, const Vec3& node, double support, std::span<const std::uint32_t> faces) const {
     const double straight = (node - x).norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
     return std::any_of(faces.begin(), faces.end(), [&](auto f) {

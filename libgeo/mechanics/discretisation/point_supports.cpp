@@ -1,6 +1,6 @@
 // Each point tries the support factors in turn until it sees enough nodes with a well-conditioned
-// moment matrix. Exact segment–triangle tests decide which nodes a point sees. After a cut, they are
-// made only where a changed face touches the line of sight, or the node has changed.
+// moment matrix. Exact segment–triangle tests decide which nodes it sees; after a cut, only where a
+// changed face touches the line of sight, or the node has changed.
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include <kerf/body_file.h>
 #include <kerf/export.h>
 #include <kerf/files.h>
+#include <kerf/peridynamics.h>
 #include "info/ask.h"
 #include "info/diff.h"
 #include "info/files.h"
@@ -26,7 +27,8 @@ Exporter exporter(const std::string& path) {
     return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_npz(out, file); };
   if (path.ends_with(".json"))
     return [](std::ostream& out, const geo::KerfFile& file, const geo::Body&) { geo::write_json(out, file); };
-  throw tool::UsageError("--export writes .vtu, .hdf, .ply, .npz or .json, not '" + path + "'");
+  throw tool::UsageError("--export writes .vtu, .hdf, .ply, .npz, .json, .peridigm, .perilab or .peridynamics, not '" +
+                         path + "'");
 }
 
 struct Command {
@@ -34,6 +36,7 @@ struct Command {
   int node = -1, vertex = -1;
   bool compact = false, diff = false;
   std::string exported;
+  double horizon = 3.015;
   info::ReportOptions options;
   bool asks() const { return node >= 0 || vertex >= 0 || !edge.empty(); }
 };
@@ -82,7 +85,8 @@ std::string report_other(const Command& c, const std::string& path, const std::s
 // --compact and --export.
 void write(const Command& c, const tool::Tool& t) {
   const std::string& path = c.paths[0];
-  const Exporter put = c.compact ? Exporter() : exporter(c.exported);
+  const bool bonds = !c.compact && geo::is_bond_folder(c.exported);
+  const Exporter put = c.compact || bonds ? Exporter() : exporter(c.exported);
   if (c.compact && path != "-" && (t.output_path.empty() || geo::same_file(path, t.output_path)))
     return geo::KerfUpdate(path).compact();
   const std::string target = c.compact ? t.target(true) : c.exported;
@@ -93,6 +97,7 @@ void write(const Command& c, const tool::Tool& t) {
   const geo::KerfFile file(std::move(input));
   if (c.compact) return geo::write_all(target, [&](std::ostream& out) { geo::write_compacted(out, file); });
   const geo::Body body = geo::read_body(file);
+  if (bonds) return geo::write_bond_folder(target, body, c.horizon);
   geo::write_all(target, [&](std::ostream& out) { put(out, file, body); });
 }
 
@@ -157,7 +162,7 @@ int main(int argc, char** argv) {
                "pieces/*.ply\n  kerf-info cut.kerf --histogram\n  kerf-info cut.kerf --node 12\n  kerf-info cut.kerf "
                "--edge 12 40\n  kerf-info cut.kerf --vertex 7\n"
                "  kerf-info --diff bear.kerf cut.kerf\n  kerf-info out/halve\n  kerf-info cut.kerf --export cut.vtu\n  "
-               "kerf-info --compact cut.kerf");
+               "kerf-info cut.kerf --export cut.peridigm\n  kerf-info --compact cut.kerf");
   Command c;
   t.argument("FILE", c.paths,
              "Files of Kerf's, folders of runs; - reads standard input; of several a sentence each; two with --diff");
@@ -171,7 +176,9 @@ int main(int argc, char** argv) {
   t.flag("--diff", c.diff, "Say what differs between two bodies; exit code 1 when anything does");
   t.flag("--compact", c.compact, "Fold what updates appended to a body, in the file itself or into that of --output");
   t.option("--export", c.exported,
-           "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end");
+           "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end; as a folder for "
+           "peridynamics: .peridigm, .perilab, .peridynamics (for Peridynamics.jl)");
+  t.option("--horizon", c.horizon, "Horizon of a node for peridynamics, in node spacings, from 1 to 20");
   t.output("Where --compact writes", {".kerf"});
   return t.run(argc, argv, [&] {
     if (c.paths.empty() && c.edge.size() == 3) c.paths = {c.edge[2]}, c.edge.pop_back();  // --edge I J FILE

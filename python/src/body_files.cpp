@@ -8,6 +8,7 @@
 #include "kerf/error.h"
 #include "kerf/export.h"
 #include "kerf/files.h"
+#include "kerf/peridynamics.h"
 
 namespace kerf_python {
 namespace {
@@ -60,8 +61,12 @@ void export_file(const File& file, const Path& path) {
   });
 }
 
-void export_body(Body& self, const Path& path) {
+void export_body(Body& self, const Path& path, double horizon) {
   const Reading reading(self.busy);
+  if (geo::is_bond_folder(path.text)) {
+    py::gil_scoped_release release;
+    return geo::write_bond_folder(path.text, self.body, horizon);
+  }
   std::string bytes;
   {
     py::gil_scoped_release release;
@@ -183,8 +188,10 @@ void add_files(py::class_<Body, std::shared_ptr<Body>>& body) {
       .def("to_bytes", &to_bytes, "The bytes of its .kerf file.")
       .def("save_graph", &save_graph, py::arg("path"),
            "Writes nodes, with all their fields, and edges: .ply, .vtu (VTK) or .hdf (VTKHDF). Raises OutputError.")
-      .def("export", &export_body, py::arg("path"),
-           "Writes all arrays as a NumPy archive (.npz) or JSON (.json). Raises OutputError.")
+      .def("export", &export_body, py::arg("path"), py::arg("horizon") = 3.015,
+           "Writes all arrays as a NumPy archive (.npz) or JSON (.json); or the bonds for peridynamics as a folder:\n"
+           ".peridigm, .perilab or .peridynamics. horizon: of a node, in node spacings. Raises OutputError, and\n"
+           "InputError for a horizon out of range.")
       .def("__copy__",
            [](Body& self) {
              const Reading reading(self.busy);

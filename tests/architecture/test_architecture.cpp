@@ -43,6 +43,7 @@ const std::map<std::string, std::string> public_headers{
     {"mesh", "surface"},
     {"nodes", "sampling"},
     {"parallel", "base"},
+    {"peridynamics", "io"},
     {"pieces", "surface"},
     {"progress", "base"},
     {"scene", "simulation"},

@@ -245,6 +245,11 @@ class Bodies(unittest.TestCase):
             self.body.export(os.path.join(folder, "body.json"))
             with self.assertRaises(kerf.InputError):
                 self.body.export(os.path.join(folder, "body.xml"))
+            self.body.export(os.path.join(folder, "body.perilab"), horizon=2)
+            with open(os.path.join(folder, "body.perilab", "nodes.txt")) as table:
+                self.assertEqual(len(table.readlines()), len(self.body.nodes) + 1)
+            with self.assertRaisesRegex(kerf.InputError, "horizon"):
+                self.body.export(os.path.join(folder, "other.perilab"), horizon=0)
             with self.assertRaises(kerf.MissingInputError):
                 kerf.Body.load(os.path.join(folder, "none.kerf"))
             with self.assertRaises(kerf.OutputError):

@@ -106,4 +106,11 @@ refuses 2 'give a file' kerf-info
 for format in npz vtu hdf ply; do kerf-info half.kerf --export e.$format || fail "--export e.$format"; done
 kerf-info --json half.kerf >told.json
 /usr/bin/python3 "$here/check_readers.py" half.kerf e told.json || fail "exports in their readers"
+for format in peridigm perilab peridynamics; do
+  kerf-info half.kerf --export e.$format --horizon 2.5 || fail "--export e.$format"
+done
+/usr/bin/python3 "$here/check_peridynamics.py" e || fail "bonds for peridynamics"
+refuses 65 'from 1 to 20' kerf-info half.kerf --export f.peridigm --horizon 0
+refuses 73 'e.peridigm' kerf-info half.kerf --export e.peridigm
+refuses 2 'not .*x.xyz' kerf-info half.kerf --export x.xyz
 exit $failed

@@ -16,6 +16,7 @@
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
 #include "kerf/parallel.h"
+#include "kerf/peridynamics.h"
 #include "kerf/pieces.h"
 #include "kerf/progress.h"
 #include "kerf/scene.h"

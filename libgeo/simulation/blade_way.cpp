@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "geometry/distance.h"
@@ -29,6 +30,14 @@ double height(const std::array<Vec3, 3>& t) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (t[(k + 1) % 3] - t[k]).norm());
   return longest > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest : 0;
+}
+
+// The distance of x from what segment k of a front sweeps.
+double distance_from_strip(const Vec3& x, std::span<const FrontState::Point> points, std::span<const Vec3> to,
+                           std::size_t k) {
+  const Vec3 &p = points[k].position, &q = points[k + 1].position;
+  return std::min((closest_point_on_triangle(x, p, q, to[k]) - x).norm(),
+                  (closest_point_on_triangle(x, q, to[k + 1], to[k]) - x).norm());
 }
 
 // A side along the edge from a to b, or b to a: whether it has the two in this order.
@@ -92,9 +101,11 @@ double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, 
     const Vec3 &a = blade.points[i], &b = blade.points[(i + 1) % n];
     const auto place = half.map().to_material(half.pose() * Vec3(a + (at - double(i)) * (b - a)), memory);
     if (!place.in_support) continue;
-    const Vec3 &p = points[k].position, &q = points[k + 1].position, &x = place.position;
-    const double distance = std::min((closest_point_on_triangle(x, p, q, to[k]) - x).norm(),
-                                     (closest_point_on_triangle(x, q, to[k + 1], to[k]) - x).norm());
+    // A point that was inserted has no segment of its own: beside it the edge passes over the next
+    // strip.
+    double distance = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j + 1 < points.size(); ++j)
+      distance = std::min(distance, distance_from_strip(place.position, points, to, j));
     largest = std::max(largest, distance / body.nodes.spacing[place.nearest.index()]);
   }
   return largest;

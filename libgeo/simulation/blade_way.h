@@ -61,7 +61,7 @@ class MapAt {
 int number_of_cuts(const MovedBody& moved, const Blade& blade);
 
 /// The largest distance of the surface that the edge has swept, mapped into the material, from the
-/// strip between a front and its next position, in node spacings. It is measured half way between
+/// strips between a front and its next position, in node spacings. It is measured half way between
 /// the points of the front, at half the time of the cut. `half`: the map at that time.
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,
                        std::span<const Vec3> to);

@@ -246,6 +246,8 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
   const Blade& blade = scene.blades[b];
   std::vector<EdgeFront>& fronts = state.fronts[b];
   const auto runs = map_edge(moved, b, double(k) / cuts);
+  std::optional<MapAt> half;
+  if (!runs.empty()) half.emplace(moved, blade, (k - 0.5) / cuts);
   stats.front_seconds += watch.lap();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     std::vector<Vec3> to;
@@ -253,7 +255,7 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
     std::vector<double> spacing;
     for (const double at : edge.at) spacing.push_back(nearest(runs[r], at).spacing);
     stats.sheet.retreating += hold_retreating(body.surface, edge.front, spacing, to);
-    const double deviation = sheet_deviation(body, MapAt(moved, blade, (k - 0.5) / cuts), blade, edge, to);
+    const double deviation = sheet_deviation(body, *half, blade, edge, to);
     stats.front_seconds += watch.lap();
     ++stats.fronts;
     const auto faces = split_step(edge.front, to, stats);

@@ -99,11 +99,14 @@ TEST_CASE("a blade that turns by an acute angle cuts on") {
 }
 
 TEST_CASE("a sheet in falling material is as smooth with more nodes, and there are no crumbs") {
+  // Neo-Hookean, since St. Venant-Kirchhoff material as soft as this collapses under its own
+  // weight (docs/decisions/086).
   for (const double spacing : {0.25, 0.18, 0.12}) {
     INFO("spacing " << spacing);
     const Scene scene = parse_scene(
         "gravity = [0, 0, -9.81]\n[body]\nmesh = 'a'\nspacing = " + std::to_string(spacing) +
-            "\n[material]\nyoung = 1e5\ndamping = 1.0\n[ground]\npoint = [0, 0, -0.05]\nstiffness = 1e4\n[contact]\n"
+            "\n[material]\nmodel = 'neo-hookean'\nyoung = 5e4\nvolume_term = 5e4\ndamping = 1.0\n[ground]\npoint = [0, "
+            "0, -0.05]\nstiffness = 1e4\n[contact]\n"
             "self = true\n[time]\nframe_rate = 24\nstep = 0.021\n[[blade]]\npoints = [[-0.4, 0, 0], [1.4, 0, 0]]\n"
             "divide = 6\nkeys = [[0.0, 0.013, 0.457, 1.3, 0, 0, 1, 2], [0.5, 0.013, 0.551, -0.4, 0, 0, 1, 9]]\n",
         "s.toml");
@@ -115,8 +118,9 @@ TEST_CASE("a sheet in falling material is as smooth with more nodes, and there a
     }
     CHECK(find_pieces(sim.body().surface).count == 2);
     CHECK(work.refused == 0);
-    CHECK(work.sheet.deviation < 0.2);
-    CHECK(work.sheet.turning < 20);
+    CHECK(work.sheet.deviation < 0.1);
+    CHECK(work.sheet.turning < 30);
+    CHECK(work.sheet.retreating == 0);
     CHECK(work.sheet.crumbs == 0);
   }
 }

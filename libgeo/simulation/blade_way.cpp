@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/distance.h"
+#include "kerf/parallel.h"
 #include "kerf/pieces.h"
 #include "mechanics/solver/solid_discretisation.h"
 
@@ -74,14 +75,16 @@ MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction)
 
 int number_of_cuts(const MovedBody& moved, const Blade& blade) {
   const MapAt before(moved, blade, 0), after(moved, blade, 1);
-  double farthest = 0;
-  for (const Vec3& p : blade.points) {
-    const Vec3 from = before.pose() * p, to = after.pose() * p;
-    const auto a = before.map().to_material(from), b = after.map().to_material(to);
-    if (!a.in_support && !b.in_support) continue;
-    const bool both = a.in_support && b.in_support;
-    farthest = std::max(farthest, both ? (b.position - a.position).norm() : (to - from).norm());
-  }
+  std::vector<double> ways(blade.points.size(), 0);
+  parallel_for(ways.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 from = before.pose() * blade.points[i], to = after.pose() * blade.points[i];
+      const auto a = before.map().to_material(from), b = after.map().to_material(to);
+      if (!a.in_support && !b.in_support) continue;
+      ways[i] = a.in_support && b.in_support ? (b.position - a.position).norm() : (to - from).norm();
+    }
+  });
+  const double farthest = *std::max_element(ways.begin(), ways.end());
   const auto& spacing = moved.body.nodes.spacing;
   const double finest = *std::min_element(spacing.begin(), spacing.end());
   return static_cast<int>(std::clamp(std::ceil(farthest / (blade.limit * finest)), 1.0, most_cuts));
@@ -91,24 +94,26 @@ double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, 
                        std::span<const Vec3> to) {
   const auto& points = from.front.points;
   const std::size_t n = blade.points.size();
-  InverseDeformation::VertexCache memory;
-  double largest = 0;
-  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-    const bool stands = points[k].position == to[k] || points[k + 1].position == to[k + 1];
-    if (!points[k].id.valid() || !points[k + 1].id.valid() || stands) continue;
-    const double at = 0.5 * (from.at[k] + from.at[k + 1]);
-    const std::size_t i = std::min(static_cast<std::size_t>(at), n - 1);
-    const Vec3 &a = blade.points[i], &b = blade.points[(i + 1) % n];
-    const auto place = half.map().to_material(half.pose() * Vec3(a + (at - double(i)) * (b - a)), memory);
-    if (!place.in_support) continue;
-    // A point that was inserted has no segment of its own: beside it the edge passes over the next
-    // strip.
-    double distance = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j + 1 < points.size(); ++j)
-      distance = std::min(distance, distance_from_strip(place.position, points, to, j));
-    largest = std::max(largest, distance / body.nodes.spacing[place.nearest.index()]);
-  }
-  return largest;
+  std::vector<double> distances(points.size(), 0);
+  parallel_for(points.size() - 1, 8, [&](std::size_t begin, std::size_t end) {
+    InverseDeformation::VertexCache memory;
+    for (std::size_t k = begin; k < end; ++k) {
+      const bool stands = points[k].position == to[k] || points[k + 1].position == to[k + 1];
+      if (!points[k].id.valid() || !points[k + 1].id.valid() || stands) continue;
+      const double at = 0.5 * (from.at[k] + from.at[k + 1]);
+      const std::size_t i = std::min(static_cast<std::size_t>(at), n - 1);
+      const Vec3 &a = blade.points[i], &b = blade.points[(i + 1) % n];
+      const auto place = half.map().to_material(half.pose() * Vec3(a + (at - double(i)) * (b - a)), memory);
+      if (!place.in_support) continue;
+      // A point that was inserted has no segment of its own: beside it the edge passes over the
+      // next strip.
+      double distance = std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j + 1 < points.size(); ++j)
+        distance = std::min(distance, distance_from_strip(place.position, points, to, j));
+      distances[k] = distance / body.nodes.spacing[place.nearest.index()];
+    }
+  });
+  return *std::max_element(distances.begin(), distances.end());
 }
 
 double sheet_turning(const Complex& surface, std::span<const FaceId> faces, double lowest) {

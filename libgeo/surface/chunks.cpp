@@ -77,7 +77,8 @@ std::map<Pair, double> sections_of(const Complex& complex, const Pieces& pieces,
   std::map<Pair, double> result;
   for (const auto& [pair, section] : sections) {
     double most = 0;
-    for (const Vec2& x : section.points) most = std::max(most, (section.second.inverse() * x).norm());
+    const Eigen::Matrix2d inverse = section.second.inverse();
+    for (const Vec2& x : section.points) most = std::max(most, (inverse * x).norm());
     result[pair] = most > 0 && std::isfinite(most) ? 1 / most : 0;
   }
   return result;

@@ -91,6 +91,31 @@ const weak = grow('bar-weak', 5e5, [-g, 0, 0], [0, 0.5, 0.5], tension);
 expect(within(0.1, (weak + 47e3) / (strong + 47e3), 0.5), 'half the strength breaks at half the load, weight included');
 grow('bar', 1e6, [0, -g, 0], [2, 0.5, 0.5], bending);
 
+// The same bar, divided lengthwise, too: bonds share the load, and each piece has several. Each half is pulled in
+// proportion to its section, so all bonds of a section reach their strength at the same load.
+{
+  const asset = read('bar-split'), stress = 1e6, {bodies, bonds} = asset;
+  const across = bonds.filter(b => Math.abs(bodies[b.a].position[0] - bodies[b.b].position[0]) > 0.3);
+  const ends = pick => across.filter(b => Math.abs(b.point[0] - pick(...across.map(c => c.point[0]))) < 1e-3).map(bond => {
+    const [low, high] = bodies[bond.a].position[0] < bodies[bond.b].position[0] ? [bond.a, bond.b] : [bond.b, bond.a];
+    return {bond, low, high};
+  });
+  const upper = ends(Math.max), lower = ends(Math.min);
+  const w = world(asset, stress, {gravity: [-g, 0, 0], fixed: upper.map(e => bodies[e.high].name)});
+  w.run(0.5);
+  const stated = upper.reduce((sum, e) => sum + e.bond.force, 0) - w.mass() * g;
+  let load = 0;
+  while (w.broken.length === 0 && load < 3 * stated) {
+    load += 0.013 * stated;
+    for (const {bond, low} of lower)
+      w.load(low, [-load * bond.force / stress, 0, 0], sub([0, bond.point[1], bond.point[2]], bodies[low].position));
+    w.run(0.1);
+  }
+  expect(upper.length === 2 && lower.length === 2 && bonds.length > bodies.length, `bar-split: ${bodies.length} pieces, ${bonds.length} bonds`);
+  expect(w.broken.every(b => upper.some(e => e.bond.a === b.a && e.bond.b === b.b)), 'bar-split: a bond at the support breaks first');
+  expect(within(0.1, load, stated), `bar-split: breaks at ${load.toFixed(0)} N; stated are ${stated.toFixed(0)} N (${(100 * (load / stated - 1)).toFixed(1)} %)`);
+}
+
 // A fall from two metres breaks weak bonds, and not strong ones.
 for (const [name, breaks] of [['omi-weak', true], ['omi-strong', false]]) {
   const asset = read(name);

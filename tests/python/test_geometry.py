@@ -32,11 +32,12 @@ class Cracks(unittest.TestCase):
         self.assertEqual(c.piece_count, 2)
         np.testing.assert_allclose(c.piece_volumes, [0.75, 0.25], rtol=1e-14)
         bonds = c.bonds
-        self.assertEqual(bonds.dtype.names, ("a", "b", "area", "normal", "centroid"))
+        self.assertEqual(bonds.dtype.names, ("a", "b", "area", "normal", "centroid", "section"))
         self.assertEqual((bonds["a"][0], bonds["b"][0], len(bonds)), (0, 1, 1))
         self.assertAlmostEqual(bonds["area"][0], 1, places=14)
         np.testing.assert_allclose(bonds["normal"][0], [0, 0, -1], atol=1e-14)
         np.testing.assert_allclose(bonds["centroid"][0], [0.5, 0.5, 0.25], atol=1e-14)
+        self.assertAlmostEqual(bonds["section"][0], 2**0.5 / 12, places=14)  # of a unit square, bent about a diagonal
 
     def test_the_lines_of_the_introduction(self):
         uv = CUBE[:, :2]

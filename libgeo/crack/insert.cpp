@@ -103,7 +103,7 @@ Attempt attempt_at(int number, const CrackOptions& options, double size) {
 }
 
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
-                        std::vector<VertexId>& vertex, double clearance, CrackStats& stats) {
+                        std::vector<VertexId>& vertex, std::optional<double> clearance, CrackStats& stats) {
   if (strip.triangles.empty()) {
     vertex = known_vertices(arrangement);
     return {};
@@ -128,16 +128,18 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
   }
   ComplexEdit edit = stitch(arrangement, complex, edges, kept, crack, vertex);
   stats.stitch_seconds += watch.lap();
-  const auto families = families_of(complex, arrangement, kept);
-  std::vector<std::uint8_t> moved(edit.new_vertices.size());
-  for (PointIndex l = 0; l < vertex.size(); ++l)
-    if (vertex[l].valid() && vertex[l].value >= complex.vertex_count())
-      moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
-  std::vector<FrontExit> exits;
-  if (clearance > 0) exits = exits_of(complex, strip, arrangement, edges, kept, vertex);
-  if (const Fault fault = snap_repair(complex, edit, {families, moved, clearance, exits}, stats.repairs))
-    throw GeometryError(fault.what);
-  stats.guard_seconds += watch.lap();
+  if (clearance) {
+    const auto families = families_of(complex, arrangement, kept);
+    std::vector<std::uint8_t> moved(edit.new_vertices.size());
+    for (PointIndex l = 0; l < vertex.size(); ++l)
+      if (vertex[l].valid() && vertex[l].value >= complex.vertex_count())
+        moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
+    std::vector<FrontExit> exits;
+    if (*clearance > 0) exits = exits_of(complex, strip, arrangement, edges, kept, vertex);
+    if (const Fault fault = snap_repair(complex, edit, {families, moved, *clearance, exits}, stats.repairs))
+      throw GeometryError(fault.what);
+    stats.guard_seconds += watch.lap();
+  }
   CrackDelta delta = complex.apply(edit);
   stats.triangles_cut += edit.removed_faces.size();
   stats.new_crack_faces += kept.size();

@@ -1,6 +1,8 @@
 // One attempt to insert a strip into K: meet, split, classify, stitch, guard, commit (§ 5.2).
 #pragma once
 
+#include <optional>
+
 #include "crack/arrangement.h"
 
 namespace geo::crack {
@@ -14,10 +16,14 @@ struct Attempt {
 Attempt attempt_at(int number, const CrackOptions& options, double size);
 
 /// Inserts the parts of the strip in the material as faces of crack `crack` and returns the
-/// changes; empty when no part is inside. `clearance`: see GuardContext. `vertex` receives the
-/// vertex of each point of the arrangement that has one. Throws GeometryError, K unchanged, when
-/// rounding would break K.
+/// changes; empty when no part is inside. `clearance`: see GuardContext; empty: without the guard,
+/// see insert_unguarded(). `vertex` receives the vertex of each point of the arrangement that has
+/// one. Throws GeometryError, K unchanged, when rounding would break K.
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
-                        std::vector<VertexId>& vertex, double clearance, CrackStats& stats);
+                        std::vector<VertexId>& vertex, std::optional<double> clearance, CrackStats& stats);
+
+/// As insert_sheet(), in one attempt and without the guard: the faces and how they are joined are
+/// exact, but rounded coordinates may make faces cross. For counts of pieces, not for output.
+void insert_unguarded(Complex& complex, const TriangleMesh& sheet, std::int32_t crack);
 
 }  // namespace geo::crack

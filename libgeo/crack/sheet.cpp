@@ -10,8 +10,10 @@
 
 namespace geo {
 
-CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
-                        CrackStats* stats) {
+namespace {
+
+// Throws InputError for a sheet that cannot be inserted whatever the complex is.
+void check(const TriangleMesh& sheet, std::int32_t crack) {
   if (crack < 1) throw InputError("cracks are numbered from 1");
   for (const Vec3& p : sheet.vertices)
     if (!p.allFinite()) throw InputError("the sheet has a coordinate that is not a finite number");
@@ -19,6 +21,24 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
     for (const auto v : sheet.triangles[t])
       if (v >= sheet.vertices.size())
         throw InputError("triangle " + std::to_string(t) + " of the sheet names a vertex that is not there");
+}
+
+}  // namespace
+
+void crack::insert_unguarded(Complex& complex, const TriangleMesh& sheet, std::int32_t crack) {
+  check(sheet, crack);
+  const CrackOptions options;
+  Strip strip = strip_of(sheet.vertices, sheet.triangles);
+  snap_to_vertices(strip, complex, options.snap * complex.extent().diagonal());
+  Arrangement arrangement(complex, strip);
+  std::vector<VertexId> vertex;
+  CrackStats stats;
+  insert_strip(complex, strip, arrangement, crack, vertex, {}, stats);
+}
+
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
+                        CrackStats* stats) {
+  check(sheet, crack);
   const double size = complex.extent().diagonal();
   // 2⁶⁴ / golden ratio spreads consecutive seeds.
   Random random(options.seed * 0x9e3779b97f4a7c15ull);

@@ -2,12 +2,14 @@
 //
 // Search over the number of cells of a pattern: pieces are counted by cutting a copy of the model.
 // The next number follows from the pieces missing or the ratio of surplus, bracketed by bisection;
-// a new seed starts the search again. A small surplus of pieces is joined.
+// a new seed starts the search again. A small surplus of pieces is joined, while walls are flat
+// where it is found there.
 #include "kerf/score.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "crack/insert.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/pieces.h"
@@ -51,7 +53,7 @@ class Scoring {
         low = 0, high = 2 * o_.pieces + 2;
       }
     }
-    if (best_.pieces == 0 && nearest_.pieces > 0) finish(walls_of(nearest_));
+    if (best_.pieces == 0 && nearest_.pieces > 0) finish(walls_of(nearest_), false);
     if (best_.pieces == 0) throw GeometryError("no such pattern can be inserted" + reason_);
     if (o_.depth < 1) {
       if (!(o_.jagged.amplitude > 0)) refine_walls(best_.sheet, skin_, edge(), edge(), [this] { pause(); });
@@ -90,10 +92,23 @@ class Scoring {
     pause();
     try {
       TriangleMesh walls = walls_of(t);
-      t.pieces = is_given() ? 1 : find_pieces(cut_by(walls)).count;
-      if (distance_from_wanted(t.pieces) < distance_from_wanted(nearest_.pieces)) nearest_ = t;
-      if (is_given() || (t.pieces >= wanted() && t.pieces <= wanted() + wanted() / 4 + 1))
-        t.pieces = finish(std::move(walls));
+      t.pieces = 1;
+      if (!is_given()) {
+        const Complex cut = roughly_cut_by(walls);
+        const Pieces pieces = find_pieces(cut);
+        t.pieces = pieces.count;
+        if (distance_from_wanted(t.pieces) < distance_from_wanted(nearest_.pieces)) nearest_ = t;
+        if (t.pieces < wanted() || t.pieces > wanted() + wanted() / 4 + 1) return true;
+        if (t.pieces > wanted()) {
+          TriangleMesh joined = walls;
+          join_small_pieces(joined, cut, new_crack(), pieces, wanted());
+          if (const std::uint32_t count = finish(std::move(joined), true)) {
+            t.pieces = count;
+            return true;
+          }
+        }
+      }
+      t.pieces = finish(std::move(walls), false);
       return true;
     } catch (const GeometryError& e) {
       reason_ = std::string(": ") + e.what();
@@ -102,14 +117,16 @@ class Scoring {
   }
 
   // Roughens walls, joins surplus pieces, and keeps the result if it is the best one. Returns the
-  // number of pieces before joining.
-  std::uint32_t finish(TriangleMesh walls) {
+  // number of pieces before joining. Walls that were joined while flat may reach into pieces once
+  // they are rough; the result is then 0, and nothing is kept.
+  std::uint32_t finish(TriangleMesh walls, bool joined) {
     if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged, [this] { pause(); });
     Complex cut = cut_by(walls);
     const Pieces pieces = find_pieces(cut);
+    if (joined && has_wall_inside(cut, pieces)) return 0;
     std::uint32_t count = pieces.count;
     if (count > wanted() && !is_given()) {
-      join_small_pieces(walls, cut, model_.crack_count() + 1, pieces, wanted());
+      join_small_pieces(walls, cut, new_crack(), pieces, wanted());
       cut = cut_by(walls);
       count = find_pieces(cut).count;
     }
@@ -121,6 +138,17 @@ class Scoring {
     return pieces.count;
   }
 
+  std::int32_t new_crack() const { return model_.crack_count() + 1; }
+
+  // Whether a piece has both sides of a new wall.
+  bool has_wall_inside(const Complex& cut, const Pieces& pieces) const {
+    for (std::uint32_t f = 0; f < cut.face_count(); ++f)
+      if (cut.alive(FaceId(f)) && cut.face(FaceId(f)).crack == new_crack() &&
+          pieces.of_side[2 * f] == pieces.of_side[2 * f + 1])
+        return true;
+    return false;
+  }
+
   // Reports the attempts before this one; throws Interrupted where the caller stops the search.
   void pause() const {
     const auto done = static_cast<std::size_t>(std::max(best_.attempts - 1, 0));
@@ -129,7 +157,15 @@ class Scoring {
   Complex cut_by(const TriangleMesh& walls) const {
     pause();
     Complex cut = model_;
-    insert_sheet(cut, walls, cut.crack_count() + 1);
+    insert_sheet(cut, walls, new_crack());
+    return cut;
+  }
+
+  // The same for counting pieces; faces may cross each other within rounding.
+  Complex roughly_cut_by(const TriangleMesh& walls) const {
+    pause();
+    Complex cut = model_;
+    crack::insert_unguarded(cut, walls, new_crack());
     return cut;
   }
 

@@ -106,7 +106,7 @@ int dataset(const Options& options) {
   for (const geo::Pattern pattern : patterns) {
     Row sum;
     for (const Model& model : models) {
-      const Row row = measure(model, pattern, pattern == geo::Pattern::voronoi ? 40 : 10);
+      const Row row = measure(model, pattern, 10);
       sum += row;
       if (!options.json)
         std::printf("%-9s %-8s %6.3f s, %zu failed, %zu wrong, %7.0f faces\n", model.name.c_str(),
@@ -117,7 +117,8 @@ int dataset(const Options& options) {
         3600 * double(sum.made) / sum.seconds;
     all += sum;
   }
-  figures["fractures_per_core_hour"] = 3600 * double(all.made) / all.seconds;
+  figures["fractures_per_core_hour"] = figures["fractures_per_core_hour_voronoi"];  // as kerf-dataset makes by default
+  figures["fractures_per_core_hour_all_patterns"] = 3600 * double(all.made) / all.seconds;
   figures["failed_share"] = double(all.failed) / double(all.made + all.failed);
   figures["wrong"] = double(all.wrong);
   figures["bytes_per_fracture"] = double(all.bytes) / double(all.made);

@@ -174,5 +174,5 @@ TEST_CASE("code in a child process may crash, loop, eat memory and throw") {
     for (volatile int i = 0;; i = i + 1)
       if (i < 0) out << i;
   };
-  CHECK_THROWS_WITH(in_child(loop, {1 << 30, 1}), Catch::Contains("longer than 1 s"));
+  CHECK_THROWS_WITH(in_child(loop, {1 << 30, 1}), Catch::Contains("longer than"));
 }

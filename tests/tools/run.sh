@@ -126,7 +126,7 @@ contract)
   expect 73 "cannot be made (Not a directory)" timeout 10 kerf-view block.ply --size 4000x4000 -o block.ply/x.png
   expect 2 "writes .ply or .obj, not .stl" kerf-crack block.ply --front ok.front -o x.stl
   expect 2 "writes .png, .webp, .mp4 or .html, not .gif" kerf-view block.ply -o x.gif
-  expect 2 "writes a folder or .glb, not .fbx" kerf-pieces block.ply -o x.fbx
+  expect 2 "writes a folder, .glb or .usda, not .fbx" kerf-pieces block.ply -o x.fbx
   expect 2 "writes a folder, not .mp4" kerf-sim scene.toml -o x.mp4
   expect 2 "writes .pcd or .ply, not .xyz" kerf-sample block.ply -o x.xyz
   expect 2 "writes .kerf, not .ply" kerf-update ok.kerf --surface block.ply -o x.ply

@@ -14,7 +14,7 @@ expect() {  # expect CODE REGEX COMMAND...: this exit code, one line on standard
   [ $? = "$code" ] || fail "$*: not exit $code: $(cat said.txt)"
   grep -q -- "$said" said.txt && [ "$(wc -l <said.txt)" = 1 ] || fail "$*: does not say '$said': $(cat said.txt)"
 }
-python() { PYTHONDONTWRITEBYTECODE=1 python3 "$@"; }
+python() { PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$@"; }  # that of the packages, with NumPy
 
 kerf-model pumpkin --frequency 4 -o pumpkin.ply && kerf-model apple --frequency 4 -o apple.ply &&
   kerf-model block --edge 0.25 -o block.ply || fail "models"

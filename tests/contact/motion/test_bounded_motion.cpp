@@ -86,7 +86,7 @@ TEST_CASE("nothing crosses at the end of a motion, whatever its targets are", "[
   }
 }
 
-TEST_CASE("from a guess that is certified, vertices only come nearer; another one is projected", "[campaign]") {
+TEST_CASE("from a certified guess vertices only come nearer, and another guess is projected", "[campaign]") {
   const auto [first, count] = seeds(40);
   std::size_t held = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {

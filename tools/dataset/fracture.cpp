@@ -18,18 +18,6 @@ namespace {
 
 constexpr double volume_tolerance = 1e-9;  // relative to the model's volume
 
-geo::Vec3 centroid_of(const geo::TriangleMesh& mesh) {
-  const geo::Vec3 o = geo::bounding_box(mesh).center();
-  geo::Vec3 sum = geo::Vec3::Zero();
-  double volume = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const geo::Vec3 p = mesh.vertices[a] - o, q = mesh.vertices[b] - o, r = mesh.vertices[c] - o;
-    const double v = p.dot(q.cross(r));
-    volume += v, sum += v * (p + q + r) / 4;
-  }
-  return volume > 0 ? geo::Vec3(o + sum / volume) : o;
-}
-
 // Bond between two pieces as a label.
 using Labels = std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t>;
 
@@ -102,7 +90,7 @@ void measure_and_check(Fracture& fracture, double volume) {
     const auto report = geo::check_surface(mesh, false);
     if (!report.good()) throw geo::GeometryError(name_of(p) + ": " + report.first_problem);
     piece.volume = geo::signed_volume(mesh);
-    piece.centroid = centroid_of(mesh);
+    piece.centroid = geo::mass_properties(mesh).centroid;
     mesh.vertices.swap(piece.vertices), mesh.triangles.swap(piece.faces);
     if (!(piece.volume > 0)) throw geo::GeometryError(name_of(p) + " has no volume");
     const double y = piece.volume - compensation, t = sum + y;

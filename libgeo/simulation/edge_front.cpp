@@ -9,12 +9,6 @@
 namespace geo {
 namespace {
 
-const EdgePoint& nearest(std::span<const EdgePoint> points, double at) {
-  return *std::min_element(points.begin(), points.end(), [&](const EdgePoint& a, const EdgePoint& b) {
-    return std::abs(a.at - at) < std::abs(b.at - at);
-  });
-}
-
 bool has(std::span<const EdgePoint> points, double at) {
   return std::any_of(points.begin(), points.end(), [&](const EdgePoint& p) { return p.at == at; });
 }
@@ -37,6 +31,12 @@ EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, cons
   edge.front = begin_front(material, closed, crack);
   edge.front.name = name;
   return edge;
+}
+
+const EdgePoint& nearest(std::span<const EdgePoint> points, double at) {
+  return *std::min_element(points.begin(), points.end(), [&](const EdgePoint& a, const EdgePoint& b) {
+    return std::abs(a.at - at) < std::abs(b.at - at);
+  });
 }
 
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to) {

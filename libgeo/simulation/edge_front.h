@@ -23,6 +23,9 @@ struct EdgePoint {
 EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name,
                      bool closed = false);
 
+/// The point nearest to an edge parameter. `points`: not empty.
+const EdgePoint& nearest(std::span<const EdgePoint> points, double at);
+
 /// Upsampling: the front with a copy of the nearest point for each parameter of `next` that it
 /// lacks. `to` receives the next position of every point; points whose parameter `next` lacks move
 /// to that of the nearest one (downsampling). Both are ascending in the parameter.

@@ -1,14 +1,22 @@
-// Adaptive bisection of the edge parameter: a segment is halved while its midpoint in the material
-// is off the chord by more than 0.1 spacings. Runs are split where neighbouring samples are torn.
+// Adaptive bisection of the edge parameter. A segment is halved while its midpoint in the material
+// is off the chord by more than `most_deviation`. Runs are split where neighbouring samples are
+// torn.
 #include "simulation/edge_runs.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "kerf/parallel.h"
+#include "simulation/edge_retreat.h"
 
 namespace geo {
 namespace {
+
+// Largest distance of a front from the mapped edge, in spacings. Parameters come and go from cut to
+// cut, and the sheet turns by this over the way of a cut.
+constexpr double most_deviation = 0.02;
+// Longest segment of a front, in spacings: a midpoint alone does not see an edge bent twice.
+constexpr double longest_segment = 2;
 
 // A point of the edge, mapped into the material.
 struct Sample {
@@ -42,8 +50,8 @@ class EdgeSampler {
     return s;
   }
 
-  // Appends samples strictly between two, by bisection where the map is not straight: the midpoint
-  // is off the chord by more than 0.1 spacings. Ends of a run are found to a quarter of a spacing.
+  // Appends samples strictly between two, by bisection where the map is not straight. Ends of a run
+  // are found to a quarter of a spacing.
   void refine(const Sample& a, const Sample& b, int depth, std::vector<Sample>& out) {
     if (depth == 0) return;
     const double length = (b.world - a.world).norm(), spacing = std::min(a.spacing, b.spacing);
@@ -52,7 +60,8 @@ class EdgeSampler {
     if ((ends || !a.within) && length < 0.25 * spacing) return;
     const Sample middle = at(0.5 * (a.at + b.at));
     const bool straight = a.within && b.within && middle.within &&
-                          (middle.material - 0.5 * (a.material + b.material)).norm() <= 0.1 * spacing;
+                          (b.material - a.material).norm() <= longest_segment * spacing &&
+                          (middle.material - 0.5 * (a.material + b.material)).norm() <= most_deviation * spacing;
     if (straight) return;
     refine(a, middle, depth - 1, out);
     out.push_back(middle);
@@ -103,8 +112,9 @@ std::size_t after_outliers(const std::vector<Sample>& samples, std::size_t i, co
 }
 
 // True where a run continues a front. Their edge parameters overlap, and there a point of the run
-// is within four spacings, in the material, of the front's point nearest in parameter.
-bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
+// is within four spacings, in the material, of the front's point nearest in parameter, or within a
+// quarter of a spacing of its crack.
+bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge, const Complex& surface) {
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
   if (from > to) return false;
   for (const EdgePoint& p : run) {
@@ -113,7 +123,9 @@ bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge) {
         std::min_element(edge.at.begin(), edge.at.end(),
                          [&](double a, double b) { return std::abs(a - p.at) < std::abs(b - p.at); }) -
         edge.at.begin());
-    if ((edge.front.points[k].position - p.material).norm() < 4 * p.spacing) return true;
+    if ((edge.front.points[k].position - p.material).norm() < 4 * p.spacing ||
+        distance_from_crack(surface, edge.front.crack, p.material, 0.25 * p.spacing) < 0.25 * p.spacing)
+      return true;
   }
   return false;
 }
@@ -152,13 +164,13 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
   return run;
 }
 
-std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs,
-                                 const std::vector<EdgeFront>& before) {
+std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
+                                 const Complex& surface) {
   // A front that several runs continue is split half way between each two of them.
   std::vector<std::vector<std::size_t>> successors(before.size());
   for (std::size_t e = 0; e < before.size(); ++e)
     for (std::size_t r = 0; r < runs.size(); ++r)
-      if (continues(runs[r], before[e])) successors[e].push_back(r);
+      if (continues(runs[r], before[e], surface)) successors[e].push_back(r);
   std::vector<EdgeFront> fronts(runs.size());
   for (std::size_t e = 0; e < before.size(); ++e)
     for (std::size_t h = 0; h < successors[e].size(); ++h) {

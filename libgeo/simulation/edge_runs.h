@@ -11,10 +11,10 @@
 namespace geo {
 
 /// The runs of an open edge within the support of nodes, mapped into the material. Between the
-/// blade's own points, samples are inserted where the map bends the edge by more than a tenth of a
-/// node spacing, and at the ends of a run. Points closer than a twentieth of a spacing, in the
-/// material, replace the one before. A run ends where no node is near, and where the edge continues
-/// in material that is disconnected from it.
+/// blade's own points, samples are inserted where the map bends the edge by more than a fiftieth of
+/// a node spacing, where they are more than two spacings apart, and at the ends of a run. Points
+/// closer than a twentieth of a spacing, in the material, replace the one before. A run ends where
+/// no node is near, and where the edge continues in material that is disconnected from it.
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose);
 
@@ -25,6 +25,7 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 /// A front for each run: the one among `before` that the run continues. Fronts are joined where a
 /// run continues several, and split where several runs continue one. A run that continues none gets
 /// a front without points.
-std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before);
+std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
+                                 const Complex& surface);
 
 }  // namespace geo

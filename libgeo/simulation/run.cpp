@@ -2,6 +2,8 @@
 // are those of the later frame.
 #include "kerf/simulation.h"
 
+#include <algorithm>
+
 namespace geo {
 namespace {
 
@@ -23,6 +25,9 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided;
   fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
   contact += o.contact;
+  sheet.deviation = std::max(sheet.deviation, o.sheet.deviation);
+  sheet.turning = std::max(sheet.turning, o.sheet.turning);
+  sheet.retreating += o.sheet.retreating, sheet.crumbs = o.sheet.crumbs;
   energy = o.energy, blade_force = o.blade_force, pull_force = o.pull_force;
   obstacle_force = o.obstacle_force, obstacle_torque = o.obstacle_torque;
   return *this;

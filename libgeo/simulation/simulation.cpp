@@ -1,6 +1,6 @@
-// Simulation of kerf/simulation.h. A time step: cut by blades, place grips, add contact, integrate,
-// move the surface, grow cracks by stress. Self-contact may veto a crack step before its commit;
-// the step is then counted as refused.
+// Simulation of kerf/simulation.h. A time step: place grips, add contact, integrate, move the
+// surface, cut by blades, grow cracks by stress. Self-contact may veto a crack step before its
+// commit; the step is then counted as refused.
 #include "kerf/simulation.h"
 
 #include <algorithm>
@@ -15,7 +15,9 @@
 #include "kerf/progress.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/solver/solid_discretisation.h"
+#include "simulation/blade_way.h"
 #include "simulation/collisions.h"
+#include "simulation/edge_retreat.h"
 #include "simulation/edge_runs.h"
 #include "simulation/fracture_step.h"
 #include "simulation/grips.h"
@@ -26,10 +28,6 @@
 
 namespace geo {
 namespace {
-
-// Bound on the cuts of one blade in a time step. Beyond it, a cut moves the edge by more than
-// Blade::limit.
-constexpr double most_cuts = 64;
 
 // The state with a body index for each node. Throws InputError where it does not fit.
 RunState checked(const Scene& scene, const Body& body, RunState state) {
@@ -77,12 +75,13 @@ struct Simulation::Impl {
 
   void apply_changes(double time);
   void step(const TimeStep& step, FrameStats& stats);
-  void cut(const TimeStep& step, FrameStats& stats);
-  void cut_at(std::size_t blade, double time, FrameStats& stats);
-  bool split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
+  void cut(const std::vector<Vec3>& before, const TimeStep& step, FrameStats& stats);
+  std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction);
+  void cut_to(const MovedBody& moved, std::size_t blade, int k, int cuts, FrameStats& stats);
+  std::optional<std::vector<FaceId>> split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   std::int32_t unused_crack() const;
-  void add_wedges(double end);
+  void add_wedges();
   std::optional<ContactStep> begin_contact(double dt, FrameStats& stats);
   void integrate(const TimeStep& step, FrameStats& stats);
   void finish_contact(std::optional<ContactStep> contact, const std::vector<Vec3>& before, double dt,
@@ -102,6 +101,8 @@ struct Simulation::Impl {
   PullPotential pull;
   Obstacles obstacles;
   std::optional<Collisions> collisions;
+  NodeWay way;  // of this time step, while blades cut
+  std::size_t crumbs = 0;
   bool cut_since_build = false;  // of the solid
 };
 
@@ -138,6 +139,7 @@ void Simulation::Impl::reset_contact() {
   if (solid.size() != body.nodes.size()) throw InputError("the checkpoint does not belong to this scene");
   reset_environment();
   collisions.emplace(scene, body, solid, state.surface);
+  crumbs = count_crumbs(body);
 }
 
 // All that acts on the nodes as they are now, except contact.
@@ -169,6 +171,8 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
                     if (scene.fracture.on) solid.update_points(body, state.motion);
                   });
   for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
+  way.add_nodes(delta.donors);
+  if (!delta.detached.empty()) crumbs = count_crumbs(body);
   stats.mechanics_seconds += watch.lap();
   if (collisions) collisions->commit(std::move(plan), body, solid, delta);
   obstacles.invalidate_weights();
@@ -176,8 +180,9 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
   stats.contact_seconds += watch.lap();
 }
 
-// One step of a crack; false, and counted, where it cannot be made.
-bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats) {
+// One step of a crack. Returns its new faces; nothing, and counts it, where it cannot be made.
+std::optional<std::vector<FaceId>> Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& next,
+                                                                FrameStats& stats) {
   CrackOptions options;
   options.seed = scene.seed;
   try {
@@ -186,63 +191,82 @@ bool Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& ne
         collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : StepVeto();
     const BodyDelta delta = split(body, front, next, options, &stats.split, check);
     apply_delta(delta, std::move(plan), stats);
-    return true;
+    return delta.crack.new_crack_faces;
   } catch (const GeometryError&) {
     ++stats.refused;
-    return false;
+    return {};
   }
 }
 
-// Moves all blades through a time step in ⌈farthest / (limit · finest)⌉ cuts (§ 5.1): farthest is
-// the longest way of an edge point, finest the smallest node spacing.
-void Simulation::Impl::cut(const TimeStep& step, FrameStats& stats) {
+// Moves all blades through the time step that the nodes have just made, from `before` to where they
+// are.
+void Simulation::Impl::cut(const std::vector<Vec3>& before, const TimeStep& step, FrameStats& stats) {
+  way = NodeWay(before, state.motion.displacement);
+  const MovedBody moved{body, solid, state.motion, way, step.begin, step.end};
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
-    if (!blade.active(state.time)) {
+    if (!blade.active(step.begin)) {
       state.fronts[b].clear();
       continue;
     }
-    if (state.fronts[b].empty()) cut_at(b, state.time, stats);
-    const std::vector<Vec3> from = blade.at(step.begin), to = blade.at(step.end);
-    double farthest = 0;
-    for (std::size_t i = 0; i < from.size(); ++i) farthest = std::max(farthest, (to[i] - from[i]).norm());
-    const double finest = *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
-    const int cuts = static_cast<int>(std::clamp(std::ceil(farthest / (blade.limit * finest)), 1.0, most_cuts));
-    for (int k = 1; k < cuts; ++k) cut_at(b, step.begin + step.dt * k / cuts, stats);
-    cut_at(b, step.end, stats);
+    Stopwatch watch;
+    if (state.fronts[b].empty()) map_edge(moved, b, 0);
+    const int cuts = number_of_cuts(moved, blade);
+    stats.front_seconds += watch.lap();
+    for (int k = 1; k <= cuts; ++k) cut_to(moved, b, k, cuts, stats);
   }
+  way = NodeWay();
+  Stopwatch watch;
+  solid.update_points(body, state.motion);
+  stats.mechanics_seconds += watch.lap();
 }
 
-// Maps a blade's edge into the material, and advances its fronts there.
-void Simulation::Impl::cut_at(std::size_t b, double time, FrameStats& stats) {
+// The runs of a blade's edge in the material at a fraction of a time step. Its fronts become those
+// that the runs continue; a run without one gets a new front.
+std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& moved, std::size_t b, double fraction) {
+  const Blade& blade = scene.blades[b];
+  std::vector<EdgeFront>& fronts = state.fronts[b];
+  const MapAt at(moved, blade, fraction);
+  std::vector<std::vector<EdgePoint>> runs;
+  if (blade.closed) {
+    runs.push_back(closed_run(at.map(), body, blade, at.pose()));
+    if (fronts.empty()) fronts.resize(1);
+  } else {
+    runs = edge_runs(at.map(), body, blade, at.pose());
+    fronts = fronts_of(runs, fronts, body.surface);
+  }
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    if (fronts[r].at.empty()) fronts[r] = begin_edge(runs[r], unused_crack(), blade.name, blade.closed);
+  return runs;
+}
+
+// Advances the fronts of a blade to the end of cut k of a time step.
+void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int cuts, FrameStats& stats) {
   Stopwatch watch;
   const Blade& blade = scene.blades[b];
   std::vector<EdgeFront>& fronts = state.fronts[b];
-  const Pose pose = blade.motion.at(time);
-  Box3 about;
-  for (const Vec3& p : blade.points) about.add(pose * p);
-  const LazyNodalGradients gradient = lazy_gradients(solid.discretisation(), state.motion.displacement);
-  const InverseDeformation map(body, state.motion.displacement, gradient, about);
-  std::vector<std::vector<EdgePoint>> runs;
-  if (blade.closed) {
-    runs.push_back(closed_run(map, body, blade, pose));
-    if (fronts.empty()) fronts.resize(1);
-  } else {
-    runs = edge_runs(map, body, blade, pose);
-    fronts = fronts_of(runs, fronts);
-  }
+  const auto runs = map_edge(moved, b, double(k) / cuts);
+  std::optional<MapAt> half;
+  if (!runs.empty()) half.emplace(moved, blade, (k - 0.5) / cuts);
   stats.front_seconds += watch.lap();
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (fronts[r].at.empty()) {
-      fronts[r] = begin_edge(runs[r], unused_crack(), blade.name, blade.closed);
-      continue;
-    }
     std::vector<Vec3> to;
     EdgeFront edge = refined(fronts[r], runs[r], to);
+    std::vector<double> spacing;
+    for (const double at : edge.at) spacing.push_back(nearest(runs[r], at).spacing);
+    stats.sheet.retreating += hold_retreating(body.surface, edge.front, spacing, to);
+    const double deviation = sheet_deviation(body, *half, blade, edge, to);
+    stats.front_seconds += watch.lap();
     ++stats.fronts;
-    if (!split_step(edge.front, to, stats)) continue;
+    const auto faces = split_step(edge.front, to, stats);
+    watch.lap();
+    if (!faces) continue;
     collapse(edge, runs[r]);
     fronts[r] = std::move(edge);
+    stats.sheet.deviation = std::max(stats.sheet.deviation, deviation);
+    const double lowest = 0.1 * *std::min_element(spacing.begin(), spacing.end());
+    stats.sheet.turning = std::max(stats.sheet.turning, sheet_turning(body.surface, *faces, lowest));
+    stats.front_seconds += watch.lap();
   }
 }
 
@@ -255,17 +279,18 @@ std::int32_t Simulation::Impl::unused_crack() const {
   return last + 1;
 }
 
-// Adds the wedges of thick blades, where they are at the end of the step.
-void Simulation::Impl::add_wedges(double end) {
+// Adds the wedges of thick blades. They are where their cut is: the edge cuts on at the end of the
+// step.
+void Simulation::Impl::add_wedges() {
   wedge = {};
   std::vector<double> mass;
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
     if (!(blade.thickness > 0) || !blade.active(state.time)) continue;
     for (std::size_t i = mass.size(); i < body.nodes.size(); ++i) mass.push_back(solid.mass(NodeId(i)));
-    wedge.add(
-        b, {blade.at(end), blade.closed, blade.motion.at(end).rotation * blade.back, blade.thickness, blade.stiffness},
-        {body.nodes.position, state.motion.displacement, environment.clearance, mass});
+    const Pose pose = blade.motion.at(state.time);
+    wedge.add(b, {blade.at(state.time), blade.closed, pose.rotation * blade.back, blade.thickness, blade.stiffness},
+              {body.nodes.position, state.motion.displacement, environment.clearance, mass});
   }
   if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
@@ -321,7 +346,7 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
   const double splitting = others();
   step_fracture(
       {scene.fracture, state.body_index, body, solid, state.motion, dt}, state.fracture,
-      [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, stats); },
+      [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, stats).has_value(); },
       &stats.fracture);
   stats.fracture_seconds += watch.lap() - (others() - splitting);
 }
@@ -330,17 +355,17 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
 void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   state.time = step.begin;
   apply_changes(step.begin);
-  cut(step, stats);
   const std::vector<Vec3> before = state.motion.displacement;
   gripped.place(scene.grips, body.nodes, step.end, environment.fixed, state.motion);
   environment.contact.clear();
-  add_wedges(step.end);
+  add_wedges();
   pull.begin_step(scene.pulls, body, solid, step.begin, step.end);
   if (!pull.empty()) environment.contact.push_back(&pull);
   std::optional<ContactStep> contact = begin_contact(step.dt, stats);
   integrate(step, stats);
   finish_contact(std::move(contact), before, step.dt, stats);
   state.time = step.end;
+  cut(before, step, stats);
   fracture(step.dt, stats);
 }
 
@@ -440,6 +465,7 @@ FrameStats Simulation::advance_frame(const Progress& progress) {
   }
   ++run.state.frame;
   run.state.surface = run.collisions->living_positions(run.body);
+  stats.sheet.crumbs = run.crumbs;
   run.state.total += stats;
   return stats;
 }

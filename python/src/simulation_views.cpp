@@ -222,6 +222,13 @@ void bind_more_stats(py::module_& module) {
       .def_readonly("held", &C::held, "Steps in which the surface was not moved at all.")
       .def_readonly("tracking_error", &C::tracking_error, "Largest distance of a vertex from Eq. 1, model units.")
       .def_readonly("seconds", &C::seconds, "Seconds.");
+  using H = geo::SheetStats;
+  py::class_<H>(module, "SheetStats", "Shape of the sheets that blades cut.")
+      .def_readonly("deviation", &H::deviation,
+                    "Largest deviation of a sheet from the surface that its edge sweeps, in node spacings.")
+      .def_readonly("turning", &H::turning, "Largest angle between neighbouring faces, degrees.")
+      .def_readonly("retreating", &H::retreating, "Front points held, because their edge goes back in its own cut.")
+      .def_readonly("crumbs", &H::crumbs, "Pieces with less than a tenth of a node's volume, at the frame's end.");
   using F = geo::FractureStats;
   py::class_<F>(module, "FractureStats", "Counts of fracture by stress.")
       .def_readonly("begun", &F::begun, "Cracks started.")
@@ -248,6 +255,7 @@ void bind_frame_stats(py::module_& module) {
       .def_readonly("split", &S::split, "Cutting, SplitStats.")
       .def_readonly("fracture", &S::fracture, "Fracture by stress, FractureStats.")
       .def_readonly("contact", &S::contact, "Contact, ContactStats.")
+      .def_readonly("sheet", &S::sheet, "Shape of the sheets that blades cut, SheetStats.")
       .def_readonly("refused", &S::refused, "Crack steps that could not be made.")
       .def_readonly("fronts", &S::fronts, "Steps of blade fronts tried.")
       .def_readonly("newton", &S::newton, "Newton iterations.")

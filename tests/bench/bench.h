@@ -61,6 +61,7 @@ int live(const Options& options);
 int mechanics(const Options& options);
 int python(const Options& options);  ///< where the module is built
 int score(const Options& options);
+int simulation(const Options& options);
 int validate(const Options& options);
 
 /// Figures by name: one JSON object on a line, or a table.

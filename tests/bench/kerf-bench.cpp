@@ -16,27 +16,31 @@ int main(int argc, char** argv) {
       "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; dataset: "
       "fractures for learning; live: "
       "kerf-live with a client that cuts; mechanics: "
-      "time steps beside Bullet; python: the module beside C++; score: prescoring, one thread and all; validate: "
+      "time steps beside Bullet; python: the module beside C++; score: prescoring, one thread and all; simulation: a "
+      "halved pumpkin with more and more nodes; validate: "
       "mechanics against formulas");
   t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
   t.option("--nodes", nodes,
-           "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700)");
+           "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700; "
+           "simulation: 2000, 8000, 32000, 128000)");
   t.option("--cuts", options.cuts, "How many cuts go through the block");
   t.option("--model", options.models, "Closed meshes to measure as well");
   return t.run(argc, argv, [&] {
     std::map<std::string, int (*)(const bench::Options&)> known{
-        {"crack", bench::crack},      {"block", bench::block},     {"graph", bench::graph},
-        {"concave", bench::concave},  {"contact", bench::contact}, {"mechanics", bench::mechanics},
-        {"dataset", bench::dataset},  {"live", bench::live},       {"score", bench::score},
-        {"validate", bench::validate}};
+        {"crack", bench::crack},          {"block", bench::block},
+        {"graph", bench::graph},          {"concave", bench::concave},
+        {"contact", bench::contact},      {"mechanics", bench::mechanics},
+        {"dataset", bench::dataset},      {"live", bench::live},
+        {"score", bench::score},          {"validate", bench::validate},
+        {"simulation", bench::simulation}};
 #ifdef KERF_PYTHON_SCRIPT
     known["python"] = bench::python;
 #endif
     if (!known.count(what))
-      throw tool::UsageError(
-          "nothing is known about '" + what +
-          "'; there are crack, block, graph, concave, contact, dataset, live, mechanics, score, validate and, with "
-          "KERF_PYTHON, python");
+      throw tool::UsageError("nothing is known about '" + what +
+                             "'; there are crack, block, graph, concave, contact, dataset, live, mechanics, score, "
+                             "simulation, validate and, with "
+                             "KERF_PYTHON, python");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));
     for (const int f : options.frequencies)
@@ -48,10 +52,11 @@ int main(int argc, char** argv) {
     for (const auto n : options.nodes)
       if (n < 100 || n > 100000000) throw tool::UsageError("--nodes is from 100 to 100000000");
     if (nodes.empty())
-      options.nodes = what == "concave"     ? std::vector<std::size_t>{100000}
-                      : what == "contact"   ? std::vector<std::size_t>{230, 920, 3700}
-                      : what == "mechanics" ? std::vector<std::size_t>{4000, 27000}
-                                            : std::vector<std::size_t>{10000, 100000, 1000000};
+      options.nodes = what == "concave"      ? std::vector<std::size_t>{100000}
+                      : what == "contact"    ? std::vector<std::size_t>{230, 920, 3700}
+                      : what == "mechanics"  ? std::vector<std::size_t>{4000, 27000}
+                      : what == "simulation" ? std::vector<std::size_t>{2000, 8000, 32000, 128000}
+                                             : std::vector<std::size_t>{10000, 100000, 1000000};
     options.json = t.json;
     known.at(what)(options);
   });

@@ -62,6 +62,10 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
                      ",\"nodes\":" + std::to_string(o.nodes) + ",\"faces\":" + std::to_string(o.faces) + "," +
                      counts(o.stats) + ",\"crossings\":" + std::to_string(crossings) +
                      ",\"lag\":" + tool::number(o.stats.contact.tracking_error) +
+                     ",\"sheet_deviation\":" + tool::number(o.stats.sheet.deviation) +
+                     ",\"sheet_turning\":" + tool::number(o.stats.sheet.turning) +
+                     ",\"retreating\":" + std::to_string(o.stats.sheet.retreating) +
+                     ",\"crumbs\":" + std::to_string(o.stats.sheet.crumbs) +
                      ",\"energy\":" + tool::number(o.stats.energy) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.stats.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.stats.blade_force[b]);
   line += "],\"obstacles\":[";

@@ -46,8 +46,13 @@ class CrossingFreeMotion {
 
   std::vector<Vec3> run() {
     for (int round = 0; round < max_rounds && !arrived(); ++round) {
+      const bool guessed = round == 0 && m_.guess;
       const Outcome outcome = advance(round);
-      if (outcome == Outcome::free) break;
+      if (outcome == Outcome::free) {
+        // Without an obstacle, the guess alone keeps a vertex off its target.
+        if (guessed) advance_free_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
+        break;
+      }
       stats_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
       if (outcome == Outcome::fallback) break;
     }

@@ -21,7 +21,8 @@ struct BoundedMotionStats {
 /// none has passed through another.
 ///
 /// 1. The affine motion nearest to the wanted one is applied. Then all vertices go straight to
-///    their targets, or to `motion.guess` if there is one.
+///    their targets, or to `motion.guess` if there is one. From a guess, vertices with nothing in
+///    the way go on to their targets (vertex_advance.h).
 /// 2. Where this is not certified (motion_certifier.h), targets are changed by projection of
 ///    separation constraints (separation_projection.h).
 /// 3. If that fails, vertices of uncertified pairs follow a smooth field of the wanted motion, or

@@ -1,5 +1,5 @@
-// Reduces the tracking error that a fallback motion has left: each vertex alone approaches its
-// target.
+// Reduces the tracking error that a fallback motion or a first guess has left: each vertex alone
+// approaches its target.
 #pragma once
 
 #include "kerf/mesh.h"
@@ -12,5 +12,10 @@ namespace geo {
 /// that surfaces in contact keep; model units. Returns the number of separating planes.
 std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& to, double edge,
                              double gap, std::vector<Vec3>& at);
+
+/// The first half of advance_vertices(): straight motion alone, so that vertices with something in
+/// the way keep what holds them. Same arguments.
+void advance_free_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& to, double edge, double gap,
+                           std::vector<Vec3>& at);
 
 }  // namespace geo

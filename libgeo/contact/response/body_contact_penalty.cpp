@@ -8,7 +8,7 @@ namespace geo {
 
 void BodyContactPenalty::begin_substep(const std::vector<Vec3>& u, double, double) {
   for (Contact& c : contacts_) {
-    c.start = weighted_sum(c.stencil, u);
+    c.start = weighted_sum(c.stencil, u), c.slip.setZero();
     c.friction_bound = friction_ * (c.stiffness * c.depth(c.start));
   }
 }
@@ -21,13 +21,13 @@ double BodyContactPenalty::energy(std::size_t k, const Vec3& d) const {
 }
 
 Potential::Derivatives BodyContactPenalty::derivatives(std::size_t k, const Vec3& d) {
-  const Contact& c = contacts_[k];
+  Contact& c = contacts_[k];
   const double depth = c.depth(d);
   const Mat3 projector = c.normal * c.normal.transpose();
   Derivatives result{penalty_force(c.stiffness, depth, c.normal),
                      depth > 0 ? penalty_hessian(c.stiffness, projector) : Mat3(Mat3::Zero())};
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(c.tangential(d - c.start), projector, result.force, result.hessian);
+    f.add(c.tangential(d - c.start), projector, c.slip, result.force, result.hessian);
   return result;
 }
 

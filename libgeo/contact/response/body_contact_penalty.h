@@ -56,6 +56,7 @@ class BodyContactPenalty : public Potential {
     double stiffness;
     double friction_bound = 0;  // N, of the current substep
     Vec3 start = Vec3::Zero();  // relative displacement at its beginning
+    Vec3 slip = Vec3::Zero();   // at the last derivatives()
     /// Depth at relative displacement d; 0 outside.
     double depth(const Vec3& d) const { return std::max(0.0, -normal.dot(offset + d)); }
     /// Part of v across the normal.

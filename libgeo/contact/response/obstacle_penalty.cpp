@@ -84,7 +84,7 @@ void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, dou
     c.distance = field.distance;
     c.normal_force = c.stiffness * std::max(0.0, -field.distance);
     c.normal = start.linear() * field.normal;
-    c.stuck = now_ * local;
+    c.stuck = now_ * local, c.slip.setZero();
     c.activation_distance = std::max(0.0, c.distance - (c.start - c.stuck).norm()) / c.weight_norm;
   };
   if (from > 0) return for_each_displacement(u, begin_contact);
@@ -117,13 +117,13 @@ double ObstaclePenalty::energy(std::size_t k, const Vec3& d) const {
   return f.acts() ? penalty + f.energy(slip(c, y).norm()) : penalty;
 }
 
-Potential::Derivatives ObstaclePenalty::derivatives(const Contact& c, const Vec3& d) const {
+Potential::Derivatives ObstaclePenalty::derivatives(const Contact& c, const Vec3& d, Vec3& last_slip) const {
   const Vec3 y = c.rest + d;
   const RigidShape::Field field = penetration(c, y);
   Derivatives result{penalty_force(c.stiffness, -field.distance, field.normal),
                      penalty_hessian(c.stiffness, field.half_square_hessian)};
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(slip(c, y), c.normal * c.normal.transpose(), result.force, result.hessian);
+    f.add(slip(c, y), c.normal * c.normal.transpose(), last_slip, result.force, result.hessian);
   return result;
 }
 
@@ -159,7 +159,8 @@ void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& sum) co
   const double share = substep_end_ - substep_begin_;
   std::vector<Reaction> on_body(contacts_.size());
   for_each_displacement(u, [&](std::size_t k, const Vec3& d) {
-    const Vec3 f = share * derivatives(contacts_[k], d).force;
+    Vec3 unused_slip = Vec3::Zero();
+    const Vec3 f = share * derivatives(contacts_[k], d, unused_slip).force;
     on_body[k] = {f, (contacts_[k].rest + d - now_.translation()).cross(f)};
   });
   for (const Reaction& r : on_body) sum.force -= r.force, sum.torque -= r.torque;

@@ -60,7 +60,9 @@ class ObstaclePenalty : public Potential {
   /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override { return derivatives(contacts_[k], d); }
+  Derivatives derivatives(std::size_t k, const Vec3& d) override {
+    return derivatives(contacts_[k], d, contacts_[k].slip);
+  }
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
   /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
@@ -92,8 +94,9 @@ class ObstaclePenalty : public Potential {
     double normal_force = 0;         // N
     Vec3 normal = Vec3::Zero();
     Vec3 stuck = Vec3::Zero();  // where the vertex would be now had it stuck to the obstacle
+    Vec3 slip = Vec3::Zero();   // at the last derivatives()
   };
-  Derivatives derivatives(const Contact& c, const Vec3& d) const;
+  Derivatives derivatives(const Contact& c, const Vec3& d, Vec3& last_slip) const;
   Eigen::Isometry3d pose(double share) const;
   RigidShape::Field penetration(const Contact& c, const Vec3& y) const;
   static Vec3 slip(const Contact& c, const Vec3& y);

@@ -39,7 +39,7 @@ Potential::Derivatives SelfContactPenalty::derivatives(std::size_t k, const Vec3
   if (c.pressing)
     result.force = penalty_force(c.stiffness, depth, n), result.hessian = plane_penalty_hessian(c.stiffness, n);
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(moved - along * n, n * n.transpose(), result.force, result.hessian);
+    f.add(moved - along * n, n * n.transpose(), c.slip, result.force, result.hessian);
   return result;
 }
 

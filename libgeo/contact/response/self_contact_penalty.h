@@ -46,7 +46,10 @@ class SelfContactPenalty : public Potential {
     return {entries_.data() + contacts_[k].first, entries_.data() + contacts_[k].end};
   }
   /// Activation distances hold in substeps that begin where the contacts were added.
-  void begin_substep(const std::vector<Vec3>&, double from, double) override { at_start_ = from <= 0; }
+  void begin_substep(const std::vector<Vec3>&, double from, double) override {
+    at_start_ = from <= 0;
+    for (Contact& c : contacts_) c.slip.setZero();
+  }
   /// Distance of a contact over the norm of its weights.
   double activation_distance(std::size_t k) const override { return at_start_ ? contacts_[k].activation_distance : 0; }
   /// Energy of penalty and friction, J.
@@ -63,6 +66,7 @@ class SelfContactPenalty : public Potential {
     double activation_distance;  // of nodes since the step's beginning, model units
     Vec3 start;                  // relative displacement at the step's beginning
     bool pressing;               // at the last derivatives()
+    Vec3 slip = Vec3::Zero();    // the same
   };
   LaggedFriction friction(const Contact& c) const {
     return {options_.friction * c.stiffness * c.depth, options_.slip_regularisation};

@@ -55,11 +55,22 @@ struct FractureStats {
   std::size_t refused = 0;   ///< steps that could not be made
 };
 
+/// Shape of the sheets that blades cut. Largest values of the frame, or of the run.
+struct SheetStats {
+  double deviation = 0;        ///< of the surface that an edge sweeps, mapped into the material, from the sheet;
+                               ///< node spacings
+  double turning = 0;          ///< angle between neighbouring faces, degrees; without faces lower than a tenth of a
+                               ///< spacing
+  std::size_t retreating = 0;  ///< front points held, because their edge goes back in its own cut
+  std::size_t crumbs = 0;      ///< pieces with less than a tenth of a node's volume, at the frame's end
+};
+
 /// Statistics of a frame, or of a run.
 struct FrameStats {
   SplitStats split;  ///< cutting: complex, graph, sampling, binding
   FractureStats fracture;
   ContactStats contact;
+  SheetStats sheet;
   std::size_t refused = 0;      ///< crack steps that could not be made
   std::size_t fronts = 0;       ///< steps of blade fronts tried
   std::size_t newton = 0;       ///< Newton iterations
@@ -73,7 +84,8 @@ struct FrameStats {
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean
   std::vector<Vec3> obstacle_torque;  ///< likewise: about the obstacle's origin, N m
-  /// Adds counts and seconds; takes energy and forces of `o`.
+  /// Adds counts and seconds; takes energy, forces and crumbs of `o`, and the larger deviation and
+  /// turning.
   FrameStats& operator+=(const FrameStats& o);
   /// Seconds of all phases of cutting.
   double split_seconds() const;

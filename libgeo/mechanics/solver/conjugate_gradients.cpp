@@ -42,10 +42,9 @@ int conjugate_gradients(IncrementalPotential& potential, TwoLevelPreconditioner&
   const std::vector<double> initial_rz = rz;
   const auto is_done = [&](std::size_t q, int iteration) {
     if (!(rz[q] > 0)) return true;
-    const bool accurate =
-        iteration > 0 &&
-        residual[q]<0.5 * problem.accuracy, needs_another = norm[q] * (norm[q] + stopping.moved[q])> problem
-            .quadratic_tolerance();
+    const double tolerance = StepProblem::quadratic_tolerance(stopping.accuracy[q]);
+    const bool accurate = iteration > 0 && residual[q] < 0.5 * stopping.accuracy[q];
+    const bool needs_another = norm[q] * (norm[q] + stopping.moved[q]) > tolerance;
     return (accurate && (!stopping.first_direction || rz[q] <= first_direction_reduction * initial_rz[q])) ||
            (needs_another && rz[q] <= inexact_reduction * initial_rz[q]);
   };

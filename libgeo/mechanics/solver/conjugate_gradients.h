@@ -11,8 +11,9 @@ namespace geo {
 
 /// When the iteration of an island ends.
 struct CgStopping {
-  bool first_direction;              ///< of the time step: a stricter rule holds
-  const std::vector<double>& moved;  ///< per island: distance since its stiffness was computed, in spacings
+  bool first_direction;                 ///< of the time step: a stricter rule holds
+  const std::vector<double>& moved;     ///< per island: distance since its stiffness was computed, in spacings
+  const std::vector<double>& accuracy;  ///< per island, of displacements, in spacings
 };
 
 /// A Newton direction.

@@ -26,6 +26,7 @@ NewtonSolver::NewtonSolver(const StepProblem& problem, SolverCache& cache)
       rotation_(potential_),
       preconditioner_(problem, cache),
       active_(potential_.islands(), problem.solid.subdomains),
+      accuracy_(potential_.islands().count(), problem.accuracy),
       length_(potential_.islands().count(), 0),
       moved_(potential_.islands().count(), std::numeric_limits<double>::max()) {
   direction_.step.resize(problem.solid.size()), direction_.residual.resize(potential_.islands().count(), 0);
@@ -33,7 +34,7 @@ NewtonSolver::NewtonSolver(const StepProblem& problem, SolverCache& cache)
 
 bool NewtonSolver::solve(StepReport& report) {
   at_ = predict(potential_, rotation_, active_);
-  trial_ = at_.u;
+  trial_ = predicted_ = at_.u;
   for (int k = 0; k < most_iterations; ++k) {
     if (!iterate(k == 0, report)) return false;
     if (active_.none()) {
@@ -51,7 +52,9 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
   linearise_stale();
   potential_.update_nodal_blocks(active_, at_.u);
   preconditioner_.update(potential_, at_.u);
-  report.cg += conjugate_gradients(potential_, preconditioner_, active_, at_.force, {first, moved_}, direction_);
+  update_accuracy();
+  report.cg +=
+      conjugate_gradients(potential_, preconditioner_, active_, at_.force, {first, moved_, accuracy_}, direction_);
   ++report.newton;
   rotation_.conserve_momentum(active_, at_.u, direction_.step);
   active_.maximum(length_, [&](std::size_t i) { return problem_.squared_in_spacings(direction_.step[i], i); });
@@ -60,6 +63,14 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
     if (active_[p] && !std::isfinite(length_[p])) return false;
   const std::vector<RigidMotion> rotations = rotation_.rotations(at_.u, direction_.step);
   return line_search(rotations, unconverged(rotations));
+}
+
+void NewtonSolver::update_accuracy() {
+  std::vector<double> correction;
+  active_.maximum(correction, [&](std::size_t i) { return problem_.squared_in_spacings(at_.u[i] - predicted_[i], i); });
+  active_.take_square_roots(correction);
+  for (std::size_t p = 0; p < accuracy_.size(); ++p)
+    if (active_[p]) accuracy_[p] = problem_.accuracy_after(correction[p]);
 }
 
 void NewtonSolver::linearise_stale() {
@@ -88,8 +99,8 @@ std::vector<char> NewtonSolver::unconverged(const std::vector<RigidMotion>& rota
   rotation_.mark_rotating(rotations, rotates);
   for (std::size_t p = 0; p < length_.size(); ++p) {
     if (!active_[p] || rotates[p]) continue;
-    const bool is_last = length_[p] * (length_[p] + moved_[p]) < problem_.quadratic_tolerance() &&
-                         direction_.residual[p] < problem_.accuracy;
+    const bool is_last = length_[p] * (length_[p] + moved_[p]) < StepProblem::quadratic_tolerance(accuracy_[p]) &&
+                         direction_.residual[p] < accuracy_[p];
     if (is_last) searching[p] = 0, at_.response.energy[p] += energy_change[p];
   }
   return searching;

@@ -27,6 +27,7 @@ class NewtonSolver {
  private:
   bool iterate(bool first, StepReport& report);
   void linearise_stale();
+  void update_accuracy();
   std::vector<char> unconverged(const std::vector<RigidMotion>& rotations);
   bool line_search(const std::vector<RigidMotion>& rotations, std::vector<char> searching);
   void set_trial(const ActiveIslands& islands, const std::vector<RigidMotion>& rotations,
@@ -39,9 +40,10 @@ class NewtonSolver {
   ActiveIslands active_;  // islands that have not converged
   NewtonIterate at_;
   NewtonDirection direction_;
-  std::vector<Vec3> trial_;
-  std::vector<double> length_;  // per island: of the direction, largest over nodes, in spacings
-  std::vector<double> moved_;   // per island: distance since its stiffness was computed, in spacings
+  std::vector<Vec3> trial_, predicted_;  // predicted_: where Newton's method began
+  std::vector<double> accuracy_;         // per island, in spacings
+  std::vector<double> length_;           // per island: of the direction, largest over nodes, in spacings
+  std::vector<double> moved_;            // per island: distance since its stiffness was computed, in spacings
 };
 
 }  // namespace geo

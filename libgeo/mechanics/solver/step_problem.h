@@ -21,10 +21,19 @@ struct StepProblem {
   double squared_in_spacings(const Vec3& v, std::size_t node) const {
     return v.squaredNorm() / (solid.spacing[node] * solid.spacing[node]);
   }
+  /// The accuracy, in spacings, of an island whose nodes forces have moved by up to `correction`
+  /// spacings from where inertia or the prediction took them. The error of the time step grows with
+  /// the correction, so beyond one spacing the accuracy is relative to it. A hundredth of a spacing
+  /// is the most that it becomes so (docs/decisions/087).
+  double accuracy_after(double correction) const {
+    constexpr double loose_accuracy = 0.01;
+    return std::max(accuracy, std::min(accuracy * correction, loose_accuracy));
+  }
   /// Tolerance of |d| (|d| + moved), in squared spacings, an estimate of the error that a direction
   /// d leaves: the Newton error grows with |d|², and with |d| times the distance moved since the
   /// stiffness was computed. At most 0.01, as the estimate holds for small directions only.
-  double quadratic_tolerance() const { return std::min(accuracy, 0.01); }
+  /// `accuracy`: of the island.
+  static double quadratic_tolerance(double accuracy) { return std::min(accuracy, 0.01); }
 };
 
 }  // namespace geo

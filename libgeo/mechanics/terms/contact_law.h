@@ -9,7 +9,8 @@
 // with the Huber function for the smooth transition) and the slip regularisation ε, model units:
 //   E = b |s|² / (2 ε) where |s| < ε, else b (|s| − ½ ε),
 //   −∇E = −c s,  ∇²E ≼ c (I − n nᵀ),  c = b / max(|s|, ε), the secant stiffness.
-// The secant Hessian is that of E where |s| < ε and bounds it from above elsewhere.
+// The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
+// less by c ŝ ŝᵀ, with ŝ = s / |s|.
 #pragma once
 
 #include <algorithm>
@@ -51,10 +52,18 @@ struct LaggedFriction {
   }
   /// c, N/m: the force over the slip.
   double secant_stiffness(double slip) const { return bound / std::max(slip, slip_regularisation); }
-  /// Adds the force −c s and the secant Hessian c (I − n nᵀ). `slip`: s; `normal_projector`: n nᵀ.
-  void add(const Vec3& slip, const Mat3& normal_projector, Vec3& force, Mat3& hessian) const {
-    const double stiffness = secant_stiffness(slip.norm());
+  /// Adds the force −c s and a Hessian between the true one and the secant, c (I − n nᵀ − θ ŝ ŝᵀ).
+  /// θ = 1 − ½ |s − s'| / |s|, not less than 0, with s' the slip of Newton's last iterate: the true
+  /// curvature where the slip has settled, the secant where it may turn back (docs/decisions/087).
+  /// `slip`: s; `normal_projector`: n nᵀ; `last_slip`: s', zero in the first iterate; becomes s.
+  void add(const Vec3& slip, const Mat3& normal_projector, Vec3& last_slip, Vec3& force, Mat3& hessian) const {
+    const double length = slip.norm(), stiffness = secant_stiffness(length);
     force -= stiffness * slip, hessian += stiffness * (Mat3::Identity() - normal_projector);
+    if (length > slip_regularisation && !last_slip.isZero(0)) {
+      const double settled = std::max(0.0, 1 - 0.5 * (slip - last_slip).norm() / length);
+      hessian -= settled * stiffness / (length * length) * slip * slip.transpose();
+    }
+    last_slip = slip;
   }
 };
 

@@ -57,3 +57,20 @@ TEST_CASE("vertices advance to free targets, ignore negligible errors, and stop 
   }
   REQUIRE(planes > 0);
 }
+
+TEST_CASE("free vertices advance to their targets, and the others keep their places") {
+  const double edge = 1, gap = 0.01;
+  TwoSheets sheets(0.5);
+  const std::vector<Vec3> start = sheets.at;
+  std::vector<Vec3> to = start;
+  const std::size_t half = to.size() / 2;
+  for (std::size_t v = 0; v < half; ++v)
+    to[v].z() += v == 0 ? 0.7 : -0.3;  // one through the other sheet, the rest away
+  advance_free_vertices(sheets.triangles, to, edge, gap, sheets.at);
+  CHECK(sheets.crossings() == 0);
+  std::size_t arrived = 0;
+  for (std::size_t v = 0; v < half; ++v) arrived += sheets.at[v] == to[v];
+  CHECK(sheets.at[0] != to[0]);
+  CHECK(arrived > half - 6);  // all but that vertex and those of its triangles
+  for (std::size_t v = half; v < to.size(); ++v) CHECK(sheets.at[v] == start[v]);
+}

@@ -41,7 +41,9 @@ TEST_CASE(
     const auto energy = [&](const Vec3& at) { return f.energy(tangential(at).norm()); };
     Vec3 force = Vec3::Zero();
     Mat3 hessian = Mat3::Zero();
-    f.add(s, n * n.transpose(), force, hessian);
+    Vec3 last = Vec3::Zero();
+    f.add(s, n * n.transpose(), last, force, hessian);
+    CHECK(last == s);
     CHECK(force.norm() <= f.bound * (1 + 1e-14));
     if (s.norm() > f.slip_regularisation) CHECK(force.norm() == Approx(f.bound).epsilon(1e-14));
     CHECK(force.dot(s) <= 0);  // against the slip
@@ -61,6 +63,25 @@ TEST_CASE(
   CHECK(f.energy(0.25) == Approx(f.energy(std::nextafter(0.25, 0.0))).epsilon(1e-14));
   CHECK(f.energy(0.25) == 0.25);
   CHECK_FALSE(LaggedFriction{0, 0.25}.acts());
+}
+
+TEST_CASE("friction's Hessian is the true one where a slip has settled, and the secant where it turns back") {
+  const LaggedFriction f{2, 0.25};
+  const Vec3 n = Vec3::UnitZ(), s(1, 0, 0), across = Vec3::UnitY();
+  const auto hessian_after = [&](Vec3 last) {
+    Vec3 force = Vec3::Zero();
+    Mat3 hessian = Mat3::Zero();
+    f.add(s, n * n.transpose(), last, force, hessian);
+    CHECK(force == Vec3(-2 * s));
+    CHECK(across.dot(hessian * across) == Approx(2));  // b / |s|, which is the true curvature across the slip
+    CHECK((hessian * n).norm() < 1e-15);
+    return s.dot(hessian * s);
+  };
+  CHECK(hessian_after(Vec3::Zero()) == Approx(2));  // the first iterate: the secant
+  CHECK(hessian_after(s) == Approx(0).margin(1e-15));
+  CHECK(hessian_after(0.5 * s) == Approx(0.5));
+  CHECK(hessian_after(-s) == Approx(2));
+  CHECK(hessian_after(5 * s) == Approx(2));
 }
 
 TEST_CASE("friction of an explicit step stops the slip or gives the bound, and impulses act as on the effective mass") {

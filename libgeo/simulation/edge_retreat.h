@@ -1,0 +1,24 @@
+// Blades that go back in their own cut: the material moves after them, or they are pulled out.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kerf/complex.h"
+#include "kerf/simulation.h"
+
+namespace geo {
+
+/// The distance of a point from the nearest living face of a crack; infinity where none is within
+/// `reach`. Lengths in model units.
+double distance_from_crack(const Complex& surface, std::int32_t crack, const Vec3& point, double reach);
+
+/// Holds the points of a front that would go back along the sheet behind it: where `to` is nearer
+/// to the sheet than half its distance from the front, and nearer than a quarter of the spacing.
+/// They keep their places in the front, since no blade makes a cut undone, and a sheet that folds
+/// back on itself cuts off crumbs. Points in air go with the nearest point in the material.
+/// `spacing`: of the nodes at each point, model units. Returns the number of points held.
+std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
+                            std::vector<Vec3>& to);
+
+}  // namespace geo

@@ -67,6 +67,13 @@ struct Simulation::Impl {
   struct TimeStep {
     double begin, end, dt;  // s
   };
+  // A front and its next position.
+  struct Advance {
+    EdgeFront edge;               // with a point for each of `to`
+    std::vector<Vec3> to;         // material positions
+    std::vector<double> spacing;  // of the nodes there, model units
+    double deviation = 0;         // see sheet_deviation()
+  };
 
   Impl(const Scene& scene_in, Body body_in, RunState state_in);
   void restore(Body new_body, RunState new_state);
@@ -78,6 +85,8 @@ struct Simulation::Impl {
   void cut(const std::vector<Vec3>& before, const TimeStep& step, FrameStats& stats);
   std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction);
   void cut_to(const MovedBody& moved, std::size_t blade, int k, int cuts, FrameStats& stats);
+  Advance advance_of(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half, const Blade& blade,
+                     FrameStats& stats) const;
   std::optional<std::vector<FaceId>> split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   std::int32_t unused_crack() const;
@@ -249,14 +258,12 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
   std::optional<MapAt> half;
   if (!runs.empty()) half.emplace(moved, blade, (k - 0.5) / cuts);
   stats.front_seconds += watch.lap();
+  // The map belongs to the body before the first split: all runs ask it before any of them cuts.
+  std::vector<Advance> advances;
+  for (std::size_t r = 0; r < runs.size(); ++r) advances.push_back(advance_of(fronts[r], runs[r], *half, blade, stats));
+  stats.front_seconds += watch.lap();
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    std::vector<Vec3> to;
-    EdgeFront edge = refined(fronts[r], runs[r], to);
-    std::vector<double> spacing;
-    for (const double at : edge.at) spacing.push_back(nearest(runs[r], at).spacing);
-    stats.sheet.retreating += hold_retreating(body.surface, edge.front, spacing, to);
-    const double deviation = sheet_deviation(body, *half, blade, edge, to);
-    stats.front_seconds += watch.lap();
+    auto& [edge, to, spacing, deviation] = advances[r];
     ++stats.fronts;
     const auto faces = split_step(edge.front, to, stats);
     watch.lap();
@@ -268,6 +275,17 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
     stats.sheet.turning = std::max(stats.sheet.turning, sheet_turning(body.surface, *faces, lowest));
     stats.front_seconds += watch.lap();
   }
+}
+
+// The next position of a front. `half`: the map at half the time of the cut.
+Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, std::span<const EdgePoint> run,
+                                                       const MapAt& half, const Blade& blade, FrameStats& stats) const {
+  Advance a;
+  a.edge = refined(front, run, a.to);
+  for (const double at : a.edge.at) a.spacing.push_back(nearest(run, at).spacing);
+  stats.sheet.retreating += hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
+  a.deviation = sheet_deviation(body, half, blade, a.edge, a.to);
+  return a;
 }
 
 // A crack number that neither the complex nor a front uses.

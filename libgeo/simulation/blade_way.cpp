@@ -73,13 +73,16 @@ MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction)
       gradient_(lazy_gradients(moved.solid.discretisation(), displacement_)),
       map_(moved.body, displacement_, gradient_, box_about(blade, pose_)) {}
 
-int number_of_cuts(const MovedBody& moved, const Blade& blade) {
+int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts) {
   const MapAt before(moved, blade, 0), after(moved, blade, 1);
   std::vector<double> ways(blade.points.size(), 0);
   parallel_for(ways.size(), 4, [&](std::size_t begin, std::size_t end) {
+    InverseDeformation::VertexCache before_memory, after_memory;
     for (std::size_t i = begin; i < end; ++i) {
+      const std::optional<Vec3> place = place_on(fronts, double(i));
       const Vec3 from = before.pose() * blade.points[i], to = after.pose() * blade.points[i];
-      const auto a = before.map().to_material(from), b = after.map().to_material(to);
+      const auto a = before.map().to_material(from, before_memory, place ? &*place : nullptr);
+      const auto b = after.map().to_material(to, after_memory, &a.position);
       if (!a.in_support && !b.in_support) continue;
       ways[i] = a.in_support && b.in_support ? (b.position - a.position).norm() : (to - from).norm();
     }
@@ -103,7 +106,8 @@ double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, 
       const double at = 0.5 * (from.at[k] + from.at[k + 1]);
       const std::size_t i = std::min(static_cast<std::size_t>(at), n - 1);
       const Vec3 &a = blade.points[i], &b = blade.points[(i + 1) % n];
-      const auto place = half.map().to_material(half.pose() * Vec3(a + (at - double(i)) * (b - a)), memory);
+      const Vec3 before = 0.5 * (points[k].position + points[k + 1].position);
+      const auto place = half.map().to_material(half.pose() * Vec3(a + (at - double(i)) * (b - a)), memory, &before);
       if (!place.in_support) continue;
       // A point that was inserted has no segment of its own: beside it the edge passes over the
       // next strip.

@@ -39,6 +39,18 @@ const EdgePoint& nearest(std::span<const EdgePoint> points, double at) {
   });
 }
 
+std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at) {
+  for (const EdgeFront& edge : fronts) {
+    if (edge.at.empty() || at < edge.at.front() || at > edge.at.back()) continue;
+    const auto k = static_cast<std::size_t>(std::lower_bound(edge.at.begin(), edge.at.end(), at) - edge.at.begin());
+    const Vec3& q = edge.front.points[k].position;
+    if (edge.at[k] == at) return q;
+    const Vec3& p = edge.front.points[k - 1].position;
+    return Vec3(p + (at - edge.at[k - 1]) / (edge.at[k] - edge.at[k - 1]) * (q - p));
+  }
+  return {};
+}
+
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to) {
   EdgeFront result = edge;
   for (const EdgePoint& p : next) {

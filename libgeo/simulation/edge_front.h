@@ -2,6 +2,7 @@
 // (§ 5.1).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,10 @@ EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, cons
 
 /// The point nearest to an edge parameter. `points`: not empty.
 const EdgePoint& nearest(std::span<const EdgePoint> points, double at);
+
+/// The place of an edge parameter on the front that has it, between the front's points; nothing
+/// where none of the fronts does.
+std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at);
 
 /// Upsampling: the front with a copy of the nearest point for each parameter of `next` that it
 /// lacks. `to` receives the next position of every point; points whose parameter `next` lacks move

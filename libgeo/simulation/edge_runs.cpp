@@ -31,8 +31,9 @@ struct Sample {
 // Samples a part of the edge. Not shared between threads: it caches deformed surface vertices.
 class EdgeSampler {
  public:
-  EdgeSampler(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose)
-      : map_(map), body_(body), blade_(blade), pose_(pose) {}
+  EdgeSampler(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
+              std::span<const EdgeFront> fronts)
+      : map_(map), body_(body), blade_(blade), pose_(pose), fronts_(fronts) {}
 
   Sample at(double parameter) {
     const std::size_t n = blade_.points.size(), i = std::min(static_cast<std::size_t>(parameter), n - 1);
@@ -40,7 +41,8 @@ class EdgeSampler {
     const Vec3 local =
         t > 0 ? Vec3(blade_.points[i] + t * (blade_.points[(i + 1) % n] - blade_.points[i])) : blade_.points[i];
     Sample s{parameter, pose_ * local, {}, false, 0, std::numeric_limits<double>::infinity()};
-    const InverseDeformation::Location place = map_.to_material(s.world, memory_);
+    const std::optional<Vec3> before = place_on(fronts_, parameter);
+    const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
     s.material = place.position, s.within = place.in_support;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
@@ -73,14 +75,16 @@ class EdgeSampler {
   const Body& body_;
   const Blade& blade_;
   const Pose& pose_;
+  std::span<const EdgeFront> fronts_;
   InverseDeformation::VertexCache memory_;
 };
 
 // All samples of an edge. Threads trace parts of it: a sample does not depend on the others.
-std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose) {
+std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
+                                std::span<const EdgeFront> fronts) {
   std::vector<std::vector<Sample>> segments(blade.points.size() - 1);  // each with its last point
   parallel_for(segments.size(), 2, [&](std::size_t begin, std::size_t end) {
-    EdgeSampler sampler(map, body, blade, pose);
+    EdgeSampler sampler(map, body, blade, pose, fronts);
     Sample last = sampler.at(double(begin));
     if (begin == 0) segments[0].push_back(last);
     for (std::size_t i = begin; i < end; ++i) {
@@ -133,8 +137,8 @@ bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge, const C
 }  // namespace
 
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
-                                              const Pose& pose) {
-  const std::vector<Sample> samples = sample_edge(map, body, blade, pose);
+                                              const Pose& pose, std::span<const EdgeFront> fronts) {
+  const std::vector<Sample> samples = sample_edge(map, body, blade, pose, fronts);
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -156,9 +160,9 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
   return runs;
 }
 
-std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade,
-                                  const Pose& pose) {
-  EdgeSampler sampler(map, body, blade, pose);
+std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
+                                  std::span<const EdgeFront> fronts) {
+  EdgeSampler sampler(map, body, blade, pose, fronts);
   std::vector<EdgePoint> run;
   for (std::size_t i = 0; i < blade.points.size(); ++i) run.push_back(sampler.at(double(i)).point());
   return run;

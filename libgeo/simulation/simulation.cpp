@@ -220,7 +220,7 @@ void Simulation::Impl::cut(const std::vector<Vec3>& before, const TimeStep& step
     }
     Stopwatch watch;
     if (state.fronts[b].empty()) map_edge(moved, b, 0);
-    const int cuts = number_of_cuts(moved, blade);
+    const int cuts = number_of_cuts(moved, blade, state.fronts[b]);
     stats.front_seconds += watch.lap();
     for (int k = 1; k <= cuts; ++k) cut_to(moved, b, k, cuts, stats);
   }
@@ -238,10 +238,10 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
   const MapAt at(moved, blade, fraction);
   std::vector<std::vector<EdgePoint>> runs;
   if (blade.closed) {
-    runs.push_back(closed_run(at.map(), body, blade, at.pose()));
+    runs.push_back(closed_run(at.map(), body, blade, at.pose(), fronts));
     if (fronts.empty()) fronts.resize(1);
   } else {
-    runs = edge_runs(at.map(), body, blade, at.pose());
+    runs = edge_runs(at.map(), body, blade, at.pose(), fronts);
     fronts = fronts_of(runs, fronts, body.surface);
   }
   for (std::size_t r = 0; r < runs.size(); ++r)

@@ -17,6 +17,9 @@ namespace {
 // Material crushed to less than a twentieth of its volume, or inverted, is treated as undeformed.
 Mat3 safe_inverse(const Mat3& f) { return f.determinant() > 0.05 ? Mat3(f.inverse()) : Mat3::Identity(); }
 
+// A place in the material continues another within this distance, in spacings.
+constexpr double continuing_distance = 4;
+
 // Smoothstep t² (3 − 2 t), from 1 at a to 0 at b.
 double fade(double x, double a, double b) {
   const double t = std::clamp((b - x) / (b - a), 0.0, 1.0);
@@ -127,10 +130,27 @@ Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, doub
   return total > 0 ? Vec3(std::pow(1 - nearest / range, 2) * sum / total) : Vec3(Vec3::Zero());
 }
 
-InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, VertexCache& cache) const {
+// The node nearest in the world; among those near `before` in the material, if one of them holds y.
+NodeId InverseDeformation::nearest_node(const Vec3& y, const Vec3* before) const {
   const auto nearest = grid_.nearest(world_, y, 1, ~0u, [](std::uint32_t) { return true; });
-  if (nearest.empty()) return {y, NodeId(), false};
-  const std::size_t a = nearest[0];
+  if (nearest.empty()) return {};
+  const auto& nodes = body_.nodes;
+  const auto continues = [&](std::uint32_t i) {
+    return (nodes.position[i] - *before).norm() < continuing_distance * nodes.spacing[i];
+  };
+  if (!before || continues(nearest[0])) return NodeId(nearest[0]);
+  std::vector<std::uint32_t> holding;
+  grid_.within(world_, y, largest_support_, holding);
+  std::erase_if(holding, [&](auto i) { return !((y - world_[i]).norm() < nodes.radius[i]) || !continues(i); });
+  const auto less = [&](auto i, auto j) { return (y - world_[i]).squaredNorm() < (y - world_[j]).squaredNorm(); };
+  return NodeId(holding.empty() ? nearest[0] : *std::min_element(holding.begin(), holding.end(), less));
+}
+
+InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, VertexCache& cache,
+                                                             const Vec3* before) const {
+  const NodeId nearest = nearest_node(y, before);
+  if (!nearest.valid()) return {y, NodeId(), false};
+  const std::size_t a = nearest.index();
   const auto& nodes = body_.nodes;
   if (!((y - world_[a]).norm() < nodes.radius[a])) return {y - u_[a], NodeId(a), false};
   // Each node's own inverse affine map counts as far as it agrees with the nearest node's. It

@@ -33,8 +33,10 @@ class InverseDeformation {
   };
   /// Deformed positions of surface vertices that queries near each other share.
   using VertexCache = std::unordered_map<std::uint32_t, Vec3>;
-  /// The material location of a world position. Results do not depend on the cache.
-  Location to_material(const Vec3& world, VertexCache& cache) const;
+  /// The material location of a world position. Results do not depend on the cache. Where the map
+  /// is not one to one, `before` chooses: a place in the material, or null. If the support of a
+  /// node within four spacings of it holds the position, such nodes alone are the nearest.
+  Location to_material(const Vec3& world, VertexCache& cache, const Vec3* before = nullptr) const;
   /// The same without a cache.
   Location to_material(const Vec3& world) const {
     VertexCache none;
@@ -48,6 +50,7 @@ class InverseDeformation {
     std::vector<std::uint32_t> node;
     std::vector<double> fading;  // factor of the node's weight, by its distance in the world
   };
+  NodeId nearest_node(const Vec3& y, const Vec3* before) const;
   void update(Neighborhood& near, const Vec3& x) const;
   bool is_included(std::size_t node) const { return included_.empty() || included_[node]; }
   bool is_included(FaceId f) const;

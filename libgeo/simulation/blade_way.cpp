@@ -84,7 +84,8 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
       const auto a = before.map().to_material(from, before_memory, place ? &*place : nullptr);
       const auto b = after.map().to_material(to, after_memory, &a.position);
       if (!a.in_support && !b.in_support) continue;
-      ways[i] = a.in_support && b.in_support ? (b.position - a.position).norm() : (to - from).norm();
+      ways[i] = (to - from).norm();
+      if (a.in_support && b.in_support) ways[i] = std::min(ways[i], (b.position - a.position).norm());
     }
   });
   const double farthest = *std::max_element(ways.begin(), ways.end());

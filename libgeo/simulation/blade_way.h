@@ -56,8 +56,8 @@ class MapAt {
 };
 
 /// The number of cuts in which a blade goes its way: ⌈farthest / (limit · finest)⌉, at most 64.
-/// farthest is the longest way of a point of the blade through the material, finest the smallest
-/// node spacing (§ 5.1). `fronts`: of the blade.
+/// farthest is the longest way of a point of the blade, each in the world or through the material,
+/// whichever is shorter; finest is the smallest node spacing (§ 5.1). `fronts`: of the blade.
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts);
 
 /// The largest distance of the surface that the edge has swept, mapped into the material, from the

@@ -19,6 +19,11 @@ namespace {
 // Blade::limit.
 constexpr double most_cuts = 64;
 
+// A way through the material is longer than the way past its nodes in the world where the material
+// is compressed. Where it is longer by more than this, the map jumps, and more cuts do not make it
+// smooth.
+constexpr double most_compression = 2;
+
 // The points of a blade at a pose, as a box.
 Box3 box_about(const Blade& blade, const Pose& pose) {
   Box3 box;
@@ -84,8 +89,12 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
       const auto a = before.map().to_material(from, before_memory, place ? &*place : nullptr);
       const auto b = after.map().to_material(to, after_memory, &a.position);
       if (!a.in_support && !b.in_support) continue;
-      ways[i] = (to - from).norm();
-      if (a.in_support && b.in_support) ways[i] = std::min(ways[i], (b.position - a.position).norm());
+      if (!a.in_support || !b.in_support) {
+        ways[i] = (to - from).norm();
+        continue;
+      }
+      const double past = (to - from - moved.way.of(a.nearest)).norm(), through = (b.position - a.position).norm();
+      ways[i] = through <= most_compression * past ? through : past;
     }
   });
   const double farthest = *std::max_element(ways.begin(), ways.end());

@@ -22,6 +22,8 @@ class NodeWay {
   void add_nodes(std::span<const NodeId> donors);
   /// Displacements at a fraction of the step. `after`: those at its end, of all nodes.
   std::vector<Vec3> at(const std::vector<Vec3>& after, double fraction) const;
+  /// That of one node, in the step.
+  const Vec3& of(NodeId node) const { return way_[node.index()]; }
 
  private:
   std::vector<Vec3> way_;
@@ -56,8 +58,9 @@ class MapAt {
 };
 
 /// The number of cuts in which a blade goes its way: ⌈farthest / (limit · finest)⌉, at most 64.
-/// farthest is the longest way of a point of the blade, each in the world or through the material,
-/// whichever is shorter; finest is the smallest node spacing (§ 5.1). `fronts`: of the blade.
+/// farthest is the longest way of a point of the blade through the material, or past the nodes in
+/// the world where the former is more than twice the latter; finest is the smallest node spacing
+/// (§ 5.1). `fronts`: of the blade.
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts);
 
 /// The largest distance of the surface that the edge has swept, mapped into the material, from the

@@ -14,8 +14,8 @@ namespace geo {
 /// blade's own points, samples are inserted where the map bends the edge by more than a fiftieth of
 /// a node spacing, where they are more than two spacings apart, and at the ends of a run. Points
 /// closer than a twentieth of a spacing, in the material, replace the one before. A run ends where
-/// no node is near, and where the edge continues in material that is disconnected from it. Where the
-/// map is not one to one, `fronts` of the edge choose the place: that near to theirs.
+/// no node is near, and where the edge continues in material that is disconnected from it. Where
+/// the map is not one to one, `fronts` of the edge choose the place: that near to theirs.
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose, std::span<const EdgeFront> fronts);
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Command {
   std::string model, bonds, up = "y", physics = "none", names;
-  bool obj = false, hulls = false;
+  bool obj = false, hulls = false, repair = false;
   int hull_corners = 64, hull_parts = 1, levels = 1;
   double tile = 0.25, strength = 1, density = 1000, least = 0;
 };
@@ -162,6 +162,7 @@ int main(int argc, char** argv) {
       "out/halve -o halves.glb\n  kerf-pieces out/halve/frames/frame_0020.ply -o frame20.glb");
   Command w;
   t.argument("SURFACE", w.model, "A cut surface (kerf-crack), a body (.kerf), a run's folder, or a frame in it");
+  t.flag("--repair", w.repair, "Repair a surface without cracks first, as kerf-repair does; its parts are the pieces");
   t.flag("--obj", w.obj, "In a folder: OBJ instead of PLY");
   t.option(
       "--least", w.least,
@@ -189,7 +190,7 @@ int main(int argc, char** argv) {
     const bool file = t.output_path.ends_with(".glb") || t.output_path.ends_with(".usda");
     file ? void(t.target(true)) : t.require_ending();
     if (!file) require_new_folder(t.output_path);
-    pieces::Subject subject = pieces::read_subject(w.model);
+    pieces::Subject subject = pieces::read_subject(w.model, w.repair);
     const Joined small = join_small(subject, w.least, w.model);
     const geo::Complex& complex = subject.complex;
     const geo::Pieces found = geo::find_pieces(complex);

@@ -34,17 +34,22 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
-/// As read_solid(), where `repair` is false. Else a plain surface is repaired first, as kerf-repair
-/// does without options. Throws InputError where the result is no solid.
-inline geo::SurfaceFile read_solid(const std::string& path, bool repair) {
-  if (!repair) return read_solid(path);
-  geo::SurfaceFile file = geo::read_surface(path);
-  if (file.mesh.two_sided()) return file;
+/// Repairs a plain surface, as kerf-repair does without options. Throws InputError where the result
+/// is no solid.
+inline void repair_plain(geo::TriangleMesh& mesh, const std::string& path) {
+  if (mesh.two_sided()) return;
   try {
-    file.mesh = geo::repaired_solid(std::move(file.mesh));
+    mesh = geo::repaired_solid(std::move(mesh));
   } catch (const std::runtime_error& e) {
     throw geo::InputError(path + ": cannot be repaired: " + e.what());
   }
+}
+
+/// As read_solid(), where `repair` is false. Else a plain surface is repaired first.
+inline geo::SurfaceFile read_solid(const std::string& path, bool repair) {
+  if (!repair) return read_solid(path);
+  geo::SurfaceFile file = geo::read_surface(path);
+  repair_plain(file.mesh, path);
   return file;
 }
 

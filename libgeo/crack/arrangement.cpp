@@ -333,6 +333,9 @@ void Arrangement::split() {
   children.reserve(elements.size() + 2 * divisions_.size());
   steiner_.reserve(divisions_.size());
   if (meets_itself_) merge_coinciding_points();
+  for (std::size_t i = 0, n = coplanar_pairs_.size(); i < n; ++i)
+    coplanar_pairs_.push_back({coplanar_pairs_[i].second, coplanar_pairs_[i].first});
+  std::sort(coplanar_pairs_.begin(), coplanar_pairs_.end());
   std::stable_sort(divisions_.begin(), divisions_.end(), [](const Division& x, const Division& y) {
     return x.element != y.element                   ? x.element < y.element
            : (x.b == no_point) != (y.b == no_point) ? x.b == no_point
@@ -361,9 +364,10 @@ void Arrangement::split() {
 }
 
 bool Arrangement::lies_on_other(std::uint32_t e, const Child& c) const {
-  for (const auto& [mine, other] : coplanar_pairs_) {
-    const std::uint32_t that = mine == e ? other : other == e ? mine : e;
-    if (that == e || (that < strip_size && that > e)) continue;
+  for (auto pair = std::lower_bound(coplanar_pairs_.begin(), coplanar_pairs_.end(), std::pair{e, 0u});
+       pair != coplanar_pairs_.end() && pair->first == e; ++pair) {
+    const std::uint32_t that = pair->second;
+    if (that < strip_size && that > e) continue;
     const auto& o = elements[that].corner;
     const auto [axis, turn] = projection_of(points_, o);
     bool inside = true;

@@ -121,8 +121,9 @@ class Arrangement {
   std::vector<Division> divisions_;
   std::vector<SteinerPoint> steiner_;  // by element, see steiner_begin_
   std::vector<std::uint32_t> steiner_begin_;
-  std::vector<std::pair<PointIndex, PointIndex>> constraints_;           // of the element at hand
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> coplanar_pairs_;  // overlapping elements, strip first
+  std::vector<std::pair<PointIndex, PointIndex>> constraints_;  // of the element at hand
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+      coplanar_pairs_;  // overlapping elements; after split() in both orders, sorted
   bool meets_itself_ = false;
 };
 

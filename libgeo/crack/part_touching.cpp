@@ -7,8 +7,9 @@
 #include <map>
 
 #include "base/random.h"
+#include "geometry/box_pairs.h"
+#include "geometry/triangle_index.h"
 #include "kerf/check.h"
-#include "kerf/complex.h"
 #include "kerf/error.h"
 
 namespace geo::crack {
@@ -127,29 +128,95 @@ std::vector<Motion> motions_of(const TriangleMesh& mesh, std::vector<std::uint32
   return motions;
 }
 
+// The pairs of triangles that cross, kept up to date while vertices move.
+class CrossingPairs {
+ public:
+  explicit CrossingPairs(const TriangleMesh& mesh) : mesh_(mesh) {
+    std::vector<Box3> boxes;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) boxes.push_back(box(t));
+    pairs_ = meeting_pairs(boxes, [&](AabbTree::Pairs& some) {
+      std::erase_if(some, [&](const auto& pair) { return !cross(pair.first, pair.second); });
+    });
+    if (pairs_.empty()) return;
+    index_.reserve(boxes.size());
+    for (std::uint32_t t = 0; t < boxes.size(); ++t) index_.insert(t, boxes[t]);
+  }
+  // `moved`: all triangles with a vertex that has moved, ascending.
+  void update(const std::vector<std::uint32_t>& moved) {
+    const auto in = [&](std::uint32_t t) { return std::binary_search(moved.begin(), moved.end(), t); };
+    std::erase_if(pairs_, [&](const auto& pair) { return in(pair.first) || in(pair.second); });
+    for (const auto t : moved) index_.erase(t), index_.insert(t, box(t));
+    for (const auto t : moved) {
+      near_.clear();
+      index_.find(index_.box(t), near_);
+      for (const auto other : near_)
+        if (other != t && !(other < t && in(other)) && cross(t, other)) pairs_.push_back({t, other});
+    }
+  }
+  const AabbTree::Pairs& pairs() const { return pairs_; }
+
+ private:
+  std::array<Vec3, 3> corners(std::uint32_t t) const {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+  }
+  Box3 box(std::uint32_t t) const {
+    const auto p = corners(t);
+    return box_of(p[0], p[1], p[2]);
+  }
+  bool cross(std::uint32_t t, std::uint32_t u) const {
+    return faces_cross(mesh_.triangles[t], corners(t), mesh_.triangles[u], corners(u));
+  }
+
+  const TriangleMesh& mesh_;
+  AabbTree::Pairs pairs_;
+  TriangleIndex index_;
+  std::vector<std::uint32_t> near_;
+};
+
+void sort_unique(std::vector<std::uint32_t>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+// The motions of the corners of triangles that cross. Throws where a pair has none.
+std::vector<std::uint32_t> motions_in(const TriangleMesh& mesh, const AabbTree::Pairs& crossing,
+                                      const std::vector<std::uint32_t>& motion_of) {
+  std::vector<std::uint32_t> motions;
+  for (const auto& [t, u] : crossing) {
+    const std::size_t before = motions.size();
+    for (const auto triangle : {t, u})
+      for (const auto v : mesh.triangles[triangle])
+        if (motion_of[v] != ~0u) motions.push_back(motion_of[v]);
+    if (motions.size() == before) throw GeometryError("parts that touch cannot be moved apart");
+  }
+  sort_unique(motions);
+  return motions;
+}
+
 void move_apart(TriangleMesh& mesh) {
   std::vector<std::uint32_t> motion_of;
   std::vector<Motion> motions = motions_of(mesh, motion_of);
+  if (motions.empty()) return;
+  std::vector<std::vector<std::uint32_t>> triangles_at(motions.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const auto v : mesh.triangles[t])
+      if (motion_of[v] != ~0u) triangles_at[motion_of[v]].push_back(t);
+  const auto move = [&](const Motion& m) { mesh.vertices[m.vertex] = m.from + m.length * m.inwards; };
+  for (const Motion& m : motions) move(m);
   Random random(mesh.triangles.size());
-  TriangleMesh plain;
-  plain.triangles = mesh.triangles;
-  for (int rounds = 0; !motions.empty(); ++rounds) {
-    for (const Motion& m : motions) mesh.vertices[m.vertex] = m.from + m.length * m.inwards;
-    plain.vertices = mesh.vertices;
-    const auto crossing = self_intersections(Complex::from_skin(plain));
-    if (crossing.empty()) return;
-    std::vector<std::uint32_t> again;
-    for (const auto& [f, g] : crossing)
-      for (const FaceId face : {f, g})
-        for (const auto v : mesh.triangles[face.index()])
-          if (motion_of[v] != ~0u) again.push_back(motion_of[v]);
-    std::sort(again.begin(), again.end());
-    again.erase(std::unique(again.begin(), again.end()), again.end());
-    if (again.empty() || rounds == most_rounds) throw GeometryError("parts that touch cannot be moved apart");
-    for (const auto m : again) {
+  CrossingPairs crossing(mesh);
+  for (int rounds = 0; !crossing.pairs().empty(); ++rounds) {
+    if (rounds == most_rounds) throw GeometryError("parts that touch cannot be moved apart");
+    std::vector<std::uint32_t> moved;
+    for (const auto m : motions_in(mesh, crossing.pairs(), motion_of)) {
       motions[m].length *= 0.5;
       motions[m].inwards = (motions[m].inwards + random.uniform() * random.direction()).stableNormalized();
+      move(motions[m]);
+      moved.insert(moved.end(), triangles_at[m].begin(), triangles_at[m].end());
     }
+    sort_unique(moved);
+    crossing.update(moved);
   }
 }
 

@@ -18,9 +18,12 @@ struct Dyadic {
   long e = 0;
   Dyadic() = default;
   explicit Dyadic(double x) {
+    if (x == 0) return;
     int power = 0;
-    m = std::ldexp(std::frexp(x, &power), 53);
-    e = power - 53;
+    const auto whole = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &power), 53));
+    const int zeros = std::countr_zero(static_cast<std::uint64_t>(whole));  // many in numbers that were floats
+    m = static_cast<double>(whole >> zeros);
+    e = power - 53 + zeros;
   }
 };
 Dyadic operator*(const Dyadic& a, const Dyadic& b) {
@@ -54,24 +57,48 @@ Dyadic det(const ExactVec& a, const ExactVec& b, const ExactVec& c) {
   return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-mpq_class quotient(const Dyadic& a, const Dyadic& b) {
+// A quotient as a double.
+struct Rounded {
+  double value;  // the nearest one; of two equally near the one closer to zero
+  bool exact;
+};
+
+// By fractions, where the quotient is too small or too large for the bits of a normal double.
+Rounded round_fraction(const Dyadic& a, const Dyadic& b) {
   mpz_class up = a.m, down = b.m;
   if (a.e > b.e)
     up <<= static_cast<mp_bitcnt_t>(a.e - b.e);
   else
     down <<= static_cast<mp_bitcnt_t>(b.e - a.e);
-  mpq_class q(up, down);
-  q.canonicalize();
-  return q;
-}
-
-// The nearest double; of two equally near the one closer to zero.
-double nearest(const mpq_class& x) {
+  mpq_class x(up, down);
+  x.canonicalize();
   const double inner = x.get_d();  // rounded towards zero
   const mpq_class rest = abs(x - mpq_class(inner));
-  if (rest == 0) return inner;
+  if (rest == 0) return {inner, true};
   const double outer = std::nextafter(inner, sgn(x) > 0 ? HUGE_VAL : -HUGE_VAL);
-  return abs(mpq_class(outer) - x) < rest ? outer : inner;
+  return {abs(mpq_class(outer) - x) < rest ? outer : inner, false};
+}
+
+// a / b for b > 0. One division of integers gives 62 or 63 bits and whether there are more: far
+// cheaper than a fraction in lowest terms.
+Rounded round_quotient(const Dyadic& a, const Dyadic& b) {
+  if (sign(a) == 0) return {0.0, true};
+  const auto bits = [](const mpz_class& m) { return static_cast<long>(mpz_sizeinbase(m.get_mpz_t(), 2)); };
+  const long shift = 62 - bits(a.m) + bits(b.m), exponent = a.e - b.e - shift;
+  if (exponent < -1000 || exponent > 900) return round_fraction(a, b);
+  mpz_class up = abs(a.m), down = b.m, whole, rest;
+  if (shift > 0)
+    up <<= static_cast<mp_bitcnt_t>(shift);
+  else
+    down <<= static_cast<mp_bitcnt_t>(-shift);
+  mpz_tdiv_qr(whole.get_mpz_t(), rest.get_mpz_t(), up.get_mpz_t(), down.get_mpz_t());
+  static_assert(sizeof(unsigned long) == 8);
+  const std::uint64_t q = whole.get_ui();
+  const int dropped = std::bit_width(q) - 53;
+  const std::uint64_t low = q & ((std::uint64_t(1) << dropped) - 1), half = std::uint64_t(1) << (dropped - 1);
+  const bool more = sgn(rest) != 0, outwards = low > half || (low == half && more);
+  const double value = std::ldexp(static_cast<double>((q >> dropped) + outwards), static_cast<int>(exponent) + dropped);
+  return {sgn(a.m) > 0 ? value : -value, low == 0 && !more};
 }
 
 // Filters hold where products neither underflow nor overflow; other values are computed exactly.
@@ -170,9 +197,9 @@ void Points::round(PointIndex l) {
   const Exact& e = exact(l);
   double error = 0;
   for (int i = 0; i < 3; ++i) {
-    const mpq_class x = quotient(e.p[i], e.w);
-    near_[l][i] = nearest(x) + 0.0;
-    if (mpq_class(near_[l][i]) != x) error = std::max(error, std::abs(near_[l][i]) * 0x1p-52 + 0x1p-1074);
+    const auto [value, whole] = round_quotient(e.p[i], e.w);
+    near_[l][i] = value + 0.0;
+    if (!whole) error = std::max(error, std::abs(value) * 0x1p-52 + 0x1p-1074);
   }
   error_[l] = error;
 }
@@ -254,7 +281,7 @@ bool Points::coincide(PointIndex a, PointIndex b) const {
 std::uint64_t Points::hash(PointIndex l) const {
   Vec3 p = near_[l];
   if (error_[l] > 0)
-    for (int i = 0; i < 3; ++i) p[i] = nearest(quotient(exact(l).p[i], exact(l).w));
+    for (int i = 0; i < 3; ++i) p[i] = round_quotient(exact(l).p[i], exact(l).w).value;
   return hash_of(p);
 }
 

@@ -3,9 +3,9 @@
 // Faces that do not separate solid from empty cells are removed from the crack complex.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "crack/part_touching.h"
+#include "crack/winding_number.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
@@ -52,21 +52,10 @@ Vec3 point_inside(const TriangleMesh& cell) {
   return from + nearest / 2 * along;
 }
 
-// Σ of the solid angles of all triangles at a point, over 4π (van Oosterom and Strackee 1983).
-double winding_number(const std::vector<std::array<Vec3, 3>>& triangles, const Vec3& at) {
-  double sum = 0;
-  for (const auto& t : triangles) {
-    const Vec3 a = t[0] - at, b = t[1] - at, c = t[2] - at;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    sum += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return sum / (2 * std::numbers::pi);
-}
-
 // Which cells are solid: those where the winding number exceeds a half, but for the outermost one.
 std::vector<std::uint8_t> solid_cells(const Complex& complex, const Pieces& cells, const TriangleMesh& mesh) {
   const auto sides = sides_by_piece(cells);
-  const auto triangles = corners_of(mesh);
+  const crack::WindingNumber winding(corners_of(mesh));
   std::vector<std::uint8_t> solid(cells.count);
   std::vector<std::uint32_t> index(complex.surface_vertex_count(), ~0u);
   std::vector<SurfaceVertexId> vertex_of;
@@ -76,9 +65,21 @@ std::vector<std::uint8_t> solid_cells(const Complex& complex, const Pieces& cell
     for (std::size_t i = begin; i < end; ++i)
       solid[i] =
           std::none_of(sides[i].begin(), sides[i].end(), [&](Side s) { return complex.face(s.face).crack == 0; }) &&
-          winding_number(triangles, points[i]) > 0.5;
+          winding.exceeds_half(points[i]);
   });
   return solid;
+}
+
+// Refuses a mesh most of whose triangles are shorter than `least`: some vertices are far from all
+// others.
+void require_resolution(const TriangleMesh& mesh, double least) {
+  std::size_t shorter = 0;
+  for (const auto& [a, b, c] : corners_of(mesh))
+    shorter += std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()}) < least;
+  if (2 * shorter > mesh.triangles.size())
+    throw GeometryError(
+        "most triangles are too small for double precision beside the whole surface, as some vertices are far from all "
+        "others");
 }
 
 // Indices of the triangles of `mesh` that contain the triangles of `part`; parts of a triangle lie
@@ -119,6 +120,7 @@ crack::PairedSurface boundary_of(const Complex& complex, const std::vector<std::
 TriangleMesh self_union(const TriangleMesh& mesh, const CrackOptions& options, SelfUnionStats* stats) {
   if (mesh.triangles.empty()) throw InputError("the surface has no triangles");
   Complex complex = Complex::from_skin(box_around(bounding_box(mesh)));
+  require_resolution(mesh, options.clearance * complex.extent().diagonal());
   TriangleMesh bare;
   bare.vertices = mesh.vertices, bare.triangles = mesh.triangles;
   insert_sheet(complex, bare, 1, options);

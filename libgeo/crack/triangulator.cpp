@@ -198,17 +198,18 @@ void Triangulator::insert(int p) {
   throw GeometryError("a point of a face cannot be located");
 }
 
-// Marks edge ab, in either direction, as a constraint. False when there is no such edge.
+// Marks edge ab, in either direction, as part of the constraint at hand. False when there is no such edge.
 bool Triangulator::mark_constraint(int a, int b) {
   const auto [t, k] = find_edge(a, b);
   if (t < 0) return find_edge(b, a).first >= 0 && mark_constraint(b, a);  // an edge of the face, seen from inside
   Tri& x = tri_[static_cast<std::size_t>(t)];
-  if (x.e[k] == edge_diagonal) x.e[k] = edge_constraint;
+  const int line = first_line + static_cast<int>(lines_.size()) - 1;
+  if (x.e[k] == edge_diagonal) x.e[k] = line;
   if (const int u = x.n[k]; u >= 0)
     for (int j = 0; j < 3; ++j)
       if (tri_[static_cast<std::size_t>(u)].n[j] == t && tri_[static_cast<std::size_t>(u)].v[j] == b &&
           tri_[static_cast<std::size_t>(u)].e[j] == edge_diagonal)
-        tri_[static_cast<std::size_t>(u)].e[j] = edge_constraint;
+        tri_[static_cast<std::size_t>(u)].e[j] = line;
   return true;
 }
 
@@ -228,7 +229,7 @@ Triangulator::Departure Triangulator::leave(int a, int b) const {
   around(a, [&](int t, int k) {
     const Tri& x = tri_[static_cast<std::size_t>(t)];
     const int p = x.v[(k + 1) % 3], q = x.v[(k + 2) % 3];
-    const int sp = turn(a, b, p), sq = turn(a, b, q);
+    const int sp = side(p), sq = side(q);
     if (sp == 0 && is_ahead(a, b, p)) found.ahead = p;
     if (sq == 0 && is_ahead(a, b, q)) found.ahead = q;
     if (sp < 0 && sq > 0) found.through = t, found.edge = (k + 1) % 3;
@@ -237,15 +238,15 @@ Triangulator::Departure Triangulator::leave(int a, int b) const {
   return found;
 }
 
-// Divides segment ab and the constraint in its way, edge `edge` of t, where they cross. Returns the
-// new vertex.
-int Triangulator::split_at_crossing(int a, int b, int t, int edge, const Canonicalize& canonicalize) {
-  const Tri& x = tri_[static_cast<std::size_t>(t)];
-  if (!canonicalize || x.n[edge] < 0) throw GeometryError("constraints of a face cross");
-  const PointIndex crossing = points_.add_crossing_in_plane(
-      local_[static_cast<std::size_t>(a)], local_[static_cast<std::size_t>(b)],
-      local_[static_cast<std::size_t>(x.v[edge])], local_[static_cast<std::size_t>(x.v[(edge + 1) % 3])], axis_);
-  const PointIndex canonical = canonicalize(crossing);
+// Divides the constraint at hand and the one in its way, edge `edge` of t, where they cross. Returns
+// the new vertex.
+int Triangulator::split_at_crossing(int t, int edge, const Canonicalize& canonicalize) {
+  const int line = tri_[static_cast<std::size_t>(t)].e[edge] - first_line;
+  if (!canonicalize || line < 0) throw GeometryError("constraints of a face cross");
+  const Line &mine = lines_.back(), &other = lines_[static_cast<std::size_t>(line)];
+  const auto point = [&](int v) { return local_[static_cast<std::size_t>(v)]; };
+  const PointIndex canonical =
+      canonicalize(points_.add_crossing_in_plane(point(mine.a), point(mine.b), point(other.a), point(other.b), axis_));
   if (vertex_.size() < points_.size()) vertex_.resize(points_.size(), -1);
   if (vertex_[canonical] >= 0) throw GeometryError("constraints cross at a vertex that is not on them");
   const int p = add_vertex(canonical, 0);
@@ -253,14 +254,15 @@ int Triangulator::split_at_crossing(int a, int b, int t, int edge, const Canonic
   return p;
 }
 
-// Walks along segment ab from triangle to triangle, as far as the next vertex on it. Where a
+// Walks along the constraint at hand from triangle to triangle towards b, as far as the next vertex
+// on it. Where a
 // constraint is in the way the walk ends at a new vertex, with no edges to flip.
-Triangulator::Corridor Triangulator::walk(int a, int b, const Departure& from, const Canonicalize& canonicalize) {
+Triangulator::Corridor Triangulator::walk(int b, const Departure& from, const Canonicalize& canonicalize) {
   Corridor corridor;
   for (int t = from.through, k = from.edge;;) {
     const Tri& x = tri_[static_cast<std::size_t>(t)];
     const int r = x.v[k], l = x.v[(k + 1) % 3];
-    if (x.e[k] != edge_diagonal) return {{}, split_at_crossing(a, b, t, k, canonicalize)};
+    if (x.e[k] != edge_diagonal) return {{}, split_at_crossing(t, k, canonicalize)};
     corridor.crossed.push_back({r, l});
     const int u = x.n[k];
     const Tri& y = tri_[static_cast<std::size_t>(u)];
@@ -268,11 +270,11 @@ Triangulator::Corridor Triangulator::walk(int a, int b, const Departure& from, c
     while (y.v[j] == r || y.v[j] == l) ++j;
     corridor.end = y.v[j];
     if (corridor.end == b) return corridor;
-    const int side = turn(a, b, corridor.end);
-    if (side == 0) return corridor;
+    const int where = side(corridor.end);
+    if (where == 0) return corridor;
     // y runs l → r across the edge; the segment leaves through (apex, l) or (r, apex).
     t = u;
-    k = side < 0 ? j : (j + 2) % 3;  // apex right of ab: between apex and l
+    k = where < 0 ? j : (j + 2) % 3;  // apex on the right: between apex and l
   }
 }
 
@@ -292,8 +294,7 @@ void Triangulator::clear_corridor(int a, int end, std::vector<std::pair<int, int
       continue;
     }
     flip(t, k);
-    const int s1 = mine == a || mine == end ? 0 : turn(a, end, mine),
-              s2 = apex == a || apex == end ? 0 : turn(a, end, apex);
+    const int s1 = mine == a || mine == end ? 0 : side(mine), s2 = apex == a || apex == end ? 0 : side(apex);
     if (s1 * s2 < 0) crossed.push_back(s1 < 0 ? std::pair{mine, apex} : std::pair{apex, mine});
   }
 }
@@ -308,7 +309,7 @@ void Triangulator::constrain(int a, int b, const Canonicalize& canonicalize) {
     int next = from.ahead;
     if (next < 0) {
       if (from.through < 0) throw GeometryError("a constraint leaves its face");
-      Corridor corridor = walk(a, b, from, canonicalize);
+      Corridor corridor = walk(b, from, canonicalize);
       next = corridor.end;
       clear_corridor(a, next, corridor.crossed);
     }
@@ -396,19 +397,25 @@ void Triangulator::triangulate(const std::array<PointIndex, 3>& corner, std::spa
                                const Canonicalize& canonicalize, std::vector<Child>& out) {
   std::tie(axis_, sign_) = projection_of(points_, corner);
   if (sign_ == 0) throw GeometryError("a triangle without area was met");
-  local_.clear(), edges_.clear(), at_.clear(), tri_.clear();
+  local_.clear(), edges_.clear(), at_.clear(), tri_.clear(), lines_.clear();
   for (int k = 0; k < 3; ++k) add_vertex(corner[k], corner_bits(k));
   tri_.push_back({{0, 1, 2}, {-1, -1, -1}, {0, 1, 2}});
   at_[0] = at_[1] = at_[2] = 0;
   for (int k = 0; k < 3; ++k) insert_edge_points(corner, steiner, k);
   for (const SteinerPoint& s : steiner)
     if (s.edges == 0) insert(add_vertex(s.point, 0));
-  for (const auto& [a, b] : constraints) constrain(vertex_[a], vertex_[b], canonicalize);
+  for (const auto& [a, b] : constraints) {
+    lines_.push_back({vertex_[a], vertex_[b]});
+    constrain(vertex_[a], vertex_[b], canonicalize);
+  }
   improve();
   unflip_rounded();
   for (const Tri& x : tri_) {
     Child child;
-    for (int k = 0; k < 3; ++k) child.v[k] = local_[static_cast<std::size_t>(x.v[k])], child.edge[k] = x.e[k];
+    for (int k = 0; k < 3; ++k) {
+      child.v[k] = local_[static_cast<std::size_t>(x.v[k])];
+      child.edge[k] = static_cast<std::uint8_t>(x.e[k] < first_line ? x.e[k] : int(edge_constraint));
+    }
     out.push_back(child);
   }
   for (const PointIndex l : local_) vertex_[l] = -1;

@@ -55,8 +55,14 @@ class Triangulator {
  private:
   struct Tri {
     int v[3], n[3];  // n[k]: neighbour across the edge from v[k] to v[k+1]; −1: none
-    std::uint8_t e[3];
+    int e[3];        // EdgeKind, but for constraints first_line + the number of theirs
   };
+  // A constraint as it was given. Predicates take its own ends, not the crossings on it: coordinates
+  // of a crossing of crossings would have twice the digits, and so on.
+  struct Line {
+    int a, b;  // vertices
+  };
+  static constexpr int first_line = edge_diagonal + 1;
   // The first triangle at a vertex that a segment enters, or a vertex on the segment.
   struct Departure {
     int through = -1, edge = -1, ahead = -1;
@@ -81,11 +87,12 @@ class Triangulator {
   void insert(int p);
   void insert_edge_points(const std::array<PointIndex, 3>& corner, std::span<const SteinerPoint> steiner, int k);
   void constrain(int a, int b, const Canonicalize& canonicalize);
+  int side(int v) const { return turn(lines_.back().a, lines_.back().b, v); }
   bool mark_constraint(int a, int b);
   bool is_ahead(int a, int b, int v) const;
   Departure leave(int a, int b) const;
-  Corridor walk(int a, int b, const Departure& from, const Canonicalize& canonicalize);
-  int split_at_crossing(int a, int b, int t, int edge, const Canonicalize& canonicalize);
+  Corridor walk(int b, const Departure& from, const Canonicalize& canonicalize);
+  int split_at_crossing(int t, int edge, const Canonicalize& canonicalize);
   void clear_corridor(int a, int end, std::vector<std::pair<int, int>>& crossed);
   void improve();
   void unflip_rounded();
@@ -97,6 +104,7 @@ class Triangulator {
   std::vector<int> at_;              // per vertex: a triangle that has it
   std::vector<int> vertex_;          // per point: its vertex, −1
   std::vector<Tri> tri_;
+  std::vector<Line> lines_;        // constraints so far; the last one is at hand
   std::vector<PointIndex> chain_;  // points on the edge at hand
 };
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "base/union_find.h"
 #include "geometry/box_pairs.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
@@ -21,23 +22,34 @@ void report_problem(SurfaceReport& report, const std::string& problem) {
   if (report.first_problem.empty()) report.first_problem = problem;
 }
 
-// Reports edges without two triangles of opposite directions.
-void check_edges(const TriangleMesh& mesh, SurfaceReport& report) {
-  struct Uses {
-    std::uint32_t up = 0, down = 0, first = 0;
-  };
-  std::unordered_map<std::uint64_t, Uses> edges;
+// The triangles of an edge: how many run along it upwards and downwards, and two of them.
+struct EdgeUses {
+  std::uint32_t up = 0, down = 0, first = 0, last = 0;
+};
+using Edges = std::unordered_map<std::uint64_t, EdgeUses>;
+
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
+}
+
+Edges edges_of(const TriangleMesh& mesh) {
+  Edges edges;
   edges.reserve(mesh.triangles.size() * 2);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      auto& e = edges.try_emplace(std::uint64_t(std::min(a, b)) << 32 | std::max(a, b), Uses{0, 0, t}).first->second;
-      ++(a < b ? e.up : e.down);
+      auto& e = edges.try_emplace(edge_key(a, b), EdgeUses{0, 0, t, t}).first->second;
+      ++(a < b ? e.up : e.down), e.last = t;
     }
+  return edges;
+}
+
+// Reports edges without two triangles of opposite directions.
+void check_edges(const TriangleMesh& mesh, const Edges& edges, SurfaceReport& report) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      const auto& e = edges.at(std::uint64_t(std::min(a, b)) << 32 | std::max(a, b));
+      const auto& e = edges.at(edge_key(a, b));
       if (e.first != t) continue;
       const std::string where = "edge " + std::to_string(std::min(a, b)) + "-" + std::to_string(std::max(a, b));
       if (e.up + e.down == 1) {
@@ -53,6 +65,27 @@ void check_edges(const TriangleMesh& mesh, SurfaceReport& report) {
                                    " run the same way; orient it first");
       }
     }
+}
+
+// Reports vertices of several fans: triangles that are joined across edges at the vertex. Each edge
+// has two triangles.
+void check_fans(const TriangleMesh& mesh, const Edges& edges, SurfaceReport& report) {
+  UnionFind fans(3 * mesh.triangles.size());  // of corners
+  const auto corner = [&](std::uint32_t t, std::uint32_t v) {
+    const Triangle& c = mesh.triangles[t];
+    return 3 * t + (c[0] == v ? 0 : c[1] == v ? 1 : 2);
+  };
+  for (const auto& [key, e] : edges)
+    for (const auto v : {static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key)})
+      fans.unite(corner(e.first, v), corner(e.last, v));
+  std::vector<std::uint32_t> count(mesh.vertices.size(), 0);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) count[mesh.triangles[t][k]] += fans.find(3 * t + k) == 3 * t + k;
+  const auto several = std::find_if(count.begin(), count.end(), [](auto n) { return n > 1; });
+  if (several == count.end()) return;
+  report.manifold = false;
+  report_problem(report, "the surface is not manifold: vertex " + std::to_string(several - count.begin()) + " joins " +
+                             std::to_string(*several) + " fans of triangles; separate the parts that touch there");
 }
 
 std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
@@ -142,7 +175,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     } catch (const InputError& e) {
       SurfaceReport report;
       report.manifold = false;
-      check_edges(mesh, report);
+      check_edges(mesh, edges_of(mesh), report);
       report.first_problem = e.what();
       return report;
     }
@@ -156,7 +189,9 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
     }
   if (mesh.triangles.empty()) report_problem(report, "the surface is empty: it has no triangles");
   report.degenerate_faces = count_degenerate(mesh, report);
-  check_edges(mesh, report);
+  const Edges edges = edges_of(mesh);
+  check_edges(mesh, edges, report);
+  if (report.closed && report.manifold) check_fans(mesh, edges, report);
   if (!crossings) return report;
   const auto pairs = crossing_triangles(mesh);
   report.self_intersections = pairs.size();

@@ -1,5 +1,8 @@
 // Explicit and implicit points: predicates agree with rational positions.
+#include <gmpxx.h>
+
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "base/random.h"
 #include "cases.h"
@@ -43,6 +46,41 @@ TEST_CASE("coplanar lines cross in one point, whichever line is named first") {
   CHECK(points[x] == Vec3(1.5, 1.5, 1.5));
   CHECK(points.error(x) == 0);
   CHECK(points.coincide(x, y));
+}
+
+TEST_CASE("a crossing is the double nearest to the exact fraction") {
+  const auto [first, count] = seeds(2000);
+  for (int c = 0; c < count; ++c) {
+    Random random(first + static_cast<std::uint64_t>(c));
+    INFO("seed " << first + static_cast<std::uint64_t>(c));
+    // Lines through whole numbers of up to 5, 25 or 45 bits, also where the crossing is a whole number.
+    const double size = std::ldexp(1.0, 5 + 20 * static_cast<int>(random.below(3)));
+    const auto point = [&] {
+      return Vec3(std::floor(size * random.uniform(-1.0, 1.0)), std::floor(size * random.uniform(-1.0, 1.0)), 0);
+    };
+    const Vec3 p[4] = {point(), point(), point(), point()};
+    const auto cross = [](const mpq_class(&u)[2], const mpq_class(&v)[2]) {
+      return mpq_class(u[0] * v[1] - u[1] * v[0]);
+    };
+    const mpq_class u[2] = {mpq_class(p[1].x()) - p[0].x(), mpq_class(p[1].y()) - p[0].y()},
+                    v[2] = {mpq_class(p[3].x()) - p[2].x(), mpq_class(p[3].y()) - p[2].y()},
+                    w[2] = {mpq_class(p[2].x()) - p[0].x(), mpq_class(p[2].y()) - p[0].y()};
+    if (cross(u, v) == 0) continue;
+    const mpq_class t = cross(w, v) / cross(u, v);
+    Points points;
+    const PointIndex x =
+        points.add_crossing_in_plane(points.add(p[0]), points.add(p[1]), points.add(p[2]), points.add(p[3]), 2);
+    bool exact = true;
+    for (int i = 0; i < 2; ++i) {
+      const mpq_class is = p[0][i] + t * u[i];
+      const double found = points[x][i];
+      const mpq_class off = abs(is - mpq_class(found));
+      CHECK(off <= abs(is - mpq_class(std::nextafter(found, HUGE_VAL))));
+      CHECK(off <= abs(is - mpq_class(std::nextafter(found, -HUGE_VAL))));
+      exact = exact && off == 0;
+    }
+    CHECK((points.error(x) == 0) == exact);
+  }
 }
 
 TEST_CASE("equal positions have equal hashes, both zeros being one") {

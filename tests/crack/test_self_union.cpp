@@ -107,12 +107,35 @@ TEST_CASE("a sound solid keeps its vertices, cavities stay, and walls inside go"
   CHECK(signed_volume(united(walled)) == Approx(2));
 }
 
+TEST_CASE("solids that share one vertex are no solid, and repair parts them there", "[union]") {
+  TriangleMesh mesh = make_block({1, 1, 1}, 1);
+  add(mesh, mesh, {1, 1, 1});
+  // The corner at (1, 1, 1) becomes one vertex.
+  std::vector<std::uint32_t> corner;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+    if (mesh.vertices[v] == Vec3(1, 1, 1)) corner.push_back(v);
+  REQUIRE(corner.size() == 2);
+  for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), corner[1], corner[0]);
+  const SurfaceReport report = check_surface(mesh, true);
+  CHECK(!report.manifold);
+  CHECK(report.self_intersections == 0);
+  CHECK(report.first_problem == "the surface is not manifold: vertex " + std::to_string(corner[0]) +
+                                    " joins 2 fans of triangles; separate the parts that touch there");
+  const TriangleMesh solid = repaired_solid(mesh);
+  CHECK(check_surface(solid, true).first_problem == "");
+  CHECK(signed_volume(solid) == Approx(2).epsilon(1e-3));
+  CHECK(shared_positions(solid, mesh) >= mesh.vertices.size() - 1);
+}
+
 TEST_CASE("what encloses nothing is refused", "[union]") {
   CHECK_THROWS_AS(self_union({}), InputError);
   TriangleMesh sheet;
   sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
   CHECK_THROWS_WITH(self_union(sheet), Catch::Contains("encloses no volume"));
+  TriangleMesh stray = make_sphere(4);
+  stray.vertices[7] = {0, 0, 1e16};
+  CHECK_THROWS_WITH(self_union(stray), Catch::Contains("some vertices are far from all others"));
 }
 
 TEST_CASE("random soups end as a solid or as one sentence", "[union]") {

@@ -76,6 +76,35 @@ TEST_CASE("constraints that cross are divided at a common point, or refused") {
            has_edge(children, crossing, s.point, edge_constraint)));
 }
 
+TEST_CASE("constraints that all cross each other divide a face at each crossing") {
+  const auto [first, count] = seeds(10);
+  for (int c = 0; c < count; ++c) {
+    Random random(first + static_cast<std::uint64_t>(c));
+    INFO("seed " << first + static_cast<std::uint64_t>(c));
+    Points points;
+    const std::array<PointIndex, 3> corner{points.add({0, 0, 0}), points.add({8, 0, 0}), points.add({0, 8, 0})};
+    std::vector<SteinerPoint> steiner;
+    std::vector<std::pair<PointIndex, PointIndex>> constraints;
+    // From the left to the right, those that start lower end higher: a grid of n (n − 1) / 2 crossings.
+    constexpr int n = 30;
+    for (int i = 0; i < n; ++i) {
+      const double low = i + random.uniform(0.1, 0.9), high = i + random.uniform(0.1, 0.9);
+      steiner.push_back({points.add({1, 1 + 4 * low / n, 0}), 0});
+      steiner.push_back({points.add({4, 3 - 2 * high / n, 0}), 0});
+      constraints.push_back({steiner[2 * std::size_t(i)].point, steiner[2 * std::size_t(i) + 1].point});
+    }
+    std::vector<Child> children;
+    std::size_t crossings = 0;
+    Triangulator(points).triangulate(
+        corner, steiner, constraints, [&](PointIndex l) { return ++crossings, l; }, children);
+    CHECK(crossings == std::size_t(n * (n - 1) / 2));
+    CHECK(children.size() == 2 * (steiner.size() + crossings) + 1);
+    double sum = 0;
+    for (const Child& child : children) sum += area2(points, child.v);
+    CHECK(sum == Approx(64));
+  }
+}
+
 TEST_CASE("a face without area is refused") {
   Points points;
   const std::array<PointIndex, 3> corner{points.add({0, 0, 0}), points.add({1, 1, 1}), points.add({2, 2, 2})};

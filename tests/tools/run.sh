@@ -188,6 +188,10 @@ repairs)
   quietly kerf-score -q two.obj --repair --pieces 4 -o two.front
   quietly kerf-crack -q two.obj --repair --front two.front -o broken.ply
   kerf-info --json broken.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 4 and abs(r["volume"] - 1.875) < 1e-12, r' || fail "a model that is repaired first"
+  { cat box.obj; corners 3; printf "$box\n" | sed '$d' | awk '{ print "f", $1 + 8, $2 + 8, $3 + 8, $4 + 8 }'; } >apart.obj
+  expect 65 "open.*try kerf-repair" kerf-pieces apart.obj -o apart
+  kerf-pieces apart.obj --repair --json -o apart | grep -q '"pieces":2,"bonds":0' || fail "pieces of a surface that is repaired first"
+  kerf-pieces broken.ply --repair --json -o broken | grep -q '"pieces":4,' || fail "kerf-pieces --repair of a cut surface"
   printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n' >sheet.obj
   expect 1 "encloses no volume; wrap it .*--voxel" kerf-repair sheet.obj -o x.ply
   expect 65 "sheet.obj: cannot be repaired: the surface encloses no volume" kerf-crack sheet.obj --repair --jagged 0.1 -o x.ply

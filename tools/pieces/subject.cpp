@@ -58,7 +58,7 @@ std::string file_of(const std::string& path) {
 
 }  // namespace
 
-Subject read_subject(const std::string& given) {
+Subject read_subject(const std::string& given, bool repair) {
   const std::string path = file_of(given);
   const std::string bytes = geo::read_all(path);
   Subject subject;
@@ -71,7 +71,10 @@ Subject read_subject(const std::string& given) {
     subject.moved = material_points(file.mesh, path);
     subject.moved.swap(file.mesh.vertices);
   }
-  tool::require_solid(file.mesh, path, bytes);
+  if (repair && !file.mesh.two_sided())
+    tool::repair_plain(file.mesh, path);
+  else
+    tool::require_solid(file.mesh, path, bytes);
   subject.complex = tool::complex_of(file, path);
   subject.mesh = std::move(file.mesh);
   return subject;

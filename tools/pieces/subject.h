@@ -18,7 +18,7 @@ struct Subject {
 
 /// Reads any of them; of a run's folder the last frame. A frame with open cracks gets the
 /// undeformed positions of its run's checkpoint.kerf, in the folder above, where its topology is
-/// decided. Throws InputError.
-Subject read_subject(const std::string& path);
+/// decided. With `repair`, a plain surface is repaired first. Throws InputError.
+Subject read_subject(const std::string& path, bool repair);
 
 }  // namespace pieces

@@ -18,8 +18,9 @@
 namespace geo {
 
 struct SurfaceReport {
-  /// closed: no edge with one triangle; manifold: none with more than two; oriented: the two
-  /// triangles of each edge run along it in opposite directions.
+  /// closed: no edge with one triangle; manifold: none with more than two, and all triangles at a
+  /// vertex are joined across edges there; oriented: the two triangles of each edge run along it in
+  /// opposite directions.
   bool closed = true, manifold = true, oriented = true;
   std::size_t degenerate_faces = 0;               ///< faces of zero area, exactly
   std::optional<std::size_t> self_intersections;  ///< pairs of faces; empty: not tested

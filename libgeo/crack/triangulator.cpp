@@ -198,7 +198,8 @@ void Triangulator::insert(int p) {
   throw GeometryError("a point of a face cannot be located");
 }
 
-// Marks edge ab, in either direction, as part of the constraint at hand. False when there is no such edge.
+// Marks edge ab, in either direction, as part of the constraint at hand. False when there is no
+// such edge.
 bool Triangulator::mark_constraint(int a, int b) {
   const auto [t, k] = find_edge(a, b);
   if (t < 0) return find_edge(b, a).first >= 0 && mark_constraint(b, a);  // an edge of the face, seen from inside
@@ -238,8 +239,8 @@ Triangulator::Departure Triangulator::leave(int a, int b) const {
   return found;
 }
 
-// Divides the constraint at hand and the one in its way, edge `edge` of t, where they cross. Returns
-// the new vertex.
+// Divides the constraint at hand and the one in its way, edge `edge` of t, where they cross.
+// Returns the new vertex.
 int Triangulator::split_at_crossing(int t, int edge, const Canonicalize& canonicalize) {
   const int line = tri_[static_cast<std::size_t>(t)].e[edge] - first_line;
   if (!canonicalize || line < 0) throw GeometryError("constraints of a face cross");

@@ -57,8 +57,8 @@ class Triangulator {
     int v[3], n[3];  // n[k]: neighbour across the edge from v[k] to v[k+1]; −1: none
     int e[3];        // EdgeKind, but for constraints first_line + the number of theirs
   };
-  // A constraint as it was given. Predicates take its own ends, not the crossings on it: coordinates
-  // of a crossing of crossings would have twice the digits, and so on.
+  // A constraint as it was given. Predicates take its own ends, not the crossings on it, as
+  // crossings of crossings would have ever more digits.
   struct Line {
     int a, b;  // vertices
   };

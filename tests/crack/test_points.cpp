@@ -53,7 +53,7 @@ TEST_CASE("a crossing is the double nearest to the exact fraction") {
   for (int c = 0; c < count; ++c) {
     Random random(first + static_cast<std::uint64_t>(c));
     INFO("seed " << first + static_cast<std::uint64_t>(c));
-    // Lines through whole numbers of up to 5, 25 or 45 bits, also where the crossing is a whole number.
+    // Lines through whole numbers of up to 5, 25 or 45 bits; some crossings are whole numbers.
     const double size = std::ldexp(1.0, 5 + 20 * static_cast<int>(random.below(3)));
     const auto point = [&] {
       return Vec3(std::floor(size * random.uniform(-1.0, 1.0)), std::floor(size * random.uniform(-1.0, 1.0)), 0);

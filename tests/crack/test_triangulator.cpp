@@ -85,7 +85,7 @@ TEST_CASE("constraints that all cross each other divide a face at each crossing"
     const std::array<PointIndex, 3> corner{points.add({0, 0, 0}), points.add({8, 0, 0}), points.add({0, 8, 0})};
     std::vector<SteinerPoint> steiner;
     std::vector<std::pair<PointIndex, PointIndex>> constraints;
-    // From the left to the right, those that start lower end higher: a grid of n (n − 1) / 2 crossings.
+    // The lower a constraint starts on the left, the higher it ends: n (n − 1) / 2 crossings.
     constexpr int n = 30;
     for (int i = 0; i < n; ++i) {
       const double low = i + random.uniform(0.1, 0.9), high = i + random.uniform(0.1, 0.9);

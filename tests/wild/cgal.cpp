@@ -1,11 +1,12 @@
 // Makes a solid of one mesh with CGAL's package Polygon Mesh Processing, and cuts it into eight.
-//   cgal IN FOLDER     says "done" where there is a solid and "cut" where there are pieces, else "refused" and why
-// IN: two counts of 32 bits, coordinates as doubles, corners as 32 bits. FOLDER gets solid.out and the pieces
-// 0.out … 7.out in the same form: the parts of the solid on both sides of three planes through the middle of its box.
+//   cgal IN FOLDER     says "done" for a solid and "cut" for pieces, else "refused" and why
+// IN: two counts of 32 bits, coordinates as doubles, corners as 32 bits. FOLDER gets solid.out and
+// the pieces 0.out … 7.out in the same form: the parts of the solid on both sides of three planes
+// through the middle of its box.
 //
-// The order is that of CGAL's manual: repair and orient the soup, stitch, remove degenerate faces, fill holes. Components
-// that overlap are united by corefinement. A component that crosses itself goes to the experimental
-// remove_self_intersections().
+// The order is that of CGAL's manual: repair and orient the soup, stitch, remove degenerate faces,
+// fill holes. Components that overlap are united by corefinement. A component that crosses itself
+// goes to the experimental remove_self_intersections().
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/clip.h>

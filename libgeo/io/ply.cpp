@@ -194,9 +194,9 @@ PlyFormat read_header(LineReader& lines, std::string_view bytes, const std::stri
     } else if (words[0] == "property" && !ply.elements.empty() &&
                (words.size() == 3 || (words.size() == 5 && words[1] == "list"))) {
       ply.elements.back().properties.push_back(property_of(lines, words));
-    } else {
+    } else if (!ply.elements.empty() || words[0] == "format" || words[0] == "element" || words[0] == "property") {
       lines.fail("'" + shown(words[0]) + "' is not expected in a PLY header");
-    }
+    }  // else a comment without its keyword, as Blender 2.4 wrote it; there are no columns yet to mistake
   }
   if (!ended || !format) throw InputError(name + ": the PLY header is not complete; the file is truncated");
   return *format;

@@ -38,6 +38,37 @@ bool looks_like_off(const std::string& bytes) {
   return words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF";
 }
 
+// UTF-16 that begins with its byte order mark, as UTF-8 without it; empty for other bytes. Units
+// that are invalid become U+FFFD.
+std::string from_utf16(const std::string& bytes) {
+  const bool big = bytes.rfind("\xfe\xff", 0) == 0;
+  if (!big && bytes.rfind("\xff\xfe", 0) != 0) return {};
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<unsigned char>(bytes[i]), second = static_cast<unsigned char>(bytes[i + 1]);
+    return std::uint32_t(big ? first << 8 | second : second << 8 | first);
+  };
+  std::string text;
+  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    std::uint32_t c = unit(i);
+    if (c >= 0xd800 && c < 0xe000) {
+      const std::uint32_t low = c < 0xdc00 && i + 3 < bytes.size() ? unit(i + 2) : 0;
+      const bool pair = low >= 0xdc00 && low < 0xe000;
+      c = pair ? 0x10000 + ((c - 0xd800) << 10 | (low - 0xdc00)) : 0xfffd;
+      i += pair ? 2 : 0;
+    }
+    const auto tail = [&](int shift) { text += static_cast<char>(0x80 | (c >> shift & 0x3f)); };
+    if (c < 0x80)
+      text += static_cast<char>(c);
+    else if (c < 0x800)
+      text += static_cast<char>(0xc0 | c >> 6), tail(0);
+    else if (c < 0x10000)
+      text += static_cast<char>(0xe0 | c >> 12), tail(6), tail(0);
+    else
+      text += static_cast<char>(0xf0 | c >> 18), tail(12), tail(6), tail(0);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& polygon,
@@ -57,6 +88,9 @@ SurfaceFile read_surface(const std::string& path) { return parse_surface(read_al
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
   // Text that begins with the byte order mark of UTF-8 is read without it.
   if (bytes.rfind("\xef\xbb\xbf", 0) == 0) return parse_surface(bytes.substr(3), name);
+  if (const std::string text = from_utf16(bytes);
+      looks_like_obj(text) || looks_like_off(text) || text.rfind("ply", 0) == 0)
+    return parse_surface(text, name);
   SurfaceFile file;
   if (bytes.rfind("ply", 0) == 0)
     file = parse_surface_ply(bytes, name);

@@ -139,3 +139,38 @@ TEST_CASE("text is read with more numbers than named, other ends of lines, a byt
     CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
   }
 }
+
+TEST_CASE("text may be UTF-16 of either byte order, with characters of any plane in names") {
+  const std::string text =
+      "# \xc3\xa9 \xe2\x82\xac \xf0\x9f\x8e\x83\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl "
+      "\xc3\xa9\xf0\x9f\x8e\x83\nf 1 3 2\nf 1 2 4\n"
+      "f 2 3 4\nf 1 4 3\n";
+  const std::u16string units =
+      u"\ufeff# \u00e9 \u20ac \U0001f383\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl \u00e9\U0001f383\nf 1 3 2\nf 1 2 "
+      u"4\n"
+      u"f 2 3 4\nf 1 4 3\n";
+  const TriangleMesh plain = parse_surface(text, "a.obj").mesh;
+  for (const bool big : {false, true}) {
+    std::string bytes;
+    for (const char16_t unit : units)
+      for (const int k : {0, 1}) bytes += static_cast<char>(unit >> ((k == 0) == big ? 8 : 0));
+    const TriangleMesh mesh = parse_surface(bytes, "b.obj").mesh;
+    CHECK(mesh.vertices == plain.vertices);
+    CHECK(mesh.triangles == plain.triangles);
+    CHECK(mesh.attributes.group_names == plain.attributes.group_names);
+    CHECK_THROWS_AS(parse_surface(bytes.substr(0, 2), "c.obj"), InputError);
+    CHECK_THROWS_AS(parse_surface(bytes.substr(0, 41), "d.obj"), InputError);
+  }
+}
+
+TEST_CASE("a PLY header may have a comment without its keyword before the first element") {
+  const std::string rows =
+      "property float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_index\n";
+  const std::string data = "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  const std::string created = "Created by Blender3D 247 - www.blender.org\n";
+  const auto parse = [&](const std::string& first, const std::string& second) {
+    return parse_surface("ply\nformat ascii 1.0\n" + first + "element vertex 4\n" + second + rows + data, "a.ply").mesh;
+  };
+  CHECK(parse(created, "").vertices == parse("", "").vertices);
+  CHECK_THROWS_WITH(parse("", created), Catch::Contains("'Created' is not expected in a PLY header"));
+}

@@ -110,6 +110,40 @@ class Cracks(unittest.TestCase):
         c = s.crack(front, max_move=0.25)
         self.assertEqual(c.fronts[0].step, 2)
 
+    def test_hierarchy(self):
+        solid = cube()
+        for seed in range(1, 9):
+            with self.subTest(seed=seed):
+                c = solid.crack(kerf.score(solid, "voronoi", pieces=30, seed=seed, jagged=0))
+                pieces, least = c.piece_count, float(np.median(c.piece_volumes))
+                levels = c.hierarchy(4)
+                below, volumes = pieces, c.piece_volumes
+                for level in levels:
+                    self.assertEqual(len(level.of), below)
+                    np.testing.assert_allclose(np.bincount(level.of, volumes), level.volume, rtol=1e-12)
+                    self.assertTrue((np.diff(level.volume) <= 0).all())
+                    self.assertTrue((level.bonds["a"] < level.bonds["b"]).all())
+                    below, volumes = len(level.volume), level.volume
+                self.assertEqual((len(levels), below), (3, 1))
+                self.assertEqual(c.hierarchy(1), [])
+                # The first level's areas are the sums of those between its clusters.
+                a, b = (levels[0].of[c.bonds[k]] for k in "ab")
+                self.assertAlmostEqual(c.bonds["area"][a != b].sum(), levels[0].bonds["area"].sum(), places=12)
+                delta = c.join_small_pieces(least)
+                self.assertEqual(delta.stats, {"joined": pieces - c.piece_count, "isolated": 0})
+                self.assertGreater(delta.stats["joined"], 0)
+                self.assertGreaterEqual(min(c.piece_volumes), least)
+                self.assertAlmostEqual(sum(c.piece_volumes), 1, places=12)
+                self.assertTrue(c.check())
+                self.assertTrue(all(kerf.Mesh(p.vertices, p.faces).check() for p in c.pieces()))
+                c.undo()
+                self.assertEqual(c.piece_count, pieces)
+                c.heal(np.arange(pieces) % 1)
+                self.assertEqual(c.piece_count, 1)
+                for call in (lambda: c.heal([0, 0]), lambda: c.heal([-1]), lambda: c.join_small_pieces(-1),
+                             lambda: c.join_small_pieces(np.nan), lambda: c.hierarchy(0)):
+                    self.assertRaises(kerf.InputError, call)
+
     def test_edits(self):
         c = cube().crack(plane())
         self.assertEqual(c.roughen(amplitude=0.02, frequency=4, seed=3).stats["refused"], 0)

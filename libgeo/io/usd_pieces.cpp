@@ -150,11 +150,11 @@ class UsdPieces {
       stage_.line("quatf physics:principalAxes = " + usd_tuple(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
     }
     for (Vec3& v : chunk.mesh.vertices) v -= chunk.centroid;
-    mesh(chunk.mesh, paths_[p]);
+    mesh(chunk.mesh);
     stage_.end();
   }
 
-  void mesh(const TriangleMesh& m, const std::string& path) {
+  void mesh(const TriangleMesh& m) {
     Box3 box;
     for (const Vec3& v : m.vertices) box.add(v);
     stage_.line("uniform token subdivisionScheme = \"none\"");

@@ -2,7 +2,7 @@
 //   cgal IN FOLDER     says "done" for a solid and "cut" for pieces, else "refused" and why
 // IN: two counts of 32 bits, coordinates as doubles, corners as 32 bits. FOLDER gets solid.out and
 // the pieces 0.out … 7.out in the same form: the parts of the solid on both sides of three planes
-// through the middle of its box.
+// near the middle of its box.
 //
 // The order is that of CGAL's manual: repair and orient the soup, stitch, remove degenerate faces,
 // fill holes. Components that overlap are united by corefinement. A component that crosses itself
@@ -132,8 +132,9 @@ int main(int argc, char** argv) {
     write(folder + "solid.out", solid);
     std::cout << "done" << std::endl;
     const auto box = pmp::bbox(solid);
-    const Kernel::Point_3 middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2,
-                                 (box.zmin() + box.zmax()) / 2);
+    // Beside the middle, where planes would pass through the vertices of symmetric models.
+    const auto near_middle = [&](int k, double at) { return box.min(k) + at * (box.max(k) - box.min(k)); };
+    const Kernel::Point_3 middle(near_middle(0, 0.4871), near_middle(1, 0.5093), near_middle(2, 0.5167));
     for (unsigned which = 0; which < 8; ++which) {
       Mesh piece = octant(solid, middle, which);
       if (!piece.is_empty()) write(folder + std::to_string(which) + ".out", piece);

@@ -95,6 +95,11 @@ void SeparationProjection::project(std::vector<Vec3>& next) const {
   constexpr double margin = 0.1;  // of a constraint's separation: projections do not end on its bound
   const ConstraintsOfVertices of_vertex(next.size(), constraints_);
   const auto zones = zones_.zones();
+  std::vector<std::uint8_t> rigid(constraints_.size(), 0);
+  if (!zones.empty())
+    parallel_for(rigid.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) rigid[i] = is_rigid(constraints_[i].s, constraints_[i].t);
+    });
   // Only constraints with a vertex that has moved are projected again.
   std::vector<std::uint32_t> active(constraints_.size()), moved;
   std::iota(active.begin(), active.end(), 0u);
@@ -104,8 +109,8 @@ void SeparationProjection::project(std::vector<Vec3>& next) const {
   };
   for (int sweep = 0; sweep < max_sweeps && !active.empty(); ++sweep) {
     for (const auto i : active) {
+      if (rigid[i]) continue;
       const Constraint& c = constraints_[i];
-      if (!zones.empty() && is_rigid(c.s, c.t)) continue;
       double at_a[3], at_b[3];  // of vertices along the axis
       for (int k = 0; k < 3; ++k) at_a[k] = c.axis.dot(next[c.a.v[k]]), at_b[k] = c.axis.dot(next[c.b.v[k]]);
       const double low = std::min({at_a[0], at_a[1], at_a[2]}), high = std::max({at_b[0], at_b[1], at_b[2]});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace geo {
 namespace {
@@ -23,6 +24,34 @@ Vec3 bend_point(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   const double dp = (p - a - tp * edge).norm(), dq = (q - a - tq * edge).norm();
   const double t = dp + dq > 0 ? (tp * dq + tq * dp) / (dp + dq) : tp;
   return a + std::clamp(t, 0.0, 1.0) * edge;
+}
+
+struct Path {
+  double length;
+  Vec3 bend;
+};
+
+// The first path from x to the node whose both segments touch no face; null: none. The first few
+// paths are tested alone, since one of them is clear in most cases.
+const Path* first_clear(const Vec3& x, const Vec3& node, std::span<const Path> paths, const TriangleBvh& faces) {
+  std::vector<Vec3> bends;
+  std::vector<const Path*> open;  // their first segments are clear
+  std::vector<std::uint8_t> hidden;
+  for (std::size_t begin = 0, count = 4; begin < paths.size(); begin += count, count = 32) {
+    const auto some = paths.subspan(begin, std::min(count, paths.size() - begin));
+    bends.clear(), open.clear();
+    for (const Path& p : some) bends.push_back(p.bend);
+    hidden.assign(some.size(), 0);
+    faces.blocks(x, bends, hidden.data());
+    bends.clear();
+    for (std::size_t k = 0; k < some.size(); ++k)
+      if (!hidden[k]) bends.push_back(some[k].bend), open.push_back(&some[k]);
+    hidden.assign(open.size(), 0);
+    faces.blocks(node, bends, hidden.data());
+    for (std::size_t k = 0; k < open.size(); ++k)
+      if (!hidden[k]) return open[k];
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -45,34 +74,41 @@ std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceI
   return edges;
 }
 
+std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const FrontEdge> edges) {
+  std::vector<NearFront> near;
+  for (const FrontEdge& e : edges) {
+    const Vec3 middle = 0.5 * (e.a + e.b);
+    const double length = (e.b - e.a).norm(), distance = (middle - x).norm();
+    if (distance < reach + length) near.push_back({&e, middle, length, distance});
+  }
+  return near;
+}
+
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
-                                              std::span<const FrontEdge> edges, const TriangleBvh& faces) {
+                                              std::span<const NearFront> fronts, const TriangleBvh& faces) {
   const Vec3 offset = x - node;
   const double straight = offset.norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
-  struct Path {
-    double length;
-    Vec3 bend;
-  };
   std::vector<Path> paths;
-  for (const FrontEdge& e : edges) {
-    if ((0.5 * (e.a + e.b) - x).norm() >= support + (e.b - e.a).norm()) continue;  // rejects most edges
-    const Vec3 ahead = support / 1024 * e.ahead, bend = bend_point(x, node, e.a + ahead, e.b + ahead);
+  for (const NearFront& f : fronts) {
+    // The path bends within half the edge's length and support / 1024 of its middle; twice the latter
+    // covers rounding.
+    if (f.distance >= support + f.length || f.distance + (f.middle - node).norm() - f.length - support / 256 >= longest)
+      continue;
+    const Vec3 ahead = support / 1024 * f.edge->ahead, bend = bend_point(x, node, f.edge->a + ahead, f.edge->b + ahead);
     if (const double length = (bend - x).norm() + (node - bend).norm(); length < longest)
       paths.push_back({length, bend});
   }
   std::sort(paths.begin(), paths.end(), [](const Path& a, const Path& b) {
     return a.length != b.length ? a.length < b.length : lexicographically_less(a.bend, b.bend);
   });
-  for (const auto& [length, bend] : paths) {
-    if (faces.blocks(x, bend) || faces.blocks(bend, node)) continue;
-    const double ratio = length / straight, stretch = ratio * ratio * ratio * ratio;
-    if (!(stretch * straight < support)) break;
-    // The bend point of a shortest path is stationary: its own motion does not change the length to
-    // first order.
-    return SupportNode{node, stretch * straight,
-                       4 * stretch / ratio * (x - bend).normalized() - 3 * stretch / straight * offset, support};
-  }
-  return {};
+  const Path* const path = first_clear(x, node, paths, faces);
+  if (!path) return {};
+  const double ratio = path->length / straight, stretch = ratio * ratio * ratio * ratio;
+  if (!(stretch * straight < support)) return {};
+  // The bend point of a shortest path is stationary: its own motion does not change the length to
+  // first order.
+  return SupportNode{node, stretch * straight,
+                     4 * stretch / ratio * (x - path->bend).normalized() - 3 * stretch / straight * offset, support};
 }
 
 }  // namespace geo

@@ -21,14 +21,23 @@ struct FrontEdge {
 /// The front edges of the crack faces among `faces`, in the order of faces and their corners.
 std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceId> faces);
 
+/// A front edge as a point x sees it, with what bounds the length of paths round it.
+struct NearFront {
+  const FrontEdge* edge;
+  Vec3 middle;              ///< of the edge
+  double length, distance;  ///< of the edge; of its middle from x
+};
+/// The edges whose middles are nearer to x than `reach` and their length. Refers to `edges`.
+std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const FrontEdge> edges);
+
 /// A node that `faces` hide from x, as x sees it round one of the edges. With s the straight
 /// distance and L the length of the shortest path round an edge, its distance is (L / s)⁴ s. None
 /// if that is `support` or more, or if there is no path. Powers of 1 and 2, as in the original
 /// criterion, weld a crack behind its front at supports of 1.8 spacings (docs/decisions/041). A
 /// path bends `support` / 1024 ahead of an edge, so that it clears the crack face behind it. Both
 /// of its segments are clear of faces (exact), so no path crosses a crack that has no front.
-/// `edges`: all edges within `support` of x.
+/// `fronts`: those of fronts_near() for a reach of `support` or more.
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
-                                              std::span<const FrontEdge> edges, const TriangleBvh& faces);
+                                              std::span<const NearFront> fronts, const TriangleBvh& faces);
 
 }  // namespace geo

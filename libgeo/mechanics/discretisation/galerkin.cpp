@@ -24,13 +24,8 @@ class Changes {
  public:
   Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports,
           std::span<const std::uint32_t> nodes, std::size_t node_count)
-      : visibility_{TriangleBvh(faces), std::vector<std::uint8_t>(node_count, 0)}, supports_(supports) {
-    for (const auto i : nodes) visibility_.node[i] = 1;
-    for (const auto& [a, b, c] : faces) {
-      const Vec3 middle = (a + b + c) / 3;
-      balls_.push_back({middle, std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
-      bounds_.add(box_of(a, b, c));
-    }
+      : visibility_(faces, nodes, node_count), supports_(supports) {
+    for (const auto& [a, b, c] : faces) bounds_.add(box_of(a, b, c));
     for (const auto& [x, r] : supports) bounds_.add(Box3{x, x}.grown(support_factors.back() * r));
   }
   /// False if the changes touch no point in the box whose influence radius is at most `radius`.
@@ -55,44 +50,30 @@ class Changes {
     if (std::any_of(supports.begin(), supports.end(),
                     [&](const auto& s) { return (s.first - p.position).norm() < factor * s.second; }))
       return true;
-    std::vector<std::uint32_t> near, nodes;
-    visibility_.faces.near(Box3{p.position, p.position}.grown(p.influence_radius * (1 + 2 * bend_margin)), near);
+    const std::vector<std::uint32_t> near = visibility_.faces_near(p.position, p.influence_radius);
     if (near.empty()) return false;
+    std::vector<std::uint32_t> nodes;
     std::vector<Vec3> ends{intended};
     for (const auto j : nodes_near())
       if ((body.nodes.position[j] - p.position).norm() < factor * body.nodes.radius[j])
         nodes.push_back(j), ends.push_back(body.nodes.position[j]);
     std::vector<std::uint8_t> touched(ends.size(), 0);
-    visibility_.faces.blocks(p.position, ends, touched.data());
+    visibility_.faces().blocks(p.position, ends, touched.data());
     if (std::find(touched.begin(), touched.end(), 1) != touched.end()) return true;
     if (!p.occluded) return false;
     std::erase_if(nodes, [&](auto j) { return sees_straight(block, point, j); });
     return std::any_of(nodes.begin(), nodes.end(), [&](auto j) {
-      return meet_bent_paths(p.position, body.nodes.position[j], factor * body.nodes.radius[j], near);
+      return visibility_.meet_bent_paths(p.position, body.nodes.position[j], factor * body.nodes.radius[j], near);
     });
   }
 
  private:
-  // A path bends within support / 1024 of a front edge; twice that covers rounding.
-  static constexpr double bend_margin = 1.0 / 512;  // of a support
-
   static bool sees_straight(const PointBlock& block, std::size_t point, std::uint32_t node) {
     for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
       if (block.nodes[block.entry_node[q]] == node) return !block.entry_bent[q];
     return false;
   }
-  // Whether one of the faces may touch a path from x to the node that is short enough: shorter than
-  // (support / s)^¼ s, with s the straight distance. Such paths fill an ellipsoid.
-  bool meet_bent_paths(const Vec3& x, const Vec3& node, double support, std::span<const std::uint32_t> faces) const {
-    const double straight = (node - x).norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
-    return std::any_of(faces.begin(), faces.end(), [&](auto f) {
-      const auto& [middle, radius] = balls_[f];
-      return (middle - x).norm() + (middle - node).norm() < longest + 2 * (radius + bend_margin * support);
-    });
-  }
-
   VisibilityChanges visibility_;
-  std::vector<std::pair<Vec3, double>> balls_;  // per face: a ball about it
   const std::vector<std::pair<Vec3, double>>& supports_;
   Box3 bounds_;
 };

@@ -4,6 +4,7 @@
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "body/incremental_cache.h"
@@ -17,6 +18,8 @@ constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its 
 constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened
 constexpr double without_strain = 1e7;   // times the rounding unit 1e-16: linear fields would be off by 1e-9
 constexpr std::size_t tasks_per_batch = 32;
+// A path bends within support / 1024 of a front edge; twice that covers rounding.
+constexpr double bend_margin = 1.0 / 512;  // of a support
 
 bool is_on_face(const Complex& surface, const Vec3& p) {
   std::vector<FaceId> near;
@@ -66,7 +69,7 @@ struct Batch {
     std::vector<Vec3> positions;
     std::vector<std::uint8_t> hidden;
     std::vector<SupportNode> seen;
-    std::vector<std::uint8_t> is_known, touched;
+    std::vector<std::uint8_t> is_known, touched, had_no_path;  // the last: and still has none, if it is hidden
     std::vector<std::uint32_t> unknown;
     std::vector<Vec3> ends;
   };
@@ -79,7 +82,16 @@ struct Batch {
     const VisibilityChanges* changes;
   };
 
-  // Marks the nodes that the point saw or did not see before, in `hidden` as it was then.
+  // Whether what the point saw before is known, and may be true still.
+  static bool is_recalled(const Trial& trial) {
+    if (!trial.changes || !trial.task.before) return false;
+    const MaterialPoint& before = trial.task.before->points[trial.task.point_before];
+    // A singular one keeps no nodes.
+    return before.position == trial.task.point->position && before.quality != MomentQuality::singular;
+  }
+
+  // Marks the nodes that the point saw or did not see before, in `hidden` as it was then. A node
+  // within the same support had no path round a front where it was not seen.
   static void recall(const Trial& trial, Scratch& scratch) {
     const auto& [body, task, factor, faces, changes] = trial;
     const PointBlock& block = *task.before;
@@ -92,8 +104,9 @@ struct Batch {
       const bool was_seen = entry < end && block.nodes[block.entry_node[entry]] == j;
       const double support = support_factors[before.widenings] * body.nodes.radius[j];
       scratch.is_known[q] =
-          !changes->node[j] && (was_seen || (scratch.positions[q] - before.position).norm() < support);
+          !changes->has_changed(j) && (was_seen || (scratch.positions[q] - before.position).norm() < support);
       scratch.hidden[q] = !was_seen || block.entry_bent[entry];
+      scratch.had_no_path[q] = scratch.is_known[q] && !was_seen && factor == support_factors[before.widenings];
     }
   }
 
@@ -103,21 +116,37 @@ struct Batch {
     const Vec3& x = task.point->position;
     const std::size_t n = scratch.nodes.size();
     scratch.hidden.assign(n, 0);
+    scratch.had_no_path.assign(n, 0);
     if (faces.empty()) return;
-    const auto is_recalled = [&](const MaterialPoint& before) {
-      return before.position == x && before.quality != MomentQuality::singular;  // a singular one keeps no nodes
-    };
-    if (!changes || !task.before || !is_recalled(task.before->points[task.point_before]))
-      return faces.blocks(x, scratch.positions, scratch.hidden.data());
+    if (!is_recalled(trial)) return faces.blocks(x, scratch.positions, scratch.hidden.data());
     scratch.is_known.assign(n, 0), scratch.touched.assign(n, 0), scratch.unknown.clear(), scratch.ends.clear();
     recall(trial, scratch);
-    if (!changes->faces.empty()) changes->faces.blocks(x, scratch.positions, scratch.touched.data());
+    if (!changes->faces().empty()) changes->faces().blocks(x, scratch.positions, scratch.touched.data());
     for (std::uint32_t q = 0; q < n; ++q)
       if (!scratch.is_known[q] || scratch.touched[q])
         scratch.unknown.push_back(q), scratch.ends.push_back(scratch.positions[q]);
     scratch.touched.assign(scratch.ends.size(), 0);
     faces.blocks(x, scratch.ends, scratch.touched.data());
     for (std::size_t k = 0; k < scratch.unknown.size(); ++k) scratch.hidden[scratch.unknown[k]] = scratch.touched[k];
+    forget_paths(trial, scratch);
+  }
+
+  // Keeps `had_no_path` only where no changed face may touch a path, and so no new front either.
+  static void forget_paths(const Trial& trial, Scratch& scratch) {
+    const auto& [body, task, factor, faces, changes] = trial;
+    if (std::find(scratch.had_no_path.begin(), scratch.had_no_path.end(), 1) == scratch.had_no_path.end()) return;
+    const Vec3& x = task.point->position;
+    const auto near = changes->faces_near(x, task.before->points[task.point_before].influence_radius);
+    for (std::size_t q = 0; q < scratch.nodes.size(); ++q)
+      if (scratch.had_no_path[q])
+        scratch.had_no_path[q] =
+            !changes->meet_bent_paths(x, scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]], near);
+  }
+
+  static double largest_support(const Trial& trial, const Scratch& scratch) {
+    double largest = 0;
+    for (const auto j : scratch.nodes) largest = std::max(largest, trial.body.nodes.radius[j]);
+    return trial.factor * largest;
   }
 
   // True if the point sees enough nodes.
@@ -134,6 +163,8 @@ struct Batch {
     point.widenings = static_cast<std::uint8_t>(std::find(support_factors.begin(), support_factors.end(), factor) -
                                                 support_factors.begin());
     point.occluded = std::find(scratch.hidden.begin(), scratch.hidden.end(), 1) != scratch.hidden.end();
+    const std::vector<NearFront> near =
+        point.occluded ? fronts_near(x, largest_support(trial, scratch), fronts) : std::vector<NearFront>();
     for (std::size_t q = 0; q < scratch.nodes.size(); ++q) {
       const Vec3& y = scratch.positions[q];
       const double support = factor * body.nodes.radius[scratch.nodes[q]], straight = (y - x).norm();
@@ -141,8 +172,9 @@ struct Batch {
       // lengths.
       point.influence_radius =
           std::max(point.influence_radius, scratch.hidden[q] ? 0.5 * (straight + support) : straight);
+      if (scratch.hidden[q] && scratch.had_no_path[q]) continue;
       const auto node =
-          scratch.hidden[q] ? diffracted_support(x, y, support, fronts, faces) : direct_support(x, y, support);
+          scratch.hidden[q] ? diffracted_support(x, y, support, near, faces) : direct_support(x, y, support);
       if (!node) continue;
       shape.nodes.push_back(scratch.nodes[q]), shape.bent.push_back(scratch.hidden[q]), scratch.seen.push_back(*node);
     }
@@ -196,6 +228,33 @@ Occluders near_occluders(const Complex& surface, std::span<const Batch> batches)
 }
 
 }  // namespace
+
+VisibilityChanges::VisibilityChanges(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> nodes,
+                                     std::size_t node_count)
+    : faces_(faces), node_(node_count, 0) {
+  for (const auto i : nodes) node_[i] = 1;
+  for (const auto& [a, b, c] : faces) {
+    const Vec3 middle = (a + b + c) / 3;
+    balls_.push_back({middle, std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
+  }
+}
+
+std::vector<std::uint32_t> VisibilityChanges::faces_near(const Vec3& x, double radius) const {
+  std::vector<std::uint32_t> near;
+  faces_.near(Box3{x, x}.grown(radius * (1 + 2 * bend_margin)), near);
+  return near;
+}
+
+// Such a path is shorter than (support / s)^¼ s, with s the straight distance. All of them fill an
+// ellipsoid.
+bool VisibilityChanges::meet_bent_paths(const Vec3& x, const Vec3& node, double support,
+                                        std::span<const std::uint32_t> faces) const {
+  const double straight = (node - x).norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
+  return std::any_of(faces.begin(), faces.end(), [&](auto f) {
+    const auto& [middle, radius] = balls_[f];
+    return (middle - x).norm() + (middle - node).norm() < longest + 2 * (radius + bend_margin * support);
+  });
+}
 
 Occluders::Occluders(const Complex& surface, std::span<const FaceId> ids) {
   parallel_invoke([&] { fronts = front_edges(surface, ids); },

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "kerf/body.h"
@@ -33,9 +35,27 @@ Occluders all_occluders(const Complex& surface);
 Vec3 moved_off_faces(const Body& body, const Vec3& p);
 
 /// Possible changes of visibility since a set of points was computed.
-struct VisibilityChanges {
-  TriangleBvh faces;               ///< added or removed since
-  std::vector<std::uint8_t> node;  ///< per node: 1 if it is new, has moved, or has another support radius
+class VisibilityChanges {
+ public:
+  /// `faces`: added or removed since. `nodes`: those that are new, have moved, or have another
+  /// support radius, of `node_count` in all.
+  VisibilityChanges(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> nodes,
+                    std::size_t node_count);
+  /// The faces.
+  const TriangleBvh& faces() const { return faces_; }
+  /// Whether a node has changed.
+  bool has_changed(std::uint32_t node) const { return node_[node] != 0; }
+  /// The faces that lines of sight of a point may touch, bent ones included. `radius`: the point's
+  /// influence radius.
+  std::vector<std::uint32_t> faces_near(const Vec3& x, double radius) const;
+  /// Whether one of the faces may touch a path from x to a node that is shorter than its support
+  /// admits. `faces`: those of faces_near(x).
+  bool meet_bent_paths(const Vec3& x, const Vec3& node, double support, std::span<const std::uint32_t> faces) const;
+
+ private:
+  TriangleBvh faces_;
+  std::vector<std::pair<Vec3, double>> balls_;  // per face: a ball about it
+  std::vector<std::uint8_t> node_;              // per node: 1 if it has changed
 };
 
 /// A point whose shape gradients are to be computed. In: its position, and as `influence_radius`

@@ -183,53 +183,77 @@ void Subdomains::index(const NodeLists& nodes, std::size_t node_count) {
     for (std::uint32_t s = 0; s < nodes[p].size(); ++s) incidence_[next[nodes[p][s]]++] = {p, s};
 }
 
+// The wanted subdomains that nodes of a block belong to, ascending.
+std::vector<std::uint32_t> Subdomains::subdomains_at(const PointBlock& block, const std::vector<char>& wanted) const {
+  std::vector<std::uint32_t> found;
+  for (const auto j : block.nodes)
+    for (const Incidence& at : subdomains_of(j))
+      if (wanted[at.subdomain]) found.push_back(at.subdomain);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+// The sums of a block's points for some subdomains, ascending.
+BlockOuterProducts Subdomains::sum_block(const PointBlock& block, std::span<const std::uint32_t> subdomains) const {
+  BlockOuterProducts sums;
+  sums.subdomains.assign(subdomains.begin(), subdomains.end());
+  sums.first.assign(1, 0);
+  for (const auto p : subdomains) sums.first.push_back(sums.first.back() + outer_size(nodes(p).size()));
+  sums.outer.assign(sums.first.back(), 0), sums.best_point.assign(subdomains.size(), {0, 0});
+  std::vector<std::uint32_t> first(1, 0);
+  std::vector<Incidence> places;  // per node of the block: indices into sums.subdomains, and slots
+  for (const auto j : block.nodes) {
+    for (const Incidence& at : subdomains_of(j))
+      if (const auto found = std::lower_bound(subdomains.begin(), subdomains.end(), at.subdomain);
+          found != subdomains.end() && *found == at.subdomain)
+        places.push_back({static_cast<std::uint32_t>(found - subdomains.begin()), at.slot});
+    first.push_back(static_cast<std::uint32_t>(places.size()));
+  }
+  add_outer_products(block, first, places, sums);
+  return sums;
+}
+
 // For the wanted subdomains: the sums of each block's points, then the sum over blocks in their
-// order.
+// order. A small body has few blocks, so that a block's subdomains are divided among threads.
 void Subdomains::sum_points(const MaterialPoints& points, const std::vector<char>& wanted) {
-  std::vector<BlockOuterProducts> block_sums(points.blocks.size());
-  parallel_for(block_sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const PointBlock& block = points.blocks[b];
-      BlockOuterProducts& sums = block_sums[b];
-      for (const auto j : block.nodes)
-        for (const Incidence& at : subdomains_of(j))
-          if (wanted[at.subdomain]) sums.subdomains.push_back(at.subdomain);
-      if (sums.subdomains.empty()) continue;
-      std::sort(sums.subdomains.begin(), sums.subdomains.end());
-      sums.subdomains.erase(std::unique(sums.subdomains.begin(), sums.subdomains.end()), sums.subdomains.end());
-      sums.first.assign(1, 0);
-      for (const auto p : sums.subdomains) sums.first.push_back(sums.first.back() + outer_size(nodes(p).size()));
-      sums.outer.assign(sums.first.back(), 0), sums.best_point.assign(sums.subdomains.size(), {0, 0});
-      std::vector<std::uint32_t> first(1, 0);
-      std::vector<Incidence> places;  // per node of the block: indices into sums.subdomains, and slots
-      for (const auto j : block.nodes) {
-        for (const Incidence& at : subdomains_of(j))
-          if (wanted[at.subdomain]) {
-            const auto found = std::lower_bound(sums.subdomains.begin(), sums.subdomains.end(), at.subdomain);
-            places.push_back({static_cast<std::uint32_t>(found - sums.subdomains.begin()), at.slot});
-          }
-        first.push_back(static_cast<std::uint32_t>(places.size()));
-      }
-      add_outer_products(block, first, places, sums);
+  constexpr std::size_t subdomains_per_task = 32;
+  struct Task {
+    std::uint32_t block;
+    std::size_t begin, end;  // of the block's subdomains
+  };
+  std::vector<std::vector<std::uint32_t>> at_block(points.blocks.size());
+  parallel_for(at_block.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) at_block[b] = subdomains_at(points.blocks[b], wanted);
+  });
+  std::vector<Task> tasks;
+  for (std::uint32_t b = 0; b < at_block.size(); ++b)
+    for (std::size_t k = 0; k < at_block[b].size(); k += subdomains_per_task)
+      tasks.push_back({b, k, std::min(k + subdomains_per_task, at_block[b].size())});
+  std::vector<BlockOuterProducts> block_sums(tasks.size());
+  parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [block, from, to] = tasks[t];
+      block_sums[t] = sum_block(points.blocks[block], std::span(at_block[block]).subspan(from, to - from));
     }
   });
-  using Source = std::pair<std::uint32_t, std::uint32_t>;  // block, and index of the subdomain there
+  using Source = std::pair<std::uint32_t, std::uint32_t>;  // task, and index of the subdomain there
   std::vector<std::vector<Source>> sources(count());
-  for (std::uint32_t b = 0; b < block_sums.size(); ++b)
-    for (std::uint32_t k = 0; k < block_sums[b].subdomains.size(); ++k)
-      sources[block_sums[b].subdomains[k]].push_back({b, k});
+  for (std::uint32_t t = 0; t < tasks.size(); ++t)
+    for (std::uint32_t k = 0; k < block_sums[t].subdomains.size(); ++k)
+      sources[block_sums[t].subdomains[k]].push_back({t, k});
   parallel_for(count(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       if (!wanted[p]) continue;
       outer_[p].assign(outer_size(nodes(p).size()), 0);
       std::uint32_t most_nodes = 0;
-      for (const auto& [b, k] : sources[p]) {
-        const BlockOuterProducts& sums = block_sums[b];
-        for (std::size_t t = 0; t < outer_[p].size(); ++t) outer_[p][t] += sums.outer[sums.first[k] + t];
+      for (const auto& [t, k] : sources[p]) {
+        const BlockOuterProducts& sums = block_sums[t];
+        for (std::size_t i = 0; i < outer_[p].size(); ++i) outer_[p][i] += sums.outer[sums.first[k] + i];
         if (sums.best_point[k].nodes > most_nodes)
-          most_nodes = sums.best_point[k].nodes, point_[p] = {b, sums.best_point[k].point};
+          most_nodes = sums.best_point[k].nodes, point_[p] = {tasks[t].block, sums.best_point[k].point};
       }
-      for (std::size_t t = 3; t < outer_[p].size(); t += 4) outer_[p][t] = 0;
+      for (std::size_t i = 3; i < outer_[p].size(); i += 4) outer_[p][i] = 0;
     }
   });
 }

@@ -12,6 +12,8 @@
 
 namespace geo {
 
+struct BlockOuterProducts;
+
 /// Input of subdomains. Refers to everything.
 struct SubdomainInput {
   const std::vector<Vec3>& position;   ///< per node, material coordinates
@@ -74,6 +76,8 @@ class Subdomains {
   std::vector<NodeLists> lists_of_boxes(const SubdomainInput& input, const Subdomains* before,
                                         const std::vector<char>* changed);
   void index(const NodeLists& nodes, std::size_t node_count);
+  std::vector<std::uint32_t> subdomains_at(const PointBlock& block, const std::vector<char>& wanted) const;
+  BlockOuterProducts sum_block(const PointBlock& block, std::span<const std::uint32_t> subdomains) const;
   void sum_points(const MaterialPoints& points, const std::vector<char>& wanted);
 
   std::vector<std::size_t> first_{0};                           // per subdomain and one more, into node_

@@ -67,6 +67,7 @@ struct Server::Impl {
   Impl(const ServerOptions& options_in, Inbox& inbox_in) : options(options_in), inbox(inbox_in) {}
   void listen();
   void accept();
+  void accept_later();
   void close();
   bool right_host(std::string_view host, const tcp::socket& socket) const;
   void deliver();
@@ -87,6 +88,7 @@ struct Server::Impl {
   // Last: handlers that are destroyed with it own links, which use the members above.
   net::io_context io{1};
   tcp::acceptor acceptor{io};
+  net::steady_timer retry{io};
   std::thread thread;
 };
 
@@ -321,8 +323,17 @@ void Server::Impl::listen() {
 void Server::Impl::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
     if (!acceptor.is_open()) return;
-    if (!error && connections < most_connections) std::make_shared<Visit>(*this, std::move(socket))->start();
+    if (error) return accept_later();
+    if (connections < most_connections) std::make_shared<Visit>(*this, std::move(socket))->start();
     accept();
+  });
+}
+
+// A process without free file descriptors cannot accept: an attempt at once would fail again.
+void Server::Impl::accept_later() {
+  retry.expires_after(std::chrono::milliseconds(100));
+  retry.async_wait([this](error_code error) {
+    if (!error && acceptor.is_open()) accept();
   });
 }
 

@@ -52,6 +52,7 @@ void adapt_scene(geo::Scene& scene, double rate, bool blades) {
 
 Session::Session(const sim::Setup& setup, const geo::Progress& progress)
     : setup_(setup), start_(sim::first_checkpoint(setup, progress)), run_(sim::run_from(setup.scene, start_)) {
+  faces_ = run_.body().surface.face_count();
   for (std::uint32_t i = 0; i < run_.solid().size(); ++i) mass_ += run_.solid().mass(geo::NodeId(i));
   count_pieces();
 }
@@ -212,7 +213,7 @@ void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint)
   blades_.clear(), pulls_.clear();
   run_ = sim::run_from(scene, checkpoint);
   slots_.clear();
-  stats_ = {}, has_cut_ = false;
+  stats_ = {}, has_cut_ = false, faces_ = run_.body().surface.face_count();
   count_pieces();
 }
 

@@ -1,8 +1,10 @@
 """A hand at kerf-live's page: pointer events in a headless browser, aimed at places of the body."""
-import os, sys
+import os, sys, time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "tools"))
 from browser import Browser
+
+DRAWN = "live.told !== null && live.position.length > 0 && plots.frames.length > 0"
 
 
 class Hand(Browser):
@@ -10,7 +12,16 @@ class Hand(Browser):
         """Opens the page; the first frame is drawn when this returns."""
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False)
         self.open(address)
-        self.wait("live.told !== null && live.position.length > 0 && plots.frames.length > 0")
+        self.wait(DRAWN)
+
+    def reload(self):
+        """Loads the page again."""
+        self.loaded = False
+        self.send("Page.reload")
+        until = time.time() + 60
+        while not self.loaded:
+            self.message(until)
+        self.wait(DRAWN)
 
     def wait(self, condition, seconds=60):
         """Until an expression of the page is true."""

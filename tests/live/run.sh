@@ -1,6 +1,6 @@
 #!/bin/sh
 # kerf-live's page in headless Chromium.
-#   tests/live/run.sh TOOLS_DIR SAMPLES_DIR polyp|apple|jello
+#   tests/live/run.sh TOOLS_DIR SAMPLES_DIR polyp|apple|jello|scalpel|pin|sliders|reconnect
 set -eu
 here=$(dirname "$(realpath "$0")")
 tools=$(realpath "$1")
@@ -9,8 +9,12 @@ export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 case $3 in
-  polyp) kerf-model polyp --frequency 8 -o "$work/polyp.ply" ;;
+  polyp | scalpel | reconnect) kerf-model polyp --frequency 8 -o "$work/polyp.ply" ;;
   apple) kerf-model apple -o "$work/apple.ply" ;;
-  jello) kerf-model block --edge 0.08 -o "$work/jello.ply" ;;
+  jello | pin | sliders) kerf-model block --edge 0.08 -o "$work/jello.ply" ;;
 esac
-python3 "$here/check_live.py" "$tools" "$here/../../samples/scenes" "$work" "$3"
+case $3 in
+  polyp | apple | jello) check=check_live.py ;;
+  *) check=check_controls.py ;;
+esac
+python3 "$here/$check" "$tools" "$here/../../samples/scenes" "$work" "$3"

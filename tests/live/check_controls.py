@@ -1,0 +1,145 @@
+"""check_controls.py TOOLS_DIR SCENES_DIR MODELS_DIR CASE...: tools and controls of kerf-live's page, used by real pointer events.
+
+scalpel: an edge that follows the pointer on the surface cuts in; pause, step, undo and reset by their buttons.
+pin: it holds its place while the body is shaken. sliders: the material has the values that they show.
+reconnect: a page that lost its connection, and one that is loaded again, show the whole state.
+Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
+"""
+from hand import along
+from page_session import Session, check, hand, run
+
+# The triangles that the page has: how many, how many on cracks, and sums of their vertices' numbers and positions.
+SHOWN = """(() => {
+  const c = surface.corners, sums = [0, 0, 0, 0];
+  for (let s = 0; s < c.slots; s++) {
+    if (c.kind[s] === noKind) continue;
+    sums[0]++, sums[1] += c.kind[s] === 0 ? 0 : 1;
+    for (let k = 3 * s; k < 3 * s + 3; k++) sums[2] += c.vertex[k] * (1 + k % 3), sums[3] += live.position[3 * c.vertex[k] + k % 3];
+  }
+  return sums; })()"""
+
+
+def shown():
+    hand.wait("live.frame === null")  # the newest frame is drawn
+    return hand.run(SHOWN)
+
+
+def scalpel():
+    session = Session("polyp")
+    session.pause()
+    hand.button("#reset")
+    hand.wait("live.time === 0 && live.stats.paused")
+    whole = shown()
+    hand.button("#step")
+    hand.wait("live.time > 0")
+    rate = hand.run("live.told.rate")
+    check(f"scalpel: a step leads to {hand.run('live.time')} s", abs(hand.run("live.time") * rate - 1) < 1e-9)
+
+    hand.tool("scalpel")
+    for _ in range(16):
+        hand.key("[")
+    x, y = hand.place([0, 0, 0.45])
+    hand.drag(along([x - 40, y], [x + 40, y + 6], steps=10), each=hand.step)
+    hand.finish()
+    now, stats = shown(), hand.stats()
+    check(f"scalpel: {whole} became {now}, {stats}", now[1] > 0 and stats["undo"] == 1)
+    hand.button("#undo")
+    hand.wait("live.stats.undo === 0")
+    check(f"scalpel: after undo {shown()}, not {whole}", shown()[:3] == whole[:3])
+    hand.step()
+    check("scalpel: the first frame after undo says that it has cut", not hand.stats()["cut"])
+
+    hand.button("#pause")
+    hand.wait("!live.stats.paused && live.time > 0.2")
+    hand.button("#pause")
+    hand.wait("live.stats.paused")
+    still = hand.run("new Promise((done) => { const at = live.time; setTimeout(() => done(live.time - at), 200); })")
+    check(f"scalpel: the run goes on for {still} s while it is paused", still == 0)
+    hand.drag(along([x - 40, y], [x + 40, y], steps=10), each=hand.step)
+    hand.finish()
+    check(f"scalpel: a second cut leaves {shown()}", shown()[1] > 0)
+    session.done()
+
+
+def pin():
+    session = Session("jello")
+    top = hand.place([0.5, 0.5, 1.0])
+    hand.tool("pin")
+    hand.click(*top)
+    hand.wait("live.stats.pins.length === 1")
+    # The vertex nearest to the pin, and its way from there.
+    hand.run("""window.pinned = (() => { const at = toShown(live.stats.pins[0]), p = new THREE.Vector3(); let best = 0, least = 9;
+      for (let v = 0; v < live.vertices; v++) { const d = p.fromArray(live.position, 3 * v).distanceTo(at); if (surface.corners.first[v] >= 0 && d < least) least = d, best = v; }
+      return { v: best, at: p.fromArray(live.position, 3 * best).clone() }; })(); 1""")
+    hand.tool("grab")
+    side, held, moved = hand.place([0.95, 0.1, 0.9]), 0, 0
+    other = """(() => { const p = new THREE.Vector3(), g = hand.stroke?.tool; return g ? g.held().distanceTo(g.at.point) : 0; })()"""
+    for dx, dy in [(80, -50), (-60, -70)]:
+        hand.drag(along(side, [side[0] + dx, side[1] + dy], steps=6), release=False,
+                  each=lambda: hand.wait(f"live.time > {hand.run('live.time')} + 0.02"))
+        moved = max(moved, hand.run(other))
+        held = max(held, hand.run("new THREE.Vector3().fromArray(live.position, 3 * pinned.v).distanceTo(pinned.at)"))
+        hand.mouse("mouseReleased", side[0] + dx, side[1] + dy)
+        hand.wait("hand.stroke === null")
+        side = hand.place([0.95, 0.1, 0.9])
+    check(f"pin: the held place moves by {moved}, the pinned one by {held}", moved > 0.05 and held < 0.02)
+    hand.tool("pin")
+    hand.click(*hand.run("(() => { placeCamera(); const p = pinned.at.clone().project(camera), c = $('canvas').getBoundingClientRect(); return [c.x + (p.x + 1) / 2 * c.width, c.y + (1 - p.y) / 2 * c.height]; })()"))
+    hand.wait("live.stats.pins.length === 0")
+    session.pause()
+    session.done()
+
+
+def sliders():
+    session = Session("jello")
+    session.pause()
+    hand.button("#menu")
+    hand.wait("!document.body.classList.contains('wide')")
+    for name in ("young", "gravity", "friction", "damping"):
+        x, y, w, h = hand.run(f"(() => {{ const e = $('{name}'); e.scrollIntoView({{ block: 'center' }}); const r = e.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }})()")
+        before = hand.stats()["set"][name]
+        hand.drag(along([x + w / 2, y + h / 2], [x + 0.8 * w, y + h / 2], steps=3))
+        hand.step()  # values change between two frames
+        hand.wait(f"JSON.stringify(live.stats.set.{name}) !== {str(before).replace(' ', '')!r}")
+        hand.wait(f"(() => {{ const at = Number($('{name}').value), set = live.stats.set.{name}; "
+                  f"const value = {'length(set) / length(live.told.gravity)' if name == 'gravity' else 'set'}; return Math.abs(toSlider('{name}', value) - at) < 1e-4; }})()")
+        at = hand.run(f"Number($('{name}').value)")
+        check(f"sliders: {name} is at {at}, not where the pointer left it", 0.6 < at < 0.95)
+    check(f"sliders: {hand.stats()['set']}", hand.run("live.stats.set.young > live.told.young && length(live.stats.set.gravity) > length(live.told.gravity)"))
+    # An arrow key on a slider moves the slider, and not the eye.
+    eye, young = hand.run("view.azimuth"), hand.stats()["set"]["young"]
+    hand.run("$('young').focus()")
+    hand.key("ArrowLeft")
+    hand.step()
+    hand.wait(f"live.stats.set.young < {young}")
+    check("sliders: the eye moves", hand.run("view.azimuth") == eye)
+    session.done()
+
+
+def reconnect():
+    session = Session("polyp")
+    session.begin()
+    whole = shown()
+    # The connection breaks while an edge is in the body: the stroke ends, and the page comes back by itself.
+    way = along(hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03]), steps=12)
+    hand.drag(way[:8], each=hand.step, release=False)
+    half = shown()
+    check(f"reconnect: {whole} became {half} by half a stroke", half[1] > 0)
+    hand.run("window.stateBefore = live.told; wire.socket.close()")
+    hand.wait("wire.open && live.told !== stateBefore")
+    check(f"reconnect: the page shows {shown()}, not {half}", shown() == half)
+    hand.mouse("mouseReleased", *way[7])
+    hand.finish()
+    after, stats = shown(), hand.stats()
+    check(f"reconnect: {stats}", stats["undo"] == 1 and stats["paused"])
+    hand.reload()
+    check(f"reconnect: a page that is loaded again shows {shown()}, not {after}", shown() == after)
+    check("reconnect: the run is not paused any more", hand.stats()["paused"])
+    hand.button("#undo")
+    hand.wait("live.stats.undo === 0")
+    check(f"reconnect: after undo {shown()}, not {whole}", shown()[:2] == whole[:2])
+    hand.step()
+    session.done()
+
+
+run(globals())

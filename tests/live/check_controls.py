@@ -43,6 +43,7 @@ def scalpel():
     hand.finish()
     now, stats = shown(), hand.stats()
     check(f"scalpel: {whole} became {now}, {stats}", now[1] > 0 and stats["undo"] == 1)
+    hand.wait("!$('undo').disabled")  # figures are drawn ten times a second
     hand.button("#undo")
     hand.wait("live.stats.undo === 0")
     check(f"scalpel: after undo {shown()}, not {whole}", shown()[:3] == whole[:3])
@@ -135,6 +136,7 @@ def reconnect():
     hand.reload()
     check(f"reconnect: a page that is loaded again shows {shown()}, not {after}", shown() == after)
     check("reconnect: the run is not paused any more", hand.stats()["paused"])
+    hand.wait("!$('undo').disabled")  # figures are drawn ten times a second
     hand.button("#undo")
     hand.wait("live.stats.undo === 0")
     check(f"reconnect: after undo {shown()}, not {whole}", shown()[:2] == whole[:2])

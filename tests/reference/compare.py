@@ -1,8 +1,7 @@
 """Large deformations in Kerf beside CalculiX. Run by tests/reference/run.
 
-Prints a table as in docs/validation.md. Exit code 1 where the finest sampling is off by more than 2 %.
+Prints a table as in docs/validation.md. Exit code 1 where the finest sampling is off by more than its bound.
 """
-import math
 import os
 import sys
 import tempfile
@@ -11,7 +10,9 @@ import calculix as ccx
 import kerf
 
 BOUND = 0.02
-NODES = (600, 2400, 9600, 38400)
+# Cells of an octree with two levels integrate less well where they meet (docs/decisions/060).
+BOUND_OF_TWO_LEVELS = 0.12
+NODES = (600, 2400, 9600)
 
 MATERIAL = '''
 [material]
@@ -28,6 +29,7 @@ gravity = [0, 0, -GRAVITY]
 [body]
 mesh = "bar.off"
 nodes = {nodes}
+levels = LEVELS
 fixed = [[-1, -1, -1, 0, 2, 2]]
 CRACK
 ''' + MATERIAL + '''
@@ -44,6 +46,7 @@ gravity = [0, 0, 0]
 [body]
 mesh = "block.off"
 nodes = {nodes}
+levels = 1
 fixed = [[-1, -1, -1, 2, 2, 0]]
 [[grip]]
 box = [-1, -1, 1, 2, 2, 2]
@@ -68,7 +71,7 @@ step 2
 '''
 
 
-def cantilever(folder, gravity, crack):
+def cantilever(folder, gravity, crack, levels=1):
     kerf.write_block(os.path.join(folder, 'bar.off'), (-0.5, 0, 0), (4, 1, 1), 0.125)
     with open(os.path.join(folder, 'crack.front'), 'w') as f:
         f.write(FRONT)
@@ -79,7 +82,7 @@ def cantilever(folder, gravity, crack):
         bricks = ccx.Bricks(ccx.even(0, 4, 24), ccx.even(0, 1, 6), ccx.even(0, 1, 6))
     rows, _ = ccx.solve(os.path.join(folder, 'bar'), bricks, bricks.where(lambda p: p[0] < 1e-9),
                         bricks.where(lambda p: p[0] > 4 - 1e-9), gravity=gravity)
-    scene = CANTILEVER.replace('GRAVITY', str(gravity))
+    scene = CANTILEVER.replace('GRAVITY', str(gravity)).replace('LEVELS', str(levels))
     scene = scene.replace('CRACK', '\n[[score]]\nfile = "crack.front"\n' if crack else '')
     measured = [kerf.mean_displacement(kerf.simulate(folder, scene, n), at_tip, 2) for n in NODES]
     return [('tip, m', sum(r[2] for r in rows) / len(rows), measured)]
@@ -102,29 +105,24 @@ def plates(folder, push):
     return [('force, N', force, forces), ('middle of a side, m', rows[0][0], sides)]
 
 
-def order(errors):
-    """The order of convergence in the node spacing, from the first sampling to the last."""
-    first, last = abs(errors[0]), abs(errors[-1])
-    return math.log(first / last) / (math.log(NODES[-1] / NODES[0]) / 3) if first > 0 and last > 0 else math.inf
-
-
 def main():
     failed = False
-    print('| case | CalculiX | %s | order |' % ' | '.join('%d nodes' % n for n in NODES))
-    print('|---|---|' + '---|' * (len(NODES) + 1))
-    cases = [('Cantilever, 4 long, g = 0.3 m/s²', lambda d: cantilever(d, 0.3, False)),
-             ('The same, cracked half through 1 from its foot, g = 0.15 m/s²', lambda d: cantilever(d, 0.15, True)),
-             ('Cube between bonded plates, 30 % longer', lambda d: plates(d, 0.3)),
-             ('Cube between bonded plates, 15 % shorter', lambda d: plates(d, -0.15))]
-    for name, run in cases:
+    print('| case | CalculiX | %s |' % ' | '.join('%d nodes' % n for n in NODES))
+    print('|---|---|' + '---|' * len(NODES))
+    cases = [('Cantilever, 4 long, g = 0.3 m/s²', BOUND, lambda d: cantilever(d, 0.3, False)),
+             ('The same with two levels of nodes', BOUND_OF_TWO_LEVELS, lambda d: cantilever(d, 0.3, False, 2)),
+             ('Cracked half through 1 from its foot, g = 0.15 m/s²', BOUND, lambda d: cantilever(d, 0.15, True)),
+             ('Cube between bonded plates, 30 % longer', BOUND, lambda d: plates(d, 0.3)),
+             ('Cube between bonded plates, 15 % shorter', BOUND, lambda d: plates(d, -0.15))]
+    for name, bound, run in cases:
         with tempfile.TemporaryDirectory() as folder:
             for what, expected, measured in run(folder):
                 errors = [m / expected - 1 for m in measured]
                 cells = ' | '.join('%.4g (%+.1f %%)' % (m, 100 * e) for m, e in zip(measured, errors))
-                print('| %s: %s | %.4g | %s | %.1f |' % (name, what, expected, cells, order(errors)), flush=True)
-                failed = failed or abs(errors[-1]) > BOUND
+                print('| %s: %s | %.4g | %s |' % (name, what, expected, cells), flush=True)
+                failed = failed or abs(errors[-1]) > bound
     if failed:
-        print('tests/reference/run: the finest sampling is off by more than %g %%' % (100 * BOUND), file=sys.stderr)
+        print('tests/reference/run: the finest sampling is off by more than its bound', file=sys.stderr)
     return int(failed)
 
 

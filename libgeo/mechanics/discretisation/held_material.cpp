@@ -14,8 +14,8 @@ namespace geo {
 namespace {
 
 constexpr std::uint32_t none = ~0u;
-// Of the support radius: about a node spacing. Points that see a held node have it within reach;
-// widths of 0.4 to 0.65 bend cantilevers less accurately (docs/decisions/060).
+// In support radii: about a node spacing. Narrower or wider, cantilevers bend less accurately
+// (docs/decisions/060).
 constexpr double width = 0.55;
 // Least distance of the fourth anchor from the plane of the others, in support radii: coordinates
 // near the box stay below about twenty.
@@ -23,6 +23,11 @@ constexpr double least_height = 0.05;
 
 bool holds(const HeldBox& box, const Vec3& x) {
   return (x.array() >= box.lo.array()).all() && (x.array() <= box.hi.array()).all();
+}
+
+// Farthest from a box that a point is affected: supports of points may be widened.
+double largest_reach(const NodeSet& nodes) {
+  return width * support_factors.back() * *std::max_element(nodes.radius.begin(), nodes.radius.end());
 }
 
 Vec3 nearest_in(const HeldBox& box, const Vec3& x) { return x.cwiseMax(box.lo).cwiseMin(box.hi); }
@@ -34,8 +39,7 @@ std::uint32_t farthest(std::span<const std::uint32_t> nodes, const Value& value)
 }
 
 // Four nodes that span a wide tetrahedron; none where they are nearly coplanar.
-std::optional<std::array<std::uint32_t, 4>> wide_tetrahedron(const NodeSet& nodes,
-                                                             std::span<const std::uint32_t> of) {
+std::optional<std::array<std::uint32_t, 4>> wide_tetrahedron(const NodeSet& nodes, std::span<const std::uint32_t> of) {
   if (of.size() < 4) return {};
   const auto& x = nodes.position;
   Vec3 centre = Vec3::Zero();
@@ -93,13 +97,13 @@ struct HeldMaterial::Shapes {
     const double distance = offset.norm(), t = distance / (width * radius);
     if (!(t < 1)) return {};
     const double w = t * (2 - t);
-    const Vec3 dw = distance > 0 ? Vec3(2 * (1 - t) / (width * radius) *
-                                        (offset / distance - t * width * radius_gradient))
-                                 : Vec3(Vec3::Zero());
+    const Vec3 dw = distance > 0
+                        ? Vec3(2 * (1 - t) / (width * radius) * (offset / distance - t * width * radius_gradient))
+                        : Vec3(Vec3::Zero());
     return corrected(*anchor, plain, w, dw);
   }
 
-  // ∇u = Σ_a ∇λ_a u_a + Σ_j (w ∇φ_j + φ_j ∇w) (u_j − Σ_a λ_a(x_j) u_a), j over nodes outside the box.
+  // ∇u = Σ_a ∇λ_a u_a + Σ_j (w ∇φ_j + φ_j ∇w) (u_j − Σ_a λ_a(x_j) u_a), j over nodes outside.
   ShapeGradients corrected(const Anchors& anchor, const ShapeGradients& plain, double w, const Vec3& dw) const {
     Eigen::Matrix<double, 4, 3> of_anchors = anchor.coordinates.rightCols<3>();
     std::vector<std::pair<std::uint32_t, Vec3>> entries;
@@ -174,11 +178,12 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
     if (!same_anchors || block == none || (changes && !changes->same_points[r.block])) continue;
     PointBlock& plain = points.blocks[block];
     for (std::size_t i = 0; i < plain.points.size(); ++i)
-      r.held.points[i].volume = plain.points[i].volume, r.held.points[i].unscaled_volume = plain.points[i].unscaled_volume;
+      r.held.points[i].volume = plain.points[i].volume,
+      r.held.points[i].unscaled_volume = plain.points[i].unscaled_volume;
     kept[block] = 1;
     replaced_.push_back({block, std::exchange(plain, std::move(r.held)), {}});
   }
-  const double reach = width * support_factors.back() * *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
+  const double reach = largest_reach(body.nodes);
   std::vector<std::uint32_t> near;
   for (std::uint32_t b = 0; b < points.blocks.size(); ++b)
     if (!kept[b] && std::any_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
@@ -193,7 +198,7 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
 // Lines of sight are those of the plain basis, which the blocks know.
 void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& component,
                            std::span<const std::uint32_t> blocks, MaterialPoints& points) {
-  const double reach = width * support_factors.back() * *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
+  const double reach = largest_reach(body.nodes);
   struct Candidate {
     std::uint32_t block, point;
     MaterialPoint copy;
@@ -213,7 +218,7 @@ void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& c
   std::vector<SupportTask> tasks;
   for (Candidate& c : candidates) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});
   if (tasks.empty()) return;
-  const VisibilityChanges no_changes{TriangleBvh(), std::vector<std::uint8_t>(body.nodes.size(), 0)};
+  const VisibilityChanges no_changes({}, {}, body.nodes.size());
   compute_supports(body, std::move(tasks), nullptr, &no_changes);
   const Shapes shapes{body, box_of_node_, boxes_, anchors_, component};
   parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {

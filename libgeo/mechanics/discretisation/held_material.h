@@ -20,9 +20,9 @@ namespace geo {
 /// w rises from 0 on the box to 1 at a node spacing from it.
 class HeldMaterial {
  public:
-  /// Sets the boxes. Returns false if they are the same as before; else call restore() and apply().
+  /// Sets the boxes. Returns false if they are the same as before; else call restore(), apply().
   bool set_boxes(std::span<const HeldBox> boxes);
-  /// Puts back the shape gradients of the plain basis. Results of apply() are kept for the next one.
+  /// Puts back the shape gradients of the plain basis. Keeps results of apply() for the next one.
   void restore(MaterialPoints& points);
   /// Replaces blocks of points near boxes. Precondition: `points` have the plain basis, numbered or
   /// not. `component`: per node, of the visibility graph. `changes`: of the points since restore();

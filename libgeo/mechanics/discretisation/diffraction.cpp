@@ -90,8 +90,8 @@ std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, d
   const double straight = offset.norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
   std::vector<Path> paths;
   for (const NearFront& f : fronts) {
-    // The path bends within half the edge's length and support / 1024 of its middle; twice the latter
-    // covers rounding.
+    // The path bends within half the edge's length and support / 1024 of its middle; twice the
+    // latter covers rounding.
     if (f.distance >= support + f.length || f.distance + (f.middle - node).norm() - f.length - support / 256 >= longest)
       continue;
     const Vec3 ahead = support / 1024 * f.edge->ahead, bend = bend_point(x, node, f.edge->a + ahead, f.edge->b + ahead);

@@ -13,7 +13,7 @@
 namespace geo {
 namespace {
 
-constexpr std::uint32_t none = ~0u;
+constexpr std::uint32_t no_index = ~0u;
 // In support radii: about a node spacing. Narrower or wider, cantilevers bend less accurately
 // (docs/decisions/060).
 constexpr double width = 0.55;
@@ -72,7 +72,7 @@ struct HeldMaterial::Shapes {
     const Anchors* nearest = nullptr;
     double least = 0;
     for (const auto j : plain.nodes) {
-      if (box_of_node[j] == none || component[j] != component[plain.nodes[0]]) continue;
+      if (box_of_node[j] == no_index || component[j] != component[plain.nodes[0]]) continue;
       for (const Anchors& a : anchors) {
         if (a.box != box_of_node[j] || a.component != component[j]) continue;
         const double distance = squared_distance(x, nearest_in(boxes[a.box], x));
@@ -147,7 +147,7 @@ std::vector<HeldMaterial::Anchors> HeldMaterial::anchors_of(const Body& body,
                                                             const std::vector<std::uint32_t>& component) const {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> held;
   for (std::uint32_t i = 0; i < box_of_node_.size(); ++i)
-    if (const auto box = box_of_node_[i]; box != none && boxes_[box].rigid) held[{box, component[i]}].push_back(i);
+    if (const auto box = box_of_node_[i]; box != no_index && boxes_[box].rigid) held[{box, component[i]}].push_back(i);
   std::vector<Anchors> all;
   for (const auto& [key, nodes] : held)
     if (const auto four = wide_tetrahedron(body.nodes, nodes)) {
@@ -164,9 +164,9 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
   std::vector<Replaced> former = std::move(replaced_);
   replaced_.clear();
   if (boxes_.empty()) return false;
-  box_of_node_.assign(body.nodes.size(), none);
+  box_of_node_.assign(body.nodes.size(), no_index);
   for (std::size_t i = 0; i < box_of_node_.size(); ++i)
-    for (std::uint32_t k = 0; k < boxes_.size() && box_of_node_[i] == none; ++k)
+    for (std::uint32_t k = 0; k < boxes_.size() && box_of_node_[i] == no_index; ++k)
       if (holds(boxes_[k], body.nodes.position[i])) box_of_node_[i] = k;
   std::vector<Anchors> anchors = anchors_of(body, component);
   const bool same_anchors = anchors == anchors_;
@@ -175,7 +175,7 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
   std::vector<char> kept(points.blocks.size(), 0);
   for (Replaced& r : former) {
     const auto block = changes ? changes->new_block[r.block] : r.block;
-    if (!same_anchors || block == none || (changes && !changes->same_points[r.block])) continue;
+    if (!same_anchors || block == no_index || (changes && !changes->same_points[r.block])) continue;
     PointBlock& plain = points.blocks[block];
     for (std::size_t i = 0; i < plain.points.size(); ++i)
       r.held.points[i].volume = plain.points[i].volume,

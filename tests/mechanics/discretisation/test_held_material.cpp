@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "base/random.h"
 #include "cases.h"
@@ -152,32 +153,47 @@ TEST_CASE("material that is cut off beside a held box is free", "[held]") {
   CHECK(solid.energy(u) < 1e-20 * soft().young);
 }
 
-TEST_CASE("a cantilever bends as long as its material outside the box is, wherever the box ends", "[held]") {
+namespace {
+
+// The deflection of a bar's tip under an even load over that of Timoshenko's beam, less one. The
+// bar is 4 long beyond its held part, of unit section, with seven nodes across.
+double error_of_cantilever(double held, bool material) {
   const double length = 4, spacing = 0.14, load = 1e-3 * soft().young;
-  for (const double inside : {0.3, 0.34, 0.37, 0.4, 0.43}) {
-    CAPTURE(inside);
-    const Body body = block_body({length + inside, 1, 1}, spacing, 0.25);
-    Solid solid(body, soft());
-    solid.hold(body, std::vector<HeldBox>{{{-1, -1, -1}, {inside, 2, 2}, true}});
-    Environment environment;
-    environment.gravity.setZero();
-    for (std::size_t i = 0; i < body.nodes.size(); ++i) {
-      environment.fixed.push_back(body.nodes.position[i].x() <= inside);
-      environment.load.push_back(Vec3(0, 0, load * body.nodes.volume[i]));
-    }
-    State state{std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero())};
-    solid.step_implicit(state, 1e3, environment, 1e-7);
-    // Timoshenko's beam under an even load: q L⁴ / (8 E I) + q L² / (2 κ G A).
-    const double nu = soft().poisson, shear = soft().young / (2 * (1 + nu)) * 10 * (1 + nu) / (12 + 11 * nu);
-    const double expected = load * (std::pow(length, 4) / (8 * soft().young / 12) + length * length / (2 * shear));
-    const auto gradient = solid.gradients(state.displacement);
-    double tip = 0, volume = 0;
-    for (std::size_t i = 0; i < body.nodes.size(); ++i) {
-      const double to_tip = length + inside - body.nodes.position[i].x();
-      if (to_tip > spacing) continue;
-      volume += body.nodes.volume[i];
-      tip += body.nodes.volume[i] * (state.displacement[i].z() + to_tip * gradient[i](2, 0));
-    }
-    CHECK(tip / volume == Approx(expected).epsilon(0.03));
+  const Body body = block_body({length + held, 1, 1}, spacing, 0.25);
+  Solid solid(body, soft());
+  if (material) solid.hold(body, std::vector<HeldBox>{{{-1, -1, -1}, {held, 2, 2}, true}});
+  Environment environment;
+  environment.gravity.setZero();
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    environment.fixed.push_back(body.nodes.position[i].x() <= held);
+    environment.load.push_back(Vec3(0, 0, load * body.nodes.volume[i]));
   }
+  State state{std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero())};
+  solid.step_implicit(state, 1e3, environment, 1e-7);
+  // q L⁴ / (8 E I) + q L² / (2 κ G A)
+  const double nu = soft().poisson, shear = soft().young / (2 * (1 + nu)) * 10 * (1 + nu) / (12 + 11 * nu);
+  const double expected = load * (std::pow(length, 4) / (8 * soft().young / 12) + length * length / (2 * shear));
+  const auto gradient = solid.gradients(state.displacement);
+  double tip = 0, volume = 0;
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    const double to_tip = length + held - body.nodes.position[i].x();
+    if (to_tip > spacing) continue;
+    volume += body.nodes.volume[i];
+    tip += body.nodes.volume[i] * (state.displacement[i].z() + to_tip * gradient[i](2, 0));
+  }
+  return tip / volume / expected - 1;
+}
+
+}  // namespace
+
+TEST_CASE("a cantilever bends as long as its material outside the box is, wherever the box ends", "[held]") {
+  double sum = 0;
+  for (const double held : {0.3, 0.34, 0.37, 0.4, 0.43}) {
+    const double nodes = error_of_cantilever(held, false), material = error_of_cantilever(held, true);
+    CAPTURE(held, nodes, material);
+    CHECK(std::abs(material) < 0.08);
+    CHECK(std::abs(material) < 0.7 * nodes);
+    sum += material;
+  }
+  CHECK(std::abs(sum / 5) < 0.03);
 }
